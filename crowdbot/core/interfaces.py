@@ -1,0 +1,252 @@
+"""What each category of component must be able to do.
+
+All small and at numpy level: SI units, float64, read-only inputs, new outputs; world frame
+x along the corridor, y left, z up, yaw counter-clockwise (REP-103).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from crowdbot.core.score import Score
+    from crowdbot.core.sensing.scene import Scene
+    from crowdbot.core.trajectory import Trajectories
+
+Array = NDArray[np.float64]
+
+
+class Pose(NamedTuple):
+    """Pose in the plane."""
+
+    x: float
+    y: float
+    yaw: float
+
+
+class Command(NamedTuple):
+    """Body velocity: v forward (m/s), w counter-clockwise (rad/s), vy to the left (m/s)."""
+
+    v: float
+    w: float
+    vy: float = 0.0
+
+
+# ---------------------------------------------------------------- environment
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EnvironmentParts:
+    """Plain geometry; core makes plant boxes, ray targets, crowd obstacles and drawings of it.
+
+    Attributes:
+        walls: (S, 4) segments x0, y0, x1, y1, m.
+        wall_heights: (S, 2) bottom and top, m.
+        stops_robot: (S,) bool, the robot collides with the segment.
+        stops_crowd: (S,) bool, people avoid the segment.
+        zones: name -> (K, 2) polygon, counter-clockwise, m.
+        portals: name -> (x0, x1, y0, y1), m.
+    """
+
+    walls: Array
+    wall_heights: Array
+    stops_robot: NDArray[np.bool_]
+    stops_crowd: NDArray[np.bool_]
+    zones: Mapping[str, Array]
+    portals: Mapping[str, tuple[float, float, float, float]]
+
+
+# ---------------------------------------------------------------------- robot
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotLimits:
+    """A box of velocities and slew limits: m/s, rad/s, m/s^2, rad/s^2."""
+
+    v_min: float
+    v_max: float
+    w_max: float
+    a_max: float
+    alpha_max: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DifferentialDrive:
+    """Two driven wheels. ``command_radius`` turns commands into wheel rates."""
+
+    left_joint: str
+    right_joint: str
+    command_radius: float
+    track: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotModel:
+    """A robot's body and drive.
+
+    Attributes:
+        sdf: SDFormat text of one model, base frame on the drive axis' vertical.
+        base: name of the base link; its origin is ``base_height`` above the floor.
+        footprint_radius: radius of the physical disc, m.
+        force_height: height above the floor at which people push, m.
+    """
+
+    sdf: str
+    base: str
+    base_height: float
+    drive: DifferentialDrive
+    limits: RobotLimits
+    footprint_radius: float
+    force_height: float
+    mass: float
+
+
+class RobotState(NamedTuple):
+    """What everything downstream of the robot reads; world frame, SI."""
+
+    x: float
+    y: float
+    yaw: float
+    vx: float
+    vy: float
+    w: float
+    tilt: float
+    z: float
+    left_angle: float
+    right_angle: float
+
+
+# --------------------------------------------------------------------- sensor
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorInfo:
+    """What a planner or a recorder may know about a sensor.
+
+    Attributes:
+        category: ``lidar``, ``odometry``, ``ultrasound``, …
+        mount: x, y, z, yaw from base_link (m, rad).
+        shape: shape of a reading's values.
+        angles: (R,) beam angles in the sensor frame, rad, or None.
+        memory: number of float64 the sensor keeps between readings (0: none).
+    """
+
+    category: str
+    frame: str
+    mount: tuple[float, float, float, float]
+    rate: float
+    shape: tuple[int, ...]
+    ros_type: str
+    angles: Array | None = None
+    range_min: float = 0.0
+    range_max: float = float("inf")
+    memory: int = 0
+
+
+class Reading(NamedTuple):
+    """A sensor's latest values and the simulated time at which they were taken (s)."""
+
+    stamp: float
+    values: Array
+
+
+class Sensor(Protocol):
+    """A sensor without memory."""
+
+    def info(self) -> SensorInfo:
+        """Constant description."""
+        ...
+
+    def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
+        """Return new values of ``info().shape``. ``pose`` is base_link's, world frame."""
+        ...
+
+
+class SensorWithMemory(Protocol):
+    """A sensor whose ``info().memory > 0``; it keeps all its state in ``memory``."""
+
+    def info(self) -> SensorInfo:
+        """Constant description."""
+        ...
+
+    def read(
+        self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator, memory: Array
+    ) -> Array:
+        """As `Sensor.read`; ``memory`` starts as zeros and is changed in place."""
+        ...
+
+
+# -------------------------------------------------------------------- planner
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task:
+    """Start pose and goal, in the world frame, which the odometry frame equals at t = 0."""
+
+    start: Pose
+    goal: tuple[float, float]
+    goal_zone: Array
+    time_limit: float
+
+
+def _ignore(name: str, value: float) -> None:
+    del name, value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Observation:
+    """What a planner sees in one step. No ground truth.
+
+    Attributes:
+        t: simulated time, s.
+        pose: pose by wheel odometry (x, y, yaw).
+        twist: forward speed (m/s) and yaw rate (rad/s) by wheel odometry.
+        goal, goal_zone: in the same frame as ``pose``.
+        readings: latest reading of each sensor that was asked for.
+        log: ``log(name, value)`` records a named signal of the run.
+    """
+
+    t: float
+    pose: Pose
+    twist: tuple[float, float]
+    goal: tuple[float, float]
+    goal_zone: Array
+    readings: Mapping[str, Reading] = field(default_factory=lambda: MappingProxyType({}))
+    log: Callable[[str, float], None] = _ignore
+
+
+class NoValidCommand(Exception):  # noqa: N818 - a word of the planner contract
+    """A planner may raise this when it knows no command; the robot is told to stop."""
+
+
+class Planner(Protocol):
+    """The thing under test."""
+
+    def reset(
+        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+    ) -> None:
+        """Called once before the first step."""
+        ...
+
+    def step(self, obs: Observation) -> Command:
+        """Return the next command; may raise `NoValidCommand`."""
+        ...
+
+
+# --------------------------------------------------------------------- metric
+@dataclass(frozen=True, slots=True, kw_only=True)
+class References:
+    """Calibration runs; either may be missing."""
+
+    robot_alone: Trajectories | None = None
+    crowd_alone: Trajectories | None = None
+
+
+class Metric(Protocol):
+    """A pure function of trajectories."""
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """One score per variant; a status instead of NaN."""
+        ...
+
+
+#: Named numeric parameters.
+Parameters = Mapping[str, Any]

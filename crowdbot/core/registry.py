@@ -1,0 +1,264 @@
+"""The registry: which components are installed. A value, built by a function, never changed.
+
+Discovery isolates failures: a plugin that cannot be imported, or speaks another API version, is
+listed with its error and hides nobody else. Two plugins of one name, or two components of one
+kind, are all disabled, and the error names them.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import sys
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from importlib import metadata
+from pathlib import Path
+from types import ModuleType
+from typing import Annotated, Any, Union
+
+import pluggy
+from pydantic import Field, SerializeAsAny, create_model
+
+from crowdbot import hookspecs
+from crowdbot.core.component import Component
+from crowdbot.dsl.base import CATEGORIES, ComponentSpec
+from crowdbot.dsl.scenario import Crowd, Robot, Scenario
+from crowdbot.errors import PluginError, UnknownNameError
+
+GROUP = "crowdbot"
+_HOOKS = {
+    "crowdbot_environments": "environment",
+    "crowdbot_robots": "robot",
+    "crowdbot_sensors": "sensor",
+    "crowdbot_planners": "planner",
+    "crowdbot_crowd_policies": "crowd policy",
+    "crowdbot_cost_functions": "cost function",
+    "crowdbot_metrics": "metric",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plugin:
+    """One installed plugin, healthy or not."""
+
+    name: str
+    distribution: str
+    pinned: bool = True
+    components: tuple[Component[Any], ...] = ()
+    scenario_dirs: tuple[Any, ...] = ()
+    error: str = ""
+
+
+@dataclass(frozen=True)
+class Registry:
+    """All plugins, and the healthy ones' components by category and kind."""
+
+    plugins: tuple[Plugin, ...]
+    _by_category: Mapping[str, Mapping[str, Component[Any]]] = field(repr=False)
+
+    def components(self, category: str) -> Mapping[str, Component[Any]]:
+        """Kind -> component, sorted by kind."""
+        return self._by_category[category]
+
+    def find(self, category: str, kind: str) -> Component[Any]:
+        """The component of one kind.
+
+        Raises:
+            UnknownNameError: nothing of that kind is installed.
+        """
+        known = self._by_category[category]
+        if kind not in known:
+            raise UnknownNameError(category, kind, known)
+        return known[kind]
+
+    def owner(self, kind: str) -> Plugin:
+        """The plugin that provides a kind."""
+        return next(p for p in self.plugins if any(c.kind == kind for c in p.components))
+
+    def build(self, spec: ComponentSpec, *args: Any) -> Any:
+        """Turn a spec into deeds through its component's build function."""
+        return self.find(spec.category, spec.kind).load_build()(spec, *args)
+
+    def suites(self) -> Iterator[tuple[str, Any]]:
+        """Name and file of every packaged suite; ``builtin``'s have no prefix."""
+        for plugin in self.plugins:
+            for folder in plugin.scenario_dirs:
+                for file in sorted(folder.iterdir(), key=lambda f: str(f.name)):
+                    if file.name.endswith(".yaml") and file.is_file():
+                        stem = file.name.removesuffix(".yaml")
+                        yield (stem if plugin.name == "builtin" else f"{plugin.name}:{stem}"), file
+
+    @cached_property
+    def scenario_model(self) -> type[Scenario]:
+        """`Scenario`, narrowed to the installed components."""
+        crowd = create_model(
+            "Crowd",
+            __base__=Crowd,
+            policy=(self._union("crowd policy"), ...),
+            costs=(dict[str, self._union("cost function")], {}),  # type: ignore[misc]
+        )
+        robot = create_model(
+            "Robot",
+            __base__=Robot,
+            model=(self._union("robot"), ...),
+            sensors=(dict[str, self._union("sensor")], {}),  # type: ignore[misc]
+        )
+        return create_model(
+            "Scenario",
+            __base__=Scenario,
+            environment=(self._union("environment"), ...),
+            crowd=(crowd | None, None),
+            robots=(dict[str, robot], {}),  # type: ignore[valid-type]
+        )
+
+    def spec_versions(self, scenario: Scenario) -> dict[str, int]:
+        """Kind -> spec_version of every component a scenario uses."""
+        used: list[ComponentSpec] = [scenario.environment]
+        if scenario.crowd is not None:
+            used += [scenario.crowd.policy, *scenario.crowd.costs.values()]
+        for entry in scenario.robots.values():
+            used += [entry.model, *entry.sensors.values()]
+        return {s.kind: self.find(s.category, s.kind).spec_version for s in used}
+
+    def _union(self, category: str) -> Any:
+        specs = tuple(c.spec for c in self._by_category[category].values())
+        if not specs:
+            raise PluginError(f"no {category} is installed")
+        if len(specs) == 1:  # a discriminator needs two members
+            return SerializeAsAny[specs[0]]  # type: ignore[valid-type]
+        return Annotated[Union[specs], Field(discriminator="kind")]  # noqa: UP007
+
+
+def discover(
+    *, extra: Sequence[Path] = (), allow: Iterable[str] | None = None, entry_points: bool = True
+) -> Registry:
+    """Build the registry from entry points and from folders or files given by hand.
+
+    Args:
+        extra: paths of plugins that are not installed (``--plugin DIR``).
+        allow: only these plugin names; default: ``CROWDBOT_PLUGINS``, else all.
+        entry_points: False reads no entry points except crowdbot's own.
+    """
+    if allow is None and os.environ.get("CROWDBOT_PLUGINS"):
+        allow = os.environ["CROWDBOT_PLUGINS"].split(",")
+    wanted = None if allow is None else {"builtin", *(a.strip() for a in allow)}
+    found = [
+        _load(e.name, _distribution(e), e.load)
+        for e in sorted(metadata.entry_points(group=GROUP), key=lambda e: (e.name, e.value))
+        if (entry_points or e.name == "builtin") and (wanted is None or e.name in wanted)
+    ]
+    found += [
+        replace(_load(p.stem, str(p), lambda p=p: load_path(p)), pinned=False) for p in extra
+    ]
+    return assemble(found)
+
+
+def assemble(found: Sequence[Plugin]) -> Registry:
+    """Disable collisions and sort what is left into a registry."""
+    plugins = _disable(found, _name_collisions(found))
+    plugins = _disable(plugins, _kind_collisions(plugins))
+    by_category: dict[str, dict[str, Component[Any]]] = {c.category: {} for c in CATEGORIES}
+    for plugin in plugins:
+        for component in plugin.components:
+            by_category[component.category][component.kind] = component
+    return Registry(tuple(plugins), {k: dict(sorted(v.items())) for k, v in by_category.items()})
+
+
+def load_path(path: Path) -> ModuleType:
+    """Import a Python file or a package folder under its own name, without installing it.
+
+    Raises:
+        PluginError: there is no such file, or it cannot be imported.
+    """
+    file = path / "__init__.py" if path.is_dir() else path
+    spec = importlib.util.spec_from_file_location(path.stem, file) if file.is_file() else None
+    if spec is None or spec.loader is None:
+        raise PluginError(f"{path}: no Python file or package")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[path.stem] = module
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        del sys.modules[path.stem]
+        raise PluginError(f"{path}: {type(error).__name__}: {error}") from error
+    return module
+
+
+def _distribution(entry: metadata.EntryPoint) -> str:
+    return f"{entry.dist.name} {entry.dist.version}" if entry.dist else entry.value
+
+
+def _load(name: str, distribution: str, load: Any) -> Plugin:
+    """One plugin in its own manager, so that an error stays its own."""
+    try:
+        module = load()
+        _check_api(module, distribution)
+        manager = pluggy.PluginManager("crowdbot")
+        manager.add_hookspecs(hookspecs)
+        manager.register(module, name)
+        manager.check_pending()
+        listed = [(h, c) for h in _HOOKS for cs in getattr(manager.hook, h)() for c in cs]
+        for hook, component in listed:
+            _check_component(name, hook, component)
+        dirs = [d for ds in manager.hook.crowdbot_scenario_dirs() for d in ds]
+    except Exception as error:
+        text = f"{type(error).__name__}: {error}"
+        return Plugin(name=name, distribution=distribution, error=text)
+    return Plugin(
+        name=name,
+        distribution=distribution,
+        components=tuple(c for _, c in listed),
+        scenario_dirs=tuple(dirs),
+    )
+
+
+def _check_api(module: ModuleType, distribution: str) -> None:
+    version = getattr(module, "CROWDBOT_API", hookspecs.API_VERSION)
+    if version != hookspecs.API_VERSION:
+        raise PluginError(
+            f"{distribution} was written for plugin API {version}; "
+            f"this crowdbot speaks {hookspecs.API_VERSION}"
+        )
+
+
+def _check_component(plugin: str, hook: str, component: Component[Any]) -> None:
+    if component.category != _HOOKS[hook]:
+        raise PluginError(f"{hook} returned {component.kind}, a {component.category}")
+    if plugin != "builtin" and not component.kind.startswith(f"{plugin}."):
+        raise PluginError(f"kind '{component.kind}' must start with '{plugin}.'")
+
+
+def _name_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
+    twice = {n for n, k in Counter(p.name for p in plugins).items() if k > 1}
+    return {
+        i: f"E301 plugin name '{p.name}' is claimed by {_names(plugins, p.name)}"
+        for i, p in enumerate(plugins)
+        if p.name in twice
+    }
+
+
+def _names(plugins: Sequence[Plugin], name: str) -> str:
+    return " and ".join(p.distribution for p in plugins if p.name == name)
+
+
+def _kind_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
+    owners: dict[tuple[str, str], list[int]] = {}
+    for i, plugin in enumerate(plugins):
+        for component in plugin.components:
+            owners.setdefault((component.category, component.kind), []).append(i)
+    errors = {}
+    for (category, kind), indices in owners.items():
+        if len(indices) > 1:
+            who = " and ".join(plugins[i].distribution for i in indices)
+            errors.update({i: f"E301 {category} '{kind}' is provided by {who}" for i in indices})
+    return errors
+
+
+def _disable(plugins: Sequence[Plugin], errors: Mapping[int, str]) -> list[Plugin]:
+    return [
+        replace(p, components=(), scenario_dirs=(), error=errors[i]) if i in errors else p
+        for i, p in enumerate(plugins)
+    ]

@@ -1,0 +1,231 @@
+"""Trajectories: the typed arrays a run leaves behind; all that metrics may see.
+
+Layout of the metric specification, section 1. Arrays are float64, read-only, shape-checked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crowdbot.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+def _frozen(values: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
+    array = np.array(values, dtype=dtype)
+    array.setflags(write=False)
+    return array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotTrack:
+    """One robot: x, y, theta, v, w are (N,); m, rad, m/s signed forward, rad/s."""
+
+    x: Array
+    y: Array
+    theta: Array
+    v: Array
+    w: Array
+    radius: float
+    mass: float
+    goal_time: float | None
+    goal: tuple[float, float] | None
+    goal_radius: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AgentTracks:
+    """People: id, radius, mass (M,); x, y, vx, vy (N, M), NaN = absent; jump (N-1, M)."""
+
+    id: NDArray[np.int64]
+    x: Array
+    y: Array
+    vx: Array
+    vy: Array
+    radius: Array
+    mass: Array
+    jump: NDArray[np.bool_] | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trips:
+    """Journeys to one goal: agent (id), t0, t1 (s), reached; each (K,)."""
+
+    agent: NDArray[np.int64]
+    t0: Array
+    t1: Array
+    reached: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactEvents:
+    """Contacts of the robot: t0, t1 (s), agent id (-1: a wall), impulse (N s), peak force (N),
+    relative speed before (m/s); each (K,)."""
+
+    t0: Array
+    t1: Array
+    agent: NDArray[np.int64]
+    impulse: Array
+    peak_force: Array
+    relative_speed: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trajectories:
+    """One run. ``robot`` or ``agents`` is None in the calibration runs."""
+
+    t: Array
+    robot: RobotTrack | None = None
+    agents: AgentTracks | None = None
+    trips: Trips | None = None
+    goal_zone: Array | None = None
+    contacts: ContactEvents | None = None
+    walls: Array | None = None
+    planner_step_time: Array | None = None
+    robot_footprint: Array | None = None
+    signals: Mapping[str, Array] = field(default_factory=dict)
+
+    @classmethod
+    def from_arrays(
+        cls,
+        *,
+        t: ArrayLike,
+        robot_x: ArrayLike | None = None,
+        robot_y: ArrayLike | None = None,
+        robot_theta: ArrayLike | None = None,
+        robot_v: ArrayLike | None = None,
+        robot_w: ArrayLike | None = None,
+        robot_radius: float | None = None,
+        robot_mass: float | None = None,
+        robot_goal_time: float | None = None,
+        robot_goal: tuple[float, float] | None = None,
+        robot_goal_radius: float = 0.0,
+        agent_id: ArrayLike | None = None,
+        agent_x: ArrayLike | None = None,
+        agent_y: ArrayLike | None = None,
+        agent_vx: ArrayLike | None = None,
+        agent_vy: ArrayLike | None = None,
+        agent_radius: ArrayLike | None = None,
+        agent_mass: ArrayLike | None = None,
+        agent_jump: ArrayLike | None = None,
+        trip_agent: ArrayLike | None = None,
+        trip_t0: ArrayLike | None = None,
+        trip_t1: ArrayLike | None = None,
+        trip_reached: ArrayLike | None = None,
+        goal_zone: ArrayLike | None = None,
+        contacts: Mapping[str, ArrayLike] | None = None,
+        walls: ArrayLike | None = None,
+        planner_step_time: ArrayLike | None = None,
+        robot_footprint: ArrayLike | None = None,
+        signals: Mapping[str, ArrayLike] | None = None,
+    ) -> Trajectories:
+        """Build from plain arrays; ``robot_*`` or ``agent_*`` may be left out.
+
+        Raises:
+            InputError: a shape does not fit, time does not increase, a part is missing.
+        """
+        given = locals()
+        run = cls(
+            t=_frozen(t),
+            robot=_robot(given) if robot_x is not None else None,
+            agents=_agents(given) if agent_x is not None else None,
+            trips=_trips(given) if trip_agent is not None else None,
+            goal_zone=None if goal_zone is None else _frozen(goal_zone),
+            contacts=None if contacts is None else _contacts(contacts),
+            walls=None if walls is None else _frozen(walls),
+            planner_step_time=None if planner_step_time is None else _frozen(planner_step_time),
+            robot_footprint=None if robot_footprint is None else _frozen(robot_footprint),
+            signals={k: _frozen(v) for k, v in (signals or {}).items()},
+        )
+        _check(run)
+        return run
+
+
+def _need(given: Mapping[str, Any], *names: str) -> None:
+    missing = [n for n in names if given[n] is None]
+    if missing:
+        raise InputError(f"trajectories: {', '.join(missing)} missing")
+
+
+def _robot(given: Mapping[str, Any]) -> RobotTrack:
+    _need(given, "robot_y", "robot_theta", "robot_v", "robot_w", "robot_radius", "robot_mass")
+    goal_time, goal = given["robot_goal_time"], given["robot_goal"]
+    return RobotTrack(
+        **{k: _frozen(given[f"robot_{k}"]) for k in ("x", "y", "theta", "v", "w")},
+        radius=float(given["robot_radius"]),
+        mass=float(given["robot_mass"]),
+        goal_time=None if goal_time is None else float(goal_time),
+        goal=None if goal is None else (float(goal[0]), float(goal[1])),
+        goal_radius=float(given["robot_goal_radius"]),
+    )
+
+
+def _agents(given: Mapping[str, Any]) -> AgentTracks:
+    _need(given, "agent_y", "agent_radius", "agent_mass")
+    x = _frozen(given["agent_x"])
+    count = x.shape[1] if x.ndim == 2 else 0
+    absent = np.full(x.shape, np.nan)
+    ids = given["agent_id"] if given["agent_id"] is not None else np.arange(count)
+    jump = given["agent_jump"]
+    return AgentTracks(
+        id=_frozen(ids, np.int64),
+        x=x,
+        y=_frozen(given["agent_y"]),
+        vx=_frozen(absent if given["agent_vx"] is None else given["agent_vx"]),
+        vy=_frozen(absent if given["agent_vy"] is None else given["agent_vy"]),
+        radius=_frozen(np.broadcast_to(given["agent_radius"], (count,))),
+        mass=_frozen(np.broadcast_to(given["agent_mass"], (count,))),
+        jump=None if jump is None else _frozen(jump, np.bool_),
+    )
+
+
+def _trips(given: Mapping[str, Any]) -> Trips:
+    _need(given, "trip_t0", "trip_t1", "trip_reached")
+    return Trips(
+        agent=_frozen(given["trip_agent"], np.int64),
+        t0=_frozen(given["trip_t0"]),
+        t1=_frozen(given["trip_t1"]),
+        reached=_frozen(given["trip_reached"], np.bool_),
+    )
+
+
+def _contacts(table: Mapping[str, ArrayLike]) -> ContactEvents:
+    names = [f.name for f in fields(ContactEvents)]
+    if set(table) != set(names):
+        raise InputError(f"trajectories: contacts needs the columns {', '.join(names)}")
+    return ContactEvents(
+        **{n: _frozen(table[n], np.int64 if n == "agent" else np.float64) for n in names}
+    )
+
+
+def _check(run: Trajectories) -> None:
+    n = len(run.t)
+    if run.t.ndim != 1 or n == 0 or not np.all(np.isfinite(run.t)):
+        raise InputError("trajectories: t must be a non-empty row of finite times")
+    if np.any(np.diff(run.t) <= 0):
+        raise InputError("trajectories: t must strictly increase")
+    if run.robot is not None:
+        for name in ("x", "y", "theta", "v", "w"):
+            _shape(f"robot_{name}", getattr(run.robot, name), (n,))
+    if run.agents is not None:
+        m = len(run.agents.id)
+        for name in ("x", "y", "vx", "vy"):
+            _shape(f"agent_{name}", getattr(run.agents, name), (n, m))
+        if run.agents.jump is not None:
+            _shape("agent_jump", run.agents.jump, (n - 1, m))
+    for table in (run.trips, run.contacts):
+        if table is not None:
+            k = getattr(table, "agent").shape
+            for column in fields(table):
+                _shape(column.name, getattr(table, column.name), k)
+
+
+def _shape(name: str, array: NDArray[Any], shape: tuple[int, ...]) -> None:
+    if array.shape != shape:
+        raise InputError(f"trajectories: {name} has shape {array.shape}, expected {shape}")

@@ -1,0 +1,202 @@
+"""Scenario: everything the robot meets, fully explicit. No planner.
+
+The classes here are typed with abstract component specs. `crowdbot.core.registry` narrows them
+to the components that are installed; the base classes refuse to validate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Le
+from pydantic import Field, SerializeAsAny, field_validator
+
+from crowdbot.dsl.base import (
+    CostFunctionSpec,
+    CrowdPolicySpec,
+    EnvironmentSpec,
+    RobotSpec,
+    SensorSpec,
+    Spec,
+)
+from crowdbot.dsl.quantities import (
+    Angle,
+    Length,
+    NonNegativeDamping,
+    NonNegativeLength,
+    NonNegativeSpeed,
+    NonNegativeSteeringStiffness,
+    PositiveAcceleration,
+    PositiveDensity,
+    PositiveDuration,
+    PositiveFrequency,
+    PositiveLength,
+    PositiveMass,
+    PositiveSpeed,
+    PositiveStiffness,
+)
+
+
+class CrowdSeed(Spec):
+    """Where the crowd's random numbers come from; equal seeds draw equal people."""
+
+    root: Annotated[int, Ge(0), Le(2**63 - 1)] = Field(default=0, description="Root seed.")
+    key: str = Field(default="", description="Draw within the root: labels of the seed axes.")
+
+
+class Flow(Spec):
+    """A stream of people from one portal to the other."""
+
+    direction: Literal["in", "counter"] = Field(
+        description="in: from the first portal to the second; counter: the other way."
+    )
+    portals: tuple[str, str] = Field(
+        default=("a", "b"), strict=False, description="Names of the two portals."
+    )
+    density: PositiveDensity = Field(description="People per area of the start zone, 1/m^2.")
+    area: str = Field(description="Zone in which people start.")
+
+
+class SpeedDistribution(Spec):
+    """Preferred speeds: a normal distribution, truncated at three standard deviations."""
+
+    mean: PositiveSpeed = Field(description="Mean preferred speed, m/s.")
+    std: NonNegativeSpeed = Field(description="Standard deviation, m/s.")
+
+
+class Body(Spec):
+    """What every agent of the crowd has in common."""
+
+    radius: PositiveLength = Field(default=0.33, description="Radius of the disc, m.")
+    mass: PositiveMass = Field(default=75.0, description="Mass in the physics, kg.")
+    max_speed: PositiveSpeed = Field(default=3.0, description="Largest walking speed, m/s.")
+    max_acceleration: PositiveAcceleration = Field(
+        default=5.0, description="Largest acceleration by own will, m/s^2."
+    )
+    height: PositiveLength = Field(default=1.7, description="Height, m.")
+
+
+class RobotResponse(Spec):
+    """How people take the robot: behaviour, not contact.
+
+    Inside the perceived disc they feel a one-sided steering force, ``stiffness × overlap``.
+    """
+
+    margin: NonNegativeLength = Field(
+        default=0.25, description="Perceived radius minus real radius of the robot, m."
+    )
+    stiffness_moving: NonNegativeSteeringStiffness = Field(
+        default=62.5, description="Steering stiffness beside a moving robot, 1/s^2."
+    )
+    stiffness_stopped: NonNegativeSteeringStiffness = Field(
+        default=125.0, description="Steering stiffness beside a stopped robot, 1/s^2."
+    )
+    slow_speed: PositiveSpeed = Field(
+        default=0.2, description="Below this robot speed the stiffness rises linearly, m/s."
+    )
+    velocity: Literal["visible", "hidden"] = Field(
+        default="visible", description="Whether people see how the robot moves."
+    )
+
+
+class Crowd(Spec):
+    """Who walks, from where to where, and how they decide."""
+
+    flow: Flow
+    speed: SpeedDistribution
+    body: Body = Field(default=Body(), description="Common to all agents.")
+    policy: SerializeAsAny[CrowdPolicySpec]
+    costs: dict[str, SerializeAsAny[CostFunctionSpec]] = Field(
+        default={}, description="Named cost functions of a velocity-space policy."
+    )
+    robot_response: RobotResponse = Field(
+        default=RobotResponse(), description="How people take the robot."
+    )
+    seed: CrowdSeed = Field(default=CrowdSeed(), description="Draws the crowd.")
+
+
+class Goal(Spec):
+    """Where the robot has to get: its centre inside a zone."""
+
+    zone: str = Field(description="Name of the goal zone.")
+
+
+class Task(Spec):
+    """What the robot is asked to do."""
+
+    start: tuple[Length, Length, Angle] = Field(
+        strict=False, description="x, y (m) and heading (rad) at t = 0, world frame."
+    )
+    goal: Goal
+    time_limit: PositiveDuration = Field(default=180.0, description="The run ends here, s.")
+
+
+class Robot(Spec):
+    """One robot with its sensors and its task."""
+
+    model: SerializeAsAny[RobotSpec]
+    control: Literal["differential_drive"] = Field(
+        default="differential_drive", description="How commands become motion."
+    )
+    sensors: dict[str, SerializeAsAny[SensorSpec]] = Field(
+        default={}, description="Named sensors."
+    )
+    task: Task
+
+
+class Contact(Spec):
+    """Compliance between robot and pedestrians: Hunt-Crossley, F = k d (1 + c d')."""
+
+    stiffness: PositiveStiffness = Field(default=30000.0, description="k, N/m.")
+    dissipation: NonNegativeDamping = Field(default=0.3, description="c, s/m.")
+
+
+class Rates(Spec):
+    """How often things happen; powers of two, so that Drake's events coincide exactly."""
+
+    crowd: PositiveFrequency = Field(default=16.0, description="Decisions of the crowd, Hz.")
+    planner: PositiveFrequency = Field(default=16.0, description="Steps of the planner, Hz.")
+    log: PositiveFrequency = Field(default=16.0, description="Samples for metrics, Hz.")
+
+    @field_validator("crowd", "planner", "log")
+    @classmethod
+    def _dyadic(cls, value: float) -> float:
+        if value not in (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0):
+            raise ValueError("must be a power of two from 1 to 128 Hz")
+        return value
+
+
+class Scenario(Spec):
+    """One fully explicit trial. ``id``, ``title`` and ``references`` are outside the hash."""
+
+    id: str = Field(description="Stable name, unique in its suite.", pattern=r"^[A-Za-z0-9_.+/-]+$")
+    title: str = Field(default="", description="For people.")
+    environment: SerializeAsAny[EnvironmentSpec]
+    crowd: Crowd | None = None
+    robots: dict[str, Robot] = Field(default={}, description="Named robots.")
+    contact: Contact = Field(default=Contact(), description="Robot against pedestrian.")
+    rates: Rates = Field(default=Rates(), description="How often things happen.")
+    references: Mapping[str, Scenario] = Field(
+        default={}, exclude=True, repr=False, description="Calibration runs, by name."
+    )
+
+
+#: Fields of a scenario that do not change what happens in it.
+OUTSIDE_HASH = ("id", "title", "references")
+
+__all__ = [
+    "OUTSIDE_HASH",
+    "Body",
+    "Contact",
+    "Crowd",
+    "CrowdSeed",
+    "Flow",
+    "Goal",
+    "Rates",
+    "Robot",
+    "RobotResponse",
+    "Scenario",
+    "SpeedDistribution",
+    "Task",
+]

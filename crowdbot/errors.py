@@ -1,0 +1,97 @@
+"""Every exception that crowdbot raises on purpose.
+
+::
+
+    CrowdbotError                 exit code
+    ├── InputError                1   the input is wrong: a document, an id, a value, a file
+    │   ├── SpecError             1   a scenario or suite document; carries positioned diagnostics
+    │   └── UnknownNameError      1   a kind, id or suite that does not exist; carries near names
+    ├── UsageError                2   the command line itself is wrong
+    ├── PluginError               3   a plugin failed; names the plugin
+    │   ├── PlannerError          3   a planner raised, or returned something that is no command
+    │   └── PlannerHungError      3   a planner step never returned; ended by the watchdog
+    ├── SimulationError           4   the simulation itself failed
+    │   └── MissingLibraryError   4   a system library that Drake needs is not installed
+    └── Interrupted               130 the user stopped the run
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from crowdbot.dsl.diagnostics import Diagnostic
+
+
+class CrowdbotError(Exception):
+    """Base of all errors with a message meant for people."""
+
+    exit_code = 1
+
+
+class InputError(CrowdbotError):
+    """The input is wrong."""
+
+
+class SpecError(InputError):
+    """One or more positioned errors in a document."""
+
+    def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
+        self.diagnostics = tuple(diagnostics)
+        super().__init__("\n".join(d.headline() for d in self.diagnostics))
+
+
+class UnknownNameError(InputError):
+    """A name that nothing answers to; the message ends with the nearest names."""
+
+    def __init__(self, what: str, name: str, known: Iterable[str]) -> None:
+        self.what, self.name, self.near = what, name, nearest(name, known)
+        super().__init__(f"unknown {what} '{name}'{did_you_mean(self.near)}")
+
+
+class UsageError(CrowdbotError):
+    """The command line is wrong."""
+
+    exit_code = 2
+
+
+class PluginError(CrowdbotError):
+    """A plugin failed."""
+
+    exit_code = 3
+
+
+class PlannerError(PluginError):
+    """A planner raised, or returned something that is no command."""
+
+
+class PlannerHungError(PluginError):
+    """A planner step did not return within the watchdog's time."""
+
+
+class SimulationError(CrowdbotError):
+    """The simulation failed."""
+
+    exit_code = 4
+
+
+class MissingLibraryError(SimulationError):
+    """A system library that Drake needs is not installed."""
+
+
+class Interrupted(CrowdbotError):
+    """The user stopped the run; what was recorded so far is readable."""
+
+    exit_code = 130
+
+
+def nearest(name: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:
+    """The known names that look most like ``name``, best first."""
+    return tuple(difflib.get_close_matches(name, sorted(known), n=limit, cutoff=0.6))
+
+
+def did_you_mean(near: Sequence[str]) -> str:
+    """``"; did you mean 'a' or 'b'?"``, or nothing."""
+    return f"; did you mean {' or '.join(repr(n) for n in near)}?" if near else ""

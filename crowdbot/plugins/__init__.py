@@ -1,0 +1,75 @@
+"""crowdbot's own components, registered through the entry point ``builtin``.
+
+They have the same rights as anybody's: what a third party cannot do, these cannot do either.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib.resources.abc import Traversable
+from pathlib import Path
+
+from crowdbot.core.component import Component
+from crowdbot.dsl.base import (
+    CostFunctionSpec,
+    CrowdPolicySpec,
+    EnvironmentSpec,
+    MetricSpec,
+    PlannerSpec,
+    RobotSpec,
+    SensorSpec,
+)
+from crowdbot.hookspecs import API_VERSION, hookimpl
+from crowdbot.plugins import crowd, environments, metrics, planners, robots, sensors
+
+CROWDBOT_API = API_VERSION
+
+
+@hookimpl
+def crowdbot_environments() -> Sequence[Component[EnvironmentSpec]]:
+    """Places."""
+    return environments.COMPONENTS
+
+
+@hookimpl
+def crowdbot_robots() -> Sequence[Component[RobotSpec]]:
+    """Robots."""
+    return robots.COMPONENTS
+
+
+@hookimpl
+def crowdbot_sensors() -> Sequence[Component[SensorSpec]]:
+    """Sensors."""
+    return sensors.COMPONENTS
+
+
+@hookimpl
+def crowdbot_planners() -> Sequence[Component[PlannerSpec]]:
+    """Planners."""
+    return planners.COMPONENTS
+
+
+@hookimpl
+def crowdbot_crowd_policies() -> Sequence[Component[CrowdPolicySpec]]:
+    """Crowd policies."""
+    return crowd.POLICIES
+
+
+@hookimpl
+def crowdbot_cost_functions() -> Sequence[Component[CostFunctionSpec]]:
+    """Cost functions."""
+    return crowd.COSTS
+
+
+@hookimpl
+def crowdbot_metrics() -> Sequence[Component[MetricSpec]]:
+    """Metrics."""
+    return metrics.COMPONENTS
+
+
+@hookimpl
+def crowdbot_scenario_dirs() -> Sequence[Traversable]:
+    """The suites: beside the package in a checkout, inside it in a wheel."""
+    package = Path(__file__).parent.parent
+    installed = package / "scenario_specs"
+    return [installed if installed.is_dir() else package.parent / "scenario_specs"]

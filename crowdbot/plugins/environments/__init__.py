@@ -1,0 +1,5 @@
+"""Places."""
+
+from crowdbot.plugins.environments.corridor import CORRIDOR
+
+COMPONENTS = (CORRIDOR,)

@@ -1,0 +1,5 @@
+"""Robots."""
+
+from crowdbot.plugins.robots.turtlebot2 import TURTLEBOT2
+
+COMPONENTS = (TURTLEBOT2,)

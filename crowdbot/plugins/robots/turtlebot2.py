@@ -1,0 +1,37 @@
+"""TurtleBot2: Kobuki base and hexagon stack."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from crowdbot.core.component import Component
+from crowdbot.dsl.base import RobotSpec
+from crowdbot.dsl.quantities import (
+    PositiveAcceleration,
+    PositiveAngularAcceleration,
+    PositiveAngularSpeed,
+    PositiveMass,
+    PositiveSpeed,
+)
+
+
+class Turtlebot2Spec(RobotSpec):
+    """Limits are a box; the body itself is fixed."""
+
+    kind: Literal["turtlebot2"] = "turtlebot2"
+    max_speed: PositiveSpeed = Field(default=0.65, description="Largest |v|, m/s.")
+    max_yaw_rate: PositiveAngularSpeed = Field(default=3.14, description="Largest |w|, rad/s.")
+    max_acceleration: PositiveAcceleration = Field(default=1.0, description="Slew of v, m/s^2.")
+    max_yaw_acceleration: PositiveAngularAcceleration = Field(
+        default=2.0, description="Slew of w, rad/s^2."
+    )
+    mass: PositiveMass = Field(default=6.3, description="Whole robot, kg.")
+
+
+TURTLEBOT2 = Component(
+    spec=Turtlebot2Spec,
+    build="crowdbot.plugins.robots.turtlebot2_build:build",
+    summary="Kobuki base with hexagon stack, differential drive, 0.65 m/s",
+)
