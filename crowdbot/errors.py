@@ -81,7 +81,7 @@ class MissingLibraryError(SimulationError):
     """A system library that Drake needs is not installed."""
 
 
-class Interrupted(CrowdbotError):
+class Interrupted(CrowdbotError):  # noqa: N818 - not a failure
     """The user stopped the run; what was recorded so far is readable."""
 
     exit_code = 130

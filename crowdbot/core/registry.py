@@ -150,9 +150,7 @@ def discover(
         for e in sorted(metadata.entry_points(group=GROUP), key=lambda e: (e.name, e.value))
         if (entry_points or e.name == "builtin") and (wanted is None or e.name in wanted)
     ]
-    found += [
-        replace(_load(p.stem, str(p), lambda p=p: load_path(p)), pinned=False) for p in extra
-    ]
+    found += [replace(_load(p.stem, str(p), lambda p=p: load_path(p)), pinned=False) for p in extra]
     return assemble(found)
 
 
@@ -253,7 +251,7 @@ def _kind_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
     for (category, kind), indices in owners.items():
         if len(indices) > 1:
             who = " and ".join(plugins[i].distribution for i in indices)
-            errors.update({i: f"E301 {category} '{kind}' is provided by {who}" for i in indices})
+            errors.update(dict.fromkeys(indices, f"E301 {category} '{kind}' is provided by {who}"))
     return errors
 
 

@@ -66,7 +66,8 @@ class Trips:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactEvents:
     """Contacts of the robot: t0, t1 (s), agent id (-1: a wall), impulse (N s), peak force (N),
-    relative speed before (m/s); each (K,)."""
+    relative speed before (m/s); each (K,).
+    """
 
     t0: Array
     t1: Array
@@ -221,7 +222,7 @@ def _check(run: Trajectories) -> None:
             _shape("agent_jump", run.agents.jump, (n - 1, m))
     for table in (run.trips, run.contacts):
         if table is not None:
-            k = getattr(table, "agent").shape
+            k = table.agent.shape
             for column in fields(table):
                 _shape(column.name, getattr(table, column.name), k)
 

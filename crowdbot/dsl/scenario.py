@@ -139,9 +139,7 @@ class Robot(Spec):
     control: Literal["differential_drive"] = Field(
         default="differential_drive", description="How commands become motion."
     )
-    sensors: dict[str, SerializeAsAny[SensorSpec]] = Field(
-        default={}, description="Named sensors."
-    )
+    sensors: dict[str, SerializeAsAny[SensorSpec]] = Field(default={}, description="Named sensors.")
     task: Task
 
 

@@ -21,9 +21,7 @@ class RvoSpec(CostFunctionSpec):
     kind: Literal["rvo"] = "rvo"
     weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
     range: Range = Field(default=Range(), description="Which neighbours and walls count.")
-    w: Annotated[float, Ge(0)] = Field(
-        default=1.0, description="Weight of the collision term, m."
-    )
+    w: Annotated[float, Ge(0)] = Field(default=1.0, description="Weight of the collision term, m.")
 
 
 RVO = Component(

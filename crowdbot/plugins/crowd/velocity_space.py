@@ -24,9 +24,7 @@ class VelocitySpaceSpec(CrowdPolicySpec):
     relaxation_time: NonNegativeDuration = Field(
         default=0.5, description="Time in which the chosen velocity is reached, s."
     )
-    angle: PositiveAngle = Field(
-        default=3.141592653589793, description="Opening of the fan, rad."
-    )
+    angle: PositiveAngle = Field(default=3.141592653589793, description="Opening of the fan, rad.")
     speeds: Annotated[int, Ge(2), Le(64)] = Field(
         default=4, description="Speeds from zero to the preferred one."
     )
