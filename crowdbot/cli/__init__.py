@@ -1,0 +1,206 @@
+"""The command line: one file per command, found by its name, imported when it is called.
+
+A module ``crowdbot/cli/x.py`` offers the command ``x``: a function ``x``, or a `typer.Typer`
+named ``x`` for a command with commands of its own. Its docstring ends with an example. Heavy
+imports stay inside functions: ``--help`` imports every command. Modules that begin with an
+underscore are no commands.
+"""
+
+from __future__ import annotations
+
+import importlib
+import io
+import logging
+import os
+import pkgutil
+import sys
+from collections.abc import Sequence
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+from typer.main import get_command
+
+from crowdbot.errors import CrowdbotError, SpecError, did_you_mean, nearest
+
+_SETTINGS: dict[str, Any] = {
+    "add_completion": False,
+    "pretty_exceptions_enable": False,
+    "context_settings": {"help_option_names": ["-h", "--help"]},
+}
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command line and return its exit code; nothing but messages reaches the user.
+
+    Args:
+        argv: arguments without the program's name; default: those of the process.
+    """
+    _tolerate_any_encoding()
+    try:
+        return _run(argv)
+    except CrowdbotError as error:
+        _say(_text(error))
+        return error.exit_code
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:
+        _drop_output()
+        return 0
+    except OSError as error:
+        _say(f"error: {error.filename or 'operating system'}: {error.strerror or error}")
+        return 1
+    except Exception as error:
+        if os.environ.get("CROWDBOT_DEBUG"):
+            raise
+        _say(
+            f"internal error {type(error).__name__}: {error}; "
+            "run with CROWDBOT_DEBUG=1 for the traceback"
+        )
+        return 4
+
+
+def _run(argv: Sequence[str] | None) -> int:
+    try:
+        get_command(_app())(None if argv is None else list(argv), prog_name="crowdbot")
+        sys.stdout.flush()
+    except SystemExit as done:
+        sys.stdout.flush()
+        return done.code if isinstance(done.code, int) else int(done.code is not None)
+    return 0
+
+
+class _Commands(TyperGroup):
+    """The commands are the modules of this package."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        del ctx
+        return command_names()
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        known = command_names()
+        if cmd_name not in known:
+            near = did_you_mean(nearest(cmd_name, known))
+            ctx.fail(f"no command '{cmd_name}'{near or '; see crowdbot --help'}")
+        return _load(cmd_name)
+
+
+def command_names() -> list[str]:
+    """Names of all commands, sorted."""
+    modules = (m.name for m in pkgutil.iter_modules(__path__))
+    return sorted(m.replace("_", "-") for m in modules if not m.startswith("_"))
+
+
+def _load(name: str) -> Any:
+    """The command of one module, with ``-v`` and ``-q`` added."""
+    module = name.replace("-", "_")
+    found = getattr(importlib.import_module(f"{__name__}.{module}"), module)
+    if not isinstance(found, typer.Typer):
+        app = typer.Typer(**_SETTINGS)
+        app.command(name=name)(found)
+        found = app
+    command = get_command(found)
+    command.name = name
+    taken = {text for param in command.params for text in param.opts}
+    command.params += [p for p in _verbosity_params() if not taken & set(p.opts)]
+    return command
+
+
+def _set_level(level: int) -> Any:
+    def callback(value: bool) -> None:
+        if value:
+            logging.getLogger("crowdbot").setLevel(level)
+
+    return callback
+
+
+_Verbose = Annotated[
+    bool,
+    typer.Option(
+        "-v", "--verbose", help="Say more.", callback=_set_level(logging.DEBUG), expose_value=False
+    ),
+]
+_Quiet = Annotated[
+    bool,
+    typer.Option(
+        "-q",
+        "--quiet",
+        help="Say only what went wrong.",
+        callback=_set_level(logging.WARNING),
+        expose_value=False,
+    ),
+]
+
+
+def _common(verbose: _Verbose = False, quiet: _Quiet = False) -> None:
+    """Options that every command has."""
+
+
+def _verbosity_params() -> list[Any]:
+    app = typer.Typer(**_SETTINGS)
+    app.command()(_common)
+    return list(get_command(app).params)
+
+
+def _show_version(value: bool) -> None:
+    if value:
+        from importlib.metadata import version
+
+        typer.echo(f"crowdbot {version('crowdbot')}")
+        raise typer.Exit
+
+
+_Version = Annotated[
+    bool,
+    typer.Option(
+        "--version", help="Print the version.", callback=_show_version, is_eager=True,
+        expose_value=False,
+    ),
+]  # fmt: skip
+
+
+def _app() -> typer.Typer:
+    _start_log()
+    app = typer.Typer(cls=_Commands, no_args_is_help=True, **_SETTINGS)
+
+    @app.callback()
+    def crowdbot(
+        verbose: _Verbose = False, quiet: _Quiet = False, version: _Version = False
+    ) -> None:
+        """A benchmark for robots that drive through dense human crowds.
+
+        Example: crowdbot simulate challenge-2020 in-d0125-slow-c01-r02 --planner dwa
+        """
+
+    return app
+
+
+def _start_log() -> None:
+    """Messages of crowdbot's loggers go to stderr as they are."""
+    log = logging.getLogger("crowdbot")
+    log.handlers = [logging.StreamHandler()]
+    log.setLevel(logging.INFO)
+
+
+def _text(error: CrowdbotError) -> str:
+    if isinstance(error, SpecError):
+        from crowdbot.dsl.diagnostics import render
+
+        return render(error.diagnostics)
+    return f"error: {error}"
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr)  # noqa: T201 - the command line's voice
+
+
+def _tolerate_any_encoding() -> None:
+    """A terminal that cannot show a character gets an escape instead of an error."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _drop_output() -> None:
+    """Keep the interpreter from flushing into the closed pipe at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

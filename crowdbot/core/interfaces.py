@@ -44,7 +44,7 @@ class EnvironmentParts:
     """Plain geometry; core makes plant boxes, ray targets, crowd obstacles and drawings of it.
 
     Attributes:
-        walls: (S, 4) segments x0, y0, x1, y1, m.
+        walls: (S, 4) segments x0, y0, x1, y1, m; the free side is on their left.
         wall_heights: (S, 2) bottom and top, m.
         stops_robot: (S,) bool, the robot collides with the segment.
         stops_crowd: (S,) bool, people avoid the segment.

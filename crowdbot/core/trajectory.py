@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -91,6 +92,13 @@ class Trajectories:
     planner_step_time: Array | None = None
     robot_footprint: Array | None = None
     signals: Mapping[str, Array] = field(default_factory=dict)
+
+    @classmethod
+    def from_mcap(cls, path: Path | str) -> Trajectories:
+        """Read a recording; see `crowdbot.core.recording.read_trajectories`."""
+        from crowdbot.core.recording.reader import read_trajectories
+
+        return read_trajectories(Path(path))
 
     @classmethod
     def from_arrays(

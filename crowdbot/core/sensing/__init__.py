@@ -1,0 +1,1 @@
+"""What sensors see, their random numbers, and lidar points for planners."""

@@ -1,0 +1,97 @@
+"""``crowdbot validate``: every error of a document, without building anything."""
+
+from __future__ import annotations
+
+import json
+import logging
+from enum import Enum
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crowdbot.errors import SpecError, UnknownNameError
+
+if TYPE_CHECKING:
+    from crowdbot.core.registry import Registry
+    from crowdbot.dsl.diagnostics import Diagnostic
+
+_LOG = logging.getLogger(__name__)
+
+
+class Format(str, Enum):
+    """How errors are written."""
+
+    TEXT = "text"
+    JSON = "json"
+    GITHUB = "github"
+
+
+def validate(
+    specs: Annotated[
+        list[str], typer.Argument(metavar="SPEC...", help="Files, or names of packaged suites.")
+    ],
+    format_: Annotated[
+        Format, typer.Option("--format", help="text on stderr; json or github on stdout.")
+    ] = Format.TEXT,
+    as_json: Annotated[bool, typer.Option("--json", help="Same as --format json.")] = False,
+) -> None:
+    """Check suites and scenarios; report every error with its place.
+
+    Example: crowdbot validate challenge-2020 my_suite.yaml
+    """
+    from crowdbot.core.registry import discover
+
+    registry = discover()
+    results = {spec: _check(spec, registry) for spec in dict.fromkeys(specs)}
+    errors = [d for _, found in results.values() for d in found]
+    if as_json or format_ is Format.JSON:
+        typer.echo(_as_json(results))
+    elif format_ is Format.GITHUB:
+        for diagnostic in errors:
+            typer.echo(_as_github(diagnostic))
+    else:
+        _print_text(results, errors)
+    raise typer.Exit(1 if errors else 0)
+
+
+def _check(spec: str, registry: Registry) -> tuple[int, list[Diagnostic]]:
+    """Number of scenarios, errors."""
+    from crowdbot.core.library import open_spec
+    from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
+
+    try:
+        return len(open_spec(spec, registry).scenarios), []
+    except SpecError as error:
+        return 0, list(error.diagnostics)
+    except UnknownNameError as error:
+        return 0, [Diagnostic("E001", str(error), Mark(Source(spec)))]
+
+
+def _print_text(results: dict[str, tuple[int, list[Diagnostic]]], errors: list[Diagnostic]) -> None:
+    from crowdbot.dsl.diagnostics import render
+
+    for spec, (count, found) in results.items():
+        if not found and _LOG.isEnabledFor(logging.INFO):
+            typer.echo(f"{spec}: ok, {'1 scenario' if count == 1 else f'{count} scenarios'}")
+    if errors:
+        typer.echo(render(errors), err=True)
+
+
+def _as_json(results: dict[str, tuple[int, list[Diagnostic]]]) -> str:
+    listed = [
+        {"spec": spec, "ok": not found, "scenarios": count, "errors": [d.as_dict() for d in found]}
+        for spec, (count, found) in results.items()
+    ]
+    return json.dumps(listed, indent=2)
+
+
+def _as_github(diagnostic: Diagnostic) -> str:
+    """A workflow command; its own characters are escaped."""
+    mark = diagnostic.mark
+    text = diagnostic.message + (f" ({diagnostic.hint})" if diagnostic.hint else "")
+    place = f"file={_escape(mark.source.name, ':,')},line={mark.line + 1},col={mark.column + 1}"
+    return f"::error {place},title={diagnostic.code}::{_escape(text)}"
+
+
+def _escape(text: str, more: str = "") -> str:
+    return "".join(f"%{ord(c):02X}" if c in "%\r\n" + more else c for c in text)

@@ -1,0 +1,190 @@
+"""Forces between bodies: robot against pedestrian, people against each other and walls."""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from crowdbot.core.crowd.geometry import nearest_on_segment
+from crowdbot.core.crowd.state import (
+    CONTACTS,
+    PEOPLE_JX,
+    PEOPLE_JY,
+    PUSH_X,
+    PUSH_Y,
+    ROBOT_FX,
+    ROBOT_FY,
+    ROBOT_JX,
+    ROBOT_JY,
+    TOUCH_END,
+    TOUCH_IMPULSE,
+    TOUCH_PEAK,
+    TOUCH_SPEED,
+    TOUCH_START,
+    TOUCHES,
+    TOUCHING,
+    VX,
+    VY,
+    WAITING,
+    Array,
+    X,
+    Y,
+)
+
+#: A contact has ended when the surface gap exceeds this, m (metric specification, 3.10).
+RELEASE_GAP = 0.05
+#: Columns of a robot row: position, velocity, physical radius, perceived radius.
+RX, RY, RVX, RVY, R_BODY, R_SEEN = range(6)
+
+
+@njit(cache=True, error_model="numpy")
+def robot_contact(
+    header: Array,
+    agents: Array,
+    radius: Array,
+    robot: Array,
+    stiffness: float,
+    dissipation: float,
+    now: float,
+    dt: float,
+    reaction: Array,
+) -> None:
+    """Hunt-Crossley force F = k d (1 + c d'), never pulling; equal and opposite by one number.
+
+    Writes the force on the robot (N) to the header and that on each agent (N) to ``reaction``
+    (N, 2), and keeps the book of contact events.
+    """
+    header[ROBOT_FX] = header[ROBOT_FY] = 0.0
+    for i in range(agents.shape[0]):
+        reaction[i, 0] = reaction[i, 1] = 0.0
+        if agents[i, WAITING] != 0.0:
+            if agents[i, TOUCHING] != 0.0:
+                _end_touch(header, agents, i)
+            continue
+        dx, dy = robot[RX] - agents[i, X], robot[RY] - agents[i, Y]
+        reach = robot[R_BODY] + radius[i]
+        d2 = dx * dx + dy * dy
+        if d2 > (reach + RELEASE_GAP) ** 2:
+            if agents[i, TOUCHING] != 0.0:
+                _end_touch(header, agents, i)
+            continue
+        distance = math.sqrt(d2)
+        depth = reach - distance
+        if depth < 0.0:
+            continue
+        nx, ny = (dx / distance, dy / distance) if distance > 0.0 else (1.0, 0.0)
+        vx, vy = robot[RVX] - agents[i, VX], robot[RVY] - agents[i, VY]
+        closing = -(vx * nx + vy * ny)
+        force = max(0.0, stiffness * depth * (1.0 + dissipation * closing))
+        fx, fy = force * nx, force * ny
+        header[ROBOT_FX] += fx
+        header[ROBOT_FY] += fy
+        reaction[i, 0], reaction[i, 1] = -fx, -fy
+        header[ROBOT_JX] += fx * dt
+        header[ROBOT_JY] += fy * dt
+        header[PEOPLE_JX] -= fx * dt
+        header[PEOPLE_JY] -= fy * dt
+        _touch(agents, i, now, dt, depth, closing, math.hypot(vx, vy), force)
+
+
+@njit(cache=True, error_model="numpy")
+def _touch(
+    agents: Array,
+    i: int,
+    now: float,
+    dt: float,
+    depth: float,
+    closing: float,
+    speed: float,
+    force: float,
+) -> None:
+    if agents[i, TOUCHING] == 0.0:
+        since = min(dt, depth / closing) if closing > 0.0 else 0.0
+        agents[i, TOUCHING], agents[i, TOUCH_START] = 1.0, max(0.0, now - since)
+        agents[i, TOUCH_SPEED], agents[i, TOUCH_IMPULSE], agents[i, TOUCH_PEAK] = speed, 0.0, 0.0
+    agents[i, TOUCH_END] = now
+    agents[i, TOUCH_IMPULSE] += force * dt
+    agents[i, TOUCH_PEAK] = max(agents[i, TOUCH_PEAK], force)
+
+
+@njit(cache=True, error_model="numpy")
+def _end_touch(header: Array, agents: Array, i: int) -> None:
+    agents[i, TOUCHING] = 0.0
+    agents[i, TOUCHES] += 1.0
+    header[CONTACTS] += 1.0
+
+
+@njit(cache=True, error_model="numpy")
+def keep_off(agents: Array, i: int, radius: Array, robots: Array, response: Array) -> tuple[float, float]:
+    """Steering away from robots (m/s^2): behaviour of people, felt by them alone.
+
+    Args:
+        response: stiffness beside a moving and beside a stopped robot (1/s^2), and the robot
+            speed below which the first rises linearly to the second (m/s).
+    """
+    ax = ay = 0.0
+    for r in range(robots.shape[0]):
+        dx, dy = agents[i, X] - robots[r, RX], agents[i, Y] - robots[r, RY]
+        reach = robots[r, R_SEEN] + radius[i]
+        d2 = dx * dx + dy * dy
+        if d2 >= reach * reach or d2 == 0.0:
+            continue
+        distance = math.sqrt(d2)
+        moving = min(1.0, math.hypot(robots[r, RVX], robots[r, RVY]) / response[2])
+        push = (response[1] + (response[0] - response[1]) * moving) * (reach - distance)
+        ax += push * dx / distance
+        ay += push * dy / distance
+    return ax, ay
+
+
+@njit(cache=True, error_model="numpy")
+def push_apart(agents: Array, radius: Array, order: Array, walls: Array, stiffness: float) -> None:
+    """Push of overlapping people and of walls, m/s^2, into the PUSH columns.
+
+    Args:
+        order: (N,) agents sorted by x.
+        walls: (S, 4) segments.
+    """
+    largest = 0.0
+    for i in range(agents.shape[0]):
+        agents[i, PUSH_X] = agents[i, PUSH_Y] = 0.0
+        largest = max(largest, radius[i])
+    for a in range(order.shape[0]):
+        i = order[a]
+        if agents[i, WAITING] != 0.0:
+            continue
+        _push_by_walls(agents, i, radius[i], walls, stiffness)
+        for b in range(a + 1, order.shape[0]):
+            j = order[b]
+            if agents[j, X] - agents[i, X] >= radius[i] + largest:
+                break
+            if agents[j, WAITING] == 0.0:
+                _push_pair(agents, i, j, radius[i] + radius[j], stiffness)
+
+
+@njit(cache=True, error_model="numpy")
+def _push_pair(agents: Array, i: int, j: int, reach: float, stiffness: float) -> None:
+    dx, dy = agents[i, X] - agents[j, X], agents[i, Y] - agents[j, Y]
+    d2 = dx * dx + dy * dy
+    if d2 >= reach * reach or d2 == 0.0:
+        return
+    distance = math.sqrt(d2)
+    push = stiffness * (reach - distance) / distance
+    agents[i, PUSH_X] += push * dx
+    agents[i, PUSH_Y] += push * dy
+    agents[j, PUSH_X] -= push * dx
+    agents[j, PUSH_Y] -= push * dy
+
+
+@njit(cache=True, error_model="numpy")
+def _push_by_walls(agents: Array, i: int, radius: float, walls: Array, stiffness: float) -> None:
+    x, y = agents[i, X], agents[i, Y]
+    for s in range(walls.shape[0]):
+        nx, ny = nearest_on_segment(x, y, walls[s, 0], walls[s, 1], walls[s, 2], walls[s, 3])
+        d2 = (x - nx) ** 2 + (y - ny) ** 2
+        if 0.0 < d2 < radius * radius:
+            distance = math.sqrt(d2)
+            push = stiffness * (radius - distance) / distance
+            agents[i, PUSH_X] += push * (x - nx)
+            agents[i, PUSH_Y] += push * (y - ny)

@@ -1,0 +1,107 @@
+"""Portals: people who enter the out-portal re-enter the world from the in-portal."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from crowdbot.core.crowd import draws
+from crowdbot.core.crowd.state import (
+    ARRIVED,
+    ATTEMPT,
+    AX,
+    AY,
+    GOAL_X,
+    GOAL_Y,
+    PUSH_X,
+    PUSH_Y,
+    TRIP,
+    TRIP_START,
+    VX,
+    VY,
+    WAITING,
+    Array,
+    X,
+    Y,
+)
+
+#: Nobody re-enters closer to a robot than this, centre to centre, m.
+CLEAR_OF_ROBOT = 1.0
+
+
+@njit(cache=True, error_model="numpy")
+def point_in(box: Array, margin: float, u: float, v: float) -> tuple[float, float]:
+    """The point of a box (x0, x1, y0, y1), shrunk by a margin, at fractions u and v."""
+    mx = min(margin, 0.5 * (box[1] - box[0]))
+    my = min(margin, 0.5 * (box[3] - box[2]))
+    return (
+        box[0] + mx + u * (box[1] - box[0] - 2.0 * mx),
+        box[2] + my + v * (box[3] - box[2] - 2.0 * my),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def entry_fraction(box: Array, x0: float, y0: float, x1: float, y1: float) -> float:
+    """Fraction of the way from p0 to p1 at which a box is entered; above 1 if it is not."""
+    enter, leave = 0.0, 1.0
+    for start, step, low, high in ((x0, x1 - x0, box[0], box[1]), (y0, y1 - y0, box[2], box[3])):
+        if step == 0.0:
+            if start < low or start > high:
+                return 2.0
+            continue
+        a, b = (low - start) / step, (high - start) / step
+        enter, leave = max(enter, min(a, b)), min(leave, max(a, b))
+    return enter if enter <= leave else 2.0
+
+
+@njit(cache=True, error_model="numpy")
+def draw_goal(agents: Array, i: int, ids: Array, radius: Array, out: Array, key: np.uint64) -> None:
+    """Set the goal of agent i's current trip: a point of the out-portal, a radius inside."""
+    trip = int(agents[i, TRIP])
+    u = draws.uniform(key, ids[i], trip, draws.GOAL, 0)
+    v = draws.uniform(key, ids[i], trip, draws.GOAL, 1)
+    agents[i, GOAL_X], agents[i, GOAL_Y] = point_in(out, radius[i], u, v)
+
+
+@njit(cache=True, error_model="numpy")
+def leave(agents: Array, i: int, when: float) -> None:
+    """Take agent i out of the world at the end of its trip."""
+    agents[i, WAITING], agents[i, ARRIVED], agents[i, ATTEMPT] = 1.0, when, 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def try_to_enter(
+    agents: Array,
+    i: int,
+    ids: Array,
+    radius: Array,
+    preferred: Array,
+    robots: Array,
+    entrance: Array,
+    out: Array,
+    key: np.uint64,
+    now: float,
+) -> bool:
+    """Try one random point of the in-portal; start a new trip there if it is free."""
+    trip, attempt = int(agents[i, TRIP]), int(agents[i, ATTEMPT])
+    agents[i, ATTEMPT] += 1.0
+    u = draws.uniform(key, ids[i], trip, draws.ENTRY, 2 * attempt)
+    v = draws.uniform(key, ids[i], trip, draws.ENTRY, 2 * attempt + 1)
+    x, y = point_in(entrance, radius[i], u, v)
+    for r in range(robots.shape[0]):
+        if (robots[r, 0] - x) ** 2 + (robots[r, 1] - y) ** 2 < CLEAR_OF_ROBOT**2:
+            return False
+    for j in range(agents.shape[0]):
+        free = radius[i] + radius[j]
+        if j != i and agents[j, WAITING] == 0.0:
+            if (agents[j, X] - x) ** 2 + (agents[j, Y] - y) ** 2 < free * free:
+                return False
+    agents[i, TRIP], agents[i, WAITING], agents[i, TRIP_START] = trip + 1.0, 0.0, now
+    draw_goal(agents, i, ids, radius, out, key)
+    gx, gy = agents[i, GOAL_X] - x, agents[i, GOAL_Y] - y
+    distance = np.hypot(gx, gy)
+    agents[i, X], agents[i, Y] = x, y
+    agents[i, VX], agents[i, VY] = preferred[i] * gx / distance, preferred[i] * gy / distance
+    for column in (AX, AY, PUSH_X, PUSH_Y):
+        agents[i, column] = 0.0
+    return True

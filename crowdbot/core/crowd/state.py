@@ -1,0 +1,37 @@
+"""The crowd's whole state as one flat float64 vector, so that it can live in a Drake context.
+
+A header is followed by one row per agent. `view` gives both as arrays without copying.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# Header: ticks since the start; sums of impulses on the robot and on people (N s); the force on
+# the robot in the current tick (N); counters of finished contacts and finished trips.
+TICK, ROBOT_JX, ROBOT_JY, PEOPLE_JX, PEOPLE_JY, ROBOT_FX, ROBOT_FY, CONTACTS, TRIPS = range(9)
+HEADER_SIZE = 9
+
+# Agent columns: position, velocity, willed acceleration, push by people and walls (m/s^2), goal;
+# trip number, 1 while waiting outside, attempts to re-enter, start of the trip, last arrival (s);
+# contact with the robot: 1 while touching, start, end (s), impulse (N s), peak force (N),
+# relative speed before (m/s), finished contacts.
+(
+    X, Y, VX, VY, AX, AY, PUSH_X, PUSH_Y, GOAL_X, GOAL_Y,
+    TRIP, WAITING, ATTEMPT, TRIP_START, ARRIVED,
+    TOUCHING, TOUCH_START, TOUCH_END, TOUCH_IMPULSE, TOUCH_PEAK, TOUCH_SPEED, TOUCHES,
+) = range(22)  # fmt: skip
+AGENT_COLUMNS = 22
+
+
+def size(agents: int) -> int:
+    """Length of the flat vector."""
+    return HEADER_SIZE + agents * AGENT_COLUMNS
+
+
+def view(flat: Array) -> tuple[Array, Array]:
+    """Header (H,) and agents (N, C) of a flat vector, sharing its memory."""
+    return flat[:HEADER_SIZE], flat[HEADER_SIZE:].reshape(-1, AGENT_COLUMNS)

@@ -1,0 +1,165 @@
+"""Scores of one run: choose metrics from a registry, build them, ask each."""
+
+from __future__ import annotations
+
+import fnmatch
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, overload
+
+from pydantic import ValidationError
+
+from crowdbot.core.component import Component
+from crowdbot.core.interfaces import References
+from crowdbot.core.preprocess import cropped
+from crowdbot.core.registry import Registry
+from crowdbot.core.score import Score
+from crowdbot.core.trajectory import Trajectories
+from crowdbot.dsl.base import MetricSpec
+from crowdbot.errors import InputError, PluginError, UnknownNameError, did_you_mean, nearest
+
+#: Metric -> field -> value.
+MetricParameters = Mapping[str, Mapping[str, Any]]
+
+
+@dataclass(frozen=True, slots=True)
+class Scores(Sequence[Score]):
+    """The scores of one run, ordered by metric; unchangeable."""
+
+    items: tuple[Score, ...] = ()
+
+    @overload
+    def __getitem__(self, index: int) -> Score: ...
+    @overload
+    def __getitem__(self, index: slice) -> Scores: ...
+    def __getitem__(self, index: int | slice) -> Score | Scores:
+        """One score, or a part of them."""
+        found = self.items[index]
+        return Scores(found) if isinstance(found, tuple) else found
+
+    def __len__(self) -> int:
+        """How many there are."""
+        return len(self.items)
+
+    def __iter__(self) -> Iterator[Score]:
+        """In order."""
+        return iter(self.items)
+
+    def find(self, metric: str, variant: str = "corrected") -> Score:
+        """The score of one metric and variant.
+
+        Raises:
+            UnknownNameError: there is none.
+        """
+        of_metric = {s.variant: s for s in self.items if s.metric == metric}
+        if not of_metric:
+            raise UnknownNameError("metric", metric, {s.metric for s in self.items})
+        if variant not in of_metric:
+            raise UnknownNameError(f"variant of {metric}", variant, of_metric)
+        return of_metric[variant]
+
+
+def score(
+    registry: Registry,
+    crowded: Trajectories,
+    robot_alone: Trajectories | None = None,
+    crowd_alone: Trajectories | None = None,
+    *,
+    metrics: str | Sequence[str] = "*",
+    variants: str | Sequence[str] = "all",
+    parameters: MetricParameters | None = None,
+) -> Scores:
+    """Score a run.
+
+    Args:
+        registry: where metrics come from.
+        crowded: the run.
+        robot_alone: the same robot without people, where known.
+        crowd_alone: the same people without robot, where known.
+        metrics: one or several globs over metric names; each must match.
+        variants: ``all``, or the names of the variants to keep.
+        parameters: metric -> field -> value; what is left out keeps its default.
+
+    Raises:
+        UnknownNameError: no metric or variant answers to a name.
+        InputError: a parameter does not fit, or an arrival time lies outside its run.
+        PluginError: a metric failed.
+    """
+    refs = References(robot_alone=robot_alone, crowd_alone=crowd_alone)
+    for run in (crowded, robot_alone, crowd_alone):
+        if run is not None:
+            cropped(run)  # refuses an impossible arrival before a metric is blamed for it
+    specs = metric_specs(registry, metrics, parameters or {})
+    scores = [s for spec in specs for s in _scores_of(registry, spec, crowded, refs)]
+    return Scores(tuple(_of_variants(scores, variants)))
+
+
+def metric_specs(
+    registry: Registry, metrics: str | Sequence[str], parameters: MetricParameters
+) -> list[MetricSpec]:
+    """Specs of the metrics that match, by name; all given parameters are checked.
+
+    Raises:
+        UnknownNameError: a glob, or a metric with parameters, matches nothing installed.
+        InputError: a parameter does not fit.
+    """
+    known = registry.components("metric")
+    for kind in parameters:
+        registry.find("metric", kind)
+    chosen: set[str] = set()
+    for glob in [metrics] if isinstance(metrics, str) else metrics:
+        matching = fnmatch.filter(known, glob)
+        if not matching:
+            raise UnknownNameError("metric", glob, known)
+        chosen.update(matching)
+    specs = {kind: _spec(known[kind], parameters.get(kind, {})) for kind in known}
+    return [specs[kind] for kind in known if kind in chosen]
+
+
+def _spec(component: Component[MetricSpec], fields: Mapping[str, Any]) -> MetricSpec:
+    try:
+        return component.spec.model_validate({"kind": component.kind, **fields})
+    except ValidationError as error:
+        lines = [_complaint(component, e["loc"], e["msg"]) for e in error.errors()]
+        raise InputError("\n".join(lines)) from error
+
+
+def _complaint(component: Component[MetricSpec], where: Sequence[int | str], what: str) -> str:
+    field, known = str(where[0]) if where else "", component.spec.model_fields
+    if where and field not in known:
+        what = f"unknown{did_you_mean(nearest(field, known))}"
+    return f"metric '{component.kind}', parameter '{'.'.join(map(str, where))}': {what}"
+
+
+def _scores_of(
+    registry: Registry, spec: MetricSpec, run: Trajectories, refs: References
+) -> list[Score]:
+    """Ask one metric; whatever it does wrong is its plugin's failure."""
+    try:
+        scores = list(registry.build(spec).score(run, refs))
+    except PluginError as error:
+        raise _failure(registry, spec, str(error)) from error
+    except Exception as error:
+        raise _failure(registry, spec, f"{type(error).__name__}: {error}") from error
+    for item in scores:
+        if not isinstance(item, Score) or item.metric != spec.kind:
+            raise _failure(registry, spec, f"returned {item!r} instead of its own scores")
+    names = [s.variant for s in scores]
+    if len(set(names)) != len(names):
+        raise _failure(registry, spec, f"returned a variant twice: {', '.join(names)}")
+    return scores
+
+
+def _failure(registry: Registry, spec: MetricSpec, what: str) -> PluginError:
+    plugin = registry.owner(spec.kind)
+    return PluginError(f"metric '{spec.kind}' of plugin {plugin.distribution} failed: {what}")
+
+
+def _of_variants(scores: Sequence[Score], variants: str | Sequence[str]) -> list[Score]:
+    if variants == "all":
+        return list(scores)
+    wanted = {variants} if isinstance(variants, str) else set(variants)
+    known = {s.variant for s in scores}
+    for name in sorted(wanted - known):
+        raise UnknownNameError("variant", name, known)
+    return [s for s in scores if s.variant in wanted]

@@ -1,0 +1,221 @@
+"""Planner host: calls a planner and trusts nothing that comes back."""
+
+from __future__ import annotations
+
+import contextlib
+import inspect
+import math
+import sys
+import sysconfig
+import time
+import traceback
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from numbers import Real
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, NamedTuple, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.interfaces import (
+    Command,
+    NoValidCommand,
+    Observation,
+    Planner,
+    Reading,
+    RobotLimits,
+    SensorInfo,
+    Task,
+)
+from crowdbot.core.watchdog import Watchdog
+from crowdbot.errors import Interrupted, PlannerError, PlannerHungError
+
+Array = NDArray[np.float64]
+
+STOP = Command(0.0, 0.0)
+#: Seconds that ``reset`` may take under a watchdog: models are loaded and compiled there.
+RESET_LIMIT = 120.0
+#: Rounding beyond a limit that is not counted as clamping.
+_ROUNDING = 1e-9
+
+
+class HostedCommand(NamedTuple):
+    """A command within the limits, whether it had to be clamped, and the planner's wall time."""
+
+    command: Command
+    clamped: bool
+    seconds: float
+
+
+class PlannerHost:
+    """One planner in one run.
+
+    Args:
+        planner: anything with ``reset`` and ``step``.
+        name: how messages call it.
+        limits: box into which commands are clamped.
+        budget: seconds of wall time that a step may take; None is no budget.
+        watchdog: ends a step that never returns; None waits for ever.
+
+    Attributes:
+        steps: steps so far.
+        clamped: how many commands had to be clamped.
+        stops: how often the planner knew no command.
+    """
+
+    def __init__(
+        self,
+        planner: Planner,
+        name: str,
+        limits: RobotLimits,
+        *,
+        budget: float | None = None,
+        watchdog: Watchdog | None = None,
+    ) -> None:
+        self._planner, self._name, self._limits = planner, name, limits
+        self._budget, self._watchdog = budget, watchdog
+        self.steps = self.clamped = self.stops = 0
+
+    def reset(self, task: Task, sensors: Mapping[str, SensorInfo], seed: int) -> None:
+        """Reset the planner and the counters.
+
+        Raises:
+            PlannerError: the planner raised.
+            PlannerHungError: it did not return.
+        """
+        self.steps = self.clamped = self.stops = 0
+        task = replace(task, goal_zone=_read_only(task.goal_zone))
+        sensors = MappingProxyType(dict(sensors))
+        patience = self._watchdog.patience(RESET_LIMIT) if self._watchdog else None
+        with patience or contextlib.nullcontext():
+            self._guarded("reset", lambda: self._planner.reset(task, self._limits, sensors, seed))
+
+    def step(self, obs: Observation) -> HostedCommand:
+        """Ask for the next command.
+
+        Args:
+            obs: handed on with read-only copies of its arrays.
+
+        Raises:
+            PlannerError: the planner raised, returned no command, or exceeded the budget.
+            PlannerHungError: it did not return.
+        """
+        seen = _protected(obs)
+        begin = time.perf_counter()
+        try:
+            answer = self._guarded("step", lambda: self._planner.step(seen))
+        except NoValidCommand:
+            answer = STOP
+            self.stops += 1
+        seconds = time.perf_counter() - begin
+        self.steps += 1
+        if self._budget is not None and seconds > self._budget:
+            self._fail(f"step took {seconds:.3g} s; the budget is {self._budget:g} s")
+        command, clamped = self._clamp(self._checked(answer))
+        self.clamped += clamped
+        return HostedCommand(command, clamped, seconds)
+
+    def _guarded(self, method: str, call: Callable[[], Any]) -> Any:
+        """Call into the planner; everything but the user's own interrupt becomes our error."""
+        try:
+            # Prints go to stderr, so that stdout keeps to what a command answers.
+            with self._watchdog or contextlib.nullcontext(), contextlib.redirect_stdout(sys.stderr):
+                return call()
+        except PlannerHungError:
+            limit = self._watchdog.limit if self._watchdog else math.nan
+            raise PlannerHungError(
+                f"planner '{self._name}' did not return from {method} within {limit:g} s"
+            ) from None
+        except (KeyboardInterrupt, Interrupted):
+            raise
+        except BaseException as error:
+            if isinstance(error, NoValidCommand) and method == "step":
+                raise
+            kind, where = type(error).__name__, _where(error, self._planner)
+            text = f"{kind}: {error}" if str(error) else kind
+            raise PlannerError(f"planner '{self._name}': {method}: {text}{where}") from error
+
+    def _checked(self, answer: Any) -> Command:
+        """The answer as a command of finite floats."""
+        shaped = isinstance(answer, tuple) and len(answer) in (2, 3)
+        if not shaped or not all(isinstance(x, Real) and not isinstance(x, bool) for x in answer):
+            self._fail(
+                f"step returned {_shown(answer)}; a Command(v, w) or a tuple of 2 or 3 numbers "
+                "is wanted"
+            )
+        command = Command(*(float(x) for x in answer))
+        if not all(math.isfinite(x) for x in command):
+            self._fail(f"step returned {_shown(answer)}; a command must be finite")
+        return command
+
+    def _clamp(self, command: Command) -> tuple[Command, bool]:
+        """Into the limits; a robot without sideways drive is told vy = 0."""
+        limits = self._limits
+        v = min(max(command.v, limits.v_min), limits.v_max)
+        w = min(max(command.w, -limits.w_max), limits.w_max)
+        inside = Command(v, w)
+        excess = max(abs(a - b) for a, b in zip(command, inside, strict=True))
+        return inside, excess > _ROUNDING
+
+    def _fail(self, text: str) -> NoReturn:
+        raise PlannerError(f"planner '{self._name}': {text}")
+
+
+def _read_only(array: Array) -> Array:
+    copy = np.array(array)
+    copy.setflags(write=False)
+    return copy
+
+
+def _protected(obs: Observation) -> Observation:
+    """Copies, since the simulation may go on changing the arrays that a planner keeps."""
+    readings = {n: Reading(r.stamp, _read_only(r.values)) for n, r in obs.readings.items()}
+    return Observation(
+        t=obs.t,
+        pose=obs.pose,
+        twist=obs.twist,
+        goal=obs.goal,
+        goal_zone=_read_only(obs.goal_zone),
+        readings=MappingProxyType(readings),
+        log=obs.log,
+    )
+
+
+def _shown(value: Any) -> str:
+    try:
+        text = repr(value)
+    except Exception as error:
+        text = f"something whose repr raises {type(error).__name__}"
+    text = text if len(text) <= 80 else text[:77] + "..."
+    return f"{text} ({type(value).__name__})"
+
+
+def _where(error: BaseException, planner: object) -> str:
+    """`` (file:line)`` of the innermost frame of the user's own code, or nothing."""
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename != __file__]
+    if not frames:
+        return ""
+    own = [f for f in frames if _is_own(f.filename, _sources(planner))]
+    frame = (own or frames)[-1]
+    return f" ({frame.filename}:{frame.lineno})"
+
+
+def _sources(planner: object) -> tuple[str, ...]:
+    """Files in which the planner's class and its bases are written."""
+    return tuple(_files(type(planner)))
+
+
+def _files(kind: type) -> Iterator[str]:
+    for base in kind.__mro__[:-1]:
+        with contextlib.suppress(TypeError, OSError):
+            yield inspect.getfile(base)
+
+
+def _is_own(file: str, sources: tuple[str, ...]) -> bool:
+    """A planner's file, a file beside it, or any file that is no installed library."""
+    if file in sources or Path(file).parent in {Path(s).parent for s in sources}:
+        return True
+    libraries = {sysconfig.get_path(p) for p in ("stdlib", "platstdlib", "purelib", "platlib")}
+    return not file.startswith("<") and not any(file.startswith(p) for p in libraries if p)

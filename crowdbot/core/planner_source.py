@@ -1,0 +1,294 @@
+"""Where planners come from: a registered kind, a YAML file, or a class in a Python file."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import importlib.util
+import inspect
+import json
+import sys
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from pydantic import ValidationError
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
+
+from crowdbot.core.component import Component
+from crowdbot.core.interfaces import Planner, SensorInfo
+from crowdbot.core.registry import Registry
+from crowdbot.dsl.base import PlannerSpec
+from crowdbot.errors import (
+    InputError,
+    PlannerError,
+    UnknownNameError,
+    did_you_mean,
+    nearest,
+)
+
+_METHODS = ("reset", "step")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlannerChoice:
+    """A planner that can be built any number of times.
+
+    Attributes:
+        name: its kind, or the class' name.
+        spec_dump: everything that defines it, as JSON values.
+        build: makes a new one; raises `PlannerError` or `PluginError`.
+        pinned: whether it comes from an installed distribution.
+        needs: sensors it reads, by name or category; None asks for all.
+        label: ``name``, with ``+`` and four hex digits when parameters are not the defaults.
+    """
+
+    name: str
+    spec_dump: dict[str, Any]
+    build: Callable[[], Planner]
+    pinned: bool
+    needs: tuple[str, ...] | None
+    label: str
+
+
+def resolve_planner(text: str, registry: Registry, settings: Sequence[str] = ()) -> PlannerChoice:
+    """Find a planner and check its parameters, without building it.
+
+    Args:
+        text: a kind (``dwa``), a YAML file with ``kind`` and parameters, or ``file.py:Class``.
+        registry: the installed components.
+        settings: ``key=value``, values in YAML; they come after those of a file.
+
+    Raises:
+        UnknownNameError: no planner of that kind is installed.
+        InputError: a file, class or parameter is wrong.
+        PlannerError: the Python file cannot be imported.
+    """
+    given = _settings(settings)
+    path, colon, name = text.rpartition(":")
+    if colon and path.endswith(".py"):
+        return _from_class(Path(path), name, given)
+    if text.endswith(".py"):
+        raise InputError(f"{text}: which class? Write {text}:{_guess(Path(text))}")
+    if text.endswith((".yaml", ".yml")) or "/" in text:
+        document = _read(Path(text))
+        kind = document.pop("kind", None)
+        if not isinstance(kind, str):
+            raise InputError(f"{text}: 'kind' is missing: which planner is it?")
+        return _from_kind(kind, {**document, **given}, registry, f"{text}: ")
+    return _from_kind(text, given, registry, "")
+
+
+def select_sensors(
+    needs: Sequence[str] | None, sensors: Mapping[str, SensorInfo], planner: str
+) -> tuple[str, ...]:
+    """Names of the sensors that a planner gets, in the robot's order.
+
+    Args:
+        needs: names or categories; None is all.
+        sensors: what the robot has.
+        planner: for the message.
+
+    Raises:
+        InputError: the robot has nothing that answers to a need.
+    """
+    if needs is None:
+        return tuple(sensors)
+    offered = {*sensors, *(s.category for s in sensors.values())}
+    for need in needs:
+        if need not in offered:
+            has = ", ".join(sorted(offered)) or "none"
+            raise InputError(f"planner '{planner}' needs '{need}'; the robot's sensors: {has}")
+    return tuple(n for n, s in sensors.items() if n in needs or s.category in needs)
+
+
+# ------------------------------------------------------------------ registered kinds
+def _from_kind(
+    kind: str, parameters: Mapping[str, Any], registry: Registry, where: str
+) -> PlannerChoice:
+    try:
+        component = registry.find("planner", kind)
+    except UnknownNameError as error:
+        raise UnknownNameError(f"{where}planner", kind, registry.components("planner")) from error
+    spec = _validated(component, parameters, where)
+    return PlannerChoice(
+        name=kind,
+        spec_dump=spec.model_dump(mode="json"),
+        build=lambda: component.load_build()(spec),
+        pinned=registry.owner(kind).pinned,
+        needs=_needs(component.spec),
+        label=kind if _is_default(component, spec) else f"{kind}+{_digest(spec)}",
+    )
+
+
+def _validated(component: Component[Any], parameters: Mapping[str, Any], where: str) -> PlannerSpec:
+    try:
+        spec: PlannerSpec = component.spec.model_validate({**parameters, "kind": component.kind})
+    except ValidationError as error:
+        known = component.spec.model_fields
+        raise InputError("\n".join(_lines(error, component.kind, known, where))) from None
+    return spec
+
+
+def _lines(error: ValidationError, kind: str, known: Mapping[str, Any], where: str) -> list[str]:
+    lines = []
+    for item in error.errors(include_url=False):
+        field = ".".join(str(part) for part in item["loc"])
+        if item["type"] == "extra_forbidden":
+            near = did_you_mean(nearest(field, known))
+            lines.append(f"{where}planner '{kind}' has no parameter '{field}'{near}")
+        else:
+            name = f"{field}: " if field else ""
+            lines.append(f"{where}planner '{kind}': {name}{item['msg']}")
+    return lines
+
+
+def _is_default(component: Component[Any], spec: PlannerSpec) -> bool:
+    try:
+        return bool(component.spec.model_validate({"kind": component.kind}) == spec)
+    except ValidationError:  # some parameter has no default
+        return False
+
+
+def _digest(value: Any) -> str:
+    """Four hex digits of some parameters."""
+    dump = value.model_dump(mode="json") if isinstance(value, PlannerSpec) else value
+    text = json.dumps(dump, sort_keys=True, separators=(",", ":"), default=repr)
+    return hashlib.sha256(text.encode()).hexdigest()[:4]
+
+
+def _needs(holder: type) -> tuple[str, ...] | None:
+    needs = getattr(holder, "needs", None)
+    return None if needs is None else tuple(str(n) for n in needs)
+
+
+# ------------------------------------------------------------------------ documents
+def _settings(settings: Sequence[str]) -> dict[str, Any]:
+    values: dict[str, Any] = {}
+    for setting in settings:
+        key, equals, value = setting.partition("=")
+        if not equals or not key.strip():
+            raise InputError(f"'{setting}' is no setting; write key=value")
+        try:
+            values[key.strip()] = YAML(typ="safe", pure=True).load(value)
+        except YAMLError as error:
+            raise InputError(f"'{setting}': the value is not YAML: {_first(error)}") from None
+    return values
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        document = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read: {_reason(error)}") from None
+    except YAMLError as error:
+        raise InputError(f"{path}: not valid YAML: {_first(error)}") from None
+    if not isinstance(document, dict) or not all(isinstance(k, str) for k in document):
+        raise InputError(f"{path}: a planner is a mapping with 'kind' and parameters")
+    return document
+
+
+def _reason(error: OSError | UnicodeDecodeError) -> str:
+    return str(getattr(error, "strerror", None) or error)
+
+
+def _first(error: YAMLError) -> str:
+    mark = getattr(error, "problem_mark", None)
+    problem = getattr(error, "problem", None) or str(error).splitlines()[0]
+    return f"line {mark.line + 1}: {problem}" if mark is not None else str(problem)
+
+
+# --------------------------------------------------------------------- Python files
+def _from_class(path: Path, name: str, parameters: Mapping[str, Any]) -> PlannerChoice:
+    kind = _class(path, name)
+    dump = {
+        "kind": f"{path.name}:{name}",
+        "sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
+        **({"parameters": dict(parameters)} if parameters else {}),
+    }
+    _check_parameters(kind, parameters, f"{path}:{name}")
+
+    def build() -> Planner:
+        try:
+            made: Planner = kind(**parameters)
+        except Exception as error:
+            text = f"{type(error).__name__}: {error}"
+            raise PlannerError(f"planner '{name}' cannot be made: {text}{_line(error)}") from error
+        return made
+
+    return PlannerChoice(
+        name=name,
+        spec_dump=dump,
+        build=build,
+        pinned=False,
+        needs=_needs(kind),
+        label=f"{name}+{_digest(dict(parameters))}" if parameters else name,
+    )
+
+
+def _class(path: Path, name: str) -> type[Any]:
+    if not path.is_file():
+        raise InputError(f"{path}: no such file")
+    module = _import(path)
+    found = getattr(module, name, None)
+    if not inspect.isclass(found):
+        classes = [n for n, v in vars(module).items() if inspect.isclass(v)]
+        raise InputError(f"{path}: no class '{name}'{did_you_mean(nearest(name, classes))}")
+    missing = [m for m in _METHODS if not callable(getattr(found, m, None))]
+    if missing:
+        raise InputError(f"{path}: class '{name}' is no planner: no {' and no '.join(missing)}")
+    return found
+
+
+def _import(path: Path) -> ModuleType:
+    """Run a file under a name of its own, its folder importable after everything else."""
+    file = path.resolve()
+    unique = f"crowdbot_planner_{hashlib.sha256(str(file).encode()).hexdigest()[:12]}"
+    spec = importlib.util.spec_from_file_location(unique, file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[unique] = module
+    if str(file.parent) not in sys.path:
+        sys.path.append(str(file.parent))
+    try:
+        spec.loader.exec_module(module)
+    except (Exception, SystemExit) as error:
+        del sys.modules[unique]
+        text = f"{type(error).__name__}: {error}"
+        raise PlannerError(f"{path}: cannot be imported: {text}{_line(error)}") from error
+    return module
+
+
+def _line(error: BaseException) -> str:
+    frames = traceback.extract_tb(error.__traceback__)
+    own = [f for f in frames if f.filename != __file__ and not f.filename.startswith("<")]
+    return f" ({own[-1].filename}:{own[-1].lineno})" if own else ""
+
+
+def _check_parameters(kind: type[Any], parameters: Mapping[str, Any], where: str) -> None:
+    try:
+        inspect.signature(kind).bind(**parameters)
+    except ValueError:  # a class without a signature tells only when it is called
+        return
+    except TypeError as error:
+        known = ", ".join(inspect.signature(kind).parameters) or "none"
+        raise InputError(f"{where}: {error}; its parameters: {known}") from None
+
+
+def _guess(path: Path) -> str:
+    """Name of the first class in a file that has both methods, or ``Class``."""
+    try:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, SyntaxError):
+        return "Class"
+    for node in tree.body:
+        if isinstance(node, ast.ClassDef):
+            methods = {n.name for n in node.body if isinstance(n, ast.FunctionDef)}
+            if methods >= set(_METHODS):
+                return node.name
+    return "Class"

@@ -1,0 +1,69 @@
+"""Provenance: hashes of what a run depends on and left behind, and what it ran on."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from importlib import metadata
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.registry import Registry
+from crowdbot.core.trajectory import Trajectories
+
+_PACKAGES = ("crowdbot", "drake", "mcap", "numba", "numpy", "pydantic", "rosbags")
+
+
+def digest(document: Mapping[str, Any]) -> str:
+    """``cb1-sha256:`` hash of a JSON document."""
+    text = json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
+    return f"cb1-sha256:{hashlib.sha256(text.encode()).hexdigest()}"
+
+
+def trajectory_hash(run: Trajectories) -> str:
+    """Hash of every simulated number of a run; wall times are left out.
+
+    Two runs with equal hashes agree bit by bit.
+    """
+    sha = hashlib.sha256()
+    for name in ("t", "robot", "agents", "trips", "contacts", "signals"):
+        _feed(sha, name, getattr(run, name))
+    return f"cb1-sha256:{sha.hexdigest()}"
+
+
+def _feed(sha: Any, name: str, value: Any) -> None:
+    sha.update(name.encode() + b"\0")
+    if is_dataclass(value):
+        for part in fields(value):
+            _feed(sha, part.name, getattr(value, part.name))
+    elif isinstance(value, np.ndarray):
+        sha.update(repr((value.dtype.str, value.shape)).encode())
+        sha.update(np.ascontiguousarray(value).tobytes())
+    elif isinstance(value, Mapping):
+        for key in sorted(value):
+            _feed(sha, key, value[key])
+    else:
+        sha.update(repr(value).encode())
+
+
+def versions() -> dict[str, str]:
+    """Versions of crowdbot and of what its numbers depend on."""
+    return {"python": platform.python_version(), **{p: metadata.version(p) for p in _PACKAGES}}
+
+
+def plugins(registry: Registry) -> list[dict[str, Any]]:
+    """The plugins that were loaded."""
+    return [
+        {"name": p.name, "distribution": p.distribution, "pinned": p.pinned}
+        for p in registry.plugins
+        if not p.error
+    ]
+
+
+def machine() -> dict[str, str]:
+    """What the run ran on."""
+    return {"system": platform.system(), "machine": platform.machine()}

@@ -1,0 +1,21 @@
+"""Recordings: MCAP files with ROS 2 messages, and the raw float64 state beside them."""
+
+from crowdbot.core.recording.header import AgentsHeader, RecordingHeader, RobotHeader
+from crowdbot.core.recording.reader import (
+    RecordingInfo,
+    read_scans,
+    read_trajectories,
+    recording_info,
+)
+from crowdbot.core.recording.writer import RecordingWriter
+
+__all__ = [
+    "AgentsHeader",
+    "RecordingHeader",
+    "RecordingInfo",
+    "RecordingWriter",
+    "RobotHeader",
+    "read_scans",
+    "read_trajectories",
+    "recording_info",
+]

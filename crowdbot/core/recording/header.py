@@ -1,0 +1,177 @@
+"""RecordingHeader: what does not change during a run; the first message of a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.interfaces import Array, RobotLimits, SensorInfo
+from crowdbot.core.recording import messages as ros
+from crowdbot.errors import InputError
+
+#: Raised when the meaning of a ``/crowdbot/...`` message changes.
+VERSION = 1
+_LIMITS = ("v_min", "v_max", "w_max", "a_max", "alpha_max")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotHeader:
+    """The robot; m, kg.
+
+    Attributes:
+        goal: centre of the goal, world frame.
+        base_height: height of base_link above the floor.
+        footprint: array of any shape that stands for the body, or None (the disc).
+    """
+
+    radius: float
+    mass: float
+    goal: tuple[float, float] | None = None
+    goal_radius: float = 0.0
+    base_height: float = 0.0
+    limits: RobotLimits | None = None
+    footprint: Array | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AgentsHeader:
+    """People: id, radius (m), mass (kg), each (M,)."""
+
+    id: NDArray[np.int64]
+    radius: Array
+    mass: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordingHeader:
+    """Constants of a run.
+
+    Attributes:
+        hashes: name -> hash, e.g. ``spec`` and ``realisation``.
+        robot, agents: None in a run without.
+        walls: (S, 4) segments x0, y0, x1, y1, m.
+        goal_zone: (K, 2) polygon, m.
+    """
+
+    scenario: str
+    hashes: Mapping[str, str] = field(default_factory=dict)
+    robot: RobotHeader | None = None
+    agents: AgentsHeader | None = None
+    sensors: Mapping[str, SensorInfo] = field(default_factory=dict)
+    walls: Array | None = None
+    goal_zone: Array | None = None
+
+    def to_message(self) -> Any:
+        """As ``crowdbot_msgs/msg/RunHeader``."""
+        return ros.new(
+            "crowdbot_msgs/RunHeader",
+            version=VERSION,
+            scenario=self.scenario,
+            hash_names=list(self.hashes),
+            hashes=list(self.hashes.values()),
+            robot=[_robot_message(self.robot)] if self.robot else [],
+            agents=[_agents_message(self.agents)] if self.agents else [],
+            sensors=[_sensor_message(name, info) for name, info in self.sensors.items()],
+            walls=ros.table(self.walls),
+            goal_zone=ros.table(self.goal_zone),
+        )
+
+    @classmethod
+    def from_message(cls, message: Any) -> RecordingHeader:
+        """Inverse of `to_message`.
+
+        Raises:
+            InputError: the message was written by another version of crowdbot.
+        """
+        if message.version != VERSION:
+            raise InputError(
+                f"the recording has format {message.version}; this crowdbot reads format {VERSION}"
+            )
+        return cls(
+            scenario=message.scenario,
+            hashes=dict(zip(message.hash_names, message.hashes, strict=True)),
+            robot=_robot(message.robot[0]) if message.robot else None,
+            agents=_agents(message.agents[0]) if message.agents else None,
+            sensors={s.name: _sensor(s) for s in message.sensors},
+            walls=ros.from_table(message.walls),
+            goal_zone=ros.from_table(message.goal_zone),
+        )
+
+
+def _robot_message(robot: RobotHeader) -> Any:
+    limits = None if robot.limits is None else [getattr(robot.limits, n) for n in _LIMITS]
+    return ros.new(
+        "crowdbot_msgs/RobotInfo",
+        radius=robot.radius,
+        mass=robot.mass,
+        goal=ros.table(robot.goal),
+        goal_radius=robot.goal_radius,
+        base_height=robot.base_height,
+        limits=ros.table(limits),
+        footprint=ros.table(robot.footprint),
+    )
+
+
+def _robot(message: Any) -> RobotHeader:
+    goal, limits = ros.from_table(message.goal), ros.from_table(message.limits)
+    return RobotHeader(
+        radius=message.radius,
+        mass=message.mass,
+        goal=None if goal is None else (float(goal[0]), float(goal[1])),
+        goal_radius=message.goal_radius,
+        base_height=message.base_height,
+        limits=None
+        if limits is None
+        else RobotLimits(**dict(zip(_LIMITS, limits.tolist(), strict=True))),
+        footprint=ros.from_table(message.footprint),
+    )
+
+
+def _agents_message(agents: AgentsHeader) -> Any:
+    return ros.new(
+        "crowdbot_msgs/AgentsInfo",
+        id=np.ascontiguousarray(agents.id, np.int64),
+        radius=np.ascontiguousarray(agents.radius, np.float64),
+        mass=np.ascontiguousarray(agents.mass, np.float64),
+    )
+
+
+def _agents(message: Any) -> AgentsHeader:
+    if not len(message.id) == len(message.radius) == len(message.mass):
+        raise InputError("the recording's header lists ids, radii and masses of unequal number")
+    return AgentsHeader(id=message.id, radius=message.radius, mass=message.mass)
+
+
+def _sensor_message(name: str, info: SensorInfo) -> Any:
+    return ros.new(
+        "crowdbot_msgs/Sensor",
+        name=name,
+        category=info.category,
+        frame=info.frame,
+        mount=np.array(info.mount, np.float64),
+        rate=info.rate,
+        shape=np.array(info.shape, np.uint32),
+        ros_type=info.ros_type,
+        angles=ros.table(info.angles),
+        range_min=info.range_min,
+        range_max=info.range_max,
+    )
+
+
+def _sensor(message: Any) -> SensorInfo:
+    x, y, z, yaw = message.mount.tolist()
+    return SensorInfo(
+        category=message.category,
+        frame=message.frame,
+        mount=(x, y, z, yaw),
+        rate=message.rate,
+        shape=tuple(message.shape.tolist()),
+        ros_type=message.ros_type,
+        angles=ros.from_table(message.angles),
+        range_min=message.range_min,
+        range_max=message.range_max,
+    )

@@ -1,0 +1,161 @@
+"""Reads a recording back: trajectories bit by bit, scans, and what is in the file."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.interfaces import SensorInfo
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording.assemble import Collected
+from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.records import Record, Records
+from crowdbot.core.recording.topics import Topic, is_scan, scan_topic
+from crowdbot.core.replay.scan import ReplayScan
+from crowdbot.core.trajectory import Trajectories
+from crowdbot.errors import InputError, UnknownNameError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordingInfo:
+    """What is in a recording.
+
+    Attributes:
+        complete: the run came to its end and the file has its footer.
+        status: why the run ended; empty where the recording does not say.
+        goal_time: arrival, s, or None.
+        duration: time of the last sample, s.
+        topics: topic -> (message type, number of messages), sorted.
+    """
+
+    header: RecordingHeader
+    complete: bool
+    status: str
+    goal_time: float | None
+    duration: float
+    topics: dict[str, tuple[str, int]]
+
+
+def read_trajectories(path: Path) -> Trajectories:
+    """The arrays that were written, bit by bit; of an interrupted run as far as it came.
+
+    ``trips`` is a table, perhaps empty, where there were people; ``contacts`` where there was a
+    robot. ``signals[name]`` is (K, 2): time and value. ``planner_step_time`` is None unless some
+    was recorded.
+
+    Raises:
+        InputError: no recording of crowdbot, damaged, or without a single sample.
+    """
+    collected = Collected()
+    records = Records(path)
+    for record in records:
+        if record.topic in Collected.TOPICS:
+            collected.add(record.topic, _decode(path, record))
+    return collected.trajectories(path)
+
+
+def read_scans(
+    path: Path, sensor: str | None = None, max_rate: float | None = None
+) -> list[ReplayScan]:
+    """The scans of one lidar, or of all.
+
+    Args:
+        path: a recording.
+        sensor: name of a lidar; default: all that recorded scans.
+        max_rate: leave out scans so that at most this many per second remain, Hz.
+
+    Raises:
+        InputError: no recording of crowdbot.
+        UnknownNameError: there is no such lidar.
+    """
+    lidars: dict[str, SensorInfo] = {}
+    found: dict[str, list[tuple[float, Any]]] = {}
+    gap = 0 if max_rate is None else round(1e9 / max_rate)
+    due: Counter[str] = Counter()
+    for record in _with_header(path):
+        if record.topic == Topic.HEADER:
+            lidars = _lidars(_header(path, record), sensor)
+        elif record.topic in lidars and record.ns >= due[record.topic]:
+            due[record.topic] = record.ns - (record.ns % gap if gap else 0) + gap
+            scan = _decode(path, record)
+            found.setdefault(record.topic, []).append((record.ns / 1e9, scan.ranges))
+    return [_scan(topic, lidars[topic], rows) for topic, rows in found.items()]
+
+
+def recording_info(path: Path) -> RecordingInfo:
+    """What is in a file, complete or not.
+
+    Raises:
+        InputError: no recording of crowdbot, or damaged.
+    """
+    header, end, last = None, None, 0
+    counts: Counter[tuple[str, str]] = Counter()
+    records = Records(path)
+    for record in _with_header(path, records):
+        counts[record.topic, record.msgtype] += 1
+        if record.topic == Topic.HEADER:
+            header = _header(path, record)
+        elif record.topic == Topic.STATE:
+            last = record.ns
+        elif record.topic == Topic.END:
+            end = _decode(path, record)
+    assert header is not None  # by _with_header
+    return RecordingInfo(
+        header=header,
+        complete=records.finished and end is not None and end.complete,
+        status="" if end is None else end.status,
+        goal_time=end.goal_time if end is not None and end.arrived else None,
+        duration=last / 1e9,
+        topics={topic: (kind, n) for (topic, kind), n in sorted(counts.items())},
+    )
+
+
+def _with_header(path: Path, records: Records | None = None) -> Iterator[Record]:
+    """All records, the first of which is the header."""
+    first = True
+    for record in records or Records(path):
+        if first and record.topic != Topic.HEADER:
+            break
+        first = False
+        yield record
+    else:
+        if not first:
+            return
+    raise InputError(f"{path}: no recording of crowdbot: it does not begin with {Topic.HEADER}")
+
+
+def _header(path: Path, record: Record) -> RecordingHeader:
+    return RecordingHeader.from_message(_decode(path, record))
+
+
+def _decode(path: Path, record: Record) -> Any:
+    try:
+        return ros.from_cdr(record.data, record.msgtype)
+    except Exception as error:  # the decoder is generated code; anything may surface
+        raise InputError(
+            f"{path}: {record.topic}: a {record.msgtype} that cannot be decoded"
+        ) from error
+
+
+def _lidars(header: RecordingHeader, sensor: str | None) -> dict[str, SensorInfo]:
+    lidars = {n: s for n, s in header.sensors.items() if is_scan(s)}
+    if sensor is not None and sensor not in lidars:
+        raise UnknownNameError("lidar", sensor, lidars)
+    return {scan_topic(n): s for n, s in lidars.items() if sensor in (None, n)}
+
+
+def _scan(topic: str, info: SensorInfo, rows: list[tuple[float, Any]]) -> ReplayScan:
+    assert info.angles is not None  # by is_scan
+    return ReplayScan(
+        sensor=topic.removesuffix("/scan").removeprefix("/"),
+        mount=info.mount,
+        angles=info.angles,
+        range_max=info.range_max,
+        t=np.array([t for t, _ in rows]),
+        ranges=np.array([r for _, r in rows], np.float64),
+    )

@@ -1,0 +1,128 @@
+"""Reads messages out of an MCAP file that may be cut off, damaged or hostile.
+
+A run that was killed leaves a file without index and footer; it is read front to back up to its
+last whole chunk. What follows a broken chunk must be nothing: damage in the middle is an error.
+"""
+
+from __future__ import annotations
+
+import mmap
+import struct
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import zstandard
+from mcap.exceptions import EndOfFile, InvalidMagic, McapError
+from mcap.records import Channel, Chunk, DataEnd, Footer, McapRecord, Message, Schema
+from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
+
+from crowdbot.errors import InputError
+
+#: Ours are 256 KiB plus one message. Larger ones are refused before they are unpacked.
+MAX_CHUNK = 64 * 2**20
+MAX_RECORD = 2 * MAX_CHUNK
+MAX_TOTAL = 4 * 2**30
+_BROKEN = (McapError, CRCValidationError, zstandard.ZstdError, struct.error, ValueError, KeyError)
+
+
+class Record(NamedTuple):
+    """One message, still serialised."""
+
+    topic: str
+    msgtype: str
+    ns: int
+    data: bytes
+
+
+class Records:
+    """Iterates over the messages of a file, once; then tells whether it had its footer."""
+
+    def __init__(self, path: Path) -> None:
+        self.finished = False
+        self._path = path
+        self._schemas: dict[int, Schema] = {}
+        self._channels: dict[int, Channel] = {}
+        self._total = 0
+
+    def __iter__(self) -> Iterator[Record]:
+        """Messages in the order they were written.
+
+        Raises:
+            InputError: no MCAP file, damaged before its end, or unreasonably large when unpacked.
+        """
+        try:
+            with self._path.open("rb") as file, _mapped(file.fileno()) as data:
+                yield from self._records(data)
+        except OSError as error:
+            raise InputError(f"{self._path}: cannot be read: {error.strerror}") from error
+
+    def _records(self, data: mmap.mmap) -> Iterator[Record]:
+        broken = False
+        for record in self._top_level(data):
+            if isinstance(record, Chunk | DataEnd | Footer) and broken:
+                raise InputError(f"{self._path}: damaged: a chunk in the middle does not unpack")
+            if isinstance(record, Chunk):
+                inner = self._unpack(record)
+                broken = inner is None
+                yield from self._messages(inner or [])
+            elif isinstance(record, Schema | Channel | Message):
+                yield from self._messages([record])
+
+    def _top_level(self, data: mmap.mmap) -> Iterator[McapRecord]:
+        reader = StreamReader(data, emit_chunks=True, record_size_limit=MAX_RECORD)  # type: ignore[arg-type]
+        try:
+            yield from reader.records
+            self.finished = True
+        except InvalidMagic as error:
+            if data.tell() <= 8:
+                raise InputError(f"{self._path}: no MCAP file") from error
+        except (*_BROKEN, EndOfFile, OverflowError):
+            if data.tell() < 8:
+                raise InputError(f"{self._path}: no MCAP file") from None
+
+    def _unpack(self, chunk: Chunk) -> list[McapRecord] | None:
+        """The records of a chunk, or None where it is broken."""
+        self._total += chunk.uncompressed_size
+        if chunk.uncompressed_size > MAX_CHUNK or self._total > MAX_TOTAL:
+            raise InputError(f"{self._path}: refused: unpacks to more than a recording may")
+        if chunk.compression not in ("", "zstd"):
+            raise InputError(f"{self._path}: compression '{chunk.compression}' is not supported")
+        try:
+            plain = _decompress(chunk)
+            return breakup_chunk(replace(chunk, compression="", data=plain), validate_crc=True)
+        except _BROKEN:
+            return None
+
+    def _messages(self, records: list[McapRecord]) -> Iterator[Record]:
+        for record in records:
+            if isinstance(record, Schema):
+                self._schemas[record.id] = record
+            elif isinstance(record, Channel):
+                self._channels[record.id] = record
+            elif isinstance(record, Message):
+                channel = self._channels.get(record.channel_id)
+                schema = self._schemas.get(channel.schema_id) if channel else None
+                if channel is None or schema is None:
+                    raise InputError(f"{self._path}: damaged: a message belongs to no topic")
+                yield Record(channel.topic, schema.name, record.log_time, record.data)
+
+
+def _mapped(fileno: int) -> mmap.mmap:
+    """The file as memory: a length that lies cannot make us allocate."""
+    try:
+        return mmap.mmap(fileno, 0, access=mmap.ACCESS_READ)
+    except ValueError:  # empty
+        return mmap.mmap(-1, 1)
+
+
+def _decompress(chunk: Chunk) -> bytes:
+    """Never more than the chunk admits to: the frame's own idea of its size may be a bomb."""
+    if chunk.compression == "":
+        return chunk.data
+    with zstandard.ZstdDecompressor().stream_reader(chunk.data) as reader:
+        data = reader.read(chunk.uncompressed_size + 1)
+    if len(data) != chunk.uncompressed_size:
+        raise ValueError("size differs from the one announced")
+    return data

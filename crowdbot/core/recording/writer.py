@@ -1,0 +1,207 @@
+"""RecordingWriter: streams one run into an MCAP file with ROS 2 messages.
+
+The ``/crowdbot/...`` topics and ``/contacts`` carry the raw float64 numbers that scores are
+computed from; all others are for ROS tools and may be left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.interfaces import Array, Command, Pose, Reading
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording.container import McapFile
+from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.people import MARKER, PeopleMessages
+from crowdbot.core.recording.topics import Topic, sensor_topics
+
+BASE = "base_footprint"
+#: Frames that the recording defines itself; no sensor may own them.
+FRAMES = ("map", "odom", BASE, "base_link")
+_WALL_COLOUR = (0.3, 0.3, 0.3, 1.0)
+
+
+class RecordingWriter:
+    """Writes what the simulation hands over; all times are simulated seconds, >= 0."""
+
+    def __init__(
+        self,
+        path: Path,
+        header: RecordingHeader,
+        *,
+        record: Literal["all", "used", "none"] = "all",
+    ) -> None:
+        """Start the file with its header.
+
+        Args:
+            path: file to write; the caller gives it its final name when the run is complete.
+            header: constants of the run.
+            record: ``none`` leaves out all that scores do not need. ``all`` and ``used`` write
+                every reading they are given.
+
+        Raises:
+            InputError: the path cannot be written.
+        """
+        self._file = McapFile(path)
+        self._header = header
+        self._ros = record != "none"
+        self._people = PeopleMessages(header.agents) if header.agents else None
+        self._sensors = sensor_topics(header.sensors)
+        self._now = 0
+        self._closed = False
+        self._file.put(Topic.HEADER, 0, header.to_message(), latched=True)
+        if self._ros:
+            self._scenery()
+
+    def state(
+        self,
+        t: float,
+        robot: Sequence[float] | None,
+        agents: Array | None,
+        jump: NDArray[np.bool_] | None = None,
+        signals: Mapping[str, float] | None = None,
+    ) -> None:
+        """One sample of the log.
+
+        Args:
+            t: time, s.
+            robot: x, y, theta, v, w; m, rad, m/s, rad/s; world frame.
+            agents: (4, M) x, y, vx, vy; NaN where somebody is absent.
+            jump: (M,) who was teleported since the previous sample.
+            signals: name -> value at this time.
+        """
+        self._now = ns = ros.nanoseconds(t)
+        raw = ros.new(
+            "crowdbot_msgs/RunState",
+            t=t,
+            robot=np.array(() if robot is None else robot, np.float64),
+            agents=np.array(() if agents is None else agents, np.float64).ravel(),
+            has_jump=jump is not None,
+            jump=np.array(() if jump is None else jump, np.bool_),
+        )
+        self._file.put(Topic.STATE, ns, raw)
+        for name, value in (signals or {}).items():
+            self.signal(t, name, value)
+        if self._ros:
+            self._ros_state(ns, robot, agents)
+
+    def reading(self, sensor: str, reading: Reading) -> None:
+        """One reading of a sensor that the header lists."""
+        if not self._ros:
+            return
+        topic, info = self._sensors[sensor], self._header.sensors[sensor]
+        ns = ros.nanoseconds(reading.stamp)
+        self._file.put(topic.name, ns, topic.message(ns, info, reading.values))
+
+    def command(self, t: float, command: Command) -> None:
+        """What the planner wants the robot to do."""
+        if self._ros:
+            message = ros.twist(command.v, command.vy, command.w)
+            self._file.put(Topic.COMMAND, ros.nanoseconds(t), message)
+
+    def planner_time(self, t: float, seconds: float) -> None:
+        """Wall time of one planner step; the only number here that two equal runs disagree on."""
+        self._value(Topic.PLANNER_TIME, t, "planner_step_time", seconds)
+
+    def signal(self, t: float, name: str, value: float) -> None:
+        """One value of a named signal."""
+        self._value(Topic.SIGNAL, t, name, value)
+
+    def trip(self, agent: int, t0: float, t1: float, reached: bool) -> None:
+        """A journey that ended, or at the end of the run did not."""
+        trip = ros.new("crowdbot_msgs/Trip", agent=agent, t0=t0, t1=t1, reached=reached)
+        self._file.put(Topic.TRIP, ros.nanoseconds(t1), trip)
+
+    def contact(
+        self,
+        t0: float,
+        t1: float,
+        agent: int,
+        impulse: float,
+        peak_force: float,
+        relative_speed: float,
+    ) -> None:
+        """A contact of the robot that ended at ``t1``; N s, N, m/s; agent -1 is a wall."""
+        message = ros.new(
+            "crowdbot_msgs/Contact",
+            header=ros.header(ros.nanoseconds(t0), "map"),
+            t0=t0,
+            t1=t1,
+            agent=agent,
+            impulse=impulse,
+            peak_force=peak_force,
+            relative_speed=relative_speed,
+        )
+        self._file.put(Topic.CONTACTS, ros.nanoseconds(t1), message)
+
+    def flush(self) -> None:
+        """Finish the open chunk, so that all so far is readable should the process be killed.
+
+        Chunks end where this is called: to keep files comparable, call it by simulated time.
+        """
+        self._file.flush()
+
+    def close(self, goal_time: float | None, complete: bool, status: str) -> None:
+        """Write the end, index and footer; wait for the disk. A second call does nothing.
+
+        Args:
+            goal_time: when the robot arrived, s, or None.
+            complete: False for a run that was interrupted.
+            status: ``arrived``, ``timeout``, ``planner_failed``, …
+        """
+        if self._closed:
+            return
+        self._closed = True
+        end = ros.new(
+            "crowdbot_msgs/RunEnd",
+            complete=complete,
+            status=status,
+            arrived=goal_time is not None,
+            goal_time=0.0 if goal_time is None else goal_time,
+        )
+        self._file.put(Topic.END, self._now, end, latched=True)
+        self._file.close()
+
+    def _value(self, topic: Topic, t: float, name: str, value: float) -> None:
+        message = ros.new("crowdbot_msgs/Signal", t=t, name=name, value=value)
+        self._file.put(topic, ros.nanoseconds(t), message)
+
+    def _ros_state(self, ns: int, robot: Sequence[float] | None, agents: Array | None) -> None:
+        self._file.put(Topic.CLOCK, ns, ros.clock(ns))
+        if robot is not None:
+            pose = Pose(float(robot[0]), float(robot[1]), float(robot[2]))
+            truth = ros.transform(ns, "map", BASE, (pose.x, pose.y, 0.0), pose.yaw)
+            self._file.put(Topic.TF, ns, ros.transforms([truth]))
+            self._file.put(Topic.POSE, ns, ros.pose_stamped(ns, "map", pose))
+        if self._people is not None and agents is not None:
+            self._file.put(Topic.PEOPLE, ns, self._people.pedestrians(ns, agents))
+            data = self._people.marker(ns, agents)
+            self._file.put_bytes(Topic.PEOPLE_MARKER, ns, MARKER, data)
+
+    def _scenery(self) -> None:
+        """What never moves: frames on the robot, walls, goal."""
+        self._file.put(Topic.TF_STATIC, 0, ros.transforms(self._static_frames()), latched=True)
+        walls, zone = self._header.walls, self._header.goal_zone
+        if walls is not None and len(walls):
+            ends = np.zeros((2 * len(walls), 3))
+            ends[:, :2] = np.asarray(walls).reshape(-1, 2)
+            lines = ros.marker(0, "walls", "LINE_LIST", (0.1, 0.0, 0.0), _WALL_COLOUR, ends)
+            self._file.put(Topic.WALLS, 0, lines, latched=True)
+        if zone is not None and len(zone):
+            self._file.put(Topic.GOAL, 0, ros.polygon(0, zone), latched=True)
+
+    def _static_frames(self) -> list[Any]:
+        frames = [ros.transform(0, "map", "odom", (0.0, 0.0, 0.0), 0.0)]
+        robot = self._header.robot
+        if robot is None:
+            return frames
+        frames.append(ros.transform(0, BASE, "base_link", (0.0, 0.0, robot.base_height), 0.0))
+        mounts = {s.frame: s.mount for s in self._header.sensors.values() if s.frame not in FRAMES}
+        for frame, (x, y, z, yaw) in mounts.items():
+            frames.append(ros.transform(0, "base_link", frame, (x, y, z), yaw))
+        return frames

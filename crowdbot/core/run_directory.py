@@ -1,0 +1,110 @@
+"""Run directories: written aside under a ``.partial`` name, renamed when complete."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from crowdbot.errors import InputError
+
+RECORD, RECORDING, SCENARIO, SCORES, REPLAY = (
+    "run.json", "run.mcap", "scenario.yaml", "scores.csv", "replay.html",
+)  # fmt: skip
+_LOCK = ".lock"
+
+
+def read_record(directory: Path) -> dict[str, Any] | None:
+    """``run.json`` of a complete run, or None."""
+    try:
+        record = json.loads((directory / RECORD).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return record if isinstance(record, dict) else None
+
+
+def is_complete(directory: Path, run_id: str) -> bool:
+    """Whether a directory holds the complete run of this id."""
+    record = read_record(directory)
+    return record is not None and record.get("run_id") == run_id
+
+
+def write_json(path: Path, document: Mapping[str, Any]) -> None:
+    """Write a document aside and rename it."""
+    aside = path.with_name(f"{path.name}.part")
+    aside.write_text(json.dumps(document, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+    os.replace(aside, path)
+
+
+@contextmanager
+def partial(final: Path) -> Iterator[Path]:
+    """A directory of one's own beside ``final``; kept as it is when the body raises.
+
+    Leftovers of an interrupted run are replaced; the directory of a run that is still going on
+    in another process is left alone, and the next free name is taken.
+
+    Raises:
+        InputError: it cannot be made or written.
+    """
+    try:
+        final.parent.mkdir(parents=True, exist_ok=True)
+        folder, lock = _claim(final)
+    except OSError as error:
+        raise InputError(f"{final.parent}: cannot be written: {error.strerror}") from error
+    try:
+        yield folder
+    finally:
+        with suppress(OSError):
+            (folder / _LOCK).unlink()
+        os.close(lock)
+
+
+def publish(folder: Path, final: Path) -> None:
+    """Give a complete directory its final name, in place of what was there."""
+    with suppress(OSError):
+        (folder / _LOCK).unlink()
+    for file in folder.iterdir():
+        _sync(file)
+    old = final.with_name(f"{final.name}.old-{os.getpid()}")
+    with suppress(FileNotFoundError):
+        os.rename(final, old)
+    try:
+        os.rename(folder, final)
+    except OSError:
+        if not final.is_dir():  # another process was faster with the very same run
+            raise
+        shutil.rmtree(folder)
+    _sync(final.parent)
+    shutil.rmtree(old, ignore_errors=True)
+
+
+def _claim(final: Path) -> tuple[Path, int]:
+    for number in range(1, 1000):
+        suffix = "" if number == 1 else f"-{number}"
+        folder = final.with_name(f"{final.name}{suffix}.partial")
+        folder.mkdir(exist_ok=True)
+        lock = os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT, 0o644)
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(lock)
+            continue
+        for leftover in folder.iterdir():
+            if leftover.name != _LOCK:
+                shutil.rmtree(leftover) if leftover.is_dir() else leftover.unlink()
+        return folder, lock
+    raise InputError(f"{final}: a thousand runs of it are going on already")
+
+
+def _sync(path: Path) -> None:
+    """Wait until a file or directory is on the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

@@ -1,0 +1,104 @@
+"""RunLog: turns states into the rows of a recording: samples, trips, contacts.
+
+The recording is the run: scores, replay and hashes are all computed from what it reads back to.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd import state as s
+from crowdbot.core.interfaces import Array, Command, RobotState
+from crowdbot.core.recording import RecordingWriter
+
+
+class RunLog:
+    """Books each event of the crowd once, in the order of agents."""
+
+    def __init__(self, writer: RecordingWriter, agent_id: NDArray[np.int64]) -> None:
+        self.writer = writer
+        self._id = agent_id
+        self._trip = np.zeros(len(agent_id))  # trip number at the latest sample
+        self._trip_start = np.zeros(len(agent_id))
+        self._arrived = np.zeros(len(agent_id))  # latest arrival that is booked
+        self._touches = np.zeros(len(agent_id))
+        self.contacts = 0
+        self.clamped = 0
+        self._samples = self._steps = 0
+        self._step_sum = self._step_max = 0.0
+
+    def sample(self, t: float, robot: RobotState | None, crowd: Array | None) -> None:
+        """One row of the log grid: the robot's state and the flat crowd state, either missing."""
+        agents = jump = None
+        if crowd is not None:
+            _, people = s.view(crowd)
+            agents = people[:, s.X : s.VY + 1].T.copy()
+            agents[:, people[:, s.WAITING] != 0.0] = np.nan
+            jump = people[:, s.TRIP] != self._trip if self._samples else None
+            self._book_trips(people)
+        self._samples += 1
+        self.writer.state(t, None if robot is None else _robot_row(robot), agents, jump)
+
+    def book_contacts(self, crowd: Array) -> None:
+        """Record contacts that ended since the last call; to be called every tick."""
+        if int(crowd[s.CONTACTS]) == self.contacts:
+            return
+        _, people = s.view(crowd)
+        for i in np.flatnonzero(people[:, s.TOUCHES] != self._touches):
+            self._contact(people, i)
+        self._touches = people[:, s.TOUCHES].copy()
+        self.contacts = int(crowd[s.CONTACTS])
+
+    def command(self, t: float, command: Command, seconds: float, clamped: bool) -> None:
+        """One step of the planner."""
+        self.clamped += clamped
+        self._steps += 1
+        self._step_sum += seconds
+        self._step_max = max(self._step_max, seconds)
+        self.writer.command(t, command)
+        self.writer.planner_time(t, seconds)
+
+    def step_times(self) -> dict[str, float]:
+        """Mean and largest wall time of a planner step, s."""
+        mean = self._step_sum / self._steps if self._steps else 0.0
+        return {"mean": round(mean, 6), "max": round(self._step_max, 6)}
+
+    def finish(self, t: float, crowd: Array | None) -> None:
+        """Book what is still going on at the end: trips that were not finished, contacts."""
+        if crowd is None:
+            return
+        _, people = s.view(crowd)
+        self._book_trips(people)
+        for i in np.flatnonzero(people[:, s.WAITING] == 0.0):
+            self.writer.trip(int(self._id[i]), self._trip_start[i], t, False)
+        for i in np.flatnonzero(people[:, s.TOUCHING] != 0.0):
+            self._contact(people, i)
+            self.contacts += 1
+
+    def _book_trips(self, people: Array) -> None:
+        """At most one arrival and one re-entry per agent lie between two samples."""
+        for i in np.flatnonzero(people[:, s.ARRIVED] != self._arrived):
+            end = float(people[i, s.ARRIVED])
+            self.writer.trip(int(self._id[i]), float(self._trip_start[i]), end, True)
+        self._arrived = people[:, s.ARRIVED].copy()
+        self._trip = people[:, s.TRIP].copy()
+        self._trip_start = people[:, s.TRIP_START].copy()
+
+    def _contact(self, people: Array, i: int) -> None:
+        row = people[i]
+        self.writer.contact(
+            t0=float(row[s.TOUCH_START]),
+            t1=float(row[s.TOUCH_END]),
+            agent=int(self._id[i]),
+            impulse=float(row[s.TOUCH_IMPULSE]),
+            peak_force=float(row[s.TOUCH_PEAK]),
+            relative_speed=float(row[s.TOUCH_SPEED]),
+        )
+
+
+def _robot_row(robot: RobotState) -> tuple[float, ...]:
+    forward = robot.vx * math.cos(robot.yaw) + robot.vy * math.sin(robot.yaw)
+    return (float(robot.x), float(robot.y), float(robot.yaw), float(forward), float(robot.w))

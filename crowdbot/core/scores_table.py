@@ -1,0 +1,165 @@
+"""scores.csv, and the table of scores that a terminal shows."""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from crowdbot.core.score import Score
+from crowdbot.errors import InputError
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+COLUMNS = (
+    "scenario",
+    "planner",
+    "seed",
+    "category",
+    "metric",
+    "symbol",
+    "variant",
+    "value",
+    "unit",
+    "better",
+    "status",
+    "reason",
+    "lower",
+    "upper",
+)
+_NUMBERS = ("value", "lower", "upper")
+_TEXTS = ("category", "metric", "symbol", "variant", "unit", "better", "status", "reason")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScoreRow:
+    """One row of scores.csv; extras are not kept there."""
+
+    scenario: str
+    planner: str
+    seed: int
+    score: Score
+
+
+# ------------------------------------------------------------------------ csv
+def write_scores_csv(
+    path: str | os.PathLike[str], scores: Iterable[Score], scenario: str, planner: str, seed: int
+) -> None:
+    """Write one row a score: RFC 4180, UTF-8; floats come back bit for bit.
+
+    The file appears under its name only when complete.
+
+    Raises:
+        InputError: it cannot be written there.
+    """
+    path = Path(path)
+    rows = [(scenario, planner, str(seed), *_cells(s)) for s in scores]
+    aside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        with aside.open("w", encoding="utf-8", newline="") as file:
+            csv.writer(file).writerows([COLUMNS, *rows])
+        aside.replace(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+    finally:
+        aside.unlink(missing_ok=True)
+
+
+def read_scores_csv(path: str | os.PathLike[str]) -> list[ScoreRow]:
+    """Read what `write_scores_csv` wrote.
+
+    Raises:
+        InputError: no such file, other columns, or a cell that is no score; names the line.
+    """
+    path = Path(path)
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            reader = csv.DictReader(file, strict=True)
+            if tuple(reader.fieldnames or ()) != COLUMNS:
+                raise InputError(f"{path}:1: not a table of scores: expected {','.join(COLUMNS)}")
+            return [_row(path, reader.line_num, cells) for cells in reader]
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: not a table of scores: {error}") from error
+
+
+def _cells(score: Score) -> list[str]:
+    cells = {name: str(getattr(score, name)) for name in _TEXTS}
+    for name in _NUMBERS:
+        number = getattr(score, name)
+        cells[name] = "" if number is None else repr(float(number))
+    return [cells[name] for name in COLUMNS[3:]]
+
+
+def _row(path: Path, line: int, cells: Mapping[str, Any]) -> ScoreRow:
+    try:
+        return ScoreRow(
+            scenario=cells["scenario"],
+            planner=cells["planner"],
+            seed=int(cells["seed"]),
+            score=_score(cells),
+        )
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{path}:{line}: not a score: {error}") from error
+
+
+def _score(cells: Mapping[str, Any]) -> Score:
+    if None in cells or None in cells.values():
+        raise ValueError(f"a row has {len(COLUMNS)} cells")
+    for name, known in (
+        ("status", ("ok", "undefined", "censored")),
+        ("better", ("higher", "lower", "reference", "none")),
+    ):
+        if cells[name] not in known:
+            raise ValueError(f"{name} '{cells[name]}' is none of {', '.join(known)}")
+    values: dict[str, Any] = {name: cells[name] for name in _TEXTS}
+    values |= {name: float(cells[name]) if cells[name] else None for name in _NUMBERS}
+    return Score(**values)
+
+
+# ------------------------------------------------------------------- terminal
+def scores_table(scores: Sequence[Score]) -> Table:
+    """A table for people, grouped by category; fits 80 columns."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=SIMPLE_HEAD, padding=(0, 1), pad_edge=False)
+    for name in ("metric", "symbol", "variant"):
+        table.add_column(name, overflow="fold", no_wrap=name != "metric")
+    table.add_column("value", overflow="fold")
+    table.add_column("better", no_wrap=True)
+    by_category = sorted(scores, key=lambda s: s.category)
+    for category, group in groupby(by_category, key=lambda s: s.category):
+        table.add_section()
+        table.add_row(Text(category, style="bold"))
+        shown = ""
+        for s in group:
+            head = ("", "") if s.metric == shown else (s.metric, s.symbol)
+            style = "" if s.status == "ok" else "dim"
+            table.add_row(*map(Text, (*head, s.variant, verdict(s), s.better)), style=style)
+            shown = s.metric
+    return table
+
+
+def verdict(score: Score) -> str:
+    """Value and unit; without a value why, and within which bounds it lies."""
+    if score.value is not None:
+        return _with_unit(score.value, score.unit)
+    bounds = [
+        f"{word} {_with_unit(number, score.unit)}"
+        for word, number in (("at least", score.lower), ("at most", score.upper))
+        if number is not None
+    ]
+    return ", ".join([f"{score.status}: {score.reason}", *bounds])
+
+
+def _with_unit(number: float, unit: str) -> str:
+    text = str(int(number)) if number == int(number) else f"{number:.5g}"
+    return text if unit in ("1", "") else f"{text} {unit}"

@@ -1,0 +1,69 @@
+"""Lidar points around the robot, for planners."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.interfaces import Reading, SensorInfo
+
+Array = NDArray[np.float64]
+
+
+class LidarPoints:
+    """Turns the scans of all of a robot's lidars into points in the base frame.
+
+    Args:
+        sensors: description of every sensor the planner sees; only lidars are used.
+    """
+
+    def __init__(self, sensors: Mapping[str, SensorInfo]) -> None:
+        self._beams: dict[str, tuple[tuple[float, float], Array]] = {}
+        for name, info in sensors.items():
+            if info.category == "lidar" and info.angles is not None:
+                angle = info.angles + info.mount[3]
+                rays = np.column_stack([np.cos(angle), np.sin(angle)])
+                self._beams[name] = (info.mount[:2], rays)
+
+    def __len__(self) -> int:
+        """Number of lidars."""
+        return len(self._beams)
+
+    def __call__(
+        self, readings: Mapping[str, Reading], t: float, twist: tuple[float, float]
+    ) -> Array:
+        """Points where something was hit.
+
+        A scan that is older than ``t`` is moved by the robot's own motion since.
+
+        Args:
+            readings: by sensor name; a lidar that has not read yet is left out.
+            t: now, s.
+            twist: the robot's v (m/s) and w (rad/s).
+
+        Returns:
+            (P, 2) x forward, y left of base_link, m; new.
+        """
+        parts = []
+        for name, (mount, rays) in self._beams.items():
+            if name in readings:
+                ranges = readings[name].values
+                hit = np.isfinite(ranges)
+                points = rays[hit] * ranges[hit, None] + mount
+                parts.append(_moved(points, t - readings[name].stamp, twist))
+        return np.concatenate(parts) if parts else np.empty((0, 2))
+
+
+def _moved(points: Array, age: float, twist: tuple[float, float]) -> Array:
+    """Points seen ``age`` seconds ago, in the frame of a robot that has moved on since."""
+    v, w = twist
+    if age <= 0.0 or (v == 0.0 and w == 0.0):
+        return points
+    turn = w * age
+    x, y = v * age * math.cos(turn / 2.0), v * age * math.sin(turn / 2.0)
+    c, s = math.cos(turn), math.sin(turn)
+    moved: Array = (points - (x, y)) @ np.array([[c, -s], [s, c]])
+    return moved

@@ -1,0 +1,156 @@
+"""build_diagram: one straight recipe from a scenario and a planner to a Drake diagram."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+from pydrake.systems.framework import Diagram, DiagramBuilder
+
+from crowdbot.core.crowd import CrowdEngine
+from crowdbot.core.crowd import state as crowd_state
+from crowdbot.core.interfaces import EnvironmentParts, Pose, RobotModel, Task
+from crowdbot.core.planner_host import HostedCommand, PlannerHost
+from crowdbot.core.registry import Registry
+from crowdbot.core.run_log import RunLog
+from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.sim import ports
+from crowdbot.core.sim.crowd_system import CrowdSystem
+from crowdbot.core.sim.metric_logger import MetricLogger
+from crowdbot.core.sim.plant import RobotPlant, add_plant
+from crowdbot.core.sim.planner_system import PlannerSystem
+from crowdbot.core.sim.recorder import Recorder
+from crowdbot.core.sim.robot_state import RobotStateSystem
+from crowdbot.core.sim.sensor_bank import SensorBank
+from crowdbot.dsl.scenario import Robot, Scenario
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Blocks:
+    """A finished diagram and its named parts. Never look anything up by index."""
+
+    diagram: Diagram
+    rig: RobotPlant
+    robot_state: RobotStateSystem
+    bank: SensorBank
+    planner: PlannerSystem
+    logger: MetricLogger
+    crowd: CrowdSystem | None
+
+
+def robot_task(robot: Robot, parts: EnvironmentParts) -> Task:
+    """The robot's task with its goal zone as a polygon."""
+    zone = parts.zones[robot.task.goal.zone]
+    centre = zone.mean(axis=0)
+    return Task(
+        start=Pose(*robot.task.start),
+        goal=(float(centre[0]), float(centre[1])),
+        goal_zone=zone,
+        time_limit=robot.task.time_limit,
+    )
+
+
+def build_diagram(
+    scenario: Scenario,
+    robot_name: str,
+    parts: EnvironmentParts,
+    model: RobotModel,
+    engine: CrowdEngine | None,
+    host: PlannerHost,
+    log: RunLog,
+    registry: Registry,
+    *,
+    run_seed: int,
+    sensors: Collection[str],
+    visible: Collection[str],
+) -> Blocks:
+    """Wire one run.
+
+    Args:
+        sensors: names of the sensors to simulate; readings do not depend on which others run.
+        visible: names of those that the planner asked for.
+    """
+    robot = scenario.robots[robot_name]
+    task = robot_task(robot, parts)
+    builder = DiagramBuilder()
+
+    # Robot: multibody plant with floor and walls, and the one vector that stands for its state.
+    rig = add_plant(builder, parts, model)
+    state = builder.AddNamedSystem("robot_state", RobotStateSystem(rig))
+    builder.Connect(rig.plant.get_state_output_port(rig.model), state.GetInputPort("plant_state"))
+    robot_state = state.GetOutputPort(ports.ROBOT_STATE)
+
+    # Crowd and contact, one event: force on the robot, reaction on people.
+    crowd, size = None, 0
+    if engine is not None:
+        margin = scenario.crowd.robot_response.margin if scenario.crowd else 0.0
+        system = CrowdSystem(engine, rig, model.footprint_radius + margin)
+        crowd = builder.AddNamedSystem("crowd", system)
+        builder.Connect(robot_state, crowd.GetInputPort(ports.ROBOT_STATE))
+        builder.Connect(
+            crowd.GetOutputPort(ports.ROBOT_FORCE),
+            rig.plant.get_applied_generalized_force_input_port(),
+        )
+        size = crowd_state.size(len(engine.agents))
+
+    # Sensors, odometry among them.
+    bank = builder.AddNamedSystem(
+        "sensors",
+        SensorBank(
+            {n: registry.build(x) for n, x in robot.sensors.items() if n in sensors},
+            _scene(scenario, parts, engine),
+            size,
+            seed=run_seed,
+            robot=robot_name,
+        ),
+    )
+    builder.Connect(robot_state, bank.GetInputPort(ports.ROBOT_STATE))
+
+    # Planner, slew limits, wheels.
+    def on_step(t: float, hosted: HostedCommand) -> None:
+        log.command(t, hosted.command, hosted.seconds, hosted.clamped)
+
+    planner = builder.AddNamedSystem(
+        "planner",
+        PlannerSystem(
+            host, bank, model, task,
+            rate=scenario.rates.planner, visible=dict.fromkeys(visible),
+            on_step=on_step, on_signal=log.writer.signal,
+        ),
+    )  # fmt: skip
+    builder.Connect(bank.GetOutputPort(ports.READINGS), planner.GetInputPort(ports.READINGS))
+    builder.Connect(
+        planner.GetOutputPort(ports.DESIRED_STATE),
+        rig.plant.get_desired_state_input_port(rig.model),
+    )
+
+    # Metric logger and recorder.
+    logger = builder.AddNamedSystem(
+        "metric_logger", MetricLogger(log, task, size, scenario.rates.log)
+    )
+    builder.Connect(robot_state, logger.GetInputPort(ports.ROBOT_STATE))
+    recorder = builder.AddNamedSystem("recorder", Recorder(log.writer, bank, sensors))
+    builder.Connect(bank.GetOutputPort(ports.READINGS), recorder.GetInputPort(ports.READINGS))
+    if crowd is not None:
+        for block in (bank, logger):
+            builder.Connect(
+                crowd.GetOutputPort(ports.CROWD_STATE), block.GetInputPort(ports.CROWD_STATE)
+            )
+
+    return Blocks(
+        diagram=builder.Build(),
+        rig=rig,
+        robot_state=state,
+        bank=bank,
+        planner=planner,
+        logger=logger,
+        crowd=crowd,
+    )
+
+
+def _scene(scenario: Scenario, parts: EnvironmentParts, engine: CrowdEngine | None) -> Scene:
+    count = 0 if engine is None else len(engine.agents)
+    radius = np.zeros(0) if engine is None else engine.agents.radius
+    height = scenario.crowd.body.height if scenario.crowd else 0.0
+    return Scene(parts.walls, parts.wall_heights, radius, np.full(count, height))

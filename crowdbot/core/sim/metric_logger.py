@@ -1,0 +1,59 @@
+"""MetricLogger: watches the task every tick and logs the state at the log rate.
+
+A publish event at tick k sees the state at k, before any update of that tick.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.systems.framework import Context, EventStatus, LeafSystem
+
+from crowdbot.core.arrival import entry_time, inside
+from crowdbot.core.interfaces import RobotState, Task
+from crowdbot.core.run_log import RunLog
+from crowdbot.core.sim import ports
+from crowdbot.core.ticks import TICK, TICKS_PER_SECOND, ticks
+
+ARRIVED, TIMEOUT = "arrived", "timeout"
+
+
+class MetricLogger(LeafSystem):
+    """Inputs: robot state, crowd state. Ends the run on arrival and at the time limit."""
+
+    def __init__(self, log: RunLog, task: Task, crowd_size: int, rate: float) -> None:
+        super().__init__()
+        self._log, self._task = log, task
+        self._ticks_per_sample = ticks(rate)
+        self._last_tick = -1
+        self._previous = np.zeros(2)
+        self.goal_time: float | None = None
+        self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
+        self._crowd = (
+            self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size) if crowd_size else None
+        )
+        self.DeclarePeriodicPublishEvent(TICK, 0.0, self._publish)
+
+    def _publish(self, context: Context) -> EventStatus:
+        tick = round(context.get_time() * TICKS_PER_SECOND)
+        if tick == self._last_tick:  # Initialize and the first step may both publish t = 0
+            return EventStatus.Succeeded()
+        self._last_tick = tick
+        t = tick * TICK
+        robot = RobotState(*self._robot.Eval(context))
+        crowd = None if self._crowd is None else self._crowd.Eval(context)
+        if crowd is not None:
+            self._log.book_contacts(crowd)
+        if tick % self._ticks_per_sample == 0:
+            self._log.sample(t, robot, crowd)
+        return self._watch(t, robot)
+
+    def _watch(self, t: float, robot: RobotState) -> EventStatus:
+        here = np.array([robot.x, robot.y])
+        zone = self._task.goal_zone
+        if inside(zone, robot.x, robot.y):
+            self.goal_time = entry_time(zone, self._previous, here, max(0.0, t - TICK), t)
+            return EventStatus.ReachedTermination(self, ARRIVED)
+        self._previous = here
+        if t >= self._task.time_limit:
+            return EventStatus.ReachedTermination(self, TIMEOUT)
+        return EventStatus.Succeeded()

@@ -1,0 +1,93 @@
+"""PlannerSystem: the planner, then slew limits, then wheel rates.
+
+Discrete events run after unrestricted ones, so a planner step sees the readings of its own tick.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.systems.framework import Context, DiscreteStateIndex, DiscreteValues, LeafSystem
+
+from crowdbot.core.interfaces import Observation, Pose, RobotModel, Task
+from crowdbot.core.planner_host import HostedCommand, PlannerHost
+from crowdbot.core.sim import ports
+from crowdbot.core.sim.sensor_bank import SensorBank
+from crowdbot.core.ticks import TICK, ticks
+
+Array = NDArray[np.float64]
+_TICK, _V, _W, _SLEWED_V, _SLEWED_W = range(5)
+
+
+class PlannerSystem(LeafSystem):
+    """Input: readings. Outputs: command and the wheels' desired state."""
+
+    def __init__(
+        self,
+        host: PlannerHost,
+        bank: SensorBank,
+        robot: RobotModel,
+        task: Task,
+        *,
+        rate: float,
+        visible: Mapping[str, None],
+        on_step: Callable[[float, HostedCommand], None],
+        on_signal: Callable[[float, str, float], None],
+    ) -> None:
+        super().__init__()
+        self._host, self._robot, self._task = host, robot, task
+        self._ticks = ticks(rate)
+        self._slots = {n: s for n, s in bank.slots.items() if n in visible}
+        self._odometry = next(
+            (s for s in bank.slots.values() if s.info.category == "odometry"), None
+        )
+        self._on_step, self._on_signal = on_step, on_signal
+        self._port = self.DeclareVectorInputPort(
+            ports.READINGS, bank.GetOutputPort(ports.READINGS).size()
+        )
+        command = self.DeclareDiscreteState(5)
+        desired = self.DeclareDiscreteState(ports.DESIRED_STATE_SIZE)
+        self.DeclareStateOutputPort(ports.COMMAND, command)
+        self.DeclareStateOutputPort(ports.DESIRED_STATE, desired)
+        self._command, self._desired = DiscreteStateIndex(command), DiscreteStateIndex(desired)
+        self.DeclarePeriodicDiscreteUpdateEvent(TICK, 0.0, self._update)
+
+    def _update(self, context: Context, values: DiscreteValues) -> None:
+        command = values.get_mutable_value(self._command)
+        tick = int(command[_TICK])
+        if tick % self._ticks == 0:
+            t = tick * TICK
+            hosted = self._host.step(self._observe(self._port.Eval(context), t))
+            command[_V], command[_W] = hosted.command.v, hosted.command.w
+            self._on_step(t, hosted)
+        command[_TICK] = tick + 1
+        limits = self._robot.limits
+        command[_SLEWED_V] = _slew(command[_SLEWED_V], command[_V], limits.a_max * TICK)
+        command[_SLEWED_W] = _slew(command[_SLEWED_W], command[_W], limits.alpha_max * TICK)
+        drive = self._robot.drive
+        across = 0.5 * drive.track * command[_SLEWED_W]
+        desired = values.get_mutable_value(self._desired)
+        desired[2] = (command[_SLEWED_V] - across) / drive.command_radius
+        desired[3] = (command[_SLEWED_V] + across) / drive.command_radius
+
+    def _observe(self, bank: Array, t: float) -> Observation:
+        if self._odometry is None:
+            pose, twist = self._task.start, (0.0, 0.0)
+        else:
+            x, y, yaw, v, w = bank[self._odometry.values]
+            pose, twist = Pose(x, y, yaw), (v, w)
+        return Observation(
+            t=t,
+            pose=pose,
+            twist=twist,
+            goal=self._task.goal,
+            goal_zone=self._task.goal_zone,
+            readings={n: s.reading(bank) for n, s in self._slots.items() if bank[s.stamp] >= 0.0},
+            log=lambda name, value: self._on_signal(t, name, value),
+        )
+
+
+def _slew(now: float, wanted: float, step: float) -> float:
+    return now + min(step, max(-step, wanted - now))

@@ -1,0 +1,80 @@
+"""The multibody plant: floor, walls and one robot with velocity-controlled wheels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.geometry import Box, HalfSpace
+from pydrake.math import RigidTransform, RollPitchYaw
+from pydrake.multibody.parsing import Parser
+from pydrake.multibody.plant import (
+    AddMultibodyPlant,
+    CoulombFriction,
+    MultibodyPlant,
+    MultibodyPlantConfig,
+)
+from pydrake.multibody.tree import ModelInstanceIndex, PdControllerGains
+from pydrake.systems.framework import DiagramBuilder
+
+from crowdbot.core.interfaces import EnvironmentParts, Pose, RobotModel
+from crowdbot.core.ticks import TICK
+
+_FLOOR = CoulombFriction(1.0, 1.0)
+_WALL = CoulombFriction(0.3, 0.3)
+_WALL_THICKNESS = 0.2  # m
+_WHEEL_DAMPING = 1.0  # N m s: implicit velocity gain, stable from 0.1 to 50 (docs/decisions/0004)
+
+
+@dataclass(frozen=True, slots=True)
+class RobotPlant:
+    """The finished plant and its one robot."""
+
+    plant: MultibodyPlant
+    model: ModelInstanceIndex
+    robot: RobotModel
+
+
+def add_plant(builder: DiagramBuilder, parts: EnvironmentParts, robot: RobotModel) -> RobotPlant:
+    """Add the plant to a diagram, ready to be wired."""
+    config = MultibodyPlantConfig(
+        time_step=TICK, discrete_contact_approximation="lagged", contact_model="point"
+    )
+    plant, _ = AddMultibodyPlant(config, builder)
+    (model,) = Parser(plant).AddModelsFromString(robot.sdf, "sdf")
+    world = plant.world_body()
+    plant.RegisterCollisionGeometry(world, RigidTransform(), HalfSpace(), "floor", _FLOOR)
+    for s in np.flatnonzero(parts.stops_robot):
+        pose, box = wall_box(parts.walls[s], parts.wall_heights[s])
+        plant.RegisterCollisionGeometry(world, pose, box, f"wall{s}", _WALL)
+    for joint in (robot.drive.left_joint, robot.drive.right_joint):
+        actuator = plant.GetJointActuatorByName(joint)
+        actuator.set_controller_gains(PdControllerGains(p=0.0, d=_WHEEL_DAMPING))
+    # With sampled ports the crowd would see the plant already advanced: action != reaction.
+    plant.SetUseSampledOutputPorts(False)
+    plant.Finalize()
+    return RobotPlant(plant, model, robot)
+
+
+def wall_box(
+    segment: NDArray[np.float64], heights: NDArray[np.float64]
+) -> tuple[RigidTransform, Box]:
+    """A box behind a wall segment: its face is the segment, seen from the left of it."""
+    x0, y0, x1, y1 = segment
+    low, high = heights
+    length = float(np.hypot(x1 - x0, y1 - y0))
+    yaw = float(np.arctan2(y1 - y0, x1 - x0))
+    behind_x, behind_y = 0.5 * _WALL_THICKNESS * np.sin(yaw), -0.5 * _WALL_THICKNESS * np.cos(yaw)
+    centre = [0.5 * (x0 + x1) + behind_x, 0.5 * (y0 + y1) + behind_y, 0.5 * (low + high)]
+    pose = RigidTransform(RollPitchYaw(0.0, 0.0, yaw), centre)
+    return pose, Box(length, _WALL_THICKNESS, high - low)
+
+
+def place_robot(rig: RobotPlant, context: object, start: Pose) -> None:
+    """Put the robot on the floor at its start pose, at rest."""
+    base = rig.plant.GetBodyByName(rig.robot.base, rig.model)
+    pose = RigidTransform(
+        RollPitchYaw(0.0, 0.0, start.yaw), [start.x, start.y, rig.robot.base_height]
+    )
+    rig.plant.SetFreeBodyPose(context, base, pose)

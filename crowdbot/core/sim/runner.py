@@ -1,0 +1,136 @@
+"""Runner: advances a diagram until arrival, time limit, planner failure or interruption."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from pydrake.systems.analysis import Simulator, SimulatorStatus
+
+from crowdbot.core.arrival import distance_to
+from crowdbot.core.crowd import state as crowd_state
+from crowdbot.core.interfaces import RobotState, Task
+from crowdbot.core.run_log import RunLog
+from crowdbot.core.sim import ports
+from crowdbot.core.sim.diagram import Blocks
+from crowdbot.core.sim.plant import place_robot
+from crowdbot.errors import PlannerError
+
+#: Simulated time between looks at progress and interruption, s.
+_LOOK = 0.125
+
+ARRIVED, TIMEOUT, PLANNER_FAILED, INTERRUPTED = (
+    "arrived", "timeout", "planner_failed", "interrupted",
+)  # fmt: skip
+
+
+class Progress(NamedTuple):
+    """How far a run is: simulated time and limit (s), real-time factor, distance to goal (m)."""
+
+    stage: str
+    t: float
+    limit: float
+    real_time_factor: float
+    distance: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome:
+    """How a run ended; times in s.
+
+    Attributes:
+        clamped: commands that had to be clamped to the robot's limits.
+        planner_step_time: mean and largest wall time of a planner step.
+    """
+
+    status: str
+    reason: str
+    goal_time: float | None
+    sim_time: float
+    wall_time: float
+    cpu_time: float
+    clamped: int = 0
+    planner_step_time: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def real_time_factor(self) -> float:
+        """Simulated time over wall time."""
+        return self.sim_time / max(self.wall_time, 1e-9)
+
+
+def run(
+    blocks: Blocks,
+    task: Task,
+    log: RunLog,
+    *,
+    stage: str,
+    progress: Callable[[Progress], None] | None,
+    stop: Callable[[], bool],
+) -> Outcome:
+    """Simulate one run; everything is in the log afterwards, whatever happened.
+
+    Raises:
+        PlannerHungError: a planner step never returned; what came before is in the log.
+    """
+    simulator = Simulator(blocks.diagram)
+    context = simulator.get_mutable_context()
+    place_robot(blocks.rig, blocks.rig.plant.GetMyMutableContextFromRoot(context), task.start)
+    begin, cpu = time.perf_counter(), time.process_time()
+    status, reason = TIMEOUT, f"time limit of {task.time_limit:g} s"
+    try:
+        simulator.Initialize()
+        ended = False
+        while not ended:
+            if stop():
+                status, reason = INTERRUPTED, "interrupted by the user"
+                break
+            answer = simulator.AdvanceTo(context.get_time() + _LOOK)
+            ended = answer.reason() == SimulatorStatus.ReturnReason.kReachedTerminationCondition
+            if progress is not None:
+                _report(progress, stage, blocks, task, context, begin)
+    except PlannerError as error:
+        status, reason = PLANNER_FAILED, str(error)
+    finally:
+        _finish(blocks, log, context)
+    if blocks.logger.goal_time is not None:
+        status, reason = ARRIVED, "centre inside the goal zone"
+    return Outcome(
+        status=status,
+        reason=reason,
+        goal_time=blocks.logger.goal_time,
+        sim_time=float(context.get_time()),
+        wall_time=time.perf_counter() - begin,
+        cpu_time=time.process_time() - cpu,
+        clamped=log.clamped,
+        planner_step_time=log.step_times(),
+    )
+
+
+def _crowd(blocks: Blocks, context: object) -> crowd_state.Array | None:
+    if blocks.crowd is None:
+        return None
+    mine = blocks.crowd.GetMyContextFromRoot(context)
+    flat: crowd_state.Array = blocks.crowd.GetOutputPort(ports.CROWD_STATE).Eval(mine)
+    return flat
+
+
+def _finish(blocks: Blocks, log: RunLog, context: object) -> None:
+    log.finish(float(context.get_time()), _crowd(blocks, context))  # type: ignore[attr-defined]
+
+
+def _report(
+    progress: Callable[[Progress], None],
+    stage: str,
+    blocks: Blocks,
+    task: Task,
+    context: object,
+    begin: float,
+) -> None:
+    mine = blocks.robot_state.GetMyContextFromRoot(context)
+    robot = RobotState(*blocks.robot_state.GetOutputPort(ports.ROBOT_STATE).Eval(mine))
+    t = float(context.get_time())  # type: ignore[attr-defined]
+    factor = t / max(time.perf_counter() - begin, 1e-9)
+    distance = distance_to(task.goal_zone, robot.x, robot.y)
+    progress(Progress(stage, t, task.time_limit, factor, distance))

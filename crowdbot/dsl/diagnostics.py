@@ -1,0 +1,155 @@
+"""Errors with a place: file, line, column, the line itself and a caret under the culprit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+#: Every code and its title; docs/reference/errors.md has a paragraph on each.
+CODES = {
+    "E001": "file that cannot be read",
+    "E002": "YAML syntax",
+    "E003": "duplicate key",
+    "E004": "anchor or alias",
+    "E005": "tag",
+    "E006": "merge key",
+    "E007": "more than one plain document",
+    "E008": "number that is not allowed",
+    "E009": "nested too deep",
+    "E010": "unusable key",
+    "E011": "not a map",
+    "E012": "format version",
+    "E013": "neither suite nor scenario",
+    "E102": "unknown field",
+    "E103": "missing field",
+    "E110": "bad quantity",
+    "E111": "wrong type",
+    "E112": "out of range",
+    "E113": "unknown word",
+    "E114": "wrong number of entries",
+    "E115": "rule of a component",
+    "E116": "text of the wrong form",
+    "E120": "unknown kind",
+    "E121": "unknown metric",
+    "E130": "unknown zone or portal",
+    "E131": "number of people that is not whole",
+    "E132": "start outside the environment",
+    "E133": "policy without cost functions",
+    "E201": "missing include",
+    "E202": "include cycle",
+    "E203": "include outside the root folder",
+    "E204": "override of something that does not exist",
+    "E205": "two axes write the same field",
+    "E206": "too many includes",
+    "E207": "too many combinations",
+    "E208": "unknown axis",
+    "E209": "empty axis",
+    "E301": "plugin collision",
+}
+REFERENCE = "docs/reference/errors.md"
+_WINDOW = 100
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Source:
+    """A text that was read: its name for people, its lines, and who included it."""
+
+    name: str
+    lines: Sequence[str] = ()
+    included_from: Mark | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A place in a source. Line and column count from 0; width in characters, on one line."""
+
+    source: Source
+    line: int = 0
+    column: int = 0
+    width: int = 1
+
+    def __str__(self) -> str:
+        return f"{self.source.name}:{self.line + 1}:{self.column + 1}"
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One error.
+
+    Attributes:
+        code: a key of `CODES`.
+        message: what is wrong.
+        mark: where.
+        hint: what instead; shown beside the caret.
+        also: other places that belong to the error, with a word each.
+    """
+
+    code: str
+    message: str
+    mark: Mark
+    hint: str = ""
+    also: tuple[tuple[str, Mark], ...] = ()
+
+    def headline(self) -> str:
+        """``file:line:column: error[code] message``."""
+        return f"{self.mark}: error[{self.code}] {self.message}"
+
+    def sort_key(self) -> tuple[str, int, int, str, str]:
+        """By position, then code."""
+        mark = self.mark
+        return (mark.source.name, mark.line, mark.column, self.code, self.message)
+
+    def as_dict(self) -> dict[str, object]:
+        """For ``--format json``; line and column count from 1."""
+        return {
+            "code": self.code,
+            "title": CODES[self.code],
+            "message": self.message,
+            "hint": self.hint,
+            "file": self.mark.source.name,
+            "line": self.mark.line + 1,
+            "column": self.mark.column + 1,
+            "width": self.mark.width,
+            "also": [{"what": what, "at": str(mark)} for what, mark in self.also],
+            "included_from": [_place(mark) for mark in _includers(self.mark)],
+        }
+
+
+def render(diagnostics: Iterable[Diagnostic]) -> str:
+    """All errors for people, with a last line that counts them."""
+    found = list(diagnostics)
+    count = "1 error" if len(found) == 1 else f"{len(found)} errors"
+    return "\n".join([*(_render_one(d) for d in found), f"{count}; see {REFERENCE}"])
+
+
+def _render_one(diagnostic: Diagnostic) -> str:
+    lines = [diagnostic.headline(), *_snippet(diagnostic.mark, diagnostic.hint)]
+    lines += [f"  {what} {mark}" for what, mark in diagnostic.also]
+    lines += [f"  included from {_place(mark)}" for mark in _includers(diagnostic.mark)]
+    return "\n".join(lines)
+
+
+def _snippet(mark: Mark, hint: str) -> list[str]:
+    if not 0 <= mark.line < len(mark.source.lines):
+        return [f"      {hint}"] if hint else []
+    line = mark.source.lines[mark.line].replace("\t", " ")
+    start = max(0, mark.column - _WINDOW // 2) if len(line) > _WINDOW else 0
+    shown = line[start : start + _WINDOW]
+    column = min(mark.column - start, len(shown))
+    carets = "^" * max(1, min(mark.width, len(shown) - column))
+    return [
+        f"{mark.line + 1:>5} | {shown}".rstrip(),
+        f"      | {' ' * column}{carets} {hint}".rstrip(),
+    ]
+
+
+def _includers(mark: Mark) -> list[Mark]:
+    found: list[Mark] = []
+    while mark.source.included_from is not None:
+        mark = mark.source.included_from
+        found.append(mark)
+    return found
+
+
+def _place(mark: Mark) -> str:
+    return f"{mark.source.name}:{mark.line + 1}"

@@ -1,0 +1,220 @@
+"""Nodes -> merge -> matrix -> validate: a document becomes an ordered list of scenarios."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from crowdbot.dsl import semantics
+from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
+from crowdbot.dsl.include import Loader, Roots
+from crowdbot.dsl.matrix import combinations
+from crowdbot.dsl.merge import merge, nest, undot
+from crowdbot.dsl.nodes import Entry, Node, parse, to_data
+from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.suite import Suite, read_suite
+from crowdbot.dsl.validation import locate, validate
+from crowdbot.errors import SpecError, UsageError
+
+#: With these the rest of a document is still worth looking at.
+_GO_ON = frozenset({"E003", "E102", "E103", "E111", "E112", "E116", "E121", "E204", "E205", "E208"})
+
+
+@dataclass(frozen=True, slots=True)
+class Expansion:
+    """What a document says.
+
+    Attributes:
+        suite_id: id of the suite; of the scenario in a document that holds one.
+        metrics: names or patterns of the metrics to score; None means all.
+        trees: id -> the merged tree of the scenario, which knows where each value is written.
+    """
+
+    suite_id: str
+    title: str
+    scenarios: list[Scenario]
+    metrics: tuple[str, ...] | None = None
+    trees: dict[str, Node] = field(default_factory=dict, repr=False)
+
+
+def load_document(
+    path: Path,
+    roots: Roots | None = None,
+    *,
+    name: str = "",
+    metrics: Collection[str] | None = None,
+) -> Suite:
+    """Read a suite or scenario file and everything it extends.
+
+    Args:
+        path: the file.
+        roots: plugin name -> packaged folders that ``extends`` may read.
+        name: what messages call the file; default: the path as given.
+        metrics: kinds of the installed metrics; None leaves the suite's list unchecked.
+
+    Raises:
+        SpecError: the document cannot be taken apart; with every error found so far.
+    """
+    loader = Loader(path, roots or {})
+    root = loader.load(name or str(path))
+    problems = loader.problems
+    if all(d.code in _GO_ON for d in problems):
+        suite = read_suite(root, problems, metrics)
+        if suite is not None and all(d.code in _GO_ON for d in problems):
+            return suite
+    raise SpecError(_sorted(problems))
+
+
+def expand_document(
+    suite: Suite, scenario_model: type[Scenario], overrides: Sequence[str] = ()
+) -> Expansion:
+    """Expand and validate all scenarios of a document.
+
+    Args:
+        suite: from `load_document`.
+        scenario_model: `Scenario`, narrowed to the installed components.
+        overrides: ``key=value`` with a dotted key and a YAML value; laid over every scenario.
+
+    Raises:
+        SpecError: every error of every scenario, equal ones folded.
+        UsageError: an override is not ``key=value``.
+    """
+    return _Expander(suite, scenario_model, overrides).run()
+
+
+@dataclass
+class _Folded:
+    """An error, and the scenarios that have it."""
+
+    diagnostic: Diagnostic
+    ids: list[str]
+    reference: str
+
+
+class _Expander:
+    """One expansion: memories of shared parts, and the errors so far."""
+
+    def __init__(self, suite: Suite, model: type[Scenario], overrides: Sequence[str]) -> None:
+        self._suite, self._model = suite, model
+        self._errors: dict[tuple[str, Mark, str], _Folded] = {}
+        self._problems = list(suite.problems)
+        self._set = _parse_overrides(overrides, self._problems)
+        self._suffix = "+" + _digest(overrides) if overrides else ""
+        self._data: dict[Node, Any] = {}
+        self._seeds: dict[str, Node] = {}
+        self._validated: dict[tuple[tuple[str, int], ...], Scenario] = {}
+        self._total = 0
+
+    def run(self) -> Expansion:
+        scenarios, trees = [], {}
+        for name, key, bare in self._trees():
+            self._total += 1
+            tree = self._with_seed(bare, key)
+            scenario = self._validate(name, tree)
+            references = {
+                reference: self._validate(name, self._with_seed(merge(bare, over), key), reference)
+                for reference, over in self._suite.references.items()
+            }
+            if scenario is not None:
+                scenarios.append(scenario.model_copy(update={"references": references}))
+                trees[name] = tree
+        problems = [*self._problems, *self._folded()]
+        if problems:
+            raise SpecError(_sorted(problems))
+        suite = self._suite
+        return Expansion(suite.id, suite.title, scenarios, suite.metrics, trees)
+
+    def _trees(self) -> Iterator[tuple[str, str, Node]]:
+        """Id, key of the crowd's seed and tree of each combination."""
+        suite = self._suite
+        keyed = [axis.name in suite.crowd_axes for axis in suite.axes]
+        for combination in combinations(suite.base, suite.axes):
+            labels = combination.labels
+            key = "-".join(label for label, wanted in zip(labels, keyed, strict=True) if wanted)
+            name = "-".join(labels) or suite.scenario_id
+            yield name and name + self._suffix, key, merge(combination.tree, self._set)
+
+    def _with_seed(self, tree: Node, key: str) -> Node:
+        """Write root and key of the seed into a suite's crowd, under what the document says."""
+        crowd = tree.entries.get("crowd")
+        if self._suite.seed is None or crowd is None or not crowd.node.entries:
+            return tree
+        if key not in self._seeds:
+            mark = self._suite.seed.mark
+            parts = {"root": self._suite.seed, "key": Node(mark, key)}
+            seed = Node(mark, {k: Entry(mark, node) for k, node in parts.items()}, implied=True)
+            self._seeds[key] = nest(("seed",), seed, mark)
+        seeded = replace(crowd, node=merge(self._seeds[key], crowd.node))
+        return replace(tree, value={**tree.entries, "crowd": seeded})
+
+    def _validate(self, name: str, tree: Node, reference: str = "") -> Scenario | None:
+        """Validate a tree; equal ones of other combinations are validated once."""
+        data = to_data(tree, self._data)  # keeps the nodes alive, so that their ids stay unique
+        shared = tuple((key, id(entry.node)) for key, entry in sorted(tree.entries.items()))
+        if known := self._validated.get(shared):
+            return known.model_copy(update={"id": name})
+        if name:
+            data = {**data, "id": name}
+        scenario, found = validate(self._model, data, tree)
+        if scenario is not None:
+            found = semantics.check(scenario, tree)
+        for diagnostic in found:
+            self._note(diagnostic, name, reference)
+        if found or scenario is None:
+            return None
+        self._validated[shared] = scenario
+        return scenario
+
+    def _note(self, diagnostic: Diagnostic, name: str, reference: str) -> None:
+        key = (diagnostic.code, diagnostic.mark, diagnostic.message)
+        folded = self._errors.setdefault(key, _Folded(diagnostic, [], reference))
+        if not folded.ids or folded.ids[-1] != name:
+            folded.ids.append(name)
+
+    def _folded(self) -> Iterator[Diagnostic]:
+        for folded in self._errors.values():
+            notes = [folded.diagnostic.hint] if folded.diagnostic.hint else []
+            if folded.reference:
+                notes.append(f"in reference '{folded.reference}'")
+            if len(folded.ids) < self._total:
+                notes.append(
+                    f"in {len(folded.ids)} of {self._total} combinations, first: {folded.ids[0]}"
+                )
+            yield replace(folded.diagnostic, hint="; ".join(notes))
+
+
+def _parse_overrides(overrides: Sequence[str], problems: list[Diagnostic]) -> Node:
+    """``key=value`` texts as one tree, later ones over earlier ones."""
+    tree = Node(Mark(Source("--set")), {}, implied=True)
+    for text in overrides:
+        key, equals, value = text.partition("=")
+        if not equals or not key.strip():
+            raise UsageError(f"--set {text}: write key=value, e.g. --set crowd.speed.mean='1 m/s'")
+        if key.split(".")[0] in ("id", "references"):
+            raise UsageError(f"--set {text}: '{key}' cannot be set")
+        source = Source("--set", (text,))
+        try:
+            node = parse(value, source, problems, shift=len(key) + 1)
+        except SpecError as error:
+            problems += [d for d in error.diagnostics if d not in problems]
+            continue
+        entry = Entry(Mark(source, 0, 0, len(key)), node)
+        tree = merge(tree, undot(Node(entry.key, {key: entry}, implied=True), problems))
+    return tree
+
+
+def _digest(overrides: Sequence[str]) -> str:
+    return hashlib.sha256("\n".join(overrides).encode()).hexdigest()[:4]
+
+
+def _sorted(problems: Sequence[Diagnostic]) -> list[Diagnostic]:
+    return sorted(dict.fromkeys(problems), key=Diagnostic.sort_key)
+
+
+def where(tree: Node, *path: str) -> Mark | None:
+    """Where a value is written, or None for a default."""
+    place = locate(tree, path)
+    return None if place.rest else place.node.mark

@@ -1,0 +1,141 @@
+"""``extends``: files laid under the map that names them, left to right.
+
+A path is relative to the file that contains it, never to the working directory; ``name:path``
+looks in a plugin's packaged folder. Nothing outside the top-level file's folder and the
+packaged folders is ever read.
+"""
+
+from __future__ import annotations
+
+import os.path
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path, PurePosixPath, PureWindowsPath
+
+from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
+from crowdbot.dsl.merge import merge, undot
+from crowdbot.dsl.nodes import Node, parse, read_text
+from crowdbot.errors import SpecError, did_you_mean, nearest
+
+MAX_INCLUDES = 64
+
+#: Plugin name -> its folders with suites and parts.
+Roots = Mapping[str, Sequence[Path]]
+
+
+@dataclass(frozen=True, slots=True)
+class _File:
+    """A file being read: where it is, what people call it, and the files that led to it."""
+
+    path: Path
+    name: str
+    chain: tuple[Path, ...]
+
+
+@dataclass
+class Loader:
+    """Reads a file and everything it extends; collects what is wrong on the way."""
+
+    top: Path
+    roots: Roots
+    problems: list[Diagnostic] = field(default_factory=list)
+    _count: int = 0
+
+    def load(self, name: str) -> Node:
+        """The top-level file as one tree, ``extends`` resolved, dotted keys written out."""
+        return self._read(_File(self.top, name, ()), None)
+
+    def _read(self, file: _File, included_from: Mark | None) -> Node:
+        """One file; an unreadable one counts as an empty map, its error is kept."""
+        source = Source(file.name, (), included_from)
+        try:
+            text = read_text(file.path, file.name)
+            source = Source(file.name, text.split("\n"), included_from)
+            root = parse(text, source, self.problems)
+        except SpecError as error:
+            self.problems += [d for d in error.diagnostics if d not in self.problems]
+            return Node(Mark(source), {}, implied=True)
+        if not isinstance(root.value, dict):
+            what = "is empty" if root.value is None else "must be a map of fields"
+            self.problems.append(Diagnostic("E011", f"the document {what}", root.mark))
+            return Node(root.mark, {})
+        here = replace(file, chain=(*file.chain, file.path.resolve()))
+        return self._resolve(root, here)
+
+    def _resolve(self, root: Node, file: _File) -> Node:
+        """Resolve ``extends`` at the root and in ``base`` and ``scenario``."""
+        entries = dict(root.entries)
+        for key in ("base", "scenario"):
+            if key in entries and entries[key].node.entries:
+                part = entries[key]
+                entries[key] = replace(part, node=self._extended(part.node, file))
+        return self._extended(replace(root, value=entries), file)
+
+    def _extended(self, node: Node, file: _File) -> Node:
+        entries = dict(node.entries)
+        extends = entries.pop("extends", None)
+        own = undot(replace(node, value=entries), self.problems)
+        if extends is None:
+            return own
+        items = extends.node.value if isinstance(extends.node.value, tuple) else (extends.node,)
+        tree = Node(node.mark, {}, implied=True)
+        for item in items:
+            tree = merge(tree, self._include(item, file))
+        return merge(tree, own if own.entries else replace(own, implied=True))
+
+    def _include(self, item: Node, file: _File) -> Node:
+        nothing = Node(item.mark, {}, implied=True)
+        if not isinstance(item.value, str):
+            self._add("E111", "extends wants a path or a list of paths", item.mark)
+            return nothing
+        found = self._find(item.value, item.mark, file)
+        if found is None:
+            return nothing
+        self._count += 1
+        if self._count > MAX_INCLUDES:
+            self._add("E206", f"more than {MAX_INCLUDES} files are included", item.mark)
+            return nothing
+        return self._read(found, item.mark)
+
+    def _find(self, text: str, mark: Mark, file: _File) -> _File | None:
+        """The file that a path means, if it may be read; else the error is kept."""
+        prefix, colon, rest = text.rpartition(":")
+        if PurePosixPath(rest).is_absolute() or PureWindowsPath(text).drive or "\0" in text:
+            self._add("E203", f"'{text}' is not a relative path", mark)
+            return None
+        if colon and prefix not in self.roots:
+            hint = did_you_mean(nearest(prefix, self.roots)).removeprefix("; ")
+            hint = hint or f"is the package providing '{prefix}' installed?"
+            self._add("E201", f"no plugin '{prefix}' with scenario files", mark, hint)
+            return None
+        folders = self.roots[prefix] if colon else [file.path.parent]
+        path = next((f / rest for f in folders if (f / rest).exists()), folders[0] / rest)
+        if not self._allowed(path):
+            self._add("E203", f"'{text}' leaves the folder of {self.top.name}", mark)
+            return None
+        if not path.exists():
+            self._add("E201", f"no file '{text}'", mark, self._similar(path))
+            return None
+        name = text if colon else os.path.normpath(os.path.join(os.path.dirname(file.name), text))  # noqa: PTH118, PTH120 - text, not files
+        return self._unless_cycle(_File(path, name, file.chain), mark)
+
+    def _unless_cycle(self, found: _File, mark: Mark) -> _File | None:
+        target = found.path.resolve()
+        if target not in found.chain:
+            return found
+        chain = " -> ".join(p.name for p in (*found.chain[found.chain.index(target) :], target))
+        self._add("E202", f"files include each other: {chain}", mark)
+        return None
+
+    def _allowed(self, path: Path) -> bool:
+        allowed = [self.top.parent, *(f for fs in self.roots.values() for f in fs)]
+        target = path.resolve()
+        return any(target.is_relative_to(folder.resolve()) for folder in allowed)
+
+    @staticmethod
+    def _similar(path: Path) -> str:
+        names = (p.name for p in path.parent.iterdir()) if path.parent.is_dir() else ()
+        return did_you_mean(nearest(path.name, names)).removeprefix("; ")
+
+    def _add(self, code: str, message: str, mark: Mark, hint: str = "") -> None:
+        self.problems.append(Diagnostic(code, message, mark, hint))

@@ -1,0 +1,278 @@
+"""YAML text -> nodes that remember where they were written.
+
+YAML 1.2 core schema with our own small resolver over ruamel.yaml's events: ``no``, ``on``,
+``12:30`` and dates stay text, ``1e-3`` is a number. ruamel's own ``compose`` expands aliases
+and merges keys; a document that means something else than it says is refused here instead.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError
+from ruamel.yaml.events import (
+    AliasEvent,
+    CollectionStartEvent,
+    DocumentStartEvent,
+    Event,
+    MappingEndEvent,
+    MappingStartEvent,
+    ScalarEvent,
+    SequenceEndEvent,
+    StreamEndEvent,
+)
+
+from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
+from crowdbot.errors import SpecError
+
+MAX_BYTES = 1_000_000
+MAX_DEPTH = 32
+
+Scalar = str | int | float | bool | None
+
+_INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
+_FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
+_LEADING_ZERO = re.compile(r"[-+]?0[0-9]")
+_NOT_FINITE = re.compile(r"[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
+_WORDS: dict[str, Scalar] = {
+    **dict.fromkeys(("", "~", "null", "Null", "NULL")),
+    **dict.fromkeys(("true", "True", "TRUE"), True),
+    **dict.fromkeys(("false", "False", "FALSE"), False),
+}
+#: Characters that YAML does not allow, tab and line feed excepted.
+_CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Entry:
+    """A key and its value. ``dotted`` is the whole key when it was written with dots."""
+
+    key: Mark
+    node: Node
+    dotted: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Node:
+    """A scalar, a list or a map. ``implied``: a map that only a dotted key made necessary."""
+
+    mark: Mark
+    value: Scalar | tuple[Node, ...] | dict[str, Entry]
+    implied: bool = False
+
+    @property
+    def entries(self) -> dict[str, Entry]:
+        """The entries of a map; nothing for anything else."""
+        return self.value if isinstance(self.value, dict) else {}
+
+    def child(self, key: str | int) -> Node | None:
+        """The value under a key or an index, if there is one."""
+        if isinstance(self.value, dict):
+            entry = self.value.get(str(key))
+            return entry.node if entry else None
+        if isinstance(self.value, tuple) and isinstance(key, int) and key < len(self.value):
+            return self.value[key]
+        return None
+
+
+def to_data(node: Node, memo: dict[Node, Any] | None = None) -> Any:
+    """Plain data, maps sorted by key: the place of a key in a file never matters.
+
+    Args:
+        node: root of the tree.
+        memo: data of nodes seen before; trees that share nodes then share data.
+    """
+    memo = {} if memo is None else memo
+    if node not in memo:
+        if isinstance(node.value, dict):
+            items = sorted(node.value.items())
+            memo[node] = {key: to_data(entry.node, memo) for key, entry in items}
+        elif isinstance(node.value, tuple):
+            memo[node] = [to_data(item, memo) for item in node.value]
+        else:
+            memo[node] = node.value
+    return memo[node]
+
+
+def read_text(path: Path, name: str) -> str:
+    """Text of a file: UTF-8 with or without a byte order mark, any line ends.
+
+    Raises:
+        SpecError: E001, there is no such file or it is no text of reasonable size.
+    """
+    try:
+        with path.open("rb") as file:
+            raw = file.read(MAX_BYTES + 1)
+    except IsADirectoryError:
+        raise _unreadable(name, "is a folder, not a file") from None
+    except (OSError, ValueError) as error:
+        reason = "no such file" if isinstance(error, FileNotFoundError) else str(error)
+        raise _unreadable(name, getattr(error, "strerror", None) or reason) from None
+    if len(raw) > MAX_BYTES:
+        raise _unreadable(name, f"is larger than {MAX_BYTES // 1_000_000} MB")
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise _unreadable(name, "is UTF-16; save it as UTF-8")
+    if b"\0" in raw:
+        raise _unreadable(name, "is a binary file")
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        raise _unreadable(name, f"is not UTF-8 (line {line}); save it as UTF-8") from None
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def parse(text: str, source: Source, problems: list[Diagnostic], shift: int = 0) -> Node:
+    """Turn text into a tree.
+
+    Args:
+        text: one YAML document, line ends as ``\\n``.
+        source: what the marks point at.
+        problems: errors that do not stop the reading are added here.
+        shift: columns by which the first line of the text is moved in the source.
+
+    Raises:
+        SpecError: the text is no YAML, or nothing sensible can follow.
+    """
+    return _Builder(text, source, problems, shift).document()
+
+
+def _unreadable(name: str, why: str) -> SpecError:
+    return SpecError([Diagnostic("E001", why, Mark(Source(name)))])
+
+
+class _Builder:
+    """Recursive descent over ruamel's events."""
+
+    def __init__(
+        self, text: str, source: Source, problems: list[Diagnostic], shift: int = 0
+    ) -> None:
+        self._text, self._source, self._problems, self._shift = text, source, problems, shift
+        self._events: Iterator[Event] = YAML(typ="safe", pure=True).parse(text)
+        self._last = Mark(source, 0, shift)
+
+    def document(self) -> Node:
+        if found := _CONTROL.search(self._text):
+            line = self._text.count("\n", 0, found.start())
+            column = found.start() - (self._text.rfind("\n", 0, found.start()) + 1)
+            self._stop("E002", f"character U+{ord(found[0]):04X} is not allowed", line, column)
+        self._next()
+        start = self._next()
+        if isinstance(start, StreamEndEvent):
+            return Node(self._last, None)
+        if isinstance(start, DocumentStartEvent) and (start.version or start.tags):
+            self._add("E007", "directives (%YAML, %TAG) are not allowed", self._mark(start))
+        root = self._node(self._next(), 0)
+        self._next()
+        after = self._next()
+        if not isinstance(after, StreamEndEvent):
+            self._add("E007", "a file holds one document", self._mark(after))
+        return root
+
+    def _next(self) -> Event:
+        try:
+            event: Event = next(self._events)
+        except MarkedYAMLError as error:
+            mark = error.problem_mark or error.context_mark
+            line, column = (mark.line, mark.column) if mark else (0, 0)
+            self._stop("E002", " ".join(filter(None, (error.problem, error.context))), line, column)
+        except Exception as error:  # ruamel lets ValueError and OverflowError of escapes through
+            self._stop("E002", str(error), self._last.line, self._last.column - self._shift)
+        self._last = self._mark(event)
+        return event
+
+    def _stop(self, code: str, message: str, line: int, column: int) -> None:
+        mark = Mark(self._source, line, column + (self._shift if line == 0 else 0))
+        raise SpecError([*self._problems, Diagnostic(code, message.replace("\n", " "), mark)])
+
+    def _add(self, code: str, message: str, mark: Mark, hint: str = "") -> None:
+        self._problems.append(Diagnostic(code, message, mark, hint))
+
+    def _mark(self, event: Event) -> Mark:
+        start, end = event.start_mark, event.end_mark
+        width = end.column - start.column if end.line == start.line else 1
+        column = start.column + (self._shift if start.line == 0 else 0)
+        return Mark(self._source, start.line, column, max(1, width))
+
+    def _node(self, event: Event, depth: int) -> Node:
+        mark = self._mark(event)
+        if depth > MAX_DEPTH:
+            self._stop("E009", f"nested deeper than {MAX_DEPTH} levels", mark.line, mark.column)
+        self._refuse_indirection(event, mark)
+        if isinstance(event, ScalarEvent):
+            return Node(mark, self._scalar(event, mark))
+        if isinstance(event, MappingStartEvent):
+            return Node(mark, self._map(depth))
+        if isinstance(event, CollectionStartEvent):
+            return Node(mark, self._list(depth))
+        return Node(mark, None)
+
+    def _refuse_indirection(self, event: Event, mark: Mark) -> None:
+        what = "alias" if isinstance(event, AliasEvent) else "anchor"
+        if getattr(event, "anchor", None):
+            self._add("E004", f"{what} '{event.anchor}' is not allowed", mark, "use 'extends'")
+        if getattr(event, "ctag", None):
+            self._add("E005", f"tag '{event.tag}' is not allowed", mark)
+
+    def _list(self, depth: int) -> tuple[Node, ...]:
+        items = []
+        while not isinstance(event := self._next(), SequenceEndEvent):
+            items.append(self._node(event, depth + 1))
+        return tuple(items)
+
+    def _map(self, depth: int) -> dict[str, Entry]:
+        entries: dict[str, Entry] = {}
+        while not isinstance(event := self._next(), MappingEndEvent):
+            mark = self._mark(event)
+            key = event.value if isinstance(event, ScalarEvent) else None
+            if key is None:
+                self._node(event, depth + 1)
+            else:
+                self._refuse_indirection(event, mark)
+            node = self._node(self._next(), depth + 1)
+            if self._usable(key, event, mark, entries):
+                entries[str(key)] = Entry(mark, node)
+        return entries
+
+    def _usable(self, key: str | None, event: Event, mark: Mark, entries: dict[str, Entry]) -> bool:
+        if key in (None, ""):
+            self._add("E010", "a key must be text", mark)
+        elif key == "<<" and event.implicit[0]:
+            self._add("E006", "merge key '<<' is not allowed", mark, "use 'extends'")
+        elif key in entries:
+            first = (("first written at", entries[str(key)].key),)
+            self._problems.append(Diagnostic("E003", f"duplicate key '{key}'", mark, also=first))
+        else:
+            return True
+        return False
+
+    def _scalar(self, event: ScalarEvent, mark: Mark) -> Scalar:
+        text: str = event.value
+        if not event.implicit[0]:
+            return text
+        if text in _WORDS:
+            return _WORDS[text]
+        if _INT.fullmatch(text) or _FLOAT.fullmatch(text):
+            return self._number(text, mark)
+        if _NOT_FINITE.fullmatch(text):
+            self._add("E008", f"{text} is not allowed", mark, "numbers are finite")
+        return text
+
+    def _number(self, text: str, mark: Mark) -> Scalar:
+        if _LEADING_ZERO.match(text):
+            self._add("E008", f"'{text}' has a leading zero", mark, "quote it if it is text")
+        elif not _INT.fullmatch(text):
+            if math.isfinite(value := float(text)):
+                return value
+            self._add("E008", f"'{text}' is too large", mark)
+        elif len(text) <= 40:
+            return int(text, 0) if text[:2] in ("0x", "0o") else int(text)
+        else:
+            self._add("E008", f"'{text[:12]}…' is too large", mark)
+        return text

@@ -1,0 +1,229 @@
+"""What people write: a suite, or a single scenario, which is a suite of one.
+
+::
+
+    crowdbot: 1                 crowdbot: 1
+    suite: {id: …, seed: …}     scenario: {id: …, environment: …, …}
+    base: {…}
+    matrix: {axis: {label: {override}}}
+    seeds: {crowd: [axis, …]}
+    metrics: [name, …]
+    references: {name: {override}}
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
+from typing import Annotated, Any
+
+from annotated_types import Ge, Le
+from pydantic import Field
+
+from crowdbot.dsl.base import Spec
+from crowdbot.dsl.diagnostics import Diagnostic, Mark
+from crowdbot.dsl.matrix import Axis, read_axes
+from crowdbot.dsl.nodes import Node, to_data
+from crowdbot.dsl.validation import validate
+from crowdbot.errors import did_you_mean, nearest
+
+#: The version of the document format that this release reads.
+FORMAT = 1
+
+#: Fields of a scenario that a document never writes there.
+_ELSEWHERE = {
+    "id": "ids are made of the labels of the matrix",
+    "references": "references stand beside 'base' or 'scenario'",
+}
+
+
+class SuiteHead(Spec):
+    """Who a suite is."""
+
+    id: str = Field(pattern=r"^[A-Za-z0-9_.-]+$", description="Name of the suite.")
+    title: str = Field(default="", description="For people.")
+    seed: Annotated[int, Ge(0), Le(2**63 - 1)] = Field(
+        default=0, description="Root of every crowd's random numbers."
+    )
+
+
+class Seeds(Spec):
+    """Which axes change the random numbers; combinations that differ in others share them."""
+
+    crowd: tuple[str, ...] = Field(strict=False, description="Axes that change the drawn crowd.")
+
+
+class SuiteDocument(Spec):
+    """The outermost fields of a suite."""
+
+    crowdbot: int = Field(description="Version of the format.")
+    suite: SuiteHead
+    base: dict[str, Any] = Field(description="What all scenarios have in common.")
+    matrix: Any = Field(default=None, description="Axes of variation.")
+    seeds: Seeds | None = Field(default=None, description="Axes of the random numbers.")
+    metrics: list[str] | None = Field(default=None, description="Metrics to score; default all.")
+    references: dict[str, dict[str, Any]] = Field(default={}, description="Calibration runs.")
+
+
+class ScenarioDocument(Spec):
+    """The outermost fields of a single scenario."""
+
+    crowdbot: int = Field(description="Version of the format.")
+    scenario: dict[str, Any] = Field(description="All fields of one scenario.")
+    metrics: list[str] | None = Field(default=None, description="Metrics to score; default all.")
+    references: dict[str, dict[str, Any]] = Field(default={}, description="Calibration runs.")
+
+
+@dataclass(frozen=True, slots=True)
+class Suite:
+    """A document, read and taken apart; its scenarios are not validated yet.
+
+    Attributes:
+        scenario_id: id of the only scenario of a document without axes; empty if it has none.
+        seed: root seed with the place where it is written, or None for a single scenario.
+        crowd_axes: names of the axes whose labels make the crowd's seed key.
+        problems: errors found so far.
+    """
+
+    id: str
+    title: str
+    scenario_id: str
+    seed: Node | None
+    base: Node
+    axes: tuple[Axis, ...]
+    crowd_axes: tuple[str, ...]
+    metrics: tuple[str, ...] | None
+    references: dict[str, Node]
+    problems: tuple[Diagnostic, ...]
+
+
+def read_suite(
+    root: Node, problems: list[Diagnostic], metrics: Collection[str] | None = None
+) -> Suite | None:
+    """Take a document apart.
+
+    Args:
+        root: the merged tree of the whole document.
+        problems: errors so far; more are added.
+        metrics: kinds of the installed metrics; None leaves the names unchecked.
+
+    Returns:
+        None if the document is too broken to look at its scenarios.
+    """
+    if not _right_version(root, problems):
+        return None
+    if root.child("suite") is None and root.child("scenario") is None:
+        hint = "write 'suite:' and 'base:', or 'scenario:'"
+        text = "the document is neither a suite nor a scenario"
+        problems.append(Diagnostic("E013", text, root.mark, hint))
+        return None
+    model = ScenarioDocument if root.child("suite") is None else SuiteDocument
+    _, found = validate(model, to_data(root), root)
+    problems += found
+    _check_metrics(root.child("metrics"), metrics, problems)
+    single = model is ScenarioDocument
+    body = root.child("scenario" if single else "base")
+    if body is None or not isinstance(body.value, dict):
+        return None
+    return _scenario(root, body, problems) if single else _suite(root, body, problems)
+
+
+def _scenario(root: Node, body: Node, problems: list[Diagnostic]) -> Suite:
+    name, title = _text(body.child("id"), ""), _text(body.child("title"), "")
+    _check_elsewhere(body, ("references",), problems)
+    return Suite(
+        name, title, name, None, body, (), (), _metrics(root), _references(root), tuple(problems)
+    )
+
+
+def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> Suite:
+    head = root.child("suite")
+    name = _text(head.child("id") if head else None, "suite")
+    title = _text(head.child("title") if head else None, "")
+    axes = read_axes(root.child("matrix"), problems)
+    _check_elsewhere(body, ("id", "references"), problems)
+    for axis in axes:
+        for over in axis.labels.values():
+            _check_elsewhere(over, ("id", "references"), problems)
+    seed = head.child("seed") if head else None
+    if seed is None or not isinstance(seed.value, int):
+        seed = Node(head.mark if head else root.mark, 0)
+    crowd_axes = _crowd_axes(root, axes, problems)
+    return Suite(
+        name, title, name, seed, body, axes, crowd_axes, _metrics(root), _references(root),
+        tuple(problems),
+    )  # fmt: skip
+
+
+def _right_version(root: Node, problems: list[Diagnostic]) -> bool:
+    node = root.child("crowdbot")
+    if node is None:
+        text = "the document does not say which format it has"
+        problems.append(Diagnostic("E012", text, root.mark, f"start with 'crowdbot: {FORMAT}'"))
+    elif type(node.value) is not int or node.value < 1:
+        text = "the format version must be a whole number"
+        problems.append(Diagnostic("E012", text, node.mark, f"write 'crowdbot: {FORMAT}'"))
+    elif node.value > FORMAT:
+        text = f"format {node.value} needs a newer release of crowdbot; this one reads {FORMAT}"
+        problems.append(Diagnostic("E012", text, node.mark, "pip install --upgrade crowdbot"))
+    else:
+        return True
+    return False
+
+
+def _crowd_axes(root: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) -> tuple[str, ...]:
+    """Axes of the seed key in the matrix' order; all of them if the document names none."""
+    known = [axis.name for axis in axes]
+    seeds = root.child("seeds")
+    listed = seeds.child("crowd") if seeds else None
+    if listed is None or not isinstance(listed.value, tuple):
+        return tuple(known)
+    for item in listed.value:
+        if isinstance(item.value, str) and item.value not in known:
+            hint = did_you_mean(nearest(item.value, known)).removeprefix("; ")
+            text = f"the matrix has no axis '{item.value}'"
+            problems.append(Diagnostic("E208", text, item.mark, hint))
+    wanted = {item.value for item in listed.value if isinstance(item.value, str)}
+    return tuple(name for name in known if name in wanted)
+
+
+def _check_elsewhere(body: Node, names: tuple[str, ...], problems: list[Diagnostic]) -> None:
+    for name in names:
+        if name in body.entries:
+            mark: Mark = body.entries[name].key
+            text = f"field '{name}' is not written here"
+            problems.append(Diagnostic("E102", text, mark, _ELSEWHERE[name]))
+
+
+def _check_metrics(
+    listed: Node | None, known: Collection[str] | None, problems: list[Diagnostic]
+) -> None:
+    if listed is None or known is None or not isinstance(listed.value, tuple):
+        return
+    for item in listed.value:
+        name = item.value
+        if isinstance(name, str) and not any(fnmatchcase(kind, name) for kind in known):
+            hint = did_you_mean(nearest(name, known)).removeprefix("; ")
+            problems.append(Diagnostic("E121", f"unknown metric '{name}'", item.mark, hint))
+
+
+def _metrics(root: Node) -> tuple[str, ...] | None:
+    listed = root.child("metrics")
+    if listed is None or not isinstance(listed.value, tuple):
+        return None
+    return tuple(item.value for item in listed.value if isinstance(item.value, str))
+
+
+def _references(root: Node) -> dict[str, Node]:
+    listed = root.child("references")
+    found = {name: entry.node for name, entry in (listed.entries if listed else {}).items()}
+    return {
+        name: node if node.entries else replace(node, implied=True)
+        for name, node in sorted(found.items())
+        if isinstance(node.value, dict)
+    }
+
+
+def _text(node: Node | None, default: str) -> str:
+    return node.value if node and isinstance(node.value, str) else default

@@ -1,0 +1,103 @@
+"""RVO as a compiled cost: ``w / T(2u - v) + |u - v_preferred|``, T the first collision time."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+
+from crowdbot.core.crowd.cost import (
+    BASE,
+    D2,
+    EXCESS,
+    FROM_SURFACE,
+    NVX,
+    NVY,
+    PREPARE,
+    PX,
+    PY,
+    RADIUS,
+    RANGE,
+    REACH,
+    RX,
+    RY,
+    VX,
+    VY,
+    Array,
+    CompiledCost,
+)
+from crowdbot.core.crowd.geometry import nearest_on_segment, time_to_disc, time_to_segment
+from crowdbot.plugins.crowd.rvo import RvoSpec
+
+_W = 2  # entry of params
+
+
+@njit(BASE, cache=True, error_model="numpy")
+def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Array) -> float:
+    if math.hypot(ux, uy) > max_speed * (1.0 + 1e-12):
+        return math.inf
+    return math.hypot(ux - preferred, uy)
+
+
+@njit(PREPARE, cache=True, error_model="numpy")
+def _prepare(
+    agent: Array, near: Array, near_count: int, walls: Array, params: Array, work: Array
+) -> int:
+    """Row 0: number of neighbours, of walls. Then r, v_j, d^2 - R^2; then wall segments."""
+    discs = 0
+    for j in range(near_count):
+        reach = params[RANGE] + params[FROM_SURFACE] * near[j, REACH]
+        gap2 = near[j, D2] - near[j, REACH] ** 2
+        if near[j, D2] >= reach * reach or gap2 <= 0.0:  # discs that overlap are ignored
+            continue
+        discs += 1
+        work[discs, 0], work[discs, 1] = near[j, RX], near[j, RY]
+        work[discs, 2], work[discs, 3] = near[j, NVX], near[j, NVY]
+        work[discs, 4] = gap2
+    px, py, radius = agent[PX], agent[PY], agent[RADIUS]
+    reach = params[RANGE] + params[FROM_SURFACE] * radius
+    last = discs
+    for s in range(walls.shape[0]):
+        nx, ny = nearest_on_segment(px, py, walls[s, 0], walls[s, 1], walls[s, 2], walls[s, 3])
+        if (px - nx) ** 2 + (py - ny) ** 2 <= reach * reach:
+            last += 1
+            for c in range(4):
+                work[last, c] = walls[s, c]
+    work[0, 0], work[0, 1] = discs, last - discs
+    return last
+
+
+@njit(EXCESS, cache=True, error_model="numpy")
+def _excess(
+    ux: float, uy: float, budget: float, agent: Array, work: Array, params: Array
+) -> float:
+    vx, vy = 2.0 * ux - agent[VX], 2.0 * uy - agent[VY]
+    discs, segments = int(work[0, 0]), int(work[0, 1])
+    first = math.inf
+    for j in range(1, discs + 1):
+        t = time_to_disc(
+            work[j, 0], work[j, 1], vx - work[j, 2], vy - work[j, 3], work[j, 4]
+        )
+        first = min(first, t)
+    for j in range(discs + 1, discs + 1 + segments):
+        t = time_to_segment(
+            agent[PX], agent[PY], vx, vy, agent[RADIUS],
+            work[j, 0], work[j, 1], work[j, 2], work[j, 3],
+        )  # fmt: skip
+        if 0.0 < t < first:
+            first = t
+    return params[_W] / first
+
+
+def build(spec: RvoSpec) -> CompiledCost:
+    """Compile-time functions with this spec's parameters."""
+    surface = 1.0 if spec.range.measure == "surface" else 0.0
+    return CompiledCost(
+        base=_base,
+        prepare=_prepare,
+        excess=_excess,
+        params=np.array([spec.range.value, surface, spec.w]),
+        weight=spec.weight,
+    )

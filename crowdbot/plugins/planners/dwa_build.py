@@ -1,0 +1,211 @@
+"""DWA: see, choose a direction, choose a velocity."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.interfaces import (
+    Command,
+    Observation,
+    Pose,
+    Reading,
+    RobotLimits,
+    SensorInfo,
+    Task,
+)
+from crowdbot.core.sensing.points import LidarPoints
+from crowdbot.plugins.planners import dwa_rollout_build as rollout
+from crowdbot.plugins.planners.dwa import DwaSpec
+from crowdbot.plugins.planners.dwa_points_build import (
+    apparent_velocity,
+    choose_direction,
+    nearest_per_sector,
+)
+from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
+
+Array = NDArray[np.float64]
+
+_SECTORS = 240
+#: Points farther away play no part, m.
+_REACH = 6.0
+#: Apparent motion below this is sampling noise, m/s.
+_STILL = 0.3
+_ARRIVED = 0.1
+#: Speed and duration of the way back out of a dead end: m/s, s.
+_REVERSE, _ESCAPE = -0.2, 2.0
+
+
+class Dwa:
+    """All that it remembers: old scans, the last choice, and since when it makes no way."""
+
+    def __init__(self, spec: DwaSpec) -> None:
+        self._spec = spec
+        self._lidars = LidarPoints({})
+        self._limits: RobotLimits | None = None
+        self._p: Array = np.zeros(rollout.PARAMETERS)
+        self._forget()
+
+    def _forget(self) -> None:
+        self._scans: deque[tuple[float, Array]] = deque(maxlen=64)
+        self._last = (0.0, 0.0)
+        self._heading: float | None = None
+        self._time: float | None = None
+        self._moved_at: tuple[float, float, float] | None = None
+        self._escape_until = -math.inf
+
+    def reset(
+        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+    ) -> None:
+        """Take the limits and mounts; compile what is not compiled yet."""
+        del seed
+        self._forget()
+        self._limits = limits
+        self._lidars = LidarPoints(sensors)
+        self._p = _parameters(self._spec, limits)
+        self._warm_up(task, sensors)
+        self._forget()
+
+    def _warm_up(self, task: Task, sensors: Mapping[str, SensorInfo]) -> None:
+        """Two steps in a made-up world, so that no step of the run waits for a compiler."""
+        for t in (0.0, self._spec.look_back):
+            readings = {n: Reading(t, np.full(s.shape, 1.0 + t)) for n, s in sensors.items()}
+            self.step(
+                Observation(
+                    t=t,
+                    pose=Pose(0.0, 0.0, 0.0),
+                    twist=(0.0, 0.0),
+                    goal=(9.0, 0.0),
+                    goal_zone=task.goal_zone,
+                    readings=readings,
+                )
+            )
+
+    def step(self, obs: Observation) -> Command:
+        """The next command; zero at the goal."""
+        assert self._limits is not None
+        distance, goal = bearing(obs.pose, obs.goal)
+        period = 1.0 / 16.0 if self._time is None else max(1e-3, obs.t - self._time)
+        self._time = obs.t
+        self._p[rollout.PERIOD] = period
+        if distance <= _ARRIVED:
+            return Command(0.0, 0.0)
+        points, velocities = self._see(obs)
+        escaping = self._is_stuck(obs)
+        direction, free = self._choose(obs.pose, goal, distance, points, velocities, escaping)
+        near = rollout.reachable(points, velocities, self._p)
+        top = min(
+            self._spec.speed * self._limits.v_max, braking_speed(distance, self._limits.a_max)
+        )
+        candidates = self._window(obs.twist, direction, top, escaping)
+        v, w = obs.twist
+        index, _ = rollout.evaluate(
+            points[near], velocities[near], self._p, v, w, candidates, direction, self._last
+        )
+        if index >= 0:
+            self._last = (float(candidates[index, 0]), float(candidates[index, 1]))
+        else:
+            self._last = (0.0, 0.0)
+        obs.log("dwa/direction", direction)
+        obs.log("dwa/free_time", free)
+        return Command(*self._last)
+
+    def _see(self, obs: Observation) -> tuple[Array, Array]:
+        """Thinned points and their velocities (K, 2), base frame."""
+        points = nearest_per_sector(self._lidars(obs.readings, obs.t, obs.twist), _SECTORS, _REACH)
+        c, s = math.cos(obs.pose.yaw), math.sin(obs.pose.yaw)
+        to_world = np.array([[c, s], [-s, c]])  # for row vectors
+        world = points @ to_world + (obs.pose.x, obs.pose.y)
+        while len(self._scans) > 1 and self._scans[1][0] <= obs.t - self._spec.look_back:
+            self._scans.popleft()
+        velocities = np.zeros_like(points)
+        if self._scans and self._spec.look_back > 0.0:
+            then, before = self._scans[0]
+            if obs.t - then >= 0.5 * self._spec.look_back:
+                moved = apparent_velocity(
+                    world, before, obs.t - then, _STILL, self._spec.max_obstacle_speed
+                )
+                velocities = moved @ to_world.T
+        self._scans.append((obs.t, world))
+        return points, velocities
+
+    def _choose(
+        self,
+        pose: Pose,
+        goal: float,
+        distance: float,
+        points: Array,
+        velocities: Array,
+        escaping: bool,
+    ) -> tuple[float, float]:
+        assert self._limits is not None
+        spec = self._spec
+        speed = spec.speed * self._limits.v_max
+        previous = goal if self._heading is None else self._heading - pose.yaw
+        direction, free = choose_direction(
+            points,
+            velocities,
+            goal,
+            previous,
+            speed,
+            spec.robot_radius + spec.margin + 0.05,
+            min(spec.look_ahead, distance / speed + 0.1),
+            0.2 if escaping else 1.0,
+        )
+        self._heading = direction + pose.yaw
+        return direction, free
+
+    def _window(
+        self, twist: tuple[float, float], direction: float, top: float, escaping: bool
+    ) -> Array:
+        """(C, 2) target velocities that the robot reaches within the window."""
+        assert self._limits is not None
+        spec, limits = self._spec, self._limits
+        v, w = twist
+        dv, dw = limits.a_max * spec.window, limits.alpha_max * spec.window
+        bottom = max(limits.v_min, _REVERSE) if escaping else 0.0
+        low = min(max(v - dv, bottom), top)
+        high = max(min(v + dv, top), low)
+        speeds = np.unique(np.append(np.linspace(low, high, spec.speeds), max(low, min(0.0, high))))
+        left, right = max(w - dw, -limits.w_max), min(w + dw, limits.w_max)
+        wish = max(left, min(right, 1.5 * direction_error(direction)))
+        rates = np.append(
+            np.linspace(left, right, spec.yaw_rates), (wish, max(left, min(right, 0.0)))
+        )
+        return np.stack(np.meshgrid(speeds, rates, indexing="ij"), axis=-1).reshape(-1, 2)
+
+    def _is_stuck(self, obs: Observation) -> bool:
+        x, y, _ = obs.pose
+        if self._moved_at is None or math.dist(self._moved_at[:2], (x, y)) > 0.15:
+            self._moved_at = (x, y, obs.t)
+        elif obs.t - self._moved_at[2] > self._spec.patience:
+            self._escape_until = obs.t + _ESCAPE
+            self._moved_at = (x, y, obs.t)
+        return obs.t < self._escape_until
+
+
+def direction_error(direction: float) -> float:
+    """A bearing in [-pi, pi]."""
+    return math.remainder(direction, 2.0 * math.pi)
+
+
+def _parameters(spec: DwaSpec, limits: RobotLimits) -> Array:
+    p = np.zeros(rollout.PARAMETERS)
+    p[rollout.A_MAX], p[rollout.ALPHA_MAX] = limits.a_max, limits.alpha_max
+    p[rollout.V_MAX], p[rollout.W_MAX] = limits.v_max, limits.w_max
+    p[rollout.HORIZON], p[rollout.TURN_TIME] = spec.horizon, spec.turn_time
+    p[rollout.RADIUS], p[rollout.MARGIN] = spec.robot_radius, spec.margin
+    p[rollout.COMFORT], p[rollout.GROWTH] = spec.comfort, spec.margin_growth
+    p[rollout.PROGRESS], p[rollout.HEADING] = spec.progress, spec.heading
+    p[rollout.CLEARANCE], p[rollout.IMPACT] = spec.clearance, spec.impact
+    p[rollout.SMOOTHNESS] = spec.smoothness
+    return p
+
+
+def build(spec: DwaSpec) -> Dwa:
+    """A planner from its spec."""
+    return Dwa(spec)

@@ -1,0 +1,152 @@
+"""What the dynamic window needs to know of the points around the robot; compiled."""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def unsigned(angle: float) -> float:
+    """The size of an angle, in [0, pi] rad."""
+    return abs(angle - 2.0 * math.pi * round(angle / (2.0 * math.pi)))
+
+
+@numba.njit(cache=True, error_model="numpy")
+def nearest_per_sector(points: Array, sectors: int, reach: float) -> Array:
+    """Thin points out to the nearest one of each sector around the origin.
+
+    What lies behind the nearest point of a narrow sector is hidden from the robot's path by it.
+
+    Args:
+        points: (P, 2) base frame, m.
+        sectors: number of equal sectors of the full turn.
+        reach: points farther than this are dropped, m.
+
+    Returns:
+        (K, 2) with K <= sectors, in the order of their bearing.
+    """
+    best = np.full(sectors, reach * reach)
+    index = np.full(sectors, -1, dtype=np.int64)
+    for i in range(points.shape[0]):
+        x, y = points[i, 0], points[i, 1]
+        square = x * x + y * y
+        if square >= reach * reach:
+            continue
+        at = int((math.atan2(y, x) / (2.0 * math.pi) + 0.5) * sectors) % sectors
+        if square < best[at]:
+            best[at], index[at] = square, i
+    out = np.empty((sectors, 2))
+    count = 0
+    for at in range(sectors):
+        if index[at] >= 0:
+            out[count] = points[index[at]]
+            count += 1
+    return out[:count]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def apparent_velocity(
+    now: Array, before: Array, dt: float, slowest: float, fastest: float
+) -> Array:
+    """How each point moved since an earlier scan: from its nearest neighbour there.
+
+    On the front of a body that comes closer this is the speed of approach; where a surface slides
+    along itself it is zero. Motion below ``slowest`` is sampling noise, motion above ``fastest``
+    a point that was hidden before: both count as standing.
+
+    Args:
+        now: (K, 2) points in a frame at rest, m.
+        before: (L, 2) points ``dt`` seconds ago, same frame.
+        dt: s.
+        slowest: m/s.
+        fastest: m/s.
+
+    Returns:
+        (K, 2) velocities in that frame, m/s.
+    """
+    out = np.zeros((now.shape[0], 2))
+    if before.shape[0] == 0 or dt <= 0.0:
+        return out
+    low, high = (slowest * dt) ** 2, (fastest * dt) ** 2
+    for i in range(now.shape[0]):
+        best, nearest = math.inf, 0
+        for j in range(before.shape[0]):
+            dx, dy = now[i, 0] - before[j, 0], now[i, 1] - before[j, 1]
+            square = dx * dx + dy * dy
+            if square < best:
+                best, nearest = square, j
+        if low < best < high:
+            out[i] = (now[i] - before[nearest]) / dt
+    return out
+
+
+@numba.njit(cache=True, error_model="numpy")
+def free_time(
+    points: Array, velocities: Array, vx: float, vy: float, radius: float, limit: float
+) -> float:
+    """Time until a disc at the origin with velocity (vx, vy) meets a moving point, s.
+
+    At most ``limit``. Points inside the disc count only while they come closer.
+    """
+    best = limit
+    for i in range(points.shape[0]):
+        x, y = points[i, 0], points[i, 1]
+        rx, ry = vx - velocities[i, 0], vy - velocities[i, 1]
+        speed2 = rx * rx + ry * ry
+        closing = x * rx + y * ry
+        if closing <= 0.0:
+            continue
+        gap = x * x + y * y - radius * radius
+        if gap <= 0.0:
+            return 0.0
+        room = closing * closing - speed2 * gap
+        if room > 0.0:
+            best = min(best, (closing - math.sqrt(room)) / speed2)
+    return best
+
+
+@numba.njit(cache=True, error_model="numpy")
+def choose_direction(
+    points: Array,
+    velocities: Array,
+    goal: float,
+    previous: float,
+    speed: float,
+    radius: float,
+    limit: float,
+    detour: float,
+) -> tuple[float, float]:
+    """The direction in which to go on: towards the goal, free for long, like last time.
+
+    Args:
+        points: (K, 2) base frame, m.
+        velocities: (K, 2) base frame, m/s.
+        goal: bearing of the goal, rad.
+        previous: bearing of the last choice, rad.
+        speed: at which the robot would go, m/s.
+        radius: of the disc that must stay free, m.
+        limit: s; a direction that is free this long is as good as any.
+        detour: cost of the opposite direction; 1 is the cost of being blocked at once.
+
+    Returns:
+        bearing (rad, not wrapped) and the time for which it is free (s).
+    """
+    half = 24
+    best, angle, time = math.inf, goal, 0.0
+    for k in range(-half, half + 1):
+        theta = goal + k * math.pi / half
+        t = free_time(
+            points, velocities, speed * math.cos(theta), speed * math.sin(theta), radius, limit
+        )
+        swing = unsigned(theta - previous) / math.pi
+        turn = unsigned(theta) / math.pi
+        cost = detour * abs(k) / half + (1.0 - t / limit) + 0.15 * swing + 0.15 * turn
+        if cost < best:
+            best, angle, time = cost, theta, t
+    return angle, time

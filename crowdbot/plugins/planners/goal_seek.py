@@ -1,0 +1,39 @@
+"""Goal seek: straight to the goal, blind."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from annotated_types import Gt, Le
+from pydantic import Field
+
+from crowdbot.core.component import Component
+from crowdbot.dsl.base import PlannerSpec
+from crowdbot.dsl.quantities import PositiveAngle, PositiveFrequency, PositiveLength
+
+
+class GoalSeekSpec(PlannerSpec):
+    """Heads for the centre of the goal and sees nothing on the way: the baseline of collisions."""
+
+    needs: ClassVar[tuple[str, ...]] = ()
+
+    kind: Literal["goal_seek"] = "goal_seek"
+    speed: Annotated[float, Gt(0), Le(1)] = Field(
+        default=1.0, description="Cruising speed as a fraction of the robot's largest."
+    )
+    heading_gain: PositiveFrequency = Field(
+        default=2.0, description="Yaw rate per heading error, 1/s."
+    )
+    turn_in_place: PositiveAngle = Field(
+        default=0.785, description="Heading error above which the robot turns on the spot, rad."
+    )
+    tolerance: PositiveLength = Field(
+        default=0.05, description="Distance to the goal centre at which it stops, m."
+    )
+
+
+GOAL_SEEK = Component(
+    spec=GoalSeekSpec,
+    build="crowdbot.plugins.planners.goal_seek_build:build",
+    summary="straight to the goal, blind",
+)

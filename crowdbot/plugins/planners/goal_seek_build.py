@@ -1,0 +1,53 @@
+"""Goal seek: a heading controller with a braking ramp before the goal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from crowdbot.core.interfaces import Command, Observation, Pose, RobotLimits, SensorInfo, Task
+from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
+
+
+class GoalSeek:
+    """Turns towards the goal, drives on the way there, brakes in time."""
+
+    def __init__(self, spec: GoalSeekSpec) -> None:
+        self._spec = spec
+        self._limits: RobotLimits | None = None
+
+    def reset(
+        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+    ) -> None:
+        """Remember what the robot can do."""
+        del task, sensors, seed
+        self._limits = limits
+
+    def step(self, obs: Observation) -> Command:
+        """The next command; zero at the goal."""
+        assert self._limits is not None
+        spec = self._spec
+        distance, error = bearing(obs.pose, obs.goal)
+        if distance <= spec.tolerance:
+            return Command(0.0, 0.0)
+        w = max(-self._limits.w_max, min(self._limits.w_max, spec.heading_gain * error))
+        if abs(error) > spec.turn_in_place:
+            return Command(0.0, w)
+        cruise = spec.speed * self._limits.v_max * math.cos(error)
+        return Command(min(max(cruise, 0.0), braking_speed(distance, self._limits.a_max)), w)
+
+
+def bearing(pose: Pose, goal: tuple[float, float]) -> tuple[float, float]:
+    """Distance to a point (m) and the angle from the heading to it (rad, in [-pi, pi])."""
+    dx, dy = goal[0] - pose.x, goal[1] - pose.y
+    return math.hypot(dx, dy), math.remainder(math.atan2(dy, dx) - pose.yaw, 2.0 * math.pi)
+
+
+def braking_speed(room: float, deceleration: float) -> float:
+    """The speed from which the robot can stop within ``room`` m."""
+    return math.sqrt(2.0 * deceleration * max(room, 0.0))
+
+
+def build(spec: GoalSeekSpec) -> GoalSeek:
+    """A planner from its spec."""
+    return GoalSeek(spec)

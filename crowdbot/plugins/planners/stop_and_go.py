@@ -1,0 +1,52 @@
+"""Stop and go: straight to the goal, waiting while somebody is in the way."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from annotated_types import Gt, Le
+from pydantic import Field
+
+from crowdbot.core.component import Component
+from crowdbot.dsl.base import PlannerSpec
+from crowdbot.dsl.quantities import (
+    NonNegativeDuration,
+    NonNegativeLength,
+    PositiveAngle,
+    PositiveFrequency,
+    PositiveLength,
+)
+
+
+class StopAndGoSpec(PlannerSpec):
+    """A stop box before the robot: as wide as the robot and a margin on either side."""
+
+    needs: ClassVar[tuple[str, ...]] = ("lidar",)
+
+    kind: Literal["stop_and_go"] = "stop_and_go"
+    robot_radius: PositiveLength = Field(default=0.178, description="Radius of the robot, m.")
+    speed: Annotated[float, Gt(0), Le(1)] = Field(
+        default=1.0, description="Cruising speed as a fraction of the robot's largest."
+    )
+    heading_gain: PositiveFrequency = Field(
+        default=2.0, description="Yaw rate per heading error, 1/s."
+    )
+    turn_in_place: PositiveAngle = Field(
+        default=0.785, description="Heading error above which the robot turns on the spot, rad."
+    )
+    side_margin: NonNegativeLength = Field(
+        default=0.15, description="Free space beside the robot, m."
+    )
+    front_margin: NonNegativeLength = Field(
+        default=0.35, description="Free space that remains before the robot when it stands, m."
+    )
+    reaction_time: NonNegativeDuration = Field(
+        default=0.2, description="Driven at full speed before braking sets in, s."
+    )
+
+
+STOP_AND_GO = Component(
+    spec=StopAndGoSpec,
+    build="crowdbot.plugins.planners.stop_and_go_build:build",
+    summary="straight to the goal, stands while something is in the way",
+)
