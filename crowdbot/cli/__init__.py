@@ -191,7 +191,7 @@ def _text(error: CrowdbotError) -> str:
 
 
 def _say(text: str) -> None:
-    print(text, file=sys.stderr)  # noqa: T201 - the command line's voice
+    print(text, file=sys.stderr)
 
 
 def _tolerate_any_encoding() -> None:

@@ -17,6 +17,7 @@ plugins = typer.Typer(
 )
 _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 _FEW = 6
+_HEAD = ["plugin", "distribution", "api", "state", "provides"]
 
 
 @plugins.callback(invoke_without_command=True)
@@ -33,7 +34,7 @@ def listing(context: typer.Context, as_json: _Json = False) -> None:
     if as_json:
         typer.echo(json.dumps([_as_dict(p) for p in found], indent=2))
     else:
-        typer.echo(_table(["plugin distribution api state provides".split(), *map(_row, found)]))
+        typer.echo(_table([_HEAD, *map(_row, found)]))
 
 
 @plugins.command()

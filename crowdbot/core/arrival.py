@@ -1,53 +1,56 @@
-"""When a robot's centre enters its goal zone."""
+"""When a robot's centre enters its goal zone, a polygon (K, 2) of any orientation."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
 
+@njit(cache=True, error_model="numpy")
 def inside(zone: Array, x: float, y: float) -> bool:
-    """Whether a point lies in a polygon (K, 2); even-odd rule, any orientation."""
-    x0, y0 = zone[:, 0], zone[:, 1]
-    x1, y1 = np.roll(x0, -1), np.roll(y0, -1)
-    straddles = (y0 > y) != (y1 > y)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        crossing = x0 + (y - y0) * (x1 - x0) / (y1 - y0)
-    return bool(np.count_nonzero(straddles & (x < crossing)) % 2)
+    """Whether a point lies in a polygon; even-odd rule."""
+    odd = False
+    for k in range(zone.shape[0]):
+        x0, y0 = zone[k - 1, 0], zone[k - 1, 1]
+        x1, y1 = zone[k, 0], zone[k, 1]
+        if (y0 > y) != (y1 > y) and x < x0 + (y - y0) * (x1 - x0) / (y1 - y0):
+            odd = not odd
+    return odd
 
 
-def entry_time(zone: Array, before: Array, after: Array, t0: float, t1: float) -> float:
-    """Time at which the way from ``before`` (t0) to ``after`` (t1) first crosses the border.
+@njit(cache=True, error_model="numpy")
+def entry_fraction(zone: Array, x0: float, y0: float, x1: float, y1: float) -> float:
+    """Fraction of the way from p0 to p1 at which it first crosses the border.
 
-    Returns t1 when it crosses none, as when the robot was inside all along.
+    Returns 1 when it crosses none, as when the robot was inside all along.
     """
-    start, end = np.asarray(before), np.asarray(after)
-    step = end - start
-    first = 1.0
-    for a, b in zip(zone, np.roll(zone, -1, axis=0), strict=True):
-        edge = b - a
-        cross = step[0] * edge[1] - step[1] * edge[0]
+    first, sx, sy = 1.0, x1 - x0, y1 - y0
+    for k in range(zone.shape[0]):
+        ax, ay = zone[k - 1, 0] - x0, zone[k - 1, 1] - y0
+        ex, ey = zone[k, 0] - zone[k - 1, 0], zone[k, 1] - zone[k - 1, 1]
+        cross = sx * ey - sy * ex
         if cross == 0.0:
             continue
-        to = a - start
-        along = (to[0] * edge[1] - to[1] * edge[0]) / cross
-        across = (to[0] * step[1] - to[1] * step[0]) / cross
+        along, across = (ax * ey - ay * ex) / cross, (ax * sy - ay * sx) / cross
         if 0.0 <= along <= first and 0.0 <= across <= 1.0:
-            first = float(along)
-    return t0 + first * (t1 - t0)
+            first = along
+    return first
 
 
+@njit(cache=True, error_model="numpy")
 def distance_to(zone: Array, x: float, y: float) -> float:
-    """Distance from a point to a polygon's border, zero inside, m."""
+    """Distance from a point to a polygon, zero inside, m."""
     if inside(zone, x, y):
         return 0.0
     best = math.inf
-    for a, b in zip(zone, np.roll(zone, -1, axis=0), strict=True):
-        edge = b - a
-        along = float(np.clip(np.dot((x - a[0], y - a[1]), edge) / np.dot(edge, edge), 0.0, 1.0))
-        best = min(best, math.hypot(x - a[0] - along * edge[0], y - a[1] - along * edge[1]))
+    for k in range(zone.shape[0]):
+        ax, ay = x - zone[k - 1, 0], y - zone[k - 1, 1]
+        ex, ey = zone[k, 0] - zone[k - 1, 0], zone[k, 1] - zone[k - 1, 1]
+        along = min(1.0, max(0.0, (ax * ex + ay * ey) / (ex * ex + ey * ey)))
+        best = min(best, math.hypot(ax - along * ex, ay - along * ey))
     return best

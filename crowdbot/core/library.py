@@ -31,8 +31,8 @@ def open_spec(spec: str, registry: Registry, overrides: Sequence[str] = ()) -> E
         UnknownNameError: neither a file nor a packaged suite has this name.
     """
     with _folders(registry) as roots:
-        path = _find(spec, roots)
-        suite = load_document(path, roots, name=_shown(path), metrics=registry.components("metric"))
+        path, name = _find(spec, roots)
+        suite = load_document(path, roots, name=name, metrics=registry.components("metric"))
         return expand_document(suite, registry.scenario_model, overrides)
 
 
@@ -59,10 +59,8 @@ def pick(expansion: Expansion, wanted: str | None) -> Scenario:
     found = select(expansion, wanted)
     exact = [s for s in found if s.id == _bare(expansion, wanted)]
     if not found:
-        ids = [s.id for s in expansion.scenarios]
-        raise UnknownNameError(
-            "scenario", wanted, [*ids, *(f"{expansion.suite_id}/{i}" for i in ids)]
-        )
+        prefix = f"{expansion.suite_id}/" if "/" in wanted else ""
+        raise UnknownNameError("scenario", wanted, [prefix + s.id for s in expansion.scenarios])
     return _only(expansion, exact or found, f"'{wanted}' fits more than one")
 
 
@@ -92,13 +90,14 @@ def _only(expansion: Expansion, found: Sequence[Scenario], why: str) -> Scenario
     )
 
 
-def _find(spec: str, roots: dict[str, list[Path]]) -> Path:
+def _find(spec: str, roots: dict[str, list[Path]]) -> tuple[Path, str]:
+    """The file that a SPEC means, and what messages call it."""
     path, packaged = Path(spec), _packaged(roots)
     looks_like_path = path.suffix in (".yaml", ".yml") or os.sep in spec or "/" in spec
     if not looks_like_path and spec in packaged:
-        return packaged[spec]
+        return packaged[spec], _shown(packaged[spec])
     if looks_like_path or os.path.lexists(spec):
-        return path
+        return path, spec
     raise UnknownNameError("suite", spec, packaged)
 
 

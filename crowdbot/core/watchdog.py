@@ -31,7 +31,8 @@ class Watchdog:
     Args:
         limit: seconds that a step may take.
         grace: seconds after the interruption until ``on_hang`` is called.
-        on_hang: called once, from the watchdog's thread.
+        on_hang: called once, from the watchdog's thread. While a step runs in a planner host,
+            ``sys.stdout`` is redirected; ``sys.__stdout__`` is the real one.
     """
 
     def __init__(

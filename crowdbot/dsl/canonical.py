@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -17,6 +18,7 @@ from crowdbot.dsl.scenario import OUTSIDE_HASH, Scenario
 
 PREFIX = "cb1-sha256:"
 
+_PLAIN = re.compile(r"[A-Za-z_]([A-Za-z0-9_ ./+-]*[A-Za-z0-9_])?")
 _HEADER = """\
 # A resolved crowdbot scenario: every default is written out, units are SI.
 """
@@ -60,9 +62,16 @@ def to_yaml(document: Any) -> str:
     yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]
     yaml.width = 100
     yaml.representer.ignore_aliases = lambda _data: True
+    yaml.representer.add_representer(str, _represent_text)
     stream = io.StringIO()
     yaml.dump(document, stream)
     return stream.getvalue()
+
+
+def _represent_text(representer: Any, text: str) -> Any:
+    """Words stay bare unless they mean something else; what readers may disagree on is quoted."""
+    style = None if _PLAIN.fullmatch(text) else '"'
+    return representer.represent_scalar("tag:yaml.org,2002:str", text, style=style)
 
 
 def difference(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:

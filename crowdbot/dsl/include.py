@@ -49,7 +49,7 @@ class Loader:
         """One file; an unreadable one counts as an empty map, its error is kept."""
         source = Source(file.name, (), included_from)
         try:
-            text = read_text(file.path, file.name)
+            text = _read_text(file, source)
             source = Source(file.name, text.split("\n"), included_from)
             root = parse(text, source, self.problems)
         except SpecError as error:
@@ -109,11 +109,17 @@ class Loader:
             self._add("E201", f"no plugin '{prefix}' with scenario files", mark, hint)
             return None
         folders = self.roots[prefix] if colon else [file.path.parent]
-        path = next((f / rest for f in folders if (f / rest).exists()), folders[0] / rest)
-        if not self._allowed(path):
+        try:
+            path = next((f / rest for f in folders if (f / rest).exists()), folders[0] / rest)
+            allowed, exists = self._allowed(path), path.exists()
+        except (OSError, RuntimeError) as error:  # a name too long, links in a circle
+            reason = getattr(error, "strerror", None) or str(error)
+            self._add("E201", f"'{text[:60]}' cannot be opened: {reason}", mark)
+            return None
+        if not allowed:
             self._add("E203", f"'{text}' leaves the folder of {self.top.name}", mark)
             return None
-        if not path.exists():
+        if not exists:
             self._add("E201", f"no file '{text}'", mark, self._similar(path))
             return None
         name = text if colon else os.path.normpath(os.path.join(os.path.dirname(file.name), text))  # noqa: PTH118, PTH120 - text, not files
@@ -139,3 +145,13 @@ class Loader:
 
     def _add(self, code: str, message: str, mark: Mark, hint: str = "") -> None:
         self.problems.append(Diagnostic(code, message, mark, hint))
+
+
+def _read_text(file: _File, source: Source) -> str:
+    """Text of a file; errors know who included it."""
+    try:
+        return read_text(file.path, file.name)
+    except SpecError as error:
+        raise SpecError(
+            [replace(d, mark=Mark(source, d.mark.line, d.mark.column)) for d in error.diagnostics]
+        ) from None

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from crowdbot.dsl.diagnostics import Diagnostic, Mark
-from crowdbot.dsl.nodes import Entry, Node
+from crowdbot.dsl.nodes import MAX_DEPTH, Entry, Node
 
 
 def merge(base: Node, over: Node) -> Node:
@@ -39,15 +39,16 @@ def kind_of(node: Node) -> object:
     return kind.value if kind else None
 
 
-def undot(node: Node, problems: list[Diagnostic]) -> Node:
+def undot(node: Node, problems: list[Diagnostic], depth: int = 0) -> Node:
     """Write ``a.b: x`` as ``a: {b: x}`` everywhere below a node.
 
     Args:
         node: tree as it was read.
         problems: keys that clash with others of the same map are added here.
+        depth: levels above the node.
     """
     if isinstance(node.value, tuple):
-        return replace(node, value=tuple(undot(item, problems) for item in node.value))
+        return replace(node, value=tuple(undot(item, problems, depth + 1) for item in node.value))
     if not node.entries:
         return node
     out: dict[str, Entry] = {}
@@ -56,8 +57,16 @@ def undot(node: Node, problems: list[Diagnostic]) -> Node:
         if not all(parts):
             problems.append(Diagnostic("E010", f"empty name in key '{key}'", entry.key))
             continue
+        below = depth + len(parts)
+        if below > MAX_DEPTH:
+            text = f"key nested deeper than {MAX_DEPTH} levels"
+            problems.append(Diagnostic("E009", text, entry.key))
+            continue
         _join(
-            out, parts[0], _nest(parts, replace(entry, node=undot(entry.node, problems))), problems
+            out,
+            parts[0],
+            _nest(parts, replace(entry, node=undot(entry.node, problems, below))),
+            problems,
         )
     return replace(node, value=out)
 

@@ -132,7 +132,7 @@ def parse(text: str, source: Source, problems: list[Diagnostic], shift: int = 0)
     """Turn text into a tree.
 
     Args:
-        text: one YAML document, line ends as ``\\n``.
+        text: one YAML document, lines end with a line feed.
         source: what the marks point at.
         problems: errors that do not stop the reading are added here.
         shift: columns by which the first line of the text is moved in the source.
@@ -213,7 +213,7 @@ class _Builder:
             return Node(mark, self._list(depth))
         return Node(mark, None)
 
-    def _refuse_indirection(self, event: Event, mark: Mark) -> None:
+    def _refuse_indirection(self, event: Any, mark: Mark) -> None:
         what = "alias" if isinstance(event, AliasEvent) else "anchor"
         if getattr(event, "anchor", None):
             self._add("E004", f"{what} '{event.anchor}' is not allowed", mark, "use 'extends'")
@@ -240,7 +240,7 @@ class _Builder:
                 entries[str(key)] = Entry(mark, node)
         return entries
 
-    def _usable(self, key: str | None, event: Event, mark: Mark, entries: dict[str, Entry]) -> bool:
+    def _usable(self, key: str | None, event: Any, mark: Mark, entries: dict[str, Entry]) -> bool:
         if key in (None, ""):
             self._add("E010", "a key must be text", mark)
         elif key == "<<" and event.implicit[0]:

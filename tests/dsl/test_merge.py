@@ -78,10 +78,19 @@ def test_quoted_dotted_keys_point_inside_the_quotes() -> None:
     assert (entry.key.column, entry.key.width) == (3, 2)
 
 
-@given(maps, maps, maps)
-def test_merge_is_associative_without_removals(a: Any, b: Any, c: Any) -> None:
-    x, y, z = of(a), of(b), of(c)
-    assert to_data(merge(merge(x, y), z)) == to_data(merge(x, merge(y, z)))
+def leaves(data: Any, path: tuple[str, ...] = ()) -> dict[tuple[str, ...], Any]:
+    if not isinstance(data, dict):
+        return {path: data}
+    return {k: v for key, child in data.items() for k, v in leaves(child, (*path, key)).items()}
+
+
+@given(maps, maps)
+def test_later_wins_and_the_rest_stays(a: Any, b: Any) -> None:
+    old, new = leaves(a), leaves(b)
+    kept = {
+        p: v for p, v in old.items() if not any(p[: len(q)] == q or q[: len(p)] == p for q in new)
+    }
+    assert leaves(to_data(merge(of(a), of(b)))) == {**kept, **new}
 
 
 @given(maps)

@@ -35,7 +35,7 @@ def codes(text: str) -> list[str]:
     ("text", "value"),
     [
         *((word, word) for word in ("no", "on", "yes", "off", "y", "12:30", "2020-04-30", "1_000")),
-        *((word, word) for word in ("0.8 m/s", "1e", "e3", "0b1", "nan", "inf", "TRue", "-")),
+        *((word, word) for word in ("0.8 m/s", "1e", "e3", "0b1", "nan", "inf", "TRue")),
         ("1e-3", 0.001),
         ("1E3", 1000.0),
         ("-.5", -0.5),
@@ -101,8 +101,10 @@ json_values = st.recursive(
     | st.floats(allow_nan=False, allow_infinity=False)
     | st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=12)
     | st.sampled_from(["no", "007", "1e3", ".nan", "0x1", "a: b", "- x", "#", "~", "'", "&a", "%"]),
-    lambda inner: st.lists(inner, max_size=4)
-    | st.dictionaries(st.text("abc 1.-#:'\"", min_size=1, max_size=6), inner, max_size=4),
+    lambda inner: (
+        st.lists(inner, max_size=4)
+        | st.dictionaries(st.text("abc 1.-#:'\"", min_size=1, max_size=6), inner, max_size=4)
+    ),
     max_leaves=12,
 )
 
@@ -161,7 +163,7 @@ def test_no_text_files(tmp_path: Path, content: bytes, reason: str) -> None:
 
 
 def test_missing_and_folder(tmp_path: Path) -> None:
-    with pytest.raises(SpecError, match="no such file|No such file"):
+    with pytest.raises(SpecError, match="o such file"):
         read_text(tmp_path / "none.yaml", "none.yaml")
     with pytest.raises(SpecError, match="is a folder"):
         read_text(tmp_path, "folder")

@@ -153,9 +153,7 @@ def with_columns(run: Trajectories, columns: Sequence[int]) -> Trajectories:
     rows = {n: getattr(agents, n)[:, pick] for n in ("x", "y", "vx", "vy")}
     ends = {n: getattr(agents, n)[pick] for n in ("id", "radius", "mass")}
     jump = None if agents.jump is None else agents.jump[:, pick]
-    return dataclasses.replace(
-        run, agents=dataclasses.replace(agents, **rows, **ends, jump=jump)
-    )
+    return dataclasses.replace(run, agents=dataclasses.replace(agents, **rows, **ends, jump=jump))
 
 
 def perturbed(run: Trajectories, size: float, seed: int) -> Trajectories:

@@ -16,9 +16,7 @@ def straight(length: float, seconds: float, *, arrives: bool = True) -> Trajecto
     return scene(t, body, goal_time=seconds if arrives else None)
 
 
-A03 = scene(
-    grid(25), polyline(grid(25), [(0, 0, 0), (12.5, 0, 15), (25, 15, 15)]), goal_time=25.0
-)
+A03 = scene(grid(25), polyline(grid(25), [(0, 0, 0), (12.5, 0, 15), (25, 15, 15)]), goal_time=25.0)
 I04 = scene(grid(7), polyline(grid(7), [(0, 0, 0), (3, 3, 0), (7, 3, 4)]), goal_time=7.0)
 
 
@@ -162,9 +160,7 @@ def test_unknown_poses_add_no_length() -> None:
     t = grid(10)
     body = line(t, (0, 0), (1, 0))
     body.x[50] = np.nan
-    found = scores_of(
-        "relative_path_length", scene(t, body, goal_time=10.0), straight(9.8, 10)
-    )
+    found = scores_of("relative_path_length", scene(t, body, goal_time=10.0), straight(9.8, 10))
     assert value_of(found) == pytest.approx(1)
 
 

@@ -77,8 +77,12 @@ def test_a_longer_calibration() -> None:  # j02
     late = never.copy()
     late[250:] = True
     walkers = [line(t, (0, y), (v, 0)) for y, v in ((0, 1.0), (2, 1.0), (4, 3.0))]
-    alone = scene(t, None, [present_during(b, h) for b, h in zip(walkers, (first, second, late))])
-    short = [present_during(line(half, (0, y), (1, 0)), h[:151]) for y, h in ((0, first), (2, second))]
+    alone = scene(
+        t, None, [present_during(b, h) for b, h in zip(walkers, (first, second, late), strict=True)]
+    )
+    short = [
+        present_during(line(half, (0, y), (1, 0)), h[:151]) for y, h in ((0, first), (2, second))
+    ]
     run = scene(half, line(half, (0, 9), (1, 0)), short)
     found = scores_of(NAME, run, None, alone)
     assert value_of(found, "literal") == pytest.approx((101 + 151 + 3 * 51) / 303)

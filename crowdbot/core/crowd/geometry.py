@@ -39,35 +39,22 @@ def time_to_disc(rx: float, ry: float, vx: float, vy: float, gap2: float) -> flo
 
 @njit(cache=True, error_model="numpy")
 def time_to_segment(
-    px: float,
-    py: float,
-    vx: float,
-    vy: float,
-    radius: float,
-    ax: float,
-    ay: float,
-    bx: float,
-    by: float,
+    vx: float, vy: float, radius: float, ax: float, ay: float, bx: float, by: float
 ) -> float:
-    """Time until a disc at p with velocity v touches segment a-b; 0 if it does already."""
-    nx, ny = nearest_on_segment(px, py, ax, ay, bx, by)
-    distance2 = (px - nx) ** 2 + (py - ny) ** 2
-    if distance2 <= radius * radius:
-        return 0.0
+    """Time until a disc at the origin with velocity v touches segment a-b; inf if never.
+
+    The disc must not touch the segment yet.
+    """
     first = math.inf
     for ex, ey in ((ax, ay), (bx, by)):
-        gap2 = (ex - px) ** 2 + (ey - py) ** 2 - radius * radius
-        first = min(first, time_to_disc(ex - px, ey - py, vx, vy, gap2))
+        first = min(first, time_to_disc(ex, ey, vx, vy, ex * ex + ey * ey - radius * radius))
     sx, sy = bx - ax, by - ay
-    length = math.hypot(sx, sy)
-    if length == 0.0:
+    cross = vx * sy - vy * sx
+    if abs(cross) < 1e-5:  # parallel
         return first
-    height = ((px - ax) * sy - (py - ay) * sx) / length  # signed distance to the line
-    towards = -(vx * sy - vy * sx) / length * math.copysign(1.0, height)
-    if towards * length <= 1e-5:
-        return first
-    t_centre = abs(height) / towards
-    along = ((px + vx * t_centre - ax) * sx + (py + vy * t_centre - ay) * sy) / (length * length)
-    if 0.0 <= along <= 1.0:
-        first = min(first, max(0.0, (abs(height) - radius) / towards))
+    t_centre = (ax * sy - ay * sx) / cross  # when the centre crosses the line
+    along = (vx * t_centre - ax) * sx + (vy * t_centre - ay) * sy
+    if t_centre >= 0.0 and 0.0 <= along <= sx * sx + sy * sy:
+        earlier = radius * math.hypot(sx, sy) / abs(cross)
+        first = min(first, max(0.0, t_centre - earlier))
     return first

@@ -34,6 +34,8 @@ from crowdbot.core.crowd.cost import (
     Array,
     CompiledCost,
     FunctionPointer,
+    borrow2,
+    borrow3,
 )
 from crowdbot.core.crowd.neighbours import BINDEX, BRADIUS, BVX, BVY, BX, BY, gather
 from crowdbot.core.crowd.policy import Agents, CrowdView
@@ -153,6 +155,8 @@ def _choose(
     work: Array,
     chosen: Array,
 ) -> None:
+    work = borrow3(work.ctypes, *work.shape)
+    params = borrow2(params.ctypes, *params.shape)
     agent = np.empty(AGENT_SIZE)
     near = np.empty((bodies.shape[0], NEAR_COLUMNS))
     items = np.empty(weights.shape[0], np.int64)

@@ -5,16 +5,13 @@ A publish event at tick k sees the state at k, before any update of that tick.
 
 from __future__ import annotations
 
-import numpy as np
 from pydrake.systems.framework import Context, EventStatus, LeafSystem
 
-from crowdbot.core.arrival import entry_time, inside
+from crowdbot.core.arrival import entry_fraction, inside
 from crowdbot.core.interfaces import RobotState, Task
 from crowdbot.core.run_log import RunLog
 from crowdbot.core.sim import ports
 from crowdbot.core.ticks import TICK, TICKS_PER_SECOND, ticks
-
-ARRIVED, TIMEOUT = "arrived", "timeout"
 
 
 class MetricLogger(LeafSystem):
@@ -25,7 +22,7 @@ class MetricLogger(LeafSystem):
         self._log, self._task = log, task
         self._ticks_per_sample = ticks(rate)
         self._last_tick = -1
-        self._previous = np.zeros(2)
+        self._previous = (0.0, 0.0)
         self.goal_time: float | None = None
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         self._crowd = (
@@ -39,7 +36,7 @@ class MetricLogger(LeafSystem):
             return EventStatus.Succeeded()
         self._last_tick = tick
         t = tick * TICK
-        robot = RobotState(*self._robot.Eval(context))
+        robot = RobotState(*self._robot.Eval(context).tolist())
         crowd = None if self._crowd is None else self._crowd.Eval(context)
         if crowd is not None:
             self._log.book_contacts(crowd)
@@ -48,12 +45,12 @@ class MetricLogger(LeafSystem):
         return self._watch(t, robot)
 
     def _watch(self, t: float, robot: RobotState) -> EventStatus:
-        here = np.array([robot.x, robot.y])
         zone = self._task.goal_zone
         if inside(zone, robot.x, robot.y):
-            self.goal_time = entry_time(zone, self._previous, here, max(0.0, t - TICK), t)
-            return EventStatus.ReachedTermination(self, ARRIVED)
-        self._previous = here
+            fraction = entry_fraction(zone, *self._previous, robot.x, robot.y) if t > 0.0 else 1.0
+            self.goal_time = t - (1.0 - fraction) * TICK
+            return EventStatus.ReachedTermination(self, "arrived")
+        self._previous = (robot.x, robot.y)
         if t >= self._task.time_limit:
-            return EventStatus.ReachedTermination(self, TIMEOUT)
+            return EventStatus.ReachedTermination(self, "time limit")
         return EventStatus.Succeeded()

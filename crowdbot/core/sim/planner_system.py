@@ -18,7 +18,6 @@ from crowdbot.core.sim.sensor_bank import SensorBank
 from crowdbot.core.ticks import TICK, ticks
 
 Array = NDArray[np.float64]
-_TICK, _V, _W, _SLEWED_V, _SLEWED_W = range(5)
 
 
 class PlannerSystem(LeafSystem):
@@ -47,7 +46,7 @@ class PlannerSystem(LeafSystem):
         self._port = self.DeclareVectorInputPort(
             ports.READINGS, bank.GetOutputPort(ports.READINGS).size()
         )
-        command = self.DeclareDiscreteState(5)
+        command = self.DeclareDiscreteState(ports.COMMAND_SIZE)
         desired = self.DeclareDiscreteState(ports.DESIRED_STATE_SIZE)
         self.DeclareStateOutputPort(ports.COMMAND, command)
         self.DeclareStateOutputPort(ports.DESIRED_STATE, desired)
@@ -55,22 +54,22 @@ class PlannerSystem(LeafSystem):
         self.DeclarePeriodicDiscreteUpdateEvent(TICK, 0.0, self._update)
 
     def _update(self, context: Context, values: DiscreteValues) -> None:
-        command = values.get_mutable_value(self._command)
-        tick = int(command[_TICK])
-        if tick % self._ticks == 0:
+        state = values.get_mutable_value(self._command)
+        tick, v, w, slewed_v, slewed_w = state.tolist()
+        if int(tick) % self._ticks == 0:
             t = tick * TICK
             hosted = self._host.step(self._observe(self._port.Eval(context), t))
-            command[_V], command[_W] = hosted.command.v, hosted.command.w
+            v, w = hosted.command.v, hosted.command.w
             self._on_step(t, hosted)
-        command[_TICK] = tick + 1
-        limits = self._robot.limits
-        command[_SLEWED_V] = _slew(command[_SLEWED_V], command[_V], limits.a_max * TICK)
-        command[_SLEWED_W] = _slew(command[_SLEWED_W], command[_W], limits.alpha_max * TICK)
-        drive = self._robot.drive
-        across = 0.5 * drive.track * command[_SLEWED_W]
-        desired = values.get_mutable_value(self._desired)
-        desired[2] = (command[_SLEWED_V] - across) / drive.command_radius
-        desired[3] = (command[_SLEWED_V] + across) / drive.command_radius
+        limits, drive = self._robot.limits, self._robot.drive
+        slewed_v = _slew(slewed_v, v, limits.a_max * TICK)
+        slewed_w = _slew(slewed_w, w, limits.alpha_max * TICK)
+        state[:] = (tick + 1.0, v, w, slewed_v, slewed_w)
+        across = 0.5 * drive.track * slewed_w
+        values.get_mutable_value(self._desired)[2:] = (
+            (slewed_v - across) / drive.command_radius,
+            (slewed_v + across) / drive.command_radius,
+        )
 
     def _observe(self, bank: Array, t: float) -> Observation:
         if self._odometry is None:

@@ -12,5 +12,5 @@ ROBOT_FORCE = "robot_force"
 READINGS = "readings"
 #: Wheel rates left, right (rad/s) as the plant's desired state [0, 0, left, right].
 DESIRED_STATE, DESIRED_STATE_SIZE = "desired_state", 4
-#: Command after the planner: v (m/s), w (rad/s), then the same after slew limits.
-COMMAND, COMMAND_SIZE = "command", 4
+#: Tick, the planner's command v (m/s) and w (rad/s), the same two after slew limits.
+COMMAND, COMMAND_SIZE = "command", 5

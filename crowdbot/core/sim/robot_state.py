@@ -40,18 +40,19 @@ class RobotStateSystem(LeafSystem):
 
     def convert(self, state: Array) -> RobotState:
         """Plant state (quaternion w, x, y, z; position; …) as a `RobotState`."""
-        q, v = self._quaternion, self._angular
-        w, x, y, z = state[q : q + 4]
+        values = state.tolist()  # Python floats: far cheaper one by one than numpy's
+        w, x, y, z, px, py, pz = values[self._quaternion : self._quaternion + 7]
+        _, _, wz, vx, vy, _ = values[self._angular : self._angular + 6]
         up = 1.0 - 2.0 * (x * x + y * y)  # cosine of the angle between body and world z
         return RobotState(
-            x=state[q + 4],
-            y=state[q + 5],
+            x=px,
+            y=py,
             yaw=math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
-            vx=state[v + 3],
-            vy=state[v + 4],
-            w=state[v + 2],
+            vx=vx,
+            vy=vy,
+            w=wz,
             tilt=math.acos(min(1.0, max(-1.0, up))),
-            z=state[q + 6],
-            left_angle=state[self._wheels[0]],
-            right_angle=state[self._wheels[1]],
+            z=pz,
+            left_angle=values[self._wheels[0]],
+            right_angle=values[self._wheels[1]],
         )

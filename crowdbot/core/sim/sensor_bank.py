@@ -91,7 +91,7 @@ class SensorBank(LeafSystem):
         due = [n for n, slot in self.slots.items() if is_due(tick, slot.info.rate)]
         if not due:
             return
-        robot = RobotState(*self._robot.Eval(context))
+        robot = RobotState(*self._robot.Eval(context).tolist())
         self._see(context, robot)
         pose = Pose(robot.x, robot.y, robot.yaw)
         for name in due:

@@ -45,7 +45,7 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Arra
 def _prepare(
     agent: Array, near: Array, near_count: int, walls: Array, params: Array, work: Array
 ) -> int:
-    """Row 0: number of neighbours, of walls. Then r, v_j, d^2 - R^2; then wall segments."""
+    """Row 0: number of neighbours, of walls. Then r, v_j, d^2 - R^2; then ends of walls from p."""
     discs = 0
     for j in range(near_count):
         reach = params[RANGE] + params[FROM_SURFACE] * near[j, REACH]
@@ -56,38 +56,37 @@ def _prepare(
         work[discs, 0], work[discs, 1] = near[j, RX], near[j, RY]
         work[discs, 2], work[discs, 3] = near[j, NVX], near[j, NVY]
         work[discs, 4] = gap2
+    walls_near = 0
     px, py, radius = agent[PX], agent[PY], agent[RADIUS]
     reach = params[RANGE] + params[FROM_SURFACE] * radius
-    last = discs
     for s in range(walls.shape[0]):
         nx, ny = nearest_on_segment(px, py, walls[s, 0], walls[s, 1], walls[s, 2], walls[s, 3])
-        if (px - nx) ** 2 + (py - ny) ** 2 <= reach * reach:
-            last += 1
-            for c in range(4):
-                work[last, c] = walls[s, c]
-    work[0, 0], work[0, 1] = discs, last - discs
-    return last
+        d2 = (px - nx) ** 2 + (py - ny) ** 2
+        if radius * radius < d2 <= reach * reach:  # walls that overlap are ignored, too
+            walls_near += 1
+            row = discs + walls_near
+            work[row, 0], work[row, 1] = walls[s, 0] - px, walls[s, 1] - py
+            work[row, 2], work[row, 3] = walls[s, 2] - px, walls[s, 3] - py
+    work[0, 0], work[0, 1] = discs, walls_near
+    return discs + walls_near
 
 
 @njit(EXCESS, cache=True, error_model="numpy")
-def _excess(
-    ux: float, uy: float, budget: float, agent: Array, work: Array, params: Array
-) -> float:
+def _excess(ux: float, uy: float, budget: float, agent: Array, work: Array, params: Array) -> float:
     vx, vy = 2.0 * ux - agent[VX], 2.0 * uy - agent[VY]
     discs, segments = int(work[0, 0]), int(work[0, 1])
+    too_soon = params[_W] / budget if budget > 0.0 else math.inf
     first = math.inf
     for j in range(1, discs + 1):
-        t = time_to_disc(
-            work[j, 0], work[j, 1], vx - work[j, 2], vy - work[j, 3], work[j, 4]
-        )
+        t = time_to_disc(work[j, 0], work[j, 1], vx - work[j, 2], vy - work[j, 3], work[j, 4])
         first = min(first, t)
+        if first < too_soon:
+            return params[_W] / first
     for j in range(discs + 1, discs + 1 + segments):
         t = time_to_segment(
-            agent[PX], agent[PY], vx, vy, agent[RADIUS],
-            work[j, 0], work[j, 1], work[j, 2], work[j, 3],
-        )  # fmt: skip
-        if 0.0 < t < first:
-            first = t
+            vx, vy, agent[RADIUS], work[j, 0], work[j, 1], work[j, 2], work[j, 3]
+        )
+        first = min(first, t)
     return params[_W] / first
 
 

@@ -36,6 +36,8 @@ _REACH = 6.0
 #: Apparent motion below this is sampling noise, m/s.
 _STILL = 0.3
 _ARRIVED = 0.1
+#: Memory of the way: distance between places (m), how old they are at most and at least (s).
+_STRIDE, _MEMORY, _RECENT = 0.25, 60.0, 2.0
 #: Speed and duration of the way back out of a dead end: m/s, s.
 _REVERSE, _ESCAPE = -0.2, 2.0
 
@@ -52,6 +54,7 @@ class Dwa:
 
     def _forget(self) -> None:
         self._scans: deque[tuple[float, Array]] = deque(maxlen=64)
+        self._visited: deque[tuple[float, float, float]] = deque()
         self._last = (0.0, 0.0)
         self._heading: float | None = None
         self._time: float | None = None
@@ -149,6 +152,7 @@ class Dwa:
         direction, free = choose_direction(
             points,
             velocities,
+            self._past(pose),
             goal,
             previous,
             speed,
@@ -177,6 +181,18 @@ class Dwa:
             np.linspace(left, right, spec.yaw_rates), (wish, max(left, min(right, 0.0)))
         )
         return np.stack(np.meshgrid(speeds, rates, indexing="ij"), axis=-1).reshape(-1, 2)
+
+    def _past(self, pose: Pose) -> Array:
+        """Places of the last minute, (V, 2) base frame; the way just driven is left out."""
+        now = 0.0 if self._time is None else self._time
+        if not self._visited or math.dist(self._visited[-1][1:], pose[:2]) > _STRIDE:
+            self._visited.append((now, pose.x, pose.y))
+        while self._visited[0][0] < now - _MEMORY:
+            self._visited.popleft()
+        places = [(x, y) for t, x, y in self._visited if t < now - _RECENT]
+        c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+        away: Array = np.array(places).reshape(-1, 2) - (pose.x, pose.y)
+        return away @ np.array([[c, -s], [s, c]])
 
     def _is_stuck(self, obs: Observation) -> bool:
         x, y, _ = obs.pose

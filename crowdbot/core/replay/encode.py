@@ -1,0 +1,165 @@
+"""Packs a run for the replay page: centimetres as int16, differences in time, zlib, base64.
+
+A row of numbers becomes its first value and then differences, modulo 2^16; all low bytes come
+before all high bytes, which are nearly all alike. `decode.js` undoes it.
+"""
+
+from __future__ import annotations
+
+import base64
+import zlib
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.interfaces import Array
+from crowdbot.core.replay.scan import ReplayScan
+from crowdbot.core.trajectory import AgentTracks, RobotTrack, Trajectories
+
+CENTIMETRE = 0.01
+ABSENT = -32768
+#: Faster than this is no step but a teleport, m/s (metric specification, 1.3).
+JUMP_SPEED = 10.0
+SCAN_RATE = 8.0
+SCAN_BEAMS = 300
+_LARGEST = 32000
+
+
+def encode(run: Trajectories, scans: Sequence[ReplayScan]) -> tuple[dict[str, Any], dict[str, str]]:
+    """What the page needs to draw: plain data for JSON, and named blobs of base64."""
+    blobs = {"t": _deflate(run.t.astype("<f8").tobytes())}
+    meta: dict[str, Any] = {
+        "n": len(run.t),
+        "walls": _nested(run.walls),
+        "zone": _nested(run.goal_zone),
+        "contacts": _contacts(run),
+        "robot": None,
+        "people": None,
+        "scans": [],
+    }
+    if run.robot is not None:
+        meta["robot"], blobs["robot"] = _robot(run.robot)
+    if run.agents is not None:
+        meta["people"], blobs["people"] = _people(run.t, run.agents)
+    if run.robot is not None:
+        for i, scan in enumerate(s for s in scans if len(s.t)):
+            about, blobs[f"scan{i}"] = _scan(scan)
+            meta["scans"].append(about)
+    return meta, blobs
+
+
+def _robot(robot: RobotTrack) -> tuple[dict[str, Any], str]:
+    rows = np.stack((robot.x, robot.y, robot.theta, robot.v)).astype("<f4")
+    about = {
+        "radius": robot.radius,
+        "goal": robot.goal,
+        "goalRadius": robot.goal_radius,
+        "goalTime": robot.goal_time,
+    }
+    return about, _deflate(rows.tobytes())
+
+
+def _people(t: Array, agents: AgentTracks) -> tuple[dict[str, Any], str]:
+    rows = np.stack((agents.x.T, agents.y.T))
+    rows[:, np.isnan(agents.x.T) | np.isnan(agents.y.T)] = np.nan
+    farthest = float(np.nanmax(np.abs(rows), initial=0.0, where=np.isfinite(rows)))
+    scale = max(CENTIMETRE, farthest / _LARGEST)
+    jumps = np.flatnonzero(_jumps(t, agents))
+    radius = agents.radius.tolist()
+    about = {
+        "count": len(agents.id),
+        "scale": scale,
+        "radius": radius if len(set(radius)) > 1 else radius[:1],
+        "jumps": jumps.tolist(),  # step * count + person
+    }
+    return about, _pack(_quantise(rows.reshape(-1, len(t)), scale))
+
+
+def _jumps(t: Array, agents: AgentTracks) -> NDArray[np.bool_]:
+    if agents.jump is not None:
+        return agents.jump
+    step = np.hypot(np.diff(agents.x, axis=0), np.diff(agents.y, axis=0))
+    fast: NDArray[np.bool_] = step > JUMP_SPEED * np.diff(t)[:, None]  # False where NaN
+    return fast
+
+
+def _contacts(run: Trajectories) -> list[dict[str, Any]]:
+    """Contacts with the person's place in the list instead of an id; -1: a wall."""
+    table = run.contacts
+    if table is None:
+        return []
+    place = {-1: -1}
+    if run.agents is not None:
+        place |= {id_: i for i, id_ in enumerate(run.agents.id.tolist())}
+    return [
+        {
+            "t0": float(table.t0[i]),
+            "t1": float(table.t1[i]),
+            "person": place.get(int(table.agent[i]), -1),
+            "impulse": _number(table.impulse[i]),
+        }
+        for i in np.argsort(table.t0, kind="stable")
+    ]
+
+
+def _scan(scan: ReplayScan) -> tuple[dict[str, Any], str]:
+    """Some beams of some scans; 0 stands for nothing that came back."""
+    every = max(1, -(-len(scan.angles) // SCAN_BEAMS))
+    chosen = _thinned(scan.t)
+    ranges = scan.ranges[chosen, ::every].T
+    ranges = np.where(np.isfinite(ranges), np.maximum(ranges, CENTIMETRE), 0.0)
+    about = {
+        "sensor": scan.sensor,
+        "mount": list(scan.mount),
+        "rangeMax": _number(scan.range_max) or float(ranges.max(initial=1.0)),
+        "angles": [round(float(a), 5) for a in scan.angles[::every]],
+        "t": [round(float(t), 6) for t in scan.t[chosen]],
+    }
+    return about, _pack(_quantise(ranges, CENTIMETRE))
+
+
+def _thinned(t: Array) -> list[int]:
+    """Indices of stamps at least 1/`SCAN_RATE` apart."""
+    chosen: list[int] = []
+    for i, stamp in enumerate(t.tolist()):
+        if not chosen or stamp - t[chosen[-1]] > 0.99 / SCAN_RATE:
+            chosen.append(i)
+    return chosen
+
+
+def _quantise(rows: Array, scale: float) -> NDArray[np.int16]:
+    known = np.isfinite(rows)
+    steps = np.rint(np.where(known, rows, 0.0) / scale)
+    clipped = np.clip(steps, -_LARGEST, _LARGEST)
+    return np.where(known, clipped, ABSENT).astype(np.int16)
+
+
+def _pack(rows: NDArray[np.int16]) -> str:
+    words = rows.astype(np.uint16)
+    words[:, 1:] -= rows.astype(np.uint16)[:, :-1]
+    pairs = np.ascontiguousarray(words, "<u2").view(np.uint8).reshape(-1, 2)
+    return _deflate(pairs.T.tobytes())
+
+
+def _deflate(data: bytes) -> str:
+    return base64.b64encode(zlib.compress(data, 9)).decode("ascii")
+
+
+def _nested(rows: Array | None) -> list[list[float]]:
+    return [] if rows is None else np.round(rows, 4).tolist()
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def summary(run: Trajectories) -> Mapping[str, str]:
+    """Facts of the run that the page shows whatever it is told."""
+    facts = {"Duration": f"{run.t[-1] - run.t[0]:.1f} s"}
+    if run.agents is not None:
+        facts["People"] = str(len(run.agents.id))
+    if run.contacts is not None:
+        facts["Contacts"] = str(len(run.contacts.agent))
+    return facts

@@ -1,0 +1,137 @@
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from crowdbot import cli
+from crowdbot.errors import CrowdbotError, PluginError, SimulationError, UsageError
+
+COMMANDS = [c for c in cli.command_names() if c in ("validate", "expand", "plugins")]
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["--version"]) == 0
+    assert capsys.readouterr().out.startswith("crowdbot 0.")
+
+
+@pytest.mark.parametrize("flag", ["-h", "--help"])
+def test_help_lists_every_command(flag: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main([flag]) == 0
+    shown = capsys.readouterr().out
+    assert COMMANDS == ["expand", "plugins", "validate"]
+    assert all(name in shown for name in cli.command_names())
+    assert "Example" in shown
+
+
+@pytest.mark.parametrize("command", cli.command_names())
+def test_every_commands_help_has_an_example(
+    command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main([command, "-h"]) == 0
+    shown = capsys.readouterr().out
+    assert "Example" in shown
+    assert f"crowdbot {command}" in shown
+    assert "--verbose" in shown
+
+
+@pytest.mark.parametrize(
+    "argv", [["validte"], ["validate"], ["validate", "--nope", "x"], ["expand", "a", "b"], ["-x"]]
+)
+def test_usage_errors(argv: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(argv) == 2
+    assert capsys.readouterr().err
+
+
+def test_a_mistyped_command_gets_a_hint(capsys: pytest.CaptureFixture[str]) -> None:
+    cli.main(["validat"])
+    assert "did you mean 'validate'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "text"),
+    [
+        (UsageError("use it well"), 2, "error: use it well"),
+        (PluginError("acme broke"), 3, "error: acme broke"),
+        (SimulationError("no"), 4, "error: no"),
+        (CrowdbotError("x"), 1, "error: x"),
+        (KeyboardInterrupt(), 130, ""),
+        (PermissionError(13, "Permission denied", "f"), 1, "error: f: Permission denied"),
+        (ZeroDivisionError("z"), 4, "internal error ZeroDivisionError: z; run with CROWDBOT_DEBUG"),
+    ],
+)
+def test_exit_codes(
+    error: BaseException,
+    code: int,
+    text: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def fail(**_: object) -> None:
+        raise error
+
+    monkeypatch.delenv("CROWDBOT_DEBUG", raising=False)
+    monkeypatch.setattr("crowdbot.core.registry.discover", fail)
+    assert cli.main(["plugins"]) == code
+    shown = capsys.readouterr().err
+    assert shown.startswith(text)
+    assert "Traceback" not in shown
+
+
+def test_debug_shows_the_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(**_: object) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setenv("CROWDBOT_DEBUG", "1")
+    monkeypatch.setattr("crowdbot.core.registry.discover", fail)
+    with pytest.raises(ZeroDivisionError):
+        cli.main(["plugins"])
+
+
+def run(*code: str, **env: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, *code],
+        capture_output=True,
+        text=True,
+        env={**os.environ, **env},
+        timeout=60,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize(
+    "argv", [["validate", "challenge-2020"], ["expand", "challenge-2020"], ["plugins"], ["--help"]]
+)
+def test_words_load_neither_drake_nor_numba(argv: list[str]) -> None:
+    code = (
+        "import sys; from crowdbot.cli import main; code = main(sys.argv[1:]); "
+        "heavy = {'pydrake', 'numba', 'numpy', 'mcap', 'rosbags'} & set(sys.modules); "
+        "assert not heavy, heavy; sys.exit(code)"
+    )
+    done = run("-c", code, *argv)
+    assert done.returncode == 0, done.stderr
+
+
+def test_module_can_be_run() -> None:
+    assert run("-m", "crowdbot", "--version").stdout.startswith("crowdbot ")
+
+
+def test_a_closed_pipe_is_no_error() -> None:
+    command = f"set -o pipefail; {sys.executable} -m crowdbot expand challenge-2020 | head -1"
+    done = subprocess.run(
+        ["bash", "-c", command], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.stdout.startswith("in-d0125-slow-c01-r02")
+    assert done.stderr == ""
+
+
+def test_no_colours_without_a_terminal() -> None:
+    for env in ({}, {"NO_COLOR": "1"}):
+        assert "\x1b" not in run("-m", "crowdbot", "--help", **env).stdout
+
+
+def test_output_in_any_encoding() -> None:
+    done = run("-m", "crowdbot", "plugins", "show", "lidar2d", PYTHONIOENCODING="ascii")
+    assert done.returncode == 0, done.stderr
