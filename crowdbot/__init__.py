@@ -1,0 +1,60 @@
+"""crowdbot: a benchmark for robots that drive through dense human crowds.
+
+Names below are imported when they are first used, so that ``import crowdbot`` stays cheap.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from crowdbot.api import evaluate, expand, load, score, simulate
+    from crowdbot.core.evaluate import Scores
+    from crowdbot.core.score import Score
+    from crowdbot.core.sim.simulate import Run
+    from crowdbot.core.trajectory import Trajectories
+    from crowdbot.dsl.expand import Expansion as Suite
+    from crowdbot.dsl.scenario import Scenario
+    from crowdbot.errors import CrowdbotError
+
+_HOMES = {
+    "CrowdbotError": "crowdbot.errors",
+    "Run": "crowdbot.core.sim.simulate",
+    "Scenario": "crowdbot.dsl.scenario",
+    "Score": "crowdbot.core.score",
+    "Scores": "crowdbot.core.evaluate",
+    "Suite": "crowdbot.dsl.expand:Expansion",
+    "Trajectories": "crowdbot.core.trajectory",
+    "evaluate": "crowdbot.api",
+    "expand": "crowdbot.api",
+    "load": "crowdbot.api",
+    "score": "crowdbot.api",
+    "simulate": "crowdbot.api",
+}
+
+__all__ = [
+    "CrowdbotError",
+    "Run",
+    "Scenario",
+    "Score",
+    "Scores",
+    "Suite",
+    "Trajectories",
+    "evaluate",
+    "expand",
+    "load",
+    "score",
+    "simulate",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'crowdbot' has no attribute '{name}'")
+    module, _, attribute = _HOMES[name].partition(":")
+    return getattr(importlib.import_module(module), attribute or name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

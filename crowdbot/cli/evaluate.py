@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from crowdbot.core.run_directory import RECORD, RECORDING
 from crowdbot.errors import InputError
 
 if TYPE_CHECKING:
     from crowdbot.core.evaluate import Scores
     from crowdbot.core.score import Score
     from crowdbot.core.trajectory import Trajectories
-
-RECORDING = "run.mcap"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -109,7 +108,7 @@ def _in_directory(folder: Path) -> Recorded:
     references = record.get("references") or {}
     seed = record.get("seed")
     if not isinstance(references, Mapping) or not isinstance(seed, int | None):
-        raise InputError(f"{folder / 'run.json'}: 'references' or 'seed' is malformed")
+        raise InputError(f"{folder / RECORD}: 'references' or 'seed' is malformed")
     return Recorded(
         path=folder,
         recording=folder / RECORDING,
@@ -123,11 +122,11 @@ def _in_directory(folder: Path) -> Recorded:
 
 def _record(folder: Path) -> Mapping[str, Any]:
     """run.json; an interrupted run may have none."""
-    file = folder / "run.json"
+    file = folder / RECORD
     if not file.is_file():
         if folder.name.endswith(".partial"):
             return {}
-        raise InputError(f"{folder}: no run directory: run.json is missing")
+        raise InputError(f"{folder}: no run directory: {RECORD} is missing")
     try:
         record = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
@@ -142,9 +141,9 @@ def _beside(folder: Path, reference: object) -> Path | None:
 
 
 def _name(planner: object) -> str:
-    """A planner is recorded by name, or as its document."""
+    """A planner is recorded by name, or as its document and name."""
     if isinstance(planner, Mapping):
-        planner = planner.get("kind") or planner.get("name")
+        planner = planner.get("name") or planner.get("kind")
     return str(planner or "")
 
 

@@ -27,7 +27,7 @@ class RunLog:
         self._touches = np.zeros(len(agent_id))
         self.contacts = 0
         self.clamped = 0
-        self._samples = self._steps = 0
+        self._steps = 0
         self._step_sum = self._step_max = 0.0
 
     def sample(self, t: float, robot: RobotState | None, crowd: Array | None) -> None:
@@ -37,9 +37,8 @@ class RunLog:
             _, people = s.view(crowd)
             agents = people[:, s.X : s.VY + 1].T.copy()
             agents[:, people[:, s.WAITING] != 0.0] = np.nan
-            jump = people[:, s.TRIP] != self._trip if self._samples else None
+            jump = people[:, s.TRIP] != self._trip
             self._book_trips(people)
-        self._samples += 1
         self.writer.state(t, None if robot is None else _robot_row(robot), agents, jump)
 
     def book_contacts(self, crowd: Array) -> None:

@@ -32,6 +32,7 @@ COLUMNS = (
     "lower",
     "upper",
 )
+_LONGEST_REASON = len("reference_goal_not_reached")
 _NUMBERS = ("value", "lower", "upper")
 _TEXTS = ("category", "metric", "symbol", "variant", "unit", "better", "status", "reason")
 
@@ -99,19 +100,19 @@ def _cells(score: Score) -> list[str]:
 
 def _row(path: Path, line: int, cells: Mapping[str, Any]) -> ScoreRow:
     try:
+        if None in cells or None in cells.values():
+            raise ValueError(f"a row has {len(COLUMNS)} cells")
         return ScoreRow(
             scenario=cells["scenario"],
             planner=cells["planner"],
             seed=int(cells["seed"]),
             score=_score(cells),
         )
-    except (TypeError, ValueError) as error:
+    except ValueError as error:
         raise InputError(f"{path}:{line}: not a score: {error}") from error
 
 
 def _score(cells: Mapping[str, Any]) -> Score:
-    if None in cells or None in cells.values():
-        raise ValueError(f"a row has {len(COLUMNS)} cells")
     for name, known in (
         ("status", ("ok", "undefined", "censored")),
         ("better", ("higher", "lower", "reference", "none")),
@@ -130,10 +131,10 @@ def scores_table(scores: Sequence[Score]) -> Table:
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=SIMPLE_HEAD, padding=(0, 1), pad_edge=False)
+    table = Table(box=SIMPLE_HEAD, padding=0, pad_edge=False)
     for name in ("metric", "symbol", "variant"):
         table.add_column(name, overflow="fold", no_wrap=name != "metric")
-    table.add_column("value", overflow="fold")
+    table.add_column("value", overflow="fold", min_width=_LONGEST_REASON)
     table.add_column("better", no_wrap=True)
     by_category = sorted(scores, key=lambda s: s.category)
     for category, group in groupby(by_category, key=lambda s: s.category):
@@ -151,9 +152,9 @@ def scores_table(scores: Sequence[Score]) -> Table:
 def verdict(score: Score) -> str:
     """Value and unit; without a value why, and within which bounds it lies."""
     if score.value is not None:
-        return _with_unit(score.value, score.unit)
+        return _with_unit(float(score.value), score.unit)
     bounds = [
-        f"{word} {_with_unit(number, score.unit)}"
+        f"{word} {_with_unit(float(number), score.unit)}"
         for word, number in (("at least", score.lower), ("at most", score.upper))
         if number is not None
     ]
@@ -161,5 +162,6 @@ def verdict(score: Score) -> str:
 
 
 def _with_unit(number: float, unit: str) -> str:
-    text = str(int(number)) if number == int(number) else f"{number:.5g}"
+    whole = number.is_integer() and abs(number) < 1e9
+    text = str(int(number)) if whole else f"{number:.5g}"
     return text if unit in ("1", "") else f"{text} {unit}"

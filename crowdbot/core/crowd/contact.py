@@ -116,7 +116,9 @@ def _end_touch(header: Array, agents: Array, i: int) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def keep_off(agents: Array, i: int, radius: Array, robots: Array, response: Array) -> tuple[float, float]:
+def keep_off(
+    agents: Array, i: int, radius: Array, robots: Array, response: Array
+) -> tuple[float, float]:
     """Steering away from robots (m/s^2): behaviour of people, felt by them alone.
 
     Args:

@@ -18,15 +18,21 @@ Signatures (float64 everywhere, SI units, world frame unless said otherwise):
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numba import carray, njit, types
+from numba.core.errors import NumbaExperimentalFeatureWarning
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+# Passing compiled functions to a kernel works and is cached; numba says at each call that it is
+# experimental. The lock pins the version that was tested.
+warnings.filterwarnings("ignore", category=NumbaExperimentalFeatureWarning)
 
 _F, _V, _M = types.float64, types.float64[::1], types.float64[:, ::1]
 BASE = types.float64(_F, _F, _F, _F, _V)
@@ -74,7 +80,9 @@ class FunctionPointer(types.WrapperAddressProtocol):  # type: ignore[misc]
         result = function.get_compile_result(signature)  # type: ignore[attr-defined]
         self._function = function  # keeps the machine code alive
         self._signature = signature
-        self._address = result.library.get_pointer_to_function(result.fndesc.llvm_cfunc_wrapper_name)
+        self._address = result.library.get_pointer_to_function(
+            result.fndesc.llvm_cfunc_wrapper_name
+        )
 
     def __wrapper_address__(self) -> int:
         """Address of the C wrapper."""

@@ -59,9 +59,7 @@ def tick(
     header, agents = flat[:HEADER_SIZE], flat[HEADER_SIZE:].reshape(-1, columns)
     now = header[TICK] * dt
     for r in range(robots.shape[0]):
-        robot_contact(
-            header, agents, radius, robots[r], stiffness, dissipation, now, dt, reaction
-        )
+        robot_contact(header, agents, radius, robots[r], stiffness, dissipation, now, dt, reaction)
     if robots.shape[0] == 0:
         reaction[:] = 0.0
     for i in range(agents.shape[0]):
@@ -78,9 +76,7 @@ def tick(
             header[TRIPS] += 1.0
     for i in range(agents.shape[0]):
         if agents[i, WAITING] != 0.0:
-            try_to_enter(
-                agents, i, ids, radius, preferred, robots, entrance, out, key, now + dt
-            )
+            try_to_enter(agents, i, ids, radius, preferred, robots, entrance, out, key, now + dt)
     header[TICK] += 1.0
 
 

@@ -44,7 +44,9 @@ def add_plant(builder: DiagramBuilder, parts: EnvironmentParts, robot: RobotMode
     plant, _ = AddMultibodyPlant(config, builder)
     (model,) = Parser(plant).AddModelsFromString(robot.sdf, "sdf")
     world = plant.world_body()
-    plant.RegisterCollisionGeometry(world, RigidTransform([0.0, 0.0, -1.0]), Box(1e3, 1e3, 2.0), "floor", _FLOOR)
+    plant.RegisterCollisionGeometry(
+        world, RigidTransform([0.0, 0.0, -1.0]), Box(1e3, 1e3, 2.0), "floor", _FLOOR
+    )
     for s in np.flatnonzero(parts.stops_robot):
         pose, box = wall_box(parts.walls[s], parts.wall_heights[s])
         plant.RegisterCollisionGeometry(world, pose, box, f"wall{s}", _WALL)

@@ -271,9 +271,7 @@ def _write_files(
 ) -> None:
     scenario = request.scenario
     _write_scenario(folder, scenario)
-    write_scores_csv(
-        folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed
-    )
+    write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
     arrival = record["goal_time"]
     write_replay(
         folder / files.REPLAY,

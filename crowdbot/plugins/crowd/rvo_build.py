@@ -83,9 +83,7 @@ def _excess(ux: float, uy: float, budget: float, agent: Array, work: Array, para
         if first < too_soon:
             return params[_W] / first
     for j in range(discs + 1, discs + 1 + segments):
-        t = time_to_segment(
-            vx, vy, agent[RADIUS], work[j, 0], work[j, 1], work[j, 2], work[j, 3]
-        )
+        t = time_to_segment(vx, vy, agent[RADIUS], work[j, 0], work[j, 1], work[j, 2], work[j, 3])
         first = min(first, t)
     return params[_W] / first
 

@@ -86,9 +86,7 @@ def _prepare(
 
 
 @njit(EXCESS, cache=True, error_model="numpy")
-def _excess(
-    ux: float, uy: float, budget: float, agent: Array, work: Array, params: Array
-) -> float:
+def _excess(ux: float, uy: float, budget: float, agent: Array, work: Array, params: Array) -> float:
     cost = 0.0
     for j in range(1, int(work[0, 0]) + 1):
         dx, dy, qx, qy = work[j, 0], work[j, 1], work[j, 2], work[j, 3]

@@ -35,8 +35,6 @@ class VelocitySpace:
         return acceleration * scale[:, np.newaxis]
 
 
-def build(
-    spec: VelocitySpaceSpec, costs: Sequence[CompiledCost], agents: Agents
-) -> VelocitySpace:
+def build(spec: VelocitySpaceSpec, costs: Sequence[CompiledCost], agents: Agents) -> VelocitySpace:
     """The policy for one set of agents."""
     return VelocitySpace(spec, costs, agents)

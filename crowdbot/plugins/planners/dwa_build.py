@@ -21,6 +21,7 @@ from crowdbot.core.interfaces import (
 from crowdbot.core.sensing.points import LidarPoints
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
 from crowdbot.plugins.planners.dwa import DwaSpec
+from crowdbot.plugins.planners.dwa_map_build import remembered, way_out
 from crowdbot.plugins.planners.dwa_points_build import (
     apparent_velocity,
     choose_direction,
@@ -36,8 +37,8 @@ _REACH = 6.0
 #: Apparent motion below this is sampling noise, m/s.
 _STILL = 0.3
 _ARRIVED = 0.1
-#: Memory of the way: distance between places (m), how old they are at most and at least (s).
-_STRIDE, _MEMORY, _RECENT = 0.25, 60.0, 2.0
+#: The map is renewed so often while it is needed, s.
+_MAP_PERIOD = 0.5
 #: Speed and duration of the way back out of a dead end: m/s, s.
 _REVERSE, _ESCAPE = -0.2, 2.0
 
@@ -54,12 +55,15 @@ class Dwa:
 
     def _forget(self) -> None:
         self._scans: deque[tuple[float, Array]] = deque(maxlen=64)
-        self._visited: deque[tuple[float, float, float]] = deque()
+        self._map: Array = np.empty((0, 2))
+        self._mapped_at = -math.inf
+        self._way: float | None = None
         self._last = (0.0, 0.0)
         self._heading: float | None = None
         self._time: float | None = None
         self._moved_at: tuple[float, float, float] | None = None
         self._escape_until = -math.inf
+        self._nearest: tuple[float, float] | None = None
 
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
@@ -99,6 +103,10 @@ class Dwa:
             return Command(0.0, 0.0)
         points, velocities = self._see(obs)
         escaping = self._is_stuck(obs)
+        if self._is_lost(distance):
+            goal = self._way_out(obs, points, velocities, goal)
+        else:
+            self._map, self._way = np.empty((0, 2)), None
         direction, free = self._choose(obs.pose, goal, distance, points, velocities, escaping)
         near = rollout.reachable(points, velocities, self._p)
         top = min(
@@ -152,7 +160,6 @@ class Dwa:
         direction, free = choose_direction(
             points,
             velocities,
-            self._past(pose),
             goal,
             previous,
             speed,
@@ -182,17 +189,26 @@ class Dwa:
         )
         return np.stack(np.meshgrid(speeds, rates, indexing="ij"), axis=-1).reshape(-1, 2)
 
-    def _past(self, pose: Pose) -> Array:
-        """Places of the last minute, (V, 2) base frame; the way just driven is left out."""
+    def _is_lost(self, distance: float) -> bool:
+        """Whether the robot has come no nearer to the goal for long: it needs a map."""
         now = 0.0 if self._time is None else self._time
-        if not self._visited or math.dist(self._visited[-1][1:], pose[:2]) > _STRIDE:
-            self._visited.append((now, pose.x, pose.y))
-        while self._visited[0][0] < now - _MEMORY:
-            self._visited.popleft()
-        places = [(x, y) for t, x, y in self._visited if t < now - _RECENT]
-        c, s = math.cos(pose.yaw), math.sin(pose.yaw)
-        away: Array = np.array(places).reshape(-1, 2) - (pose.x, pose.y)
-        return away @ np.array([[c, -s], [s, c]])
+        if self._nearest is None or distance < self._nearest[0] - 0.3:
+            self._nearest = (distance, now)
+        return now - self._nearest[1] > 2.0 * self._spec.patience
+
+    def _way_out(self, obs: Observation, points: Array, velocities: Array, goal: float) -> float:
+        """Bearing of the way past everything that stands around; of the goal if there is none."""
+        x, y, yaw = obs.pose
+        if obs.t - self._mapped_at >= _MAP_PERIOD:
+            self._mapped_at = obs.t
+            c, s = math.cos(yaw), math.sin(yaw)
+            still = points[np.all(velocities == 0.0, axis=1)]
+            seen = still @ np.array([[c, s], [-s, c]]) + (x, y)
+            self._map = remembered(self._map, seen, x, y, _REACH)
+            radius = self._spec.robot_radius + self._spec.margin + 0.03
+            found, way = way_out(self._map, x, y, *obs.goal, radius)
+            self._way = way if found else None
+        return goal if self._way is None else self._way - yaw
 
     def _is_stuck(self, obs: Observation) -> bool:
         x, y, _ = obs.pose

@@ -112,20 +112,9 @@ def free_time(
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _visits(visited: Array, x: float, y: float) -> int:
-    """How often the robot was near a place 0.8 m in the direction (x, y)."""
-    count = 0
-    for i in range(visited.shape[0]):
-        if math.hypot(visited[i, 0] - 0.8 * x, visited[i, 1] - 0.8 * y) < 0.4:
-            count += 1
-    return count
-
-
-@numba.njit(cache=True, error_model="numpy")
 def choose_direction(
     points: Array,
     velocities: Array,
-    visited: Array,
     goal: float,
     previous: float,
     speed: float,
@@ -133,15 +122,11 @@ def choose_direction(
     limit: float,
     detour: float,
 ) -> tuple[float, float]:
-    """The direction in which to go on: towards the goal, free for long, like last time, and new.
-
-    Where the robot has been before costs something ("avoiding the past", Balch and Arkin,
-    ICRA 1993): that brings it out of pockets which it would enter for ever.
+    """The direction in which to go on: towards the goal, free for long, like last time.
 
     Args:
         points: (K, 2) base frame, m.
         velocities: (K, 2) base frame, m/s.
-        visited: (V, 2) places where the robot has been, base frame, m.
         goal: bearing of the goal, rad.
         previous: bearing of the last choice, rad.
         speed: at which the robot would go, m/s.
@@ -162,7 +147,6 @@ def choose_direction(
         swing = unsigned(theta - previous) / math.pi
         turn = unsigned(theta) / math.pi
         cost = detour * abs(k) / half + (1.0 - t / limit) + 0.15 * swing + 0.15 * turn
-        cost += 0.15 * min(8, _visits(visited, math.cos(theta), math.sin(theta)))
         if cost < best:
             best, angle, time = cost, theta, t
     return angle, time

@@ -51,7 +51,9 @@ def _sdf(mass: float) -> str:
     body = mass - 2.0 * WHEEL_MASS
     across = body * (3.0 * BODY_RADIUS**2 + BODY_HEIGHT**2) / 12.0
     casters = "".join(
-        _collision(f"{name}_caster", (x, 0.0, CASTER_RADIUS - BASE_HEIGHT), _sphere(CASTER_RADIUS), 0.0)
+        _collision(
+            f"{name}_caster", (x, 0.0, CASTER_RADIUS - BASE_HEIGHT), _sphere(CASTER_RADIUS), 0.0
+        )
         for name, x in CASTERS.items()
     )
     plates = "".join(

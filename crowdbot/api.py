@@ -1,0 +1,99 @@
+"""The Python API: what the commands do, for scripts and notebooks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from crowdbot.core.library import open_spec, pick
+from crowdbot.core.registry import Registry, discover
+from crowdbot.dsl.expand import Expansion
+from crowdbot.dsl.scenario import Scenario
+
+if TYPE_CHECKING:
+    from crowdbot.core.evaluate import MetricParameters, Scores
+    from crowdbot.core.sim.runner import Progress
+    from crowdbot.core.sim.simulate import Run
+    from crowdbot.core.trajectory import Trajectories
+
+
+@cache
+def registry() -> Registry:
+    """The installed plugins, discovered once in a process."""
+    return discover()
+
+
+def load(path_or_name: str | Path, scenario: str | None = None) -> Expansion | Scenario:
+    """Read a suite, or one scenario of it.
+
+    Args:
+        path_or_name: a file, or the name of a packaged suite.
+        scenario: id, unique prefix or pattern; None gives the suite, or the scenario of a
+            document that holds one.
+
+    Raises:
+        SpecError: the document is wrong.
+        UnknownNameError: no such suite or scenario.
+    """
+    expansion = open_spec(str(path_or_name), registry())
+    if scenario is not None:
+        return pick(expansion, scenario)
+    alone = len(expansion.scenarios) == 1 and expansion.scenarios[0].id == expansion.suite_id
+    return expansion.scenarios[0] if alone else expansion
+
+
+def expand(suite: Expansion) -> list[Scenario]:
+    """All scenarios of a suite, in order."""
+    return list(suite.scenarios)
+
+
+def simulate(
+    scenario: Scenario,
+    planner: str = "dwa",
+    seed: int = 0,
+    out: str | Path | None = None,
+    progress: Callable[[Progress], None] | None = None,
+    **options: Any,
+) -> Run:
+    """Simulate, record and score one run; see `crowdbot.core.sim.simulate.simulate`."""
+    from crowdbot.core.sim.simulate import simulate as simulate_it
+
+    return simulate_it(
+        scenario,
+        registry(),
+        planner=planner,
+        seed=seed,
+        out=None if out is None else Path(out),
+        progress=progress,
+        **options,
+    )
+
+
+def evaluate(run: Run, metrics: str | Sequence[str] = "*") -> Scores:
+    """Score a run again from its recording."""
+    return score(run.trajectories, **run.references, metrics=metrics)
+
+
+def score(
+    crowded: Trajectories,
+    robot_alone: Trajectories | None = None,
+    crowd_alone: Trajectories | None = None,
+    *,
+    metrics: str | Sequence[str] = "*",
+    variants: str | Sequence[str] = "all",
+    parameters: MetricParameters | None = None,
+) -> Scores:
+    """Score trajectories; see `crowdbot.core.evaluate.score`."""
+    from crowdbot.core.evaluate import score as score_it
+
+    return score_it(
+        registry(),
+        crowded,
+        robot_alone,
+        crowd_alone,
+        metrics=metrics,
+        variants=variants,
+        parameters=parameters,
+    )

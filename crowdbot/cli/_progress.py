@@ -1,0 +1,78 @@
+"""Progress of simulations on stderr: a bar on a terminal, a line a stage elsewhere."""
+
+from __future__ import annotations
+
+import logging
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn
+
+if TYPE_CHECKING:
+    from crowdbot.core.sim.runner import Progress as Report
+
+
+@contextmanager
+def show_progress() -> Iterator[Callable[[Report], None]]:
+    """Yield what a simulation calls with its progress."""
+    if logging.getLogger("crowdbot").level > logging.INFO:
+        yield lambda report: None
+    elif sys.stderr.isatty():
+        with _bars() as bars:
+            yield bars
+    else:
+        yield _Lines()
+
+
+@contextmanager
+def _bars() -> Iterator[Callable[[Report], None]]:
+    columns = (
+        TextColumn("{task.description:<12}"),
+        BarColumn(bar_width=24),
+        TextColumn("{task.completed:6.1f} / {task.total:.0f} s"),
+        TextColumn("{task.fields[factor]}"),
+        TextColumn("{task.fields[distance]}"),
+    )
+    with Progress(*columns, console=Console(stderr=True)) as progress:
+        waiting = progress.add_task(
+            "preparing", total=None, visible=True, factor="first run compiles", distance=""
+        )
+        tasks: dict[str, TaskID] = {}
+
+        def show(report: Report) -> None:
+            progress.update(waiting, visible=False)
+            if report.stage not in tasks:
+                tasks[report.stage] = progress.add_task(
+                    report.stage, total=report.limit, factor="", distance=""
+                )
+            progress.update(
+                tasks[report.stage],
+                completed=report.t,
+                factor=f"{report.real_time_factor:5.1f} × real time",
+                distance="" if report.distance is None else f"{report.distance:5.1f} m to go",
+            )
+
+        yield show
+
+
+class _Lines:
+    """One line when a stage begins, one every 30 simulated seconds."""
+
+    def __init__(self) -> None:
+        self._stage = ""
+        self._next = 0.0
+
+    def __call__(self, report: Report) -> None:
+        if report.stage != self._stage:
+            self._stage, self._next = report.stage, 0.0
+        if report.t >= self._next:
+            self._next = report.t + 30.0
+            distance = "" if report.distance is None else f", {report.distance:.1f} m to go"
+            print(
+                f"{report.stage}: {report.t:.0f} of {report.limit:.0f} s, "
+                f"{report.real_time_factor:.1f} × real time{distance}",
+                file=sys.stderr,
+            )

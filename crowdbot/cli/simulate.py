@@ -1,0 +1,192 @@
+"""``crowdbot simulate``: run one scenario with one planner, record it, score it."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from enum import StrEnum
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from crowdbot.core.sim.simulate import Run
+
+
+class Record(StrEnum):
+    """Which sensors are simulated and recorded."""
+
+    all = "all"
+    used = "used"
+    none = "none"
+
+
+def simulate(
+    spec: Annotated[str, typer.Argument(metavar="SPEC", help="File, or name of a suite.")],
+    scenario: Annotated[
+        str | None, typer.Argument(metavar="[ID]", help="Scenario: id, unique prefix or pattern.")
+    ] = None,
+    planner: Annotated[
+        str, typer.Option(metavar="NAME|FILE|file.py:Class", help="The planner under test.")
+    ] = "dwa",
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change the scenario; repeatable."),
+    ] = None,
+    planner_set: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=VALUE", help="Change the planner; repeatable."),
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Run seed: sensor noise and planner.")] = 0,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")] = Path(
+        "runs"
+    ),
+    record: Annotated[Record, typer.Option(help="Sensors to simulate and record.")] = Record.all,
+    references: Annotated[
+        bool, typer.Option(help="Run robot_alone and crowd_alone where they are missing.")
+    ] = True,
+    force: Annotated[bool, typer.Option("--force", help="Run again what is complete.")] = False,
+    plugin: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="DIR", help="A plugin that is not installed; repeatable."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """Simulate one scenario with one planner; record, score and replay it.
+
+    Example: crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
+    """
+    from crowdbot.cli._progress import show_progress
+    from crowdbot.core.library import open_spec, pick
+    from crowdbot.core.registry import discover
+
+    registry = discover(extra=plugin or ())
+    expansion = open_spec(spec, registry, overrides or ())
+    chosen = pick(expansion, scenario)
+    simulate_it = _import_simulate()
+    with _interruptible() as stop, show_progress() as progress:
+        run = simulate_it(
+            chosen,
+            registry,
+            planner=planner,
+            planner_settings=planner_set or (),
+            seed=seed,
+            out=out,
+            suite=expansion.suite_id,
+            metrics=expansion.metrics,
+            record=record.value,
+            references=references,
+            force=force,
+            progress=progress,
+            stop=stop,
+            on_hang=_end_hung_process,
+        )
+    _print(run, as_json=as_json)
+    if run.status == "planner_failed":
+        raise typer.Exit(3)
+
+
+def _import_simulate() -> Callable[..., Run]:
+    """Import Drake, which needs a system library that a bare machine may lack.
+
+    Raises:
+        MissingLibraryError: it is missing.
+    """
+    from crowdbot.errors import MissingLibraryError
+
+    try:
+        from crowdbot.core.sim.simulate import simulate as simulate_it
+    except ImportError as error:
+        if "libglib" not in str(error):
+            raise
+        raise MissingLibraryError(
+            "Drake needs the system library libglib2.0; install it with "
+            "'sudo apt-get install libglib2.0-0' (libglib2.0-0t64 on newer systems)"
+        ) from error
+    return simulate_it
+
+
+@contextmanager
+def _interruptible() -> Iterator[Callable[[], bool]]:
+    """The first Ctrl-C asks the run to end and keep its recording; the second one insists."""
+    asked = False
+
+    def handler(number: int, frame: FrameType | None) -> None:
+        nonlocal asked
+        del number, frame
+        if asked:
+            raise KeyboardInterrupt
+        asked = True
+
+    previous = signal.signal(signal.SIGINT, handler)
+    try:
+        yield lambda: asked
+    finally:
+        signal.signal(signal.SIGINT, previous)
+
+
+def _end_hung_process() -> None:
+    """A planner that swallows every interruption cannot be left in any other way."""
+    print(
+        "error: the planner did not return and could not be interrupted; "
+        "the recording up to here is in the .partial directory",
+        file=sys.stderr,
+        flush=True,
+    )
+    os._exit(3)
+
+
+def _print(run: Run, *, as_json: bool) -> None:
+    from crowdbot.core.run_directory import REPLAY, SCORES
+    from crowdbot.core.scores_table import read_scores_csv, scores_table
+
+    rows = read_scores_csv(run.directory / SCORES)
+    if as_json:
+        scores = [
+            {
+                "metric": r.score.metric,
+                "variant": r.score.variant,
+                "value": r.score.value,
+                "unit": r.score.unit,
+                "status": r.score.status,
+                "reason": r.score.reason,
+                "lower": r.score.lower,
+                "upper": r.score.upper,
+            }
+            for r in rows
+        ]
+        typer.echo(
+            json.dumps(
+                {**run.record, "directory": str(run.directory), "reused": run.reused,
+                 "scores": scores},
+                indent=2,
+            )
+        )  # fmt: skip
+        return
+    from rich.console import Console
+
+    console = Console()
+    console.print(scores_table([r.score for r in rows]))
+    record = run.record
+    console.print(_summary(run), highlight=False)
+    if record["status"] == "planner_failed":
+        print(f"error: {record['reason']}", file=sys.stderr)
+    console.print(f"replay: {run.directory / REPLAY}", soft_wrap=True, highlight=False)
+
+
+def _summary(run: Run) -> str:
+    record = run.record
+    ending = {
+        "arrived": "arrived after {:.1f} s",
+        "timeout": "did not arrive within {:.1f} s",
+        "planner_failed": "planner failed at {:.1f} s",
+    }[record["status"]].format(record["goal_time"] or record["sim_time"])
+    speed = f"{record['real_time_factor']:.1f} times real time"
+    note = "; was complete already, --force runs it again" if run.reused else f" ({speed})"
+    return f"{record['scenario']} · {record['planner']['name']} · seed {record['seed']}: {ending}{note}"

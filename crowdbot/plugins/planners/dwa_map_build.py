@@ -1,0 +1,141 @@
+"""A small map for getting out of dead ends: what stands around the robot, and the way past it."""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+#: Side of a cell (m) and cells from the centre of the map to its border.
+CELL, HALF = 0.1, 60
+_SIDE = 2 * HALF + 1
+_SECTORS = 180
+#: A remembered point is gone if its sector is seen to be free this far behind it, m.
+_BEHIND = 0.4
+#: Metres along the way at which the robot aims.
+_AIM = 0.7
+
+
+def remembered(memory: Array, seen: Array, x: float, y: float, reach: float) -> Array:
+    """The memory after another look.
+
+    Args:
+        memory: (N, 2) points seen before, world frame, m.
+        seen: (K, 2) points seen now, world frame, m.
+        x: of the robot, m.
+        y: of the robot, m.
+        reach: how far the robot sees, m.
+
+    Returns:
+        (N', 2) what was seen now and what is hidden, out of reach, or still there; one point in
+        each cell.
+    """
+    view = np.full(_SECTORS, reach)
+    at, gap = _polar(seen, x, y)
+    np.minimum.at(view, at, gap)
+    at, gap = _polar(memory, x, y)
+    kept = memory[(gap + _BEHIND > view[at]) | (gap > reach)]
+    cells = np.unique(np.round(np.concatenate([kept, seen]) / CELL), axis=0)
+    points: Array = cells * CELL
+    return points
+
+
+def _polar(points: Array, x: float, y: float) -> tuple[NDArray[np.int64], Array]:
+    dx, dy = points[:, 0] - x, points[:, 1] - y
+    turn = np.arctan2(dy, dx) / (2.0 * np.pi) + 0.5
+    return (turn * _SECTORS).astype(np.int64) % _SECTORS, np.hypot(dx, dy)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _blocked(points: Array, x: float, y: float, radius: float) -> NDArray[np.bool_]:
+    """Cells of the map around (x, y) in which the centre of a disc would touch a point."""
+    out = np.zeros((_SIDE, _SIDE), dtype=np.bool_)
+    wide = math.ceil(radius / CELL)
+    for k in range(points.shape[0]):
+        px, py = (points[k, 0] - x) / CELL + HALF, (points[k, 1] - y) / CELL + HALF
+        ci, cj = round(px), round(py)
+        for i in range(max(0, ci - wide), min(_SIDE, ci + wide + 1)):
+            for j in range(max(0, cj - wide), min(_SIDE, cj + wide + 1)):
+                if math.hypot(i - px, j - py) * CELL < radius:
+                    out[i, j] = True
+    return out
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _relax(cost: Array, blocked: NDArray[np.bool_], i: int, j: int) -> bool:
+    """Take the best neighbour's cost plus the step; whether that is less than before."""
+    if blocked[i, j]:
+        return False
+    best = cost[i, j]
+    for a in range(max(0, i - 1), min(_SIDE, i + 2)):
+        for b in range(max(0, j - 1), min(_SIDE, j + 2)):
+            best = min(best, cost[a, b] + CELL * math.hypot(a - i, b - j))
+    if best < cost[i, j] - 1e-9:
+        cost[i, j] = best
+        return True
+    return False
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _cost_to_go(blocked: NDArray[np.bool_], gx: float, gy: float) -> Array:
+    """Length of the way from each free cell to the goal, by sweeps in four orders; m.
+
+    Beyond the border of the map the way is taken to be straight. Blocked cells stay at infinity.
+    """
+    cost = np.full((_SIDE, _SIDE), np.inf)
+    for i in range(_SIDE):
+        for j in range(_SIDE):
+            away = math.hypot(gx - (i - HALF) * CELL, gy - (j - HALF) * CELL)
+            border = i in (0, _SIDE - 1) or j in (0, _SIDE - 1)
+            if (border or away < CELL) and not blocked[i, j]:
+                cost[i, j] = away
+    changed = True
+    while changed:
+        changed = False
+        for order in range(4):
+            for p in range(_SIDE):
+                for q in range(_SIDE):
+                    i = p if order % 2 == 0 else _SIDE - 1 - p
+                    j = q if order < 2 else _SIDE - 1 - q
+                    changed |= _relax(cost, blocked, i, j)
+    return cost
+
+
+@numba.njit(cache=True, error_model="numpy")
+def way_out(
+    points: Array, x: float, y: float, gx: float, gy: float, radius: float
+) -> tuple[bool, float]:
+    """Where the shortest way to the goal begins.
+
+    Args:
+        points: (N, 2) what stands around, world frame, m.
+        x: of the robot, m.
+        y: of the robot, m.
+        gx: of the goal, m.
+        gy: of the goal, m.
+        radius: of the disc that needs room, m.
+
+    Returns:
+        whether there is a way; its bearing in the world frame, rad.
+    """
+    blocked = _blocked(points, x, y, radius)
+    for i in range(HALF - 1, HALF + 2):  # wherever the robot is, it can be
+        for j in range(HALF - 1, HALF + 2):
+            blocked[i, j] = False
+    cost = _cost_to_go(blocked, gx - x, gy - y)
+    i = j = HALF
+    while math.hypot(i - HALF, j - HALF) * CELL < _AIM:
+        bi, bj, least = i, j, math.inf
+        for a in range(max(0, i - 1), min(_SIDE, i + 2)):
+            for b in range(max(0, j - 1), min(_SIDE, j + 2)):
+                through = cost[a, b] + CELL * math.hypot(a - i, b - j)
+                if cost[a, b] < cost[i, j] and through < least:
+                    bi, bj, least = a, b, through
+        if bi == i and bj == j:
+            break
+        i, j = bi, bj
+    return (i != HALF or j != HALF), math.atan2(j - HALF, i - HALF)
