@@ -73,7 +73,8 @@ def simulate(
 
 def evaluate(run: Run, metrics: str | Sequence[str] = "*") -> Scores:
     """Score a run again from its recording."""
-    return score(run.trajectories, **run.references, metrics=metrics)
+    refs = run.references
+    return score(run.trajectories, refs.robot_alone, refs.crowd_alone, metrics=metrics)
 
 
 def score(

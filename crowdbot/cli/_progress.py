@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def show_progress() -> Iterator[Callable[[Report], None]]:
     """Yield what a simulation calls with its progress."""
     if logging.getLogger("crowdbot").level > logging.INFO:
-        yield lambda report: None
+        yield _silent
     elif sys.stderr.isatty():
         with _bars() as bars:
             yield bars
@@ -56,6 +56,10 @@ def _bars() -> Iterator[Callable[[Report], None]]:
             )
 
         yield show
+
+
+def _silent(report: Report) -> None:
+    del report
 
 
 class _Lines:

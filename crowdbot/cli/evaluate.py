@@ -181,5 +181,5 @@ def _print(recorded: Recorded, scores: Scores) -> None:
     seed = "" if recorded.seed is None else f"seed {recorded.seed}"
     title = " ".join(filter(None, (recorded.scenario, recorded.planner, seed)))
     console = Console(highlight=False)
-    console.print(Text(title or str(recorded.path), style="bold"))
+    console.print(Text(title or str(recorded.path), style="bold"), soft_wrap=True)
     console.print(scores_table(scores))

@@ -189,4 +189,5 @@ def _summary(run: Run) -> str:
     }[record["status"]].format(record["goal_time"] or record["sim_time"])
     speed = f"{record['real_time_factor']:.1f} times real time"
     note = "; was complete already, --force runs it again" if run.reused else f" ({speed})"
-    return f"{record['scenario']} · {record['planner']['name']} · seed {record['seed']}: {ending}{note}"
+    who = f"{record['scenario']} · {record['planner']['name']} · seed {record['seed']}"
+    return f"{who}: {ending}{note}"

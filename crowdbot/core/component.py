@@ -10,11 +10,11 @@ from typing import Any, Generic, TypeVar
 from crowdbot.dsl.base import ComponentSpec
 from crowdbot.errors import PluginError
 
-S = TypeVar("S", bound=ComponentSpec)
+S_co = TypeVar("S_co", bound=ComponentSpec, covariant=True)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Component(Generic[S]):
+class Component(Generic[S_co]):
     """Something pluggable.
 
     Attributes:
@@ -25,7 +25,7 @@ class Component(Generic[S]):
         examples: valid documents without ``kind``, fed to docs and conformance checks.
     """
 
-    spec: type[S]
+    spec: type[S_co]
     build: str
     summary: str
     spec_version: int = 1
@@ -39,7 +39,7 @@ class Component(Generic[S]):
 
     @property
     def category(self) -> str:
-        """What can be plugged: environment, robot, sensor, …"""
+        """What can be plugged: environment, robot, sensor and so on."""
         return self.spec.category
 
     def load_build(self) -> Callable[..., Any]:

@@ -1,4 +1,4 @@
-"""Realisation: a scenario's crowd, drawn: who starts where, how fast, with which stream of goals."""
+"""Realisation: a scenario's crowd, drawn: who starts where, how fast, with which goals."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ import importlib.util
 import os
 import sys
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib import metadata
@@ -20,7 +20,7 @@ from types import ModuleType
 from typing import Annotated, Any, Union
 
 import pluggy
-from pydantic import Field, SerializeAsAny, create_model
+from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
 from crowdbot import hookspecs
 from crowdbot.core.component import Component
@@ -82,36 +82,27 @@ class Registry:
         """Turn a spec into deeds through its component's build function."""
         return self.find(spec.category, spec.kind).load_build()(spec, *args)
 
-    def suites(self) -> Iterator[tuple[str, Any]]:
-        """Name and file of every packaged suite; ``builtin``'s have no prefix."""
-        for plugin in self.plugins:
-            for folder in plugin.scenario_dirs:
-                for file in sorted(folder.iterdir(), key=lambda f: str(f.name)):
-                    if file.name.endswith(".yaml") and file.is_file():
-                        stem = file.name.removesuffix(".yaml")
-                        yield (stem if plugin.name == "builtin" else f"{plugin.name}:{stem}"), file
-
     @cached_property
     def scenario_model(self) -> type[Scenario]:
         """`Scenario`, narrowed to the installed components."""
-        crowd = create_model(
+        crowd: Any = create_model(
             "Crowd",
             __base__=Crowd,
             policy=(self._union("crowd policy"), ...),
-            costs=(dict[str, self._union("cost function")], {}),  # type: ignore[misc]
+            costs=self._named(Crowd, "costs", self._union("cost function")),
         )
-        robot = create_model(
+        robot: Any = create_model(
             "Robot",
             __base__=Robot,
             model=(self._union("robot"), ...),
-            sensors=(dict[str, self._union("sensor")], {}),  # type: ignore[misc]
+            sensors=self._named(Robot, "sensors", self._union("sensor")),
         )
         return create_model(
             "Scenario",
             __base__=Scenario,
             environment=(self._union("environment"), ...),
             crowd=(crowd | None, None),
-            robots=(dict[str, robot], {}),  # type: ignore[valid-type]
+            robots=self._named(Scenario, "robots", robot),
         )
 
     def spec_versions(self, scenario: Scenario) -> dict[str, int]:
@@ -123,12 +114,20 @@ class Registry:
             used += [entry.model, *entry.sensors.values()]
         return {s.kind: self.find(s.category, s.kind).spec_version for s in used}
 
+    @staticmethod
+    def _named(base: type[BaseModel], field: str, member: Any) -> Any:
+        """A map of named members, described as in the base model."""
+        description = base.model_fields[field].description
+        return dict[str, member], Field(default={}, description=description)
+
     def _union(self, category: str) -> Any:
-        specs = tuple(c.spec for c in self._by_category[category].values())
+        specs: Any = tuple(c.spec for c in self._by_category[category].values())
         if not specs:
-            raise PluginError(f"no {category} is installed")
+            broken = [f"{p.name} ({p.error})" for p in self.plugins if p.error]
+            why = f"; plugins that failed: {', '.join(broken)}" if broken else ""
+            raise PluginError(f"no {category} is installed{why}")
         if len(specs) == 1:  # a discriminator needs two members
-            return SerializeAsAny[specs[0]]  # type: ignore[valid-type]
+            return SerializeAsAny[specs[0]]
         return Annotated[Union[specs], Field(discriminator="kind")]  # noqa: UP007
 
 

@@ -38,7 +38,7 @@ def write_json(path: Path, document: Mapping[str, Any]) -> None:
     """Write a document aside and rename it."""
     aside = path.with_name(f"{path.name}.part")
     aside.write_text(json.dumps(document, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
-    os.replace(aside, path)
+    aside.replace(path)
 
 
 @contextmanager
@@ -72,9 +72,9 @@ def publish(folder: Path, final: Path) -> None:
         _sync(file)
     old = final.with_name(f"{final.name}.old-{os.getpid()}")
     with suppress(FileNotFoundError):
-        os.rename(final, old)
+        final.rename(old)
     try:
-        os.rename(folder, final)
+        folder.rename(final)
     except OSError:
         if not final.is_dir():  # another process was faster with the very same run
             raise

@@ -6,6 +6,7 @@ The recording is the run: scores, replay and hashes are all computed from what i
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,7 +87,7 @@ class RunLog:
         self._trip = people[:, s.TRIP].copy()
         self._trip_start = people[:, s.TRIP_START].copy()
 
-    def _contact(self, people: Array, i: int) -> None:
+    def _contact(self, people: Array, i: np.signedinteger[Any]) -> None:
         row = people[i]
         self.writer.contact(
             t0=float(row[s.TOUCH_START]),

@@ -66,8 +66,9 @@ class Trips:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactEvents:
-    """Contacts of the robot: t0, t1 (s), agent id (-1: a wall), impulse (N s), peak force (N),
-    relative speed before (m/s); each (K,).
+    """Contacts of the robot, each (K,).
+
+    t0, t1 (s), agent id (-1: a wall), impulse (N s), peak force (N), relative speed before (m/s).
     """
 
     t0: Array

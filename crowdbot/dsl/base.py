@@ -144,4 +144,4 @@ CATEGORIES: tuple[type[ComponentSpec], ...] = (
     CostFunctionSpec,
     MetricSpec,
 )
-ABSTRACT_SPECS = frozenset(c.__name__ for c in (ComponentSpec, *CATEGORIES))
+ABSTRACT_SPECS = frozenset({"ComponentSpec", *(c.__name__ for c in CATEGORIES)})

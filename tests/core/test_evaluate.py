@@ -86,10 +86,10 @@ def registry(build: ModuleType) -> Registry:
 
 def run_of(height: float = 3.0, goal_time: float | None = None) -> Trajectories:
     t = np.linspace(0, 1, 5)
-    names = ("x", "theta", "v", "w")
+    still: dict[str, Any] = {f"robot_{n}": 0 * t for n in ("x", "theta", "v", "w")}
     return Trajectories.from_arrays(
         t=t,
-        **{f"robot_{n}": 0 * t for n in names},
+        **still,
         robot_y=t * height,
         robot_radius=0.2,
         robot_mass=6.0,

@@ -98,7 +98,7 @@ def test_crop_twice_is_crop_once() -> None:
     assert np.array_equal(cropped(once).t, once.t)
 
 
-TRIPS = {
+TRIPS: dict[str, Any] = {
     "trip_agent": [0, 0, 1, 1],
     "trip_t0": [0.0, 2.0, 0.0, 3.5],
     "trip_t1": [2.0, 3.3, 9.0, 3.9],
@@ -123,7 +123,7 @@ def test_without_arrival_trips_end_with_the_record() -> None:
 
 def test_contacts_end_with_the_window() -> None:
     zeros = [0.0, 0.0, 0.0]
-    contacts = {
+    contacts: dict[str, Any] = {
         "t0": [0.5, 1.5, 2.5],
         "t1": [0.6, 2.6, 2.7],
         "agent": [0, 1, -1],

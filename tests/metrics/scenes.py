@@ -38,7 +38,7 @@ class Body:
 
 
 def grid(end: float, dt: float = 0.1) -> Array:
-    return np.linspace(0.0, end, round(end / dt) + 1)
+    return np.linspace(0.0, end, round(end / dt) + 1, dtype=np.float64)
 
 
 def line(t: Array, start: tuple[float, float], velocity: tuple[float, float]) -> Body:
@@ -165,7 +165,7 @@ def perturbed(run: Trajectories, size: float, seed: int) -> Trajectories:
 
     robot, agents = run.robot, run.agents
     if robot is not None:
-        rows = {n: off(getattr(robot, n)) for n in ("x", "y", "theta", "v", "w")}
+        rows: dict[str, Any] = {n: off(getattr(robot, n)) for n in ("x", "y", "theta", "v", "w")}
         robot = dataclasses.replace(robot, **rows)
     if agents is not None:
         rows = {n: off(getattr(agents, n)) for n in ("x", "y", "vx", "vy")}

@@ -1,6 +1,7 @@
 """collision_count: hand cases and failures."""
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,14 +25,14 @@ T = grid(10)
 STILL = line(T, (0, 0), (0, 0))
 
 
-def counts(run: Trajectories, **fields: object) -> tuple[float | None, float | None]:
+def counts(run: Trajectories, **fields: Any) -> tuple[float | None, float | None]:
     found = scores_of("collision_count", run, **fields)
     return found["literal"].value, found["corrected"].value
 
 
 def at_gaps(gaps: list[float], dt: float = 0.1) -> Trajectories:
     """A robot that stands, and somebody at these gaps between the surfaces."""
-    t = np.arange(len(gaps)) * dt
+    t = np.arange(len(gaps), dtype=np.float64) * dt
     zero = np.zeros(len(t))
     body = Body(REACH + np.array(gaps), zero, zero, zero)
     return scene(t, line(t, (0, 0), (0, 0)), [body])

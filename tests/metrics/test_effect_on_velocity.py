@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from crowdbot.core.trajectory import Trajectories
 
@@ -23,7 +24,7 @@ NAME = "effect_on_velocity"
 T = grid(20)
 
 
-def lapping(t: Array, speed: float, length: float = 7.3) -> tuple[Body, Array]:
+def lapping(t: Array, speed: float, length: float = 7.3) -> tuple[Body, NDArray[np.bool_]]:
     """A walker whom a portal takes back by ``length``; and the steps on which it does."""
     lap = np.floor(speed * t / length + 1e-9)
     x = speed * t - lap * length

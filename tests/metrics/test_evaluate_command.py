@@ -42,9 +42,9 @@ def record(path: Path, run: Trajectories, *, complete: bool = True) -> Path:
     )
     writer = RecordingWriter(path, header, record="none")
     for k, t in enumerate(run.t.tolist()):
-        pose = robot and [float(getattr(robot, n)[k]) for n in ("x", "y", "theta", "v", "w")]
-        people = agents and np.stack([getattr(agents, n)[k] for n in ("x", "y", "vx", "vy")])
-        writer.state(t, pose, people)
+        pose = [float(getattr(robot, n)[k]) for n in ("x", "y", "theta", "v", "w") if robot]
+        people = [getattr(agents, n)[k] for n in ("x", "y", "vx", "vy") if agents]
+        writer.state(t, pose or None, np.stack(people) if people else None)
     goal_time = robot.goal_time if robot is not None else None
     writer.close(goal_time, complete, "arrived" if goal_time is not None else "timeout")
     return path
@@ -144,7 +144,7 @@ def test_an_interrupted_run(tmp_path: Path, capsys: Captured) -> None:
     (run,) = evaluated(capsys, partial)
     assert run["scenario"] == ""
     assert main(["evaluate", str(partial)]) == 0
-    assert capsys.readouterr().out.split()[0].endswith("seed-0.partial"[-10:])
+    assert capsys.readouterr().out.splitlines()[0] == str(partial)
 
 
 def test_nothing_is_written(folder: Path, capsys: Captured) -> None:

@@ -167,7 +167,7 @@ _EXACT = {
     "release": scene(
         T,
         line(T, (0, 0), (0, 0)),
-        [Body(0.43 + 0.05 * (np.arange(101) % 2), T * 0, T * 0, T * 0)],
+        [Body(0.43 + 0.05 * (np.arange(101, dtype=np.float64) % 2), T * 0, T * 0, T * 0)],
     ),
     "teleport": scene(T, line(T, (0, 0), (10, 0)), [line(T, (0, 5), (10, 0))], velocities=False),
     "standing": scene(T, line(T, (0, 0), (0, 0)), [line(T, (5, 5), (0, 0))], goal_time=10.0),
@@ -239,7 +239,7 @@ def test_teleports_add_nothing(seed: int) -> None:
 
 @pytest.mark.parametrize("n", [1, 2, 3])
 def test_the_shortest_records(n: int) -> None:
-    t = np.arange(n) * 0.1
+    t = np.arange(n, dtype=np.float64) * 0.1
     run = scene(t, line(t, (0, 0), (1, 0)), [line(t, (3, 0), (-1, 0))], goal_time=float(t[-1]))
     found = all_scores(run, run)
     assert all((s.value is None) == (s.status != "ok") for s in found)

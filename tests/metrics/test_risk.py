@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -167,7 +168,11 @@ def test_time_runs_with_the_record() -> None:
 def test_heading_and_reversing() -> None:
     """The velocity is v along theta: a robot that reverses towards somebody is at risk."""
     n = np.ones(len(T))
-    given = {"agent_x": 5 * n[:, None], "agent_y": 0 * n[:, None], "agent_vx": 0 * n[:, None]}
+    given: dict[str, Any] = {
+        "agent_x": 5 * n[:, None],
+        "agent_y": 0 * n[:, None],
+        "agent_vx": 0 * n[:, None],
+    }
     run = Trajectories.from_arrays(
         t=T,
         robot_x=0.4 * T,

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from crowdbot.core.crowd.geometry import nearest_on_segment
 from crowdbot.core.crowd.state import (
@@ -141,7 +143,9 @@ def keep_off(
 
 
 @njit(cache=True, error_model="numpy")
-def push_apart(agents: Array, radius: Array, order: Array, walls: Array, stiffness: float) -> None:
+def push_apart(
+    agents: Array, radius: Array, order: NDArray[np.int64], walls: Array, stiffness: float
+) -> None:
     """Push of overlapping people and of walls, m/s^2, into the PUSH columns.
 
     Args:

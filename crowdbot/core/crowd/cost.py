@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import carray, njit, types
+from numba import carray, njit, types  # type: ignore[attr-defined]
 from numba.core.errors import NumbaExperimentalFeatureWarning
 from numpy.typing import NDArray
 
@@ -35,6 +35,7 @@ Array = NDArray[np.float64]
 warnings.filterwarnings("ignore", category=NumbaExperimentalFeatureWarning)
 
 _F, _V, _M = types.float64, types.float64[::1], types.float64[:, ::1]
+_POINTER = types.CPointer(_F)  # type: ignore[no-untyped-call]
 BASE = types.float64(_F, _F, _F, _F, _V)
 PREPARE = types.int64(_V, _M, types.int64, _M, _V, _M)
 EXCESS = types.float64(_F, _F, _F, _V, _M, _V)
@@ -73,11 +74,11 @@ class CompiledCost:
         return float(self.params[RANGE]) + (radius + largest_radius if from_surface else 0.0)
 
 
-class FunctionPointer(types.WrapperAddressProtocol):  # type: ignore[misc]
+class FunctionPointer(types.WrapperAddressProtocol):
     """A compiled function as a plain address, which costs far less to pass than a dispatcher."""
 
-    def __init__(self, function: Callable[..., Any], signature: Any) -> None:
-        result = function.get_compile_result(signature)  # type: ignore[attr-defined]
+    def __init__(self, function: Any, signature: Any) -> None:
+        result = function.get_compile_result(signature)
         self._function = function  # keeps the machine code alive
         self._signature = signature
         self._address = result.library.get_pointer_to_function(
@@ -95,15 +96,13 @@ class FunctionPointer(types.WrapperAddressProtocol):  # type: ignore[misc]
 
 # Slices of an array that numba owns cost two atomic operations each; slices of a borrowed one
 # cost nothing. The owner must outlive the borrowed view.
-@njit(types.float64[:, ::1](types.CPointer(_F), types.int64, types.int64), cache=True)
+@njit(types.float64[:, ::1](_POINTER, types.int64, types.int64), cache=True)
 def borrow2(pointer: Any, rows: int, columns: int) -> Any:
     """View of a matrix that somebody else owns."""
     return carray(pointer, (rows, columns))
 
 
-@njit(
-    types.float64[:, :, ::1](types.CPointer(_F), types.int64, types.int64, types.int64), cache=True
-)
+@njit(types.float64[:, :, ::1](_POINTER, types.int64, types.int64, types.int64), cache=True)
 def borrow3(pointer: Any, layers: int, rows: int, columns: int) -> Any:
     """View of a three-dimensional array that somebody else owns."""
     return carray(pointer, (layers, rows, columns))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from crowdbot.core.crowd import draws
 from crowdbot.core.crowd.state import (
@@ -55,7 +56,9 @@ def entry_fraction(box: Array, x0: float, y0: float, x1: float, y1: float) -> fl
 
 
 @njit(cache=True, error_model="numpy")
-def draw_goal(agents: Array, i: int, ids: Array, radius: Array, out: Array, key: np.uint64) -> None:
+def draw_goal(
+    agents: Array, i: int, ids: NDArray[np.int64], radius: Array, out: Array, key: np.uint64
+) -> None:
     """Set the goal of agent i's current trip: a point of the out-portal, a radius inside."""
     trip = int(agents[i, TRIP])
     u = draws.uniform(key, ids[i], trip, draws.GOAL, 0)
@@ -73,7 +76,7 @@ def leave(agents: Array, i: int, when: float) -> None:
 def try_to_enter(
     agents: Array,
     i: int,
-    ids: Array,
+    ids: NDArray[np.int64],
     radius: Array,
     preferred: Array,
     robots: Array,
@@ -93,9 +96,9 @@ def try_to_enter(
             return False
     for j in range(agents.shape[0]):
         free = radius[i] + radius[j]
-        if j != i and agents[j, WAITING] == 0.0:
-            if (agents[j, X] - x) ** 2 + (agents[j, Y] - y) ** 2 < free * free:
-                return False
+        away = (agents[j, X] - x) ** 2 + (agents[j, Y] - y) ** 2
+        if j != i and agents[j, WAITING] == 0.0 and away < free * free:
+            return False
     agents[i, TRIP], agents[i, WAITING], agents[i, TRIP_START] = trip + 1.0, 0.0, now
     draw_goal(agents, i, ids, radius, out, key)
     gx, gy = agents[i, GOAL_X] - x, agents[i, GOAL_Y] - y

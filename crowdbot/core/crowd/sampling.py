@@ -147,7 +147,7 @@ def _choose(
     dt: float,
     candidates: Array,
     bound: Array,
-    index: Array,
+    index: NDArray[np.int64],
     prepares: Any,
     excesses: Any,
     params: Array,

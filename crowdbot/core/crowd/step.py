@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from crowdbot.core.crowd.contact import keep_off, robot_contact
 from crowdbot.core.crowd.portals import entry_fraction, leave, try_to_enter
@@ -31,7 +32,7 @@ def tick(
     flat: Array,
     columns: int,
     robots: Array,
-    ids: Array,
+    ids: NDArray[np.int64],
     radius: Array,
     mass: Array,
     preferred: Array,

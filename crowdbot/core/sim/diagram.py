@@ -18,8 +18,8 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.metric_logger import MetricLogger
-from crowdbot.core.sim.plant import RobotPlant, add_plant
 from crowdbot.core.sim.planner_system import PlannerSystem
+from crowdbot.core.sim.plant import RobotPlant, add_plant
 from crowdbot.core.sim.recorder import Recorder
 from crowdbot.core.sim.robot_state import RobotStateSystem
 from crowdbot.core.sim.sensor_bank import SensorBank

@@ -12,6 +12,7 @@ from typing import Any, Literal
 from crowdbot.core import provenance
 from crowdbot.core import run_directory as files
 from crowdbot.core.evaluate import Scores, score
+from crowdbot.core.interfaces import References
 from crowdbot.core.planner_source import PlannerChoice, resolve_planner
 from crowdbot.core.realise import realise
 from crowdbot.core.recording import read_scans, read_trajectories
@@ -56,10 +57,10 @@ class Run:
         return read_trajectories(self.directory / files.RECORDING)
 
     @cached_property
-    def references(self) -> dict[str, Trajectories]:
-        """``robot_alone`` and ``crowd_alone``, as far as they were computed."""
+    def references(self) -> References:
+        """The calibration runs, as far as they were computed."""
         paths: Mapping[str, str] = self.record["references"]
-        return {n: read_trajectories((self.directory / p).resolve()) for n, p in paths.items()}
+        return _read_references({n: (self.directory / p).resolve() for n, p in paths.items()})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -222,6 +223,10 @@ def _reference(
     return final / files.RECORDING
 
 
+def _read_references(paths: Mapping[str, Path]) -> References:
+    return References(**{name: read_trajectories(path) for name, path in paths.items()})
+
+
 # --------------------------------------------------------------------------- the run
 def _record_run(
     request: Request, identity: Mapping[str, Any], references: Mapping[str, Path]
@@ -231,10 +236,12 @@ def _record_run(
         outcome = record_robot(_setup(request, request.scenario, folder, "run"))
         _check_interrupted(outcome, folder)
         run = read_trajectories(folder / files.RECORDING)
+        calibration = _read_references(references)
         scores = score(
             request.registry,
             run,
-            **{n: read_trajectories(p) for n, p in references.items()},
+            calibration.robot_alone,
+            calibration.crowd_alone,
             metrics="*" if request.metrics is None else request.metrics,
         )
         record = _run_record(request, identity, references, outcome, run)

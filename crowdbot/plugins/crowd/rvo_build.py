@@ -7,7 +7,6 @@ import math
 import numpy as np
 from numba import njit
 
-
 from crowdbot.core.crowd.cost import (
     BASE,
     D2,
@@ -81,11 +80,11 @@ def _excess(ux: float, uy: float, budget: float, agent: Array, work: Array, para
         t = time_to_disc(work[j, 0], work[j, 1], vx - work[j, 2], vy - work[j, 3], work[j, 4])
         first = min(first, t)
         if first < too_soon:
-            return params[_W] / first
+            return float(params[_W] / first)
     for j in range(discs + 1, discs + 1 + segments):
         t = time_to_segment(vx, vy, agent[RADIUS], work[j, 0], work[j, 1], work[j, 2], work[j, 3])
         first = min(first, t)
-    return params[_W] / first
+    return float(params[_W] / first)
 
 
 def build(spec: RvoSpec) -> CompiledCost:

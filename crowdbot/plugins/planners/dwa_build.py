@@ -21,7 +21,7 @@ from crowdbot.core.interfaces import (
 from crowdbot.core.sensing.points import LidarPoints
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
 from crowdbot.plugins.planners.dwa import DwaSpec
-from crowdbot.plugins.planners.dwa_map_build import remembered, way_out
+from crowdbot.plugins.planners.dwa_map_build import AIM, remembered, way_out
 from crowdbot.plugins.planners.dwa_points_build import (
     apparent_velocity,
     choose_direction,
@@ -37,6 +37,8 @@ _REACH = 6.0
 #: Apparent motion below this is sampling noise, m/s.
 _STILL = 0.3
 _ARRIVED = 0.1
+#: A direction must be wider than the margin by this, m.
+_LEEWAY = 0.05
 #: The map is renewed so often while it is needed, s.
 _MAP_PERIOD = 0.5
 #: Speed and duration of the way back out of a dead end: m/s, s.
@@ -103,11 +105,12 @@ class Dwa:
             return Command(0.0, 0.0)
         points, velocities = self._see(obs)
         escaping = self._is_stuck(obs)
+        room = distance
         if self._is_lost(distance):
-            goal = self._way_out(obs, points, velocities, goal)
+            goal, room = self._way_out(obs, points, goal, distance)
         else:
             self._map, self._way = np.empty((0, 2)), None
-        direction, free = self._choose(obs.pose, goal, distance, points, velocities, escaping)
+        direction, free = self._choose(obs.pose, goal, room, points, velocities, escaping)
         near = rollout.reachable(points, velocities, self._p)
         top = min(
             self._spec.speed * self._limits.v_max, braking_speed(distance, self._limits.a_max)
@@ -148,7 +151,7 @@ class Dwa:
         self,
         pose: Pose,
         goal: float,
-        distance: float,
+        room: float,
         points: Array,
         velocities: Array,
         escaping: bool,
@@ -163,8 +166,8 @@ class Dwa:
             goal,
             previous,
             speed,
-            spec.robot_radius + spec.margin + 0.05,
-            min(spec.look_ahead, distance / speed + 0.1),
+            spec.robot_radius + spec.margin + (_LEEWAY if self._way is None else 0.0),
+            min(spec.look_ahead, room / speed + 0.1),
             0.2 if escaping else 1.0,
         )
         self._heading = direction + pose.yaw
@@ -196,19 +199,23 @@ class Dwa:
             self._nearest = (distance, now)
         return now - self._nearest[1] > 2.0 * self._spec.patience
 
-    def _way_out(self, obs: Observation, points: Array, velocities: Array, goal: float) -> float:
-        """Bearing of the way past everything that stands around; of the goal if there is none."""
+    def _way_out(
+        self, obs: Observation, points: Array, goal: float, distance: float
+    ) -> tuple[float, float]:
+        """Bearing and length of the first stretch past everything that stands around.
+
+        Those of the goal if there is no way.
+        """
         x, y, yaw = obs.pose
         if obs.t - self._mapped_at >= _MAP_PERIOD:
             self._mapped_at = obs.t
             c, s = math.cos(yaw), math.sin(yaw)
-            still = points[np.all(velocities == 0.0, axis=1)]
-            seen = still @ np.array([[c, s], [-s, c]]) + (x, y)
+            seen = points @ np.array([[c, s], [-s, c]]) + (x, y)
             self._map = remembered(self._map, seen, x, y, _REACH)
-            radius = self._spec.robot_radius + self._spec.margin + 0.03
+            radius = self._spec.robot_radius + self._spec.margin + 0.02
             found, way = way_out(self._map, x, y, *obs.goal, radius)
             self._way = way if found else None
-        return goal if self._way is None else self._way - yaw
+        return (goal, distance) if self._way is None else (self._way - yaw, min(AIM, distance))
 
     def _is_stuck(self, obs: Observation) -> bool:
         x, y, _ = obs.pose

@@ -17,7 +17,7 @@ _SECTORS = 180
 #: A remembered point is gone if its sector is seen to be free this far behind it, m.
 _BEHIND = 0.4
 #: Metres along the way at which the robot aims.
-_AIM = 0.7
+AIM = 0.7
 
 
 def remembered(memory: Array, seen: Array, x: float, y: float, reach: float) -> Array:
@@ -37,11 +37,13 @@ def remembered(memory: Array, seen: Array, x: float, y: float, reach: float) -> 
     view = np.full(_SECTORS, reach)
     at, gap = _polar(seen, x, y)
     np.minimum.at(view, at, gap)
+    # Past the outline of a body some rays always go: only a wide gap shows that it is gone.
+    view = np.min([np.roll(view, k) for k in range(-3, 4)], axis=0)
     at, gap = _polar(memory, x, y)
     kept = memory[(gap + _BEHIND > view[at]) | (gap > reach)]
-    cells = np.unique(np.round(np.concatenate([kept, seen]) / CELL), axis=0)
-    points: Array = cells * CELL
-    return points
+    points: Array = np.concatenate([seen, kept])  # where both are, the new one is kept
+    _, first = np.unique(np.round(points / CELL), axis=0, return_index=True)
+    return points[first]
 
 
 def _polar(points: Array, x: float, y: float) -> tuple[NDArray[np.int64], Array]:
@@ -128,7 +130,7 @@ def way_out(
             blocked[i, j] = False
     cost = _cost_to_go(blocked, gx - x, gy - y)
     i = j = HALF
-    while math.hypot(i - HALF, j - HALF) * CELL < _AIM:
+    while math.hypot(i - HALF, j - HALF) * CELL < AIM:
         bi, bj, least = i, j, math.inf
         for a in range(max(0, i - 1), min(_SIDE, i + 2)):
             for b in range(max(0, j - 1), min(_SIDE, j + 2)):
