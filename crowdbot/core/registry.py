@@ -127,7 +127,7 @@ class Registry:
             why = f"; plugins that failed: {', '.join(broken)}" if broken else ""
             raise PluginError(f"no {category} is installed{why}")
         if len(specs) == 1:  # a discriminator needs two members
-            return SerializeAsAny[specs[0]]
+            return SerializeAsAny[specs[0]]  # type: ignore[misc]
         return Annotated[Union[specs], Field(discriminator="kind")]  # noqa: UP007
 
 
