@@ -102,7 +102,7 @@ def _table(rows: list[list[str]]) -> str:
 
 
 def _component_dict(component: Component[Any], registry: Registry) -> dict[str, Any]:
-    owner = registry.owner(component.kind)
+    owner = registry.owner(component)
     names = ("field", "type", "unit", "default", "description")
     return {
         "kind": component.kind,

@@ -151,7 +151,7 @@ def _scores_of(
 
 
 def _failure(registry: Registry, spec: MetricSpec, what: str) -> PluginError:
-    plugin = registry.owner(spec.kind)
+    plugin = registry.owner(registry.find("metric", spec.kind))
     return PluginError(f"metric '{spec.kind}' of plugin {plugin.distribution} failed: {what}")
 
 

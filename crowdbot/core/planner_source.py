@@ -119,7 +119,7 @@ def _from_kind(
         name=kind,
         spec_dump=spec.model_dump(mode="json"),
         build=lambda: component.load_build()(spec),
-        pinned=registry.owner(kind).pinned,
+        pinned=registry.owner(component).pinned,
         needs=_needs(component.spec),
         label=kind if _is_default(component, spec) else f"{kind}+{_digest(spec)}",
     )

@@ -74,9 +74,9 @@ class Registry:
             raise UnknownNameError(category, kind, known)
         return known[kind]
 
-    def owner(self, kind: str) -> Plugin:
-        """The plugin that provides a kind."""
-        return next(p for p in self.plugins if any(c.kind == kind for c in p.components))
+    def owner(self, component: Component[Any]) -> Plugin:
+        """The plugin that provides a component."""
+        return next(p for p in self.plugins if any(c is component for c in p.components))
 
     def build(self, spec: ComponentSpec, *args: Any) -> Any:
         """Turn a spec into deeds through its component's build function."""

@@ -1,9 +1,9 @@
 """DWA: the dynamic window approach.
 
 Source: Fox, Burgard, Thrun, "The dynamic window approach to collision avoidance", IEEE Robotics
-and Automation Magazine 4(1), 1997. Three things are added: rollouts obey the slew limits, a local
-direction is chosen before the velocities (so that the robot gets out of shallow dead ends), and
-lidar points are carried on with the motion they showed.
+and Automation Magazine 4(1), 1997. Four things are added: rollouts obey the slew limits, a local
+direction is chosen before the velocities, lidar points are carried on with the motion they showed,
+and a robot that has come no nearer to the goal for long finds its way in a small map of its own.
 """
 
 from __future__ import annotations

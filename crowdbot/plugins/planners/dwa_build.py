@@ -46,7 +46,7 @@ _REVERSE, _ESCAPE = -0.2, 2.0
 
 
 class Dwa:
-    """All that it remembers: old scans, the last choice, and since when it makes no way."""
+    """Remembers old scans, its last choice, since when it makes no way, and then a small map."""
 
     def __init__(self, spec: DwaSpec) -> None:
         self._spec = spec
@@ -81,6 +81,7 @@ class Dwa:
 
     def _warm_up(self, task: Task, sensors: Mapping[str, SensorInfo]) -> None:
         """Two steps in a made-up world, so that no step of the run waits for a compiler."""
+        way_out(np.ones((1, 2)), 0.0, 0.0, 9.0, 0.0, self._spec.robot_radius)
         for t in (0.0, self._spec.look_back):
             readings = {n: Reading(t, np.full(s.shape, 1.0 + t)) for n, s in sensors.items()}
             self.step(

@@ -1,0 +1,202 @@
+"""The pieces of DWA, each against something known."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import ArrayLike, NDArray
+
+from crowdbot.plugins.planners import dwa_rollout_build as rollout
+from crowdbot.plugins.planners.dwa_map_build import remembered, way_out
+from crowdbot.plugins.planners.dwa_points_build import (
+    apparent_velocity,
+    choose_direction,
+    free_time,
+    nearest_per_sector,
+)
+
+Array = NDArray[np.float64]
+NOTHING = np.empty((0, 2))
+
+
+def points(*where: tuple[float, float]) -> Array:
+    return np.array(where, dtype=np.float64).reshape(-1, 2)
+
+
+# ---------------------------------------------------------------------------- points
+@given(st.integers(0, 2**32 - 1))
+def test_thinning_keeps_the_nearest_of_each_sector(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    cloud = rng.uniform(-8, 8, (int(rng.integers(0, 200)), 2))
+    thin = nearest_per_sector(cloud, 36, 6.0)
+    sector = ((np.arctan2(cloud[:, 1], cloud[:, 0]) / (2 * np.pi) + 0.5) * 36).astype(int) % 36
+    gap = np.hypot(*cloud.T)
+    expected = [
+        cloud[k]
+        for s in range(36)
+        for k in np.flatnonzero((sector == s) & (gap < 6.0))
+        if gap[k] == gap[(sector == s)].min()
+    ]
+    np.testing.assert_array_equal(thin, np.reshape(expected, (-1, 2)))
+
+
+def test_apparent_velocity() -> None:
+    before = points((5.0, 0.0), (0.0, 3.0))
+    now = points((4.6, 0.0), (0.0, 3.02), (9.0, 9.0))
+    got = apparent_velocity(now, before, 0.25, 0.3, 2.5)
+    np.testing.assert_allclose(got, [[-1.6, 0.0], [0.0, 0.0], [0.0, 0.0]])
+    assert not apparent_velocity(now, NOTHING, 0.25, 0.3, 2.5).any()
+
+
+def test_free_time_of_still_and_moving_points() -> None:
+    ahead, rest = points((3.0, 0.0)), points((0.0, 0.0))
+    assert free_time(ahead, rest, 0.5, 0.0, 0.5, 10.0) == pytest.approx(5.0)
+    assert free_time(ahead, points((-0.5, 0.0)), 0.5, 0.0, 0.5, 10.0) == pytest.approx(2.5)
+    assert free_time(ahead, points((0.5, 0.0)), 0.5, 0.0, 0.5, 10.0) == 10.0
+    assert free_time(ahead, rest, 0.0, 0.5, 0.5, 10.0) == 10.0
+    touching = points((0.4, 0.0))
+    assert free_time(touching, rest, 0.5, 0.0, 0.5, 10.0) == 0.0
+    assert free_time(touching, rest, -0.5, 0.0, 0.5, 10.0) == 10.0
+
+
+def test_direction_is_the_goals_when_free_and_goes_round_when_not() -> None:
+    assert choose_direction(NOTHING, NOTHING, 0.3, 0.3, 0.6, 0.3, 4.0, 1.0) == (0.3, 4.0)
+    wall = points(*((1.0, y) for y in np.linspace(-2.0, 0.4, 25)))
+    angle, free = choose_direction(wall, np.zeros_like(wall), 0.0, 0.0, 0.6, 0.3, 4.0, 1.0)
+    assert 0.5 < angle < 1.6
+    assert free == 4.0
+
+
+# -------------------------------------------------------------------------- rollouts
+def parameters(**changed: float) -> Array:
+    p = np.zeros(rollout.PARAMETERS)
+    values = {
+        "A_MAX": 1.0, "ALPHA_MAX": 2.0, "HORIZON": 2.5, "TURN_TIME": 1.0, "RADIUS": 0.2,
+        "MARGIN": 0.05, "COMFORT": 0.4, "GROWTH": 0.0, "PERIOD": 0.0625, "PROGRESS": 1.0,
+        "HEADING": 0.4, "CLEARANCE": 0.5, "IMPACT": 1.0, "SMOOTHNESS": 0.0, "V_MAX": 1.0,
+        "W_MAX": 3.0, **changed,
+    }  # fmt: skip
+    for name, value in values.items():
+        p[getattr(rollout, name)] = value
+    return p
+
+
+def test_every_parameter_has_its_own_place() -> None:
+    assert len(set(parameters_of())) == rollout.PARAMETERS
+
+
+def parameters_of() -> list[int]:
+    names = ("A_MAX ALPHA_MAX HORIZON TURN_TIME RADIUS MARGIN COMFORT GROWTH PERIOD PROGRESS "
+             "HEADING CLEARANCE IMPACT SMOOTHNESS V_MAX W_MAX").split()  # fmt: skip
+    return [getattr(rollout, n) for n in names]
+
+
+def test_a_straight_rollout_with_a_ramp() -> None:
+    """From rest at 1 m/s^2 to 0.5 m/s: 0.125 m in 0.5 s, then 2 s at 0.5 m/s."""
+    x, y, angle, hit, close = rollout.roll(NOTHING, NOTHING, parameters(), 0.0, 0.0, 0.5, 0.0)
+    assert (x, y, angle, hit, close) == pytest.approx((1.125, 0.0, 0.0, 2.5, 0.0))
+
+
+def test_an_arc_turns_for_the_turning_time() -> None:
+    angle = rollout.roll(NOTHING, NOTHING, parameters(), 0.5, 1.0, 0.5, 1.0)[2]
+    assert angle == pytest.approx(1.0 + 0.25)  # 1 s at 1 rad/s, then half a second to stop
+    x, y = rollout.roll(NOTHING, NOTHING, parameters(TURN_TIME=9.0), 0.5, 1.0, 0.5, 1.0)[:2]
+    assert x == pytest.approx(0.5 * math.sin(2.5), abs=2e-3)
+    assert y == pytest.approx(0.5 * (1 - math.cos(2.5)), abs=2e-3)
+
+
+def test_hits_still_and_moving_points() -> None:
+    p, ahead = parameters(), points((1.5, 0.0))
+    hit = rollout.roll(ahead, np.zeros((1, 2)), p, 1.0, 0.0, 1.0, 0.0)[3]
+    assert hit == pytest.approx(1.25, abs=rollout.STEP)
+    hit = rollout.roll(ahead, points((-1.0, 0.0)), p, 1.0, 0.0, 1.0, 0.0)[3]
+    assert hit == pytest.approx(0.625, abs=rollout.STEP)
+    assert rollout.roll(ahead, points((1.0, 0.0)), p, 1.0, 0.0, 1.0, 0.0)[3] == 2.5
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(0.0, 1.0), st.floats(0.3, 3.0), st.integers(0, 2**32 - 1))
+def test_what_is_chosen_can_stop_before_anything_still(v: float, gap: float, seed: int) -> None:
+    """After one period of the chosen command and full braking no still point is touched."""
+    rng = np.random.default_rng(seed)
+    angle = rng.uniform(-0.6, 0.6, 12)
+    still = np.column_stack([np.cos(angle), np.sin(angle)]) * (0.25 + v * v / 2 + v * 0.2 + gap)
+    speeds, rates = np.meshgrid(np.linspace(max(0.0, v - 0.5), v, 6), np.linspace(-1, 1, 9))
+    candidates = np.column_stack([speeds.ravel(), rates.ravel()])
+    p = parameters()
+    index, cost = rollout.evaluate(
+        still, np.zeros_like(still), p, v, 0.0, candidates, 0.0, (v, 0.0)
+    )
+    if index < 0:
+        return
+    assert math.isfinite(cost)
+    vt = candidates[index, 0]
+    speed = max(vt, v - 0.0625)
+    way = v * 0.0625 + speed**2 / 2.0
+    assert np.hypot(*still.T).min() - way > 0.2
+
+
+def test_no_candidate_is_admissible_before_a_wall() -> None:
+    wall = points((0.35, -0.1), (0.35, 0.0), (0.35, 0.1))
+    moving = np.array([[1.0, 0.0], [0.8, 0.0]])
+    rest = np.zeros_like(wall)
+    p = parameters()
+    assert rollout.evaluate(wall, rest, p, 1.0, 0.0, moving, 0.0, (0.0, 0.0))[0] == -1
+    spot = np.array([[0.0, 1.0]])
+    assert rollout.evaluate(wall, rest, p, 0.0, 0.0, spot, 0.0, (0.0, 0.0))[0] == 0
+
+
+def test_reachable_drops_only_what_cannot_matter() -> None:
+    cloud = points((0.5, 0.0), (4.0, 0.0), (4.0, 0.0))
+    speed = points((0.0, 0.0), (0.0, 0.0), (-1.5, 0.0))
+    assert rollout.reachable(cloud, speed, parameters()).tolist() == [True, False, True]
+
+
+# ------------------------------------------------------------------------------- map
+def bearing(obstacles: ArrayLike, goal: tuple[float, float] = (20.0, 0.0)) -> float | None:
+    where = np.reshape(np.asarray(obstacles, dtype=np.float64), (-1, 2))
+    found, way = way_out(where, 0.0, 0.0, *goal, 0.25)
+    return way if found else None
+
+
+def line(x0: float, y0: float, x1: float, y1: float) -> list[tuple[float, float]]:
+    s = np.linspace(0.0, 1.0, 60)
+    return list(zip(x0 + s * (x1 - x0), y0 + s * (y1 - y0), strict=True))
+
+
+@pytest.mark.parametrize("goal", [(20.0, 0.0), (0.0, -30.0), (-2.0, 2.0)])
+def test_an_empty_map_leads_straight(goal: tuple[float, float]) -> None:
+    assert bearing([], goal) == pytest.approx(math.atan2(goal[1], goal[0]), abs=0.15)
+
+
+def test_out_of_a_cup() -> None:
+    """Open behind, closed towards the goal: the way begins backwards."""
+    cup = line(1, -1, 1, 1) + line(-1.5, 1, 1, 1) + line(-1.5, -1, 1, -1)
+    way = bearing(cup)
+    assert way is not None
+    assert abs(way) > 2.0
+
+
+def test_through_the_wider_gap_only() -> None:
+    gaps = line(1, -6, 1, -0.2) + line(1, 0.2, 1, 1.5) + line(1, 2.3, 1, 6)
+    way = bearing(gaps)  # 0.4 m wide straight ahead, 0.8 m wide to the left
+    assert way is not None
+    assert 0.4 < way < 1.5
+
+
+def test_no_way_out_of_a_ring() -> None:
+    ring = [(1.0 * math.cos(a), 1.0 * math.sin(a)) for a in np.arange(0, 6.28, 0.1)]
+    assert bearing(ring) is None
+
+
+def test_memory_keeps_what_is_hidden_and_forgets_what_is_gone() -> None:
+    wall = points(*line(3, -1, 3, 1))
+    memory = remembered(NOTHING, wall, 0.0, 0.0, 6.0)
+    screen = points(*line(1, -1, 1, 1))
+    assert len(remembered(memory, screen, 0.0, 0.0, 6.0)) > len(memory)  # hidden behind the screen
+    assert len(remembered(memory, points((-2, 0)), 0.0, 0.0, 6.0)) == 1  # seen to be gone
+    assert len(remembered(memory, points((-2, 0)), -9.0, 0.0, 6.0)) == len(memory) + 1  # far away
+    again = remembered(memory, wall, 0.0, 0.0, 6.0)
+    np.testing.assert_allclose(np.sort(again, axis=0), np.sort(memory, axis=0), atol=0.1)
