@@ -32,30 +32,25 @@ def _bars() -> Iterator[Callable[[Report], None]]:
     columns = (
         TextColumn("{task.description:<12}"),
         BarColumn(bar_width=24),
-        TextColumn("{task.completed:6.1f} / {task.total:.0f} s"),
-        TextColumn("{task.fields[factor]}"),
-        TextColumn("{task.fields[distance]}"),
+        TextColumn("{task.fields[state]}"),
     )
     with Progress(*columns, console=Console(stderr=True)) as progress:
-        waiting = progress.add_task(
-            "preparing", total=None, visible=True, factor="first run compiles", distance=""
-        )
+        preparing = progress.add_task("preparing", total=None, state="the first run compiles")
         tasks: dict[str, TaskID] = {}
 
         def show(report: Report) -> None:
-            progress.update(waiting, visible=False)
+            progress.update(preparing, visible=False)
             if report.stage not in tasks:
-                tasks[report.stage] = progress.add_task(
-                    report.stage, total=report.limit, factor="", distance=""
-                )
-            progress.update(
-                tasks[report.stage],
-                completed=report.t,
-                factor=f"{report.real_time_factor:5.1f} × real time",
-                distance="" if report.distance is None else f"{report.distance:5.1f} m to go",
-            )
+                tasks[report.stage] = progress.add_task(report.stage, total=report.limit, state="")
+            progress.update(tasks[report.stage], completed=report.t, state=_state(report))
 
         yield show
+
+
+def _state(report: Report) -> str:
+    distance = "" if report.distance is None else f"  {report.distance:5.1f} m to go"
+    factor = f"{report.real_time_factor:5.1f} × real time"
+    return f"{report.t:6.1f} / {report.limit:.0f} s  {factor}{distance}"
 
 
 def _silent(report: Report) -> None:

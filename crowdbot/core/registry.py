@@ -13,7 +13,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from importlib import metadata
 from pathlib import Path
 from types import ModuleType
@@ -149,7 +149,9 @@ def discover(
         for e in sorted(metadata.entry_points(group=GROUP), key=lambda e: (e.name, e.value))
         if (entry_points or e.name == "builtin") and (wanted is None or e.name in wanted)
     ]
-    found += [replace(_load(p.stem, str(p), lambda p=p: load_path(p)), pinned=False) for p in extra]
+    found += [
+        replace(_load(p.resolve().stem, str(p), partial(load_path, p)), pinned=False) for p in extra
+    ]
     return assemble(found)
 
 
@@ -168,19 +170,32 @@ def load_path(path: Path) -> ModuleType:
     """Import a Python file or a package folder under its own name, without installing it.
 
     Raises:
-        PluginError: there is no such file, or it cannot be imported.
+        PluginError: there is no such file, its name is taken, or it cannot be imported.
     """
-    file = path / "__init__.py" if path.is_dir() else path
-    spec = importlib.util.spec_from_file_location(path.stem, file) if file.is_file() else None
-    if spec is None or spec.loader is None:
+    file = (path / "__init__.py" if path.is_dir() else path).resolve()
+    name = path.resolve().stem
+    if not file.is_file():
         raise PluginError(f"{path}: no Python file or package")
+    taken = sys.modules.get(name)
+    if taken is not None and getattr(taken, "__file__", None) == str(file):
+        return taken
+    if taken is not None or importlib.util.find_spec(name) is not None:
+        raise PluginError(f"{path}: a module named '{name}' exists already; rename the plugin")
+    return _import_file(name, file, package=path.is_dir())
+
+
+def _import_file(name: str, file: Path, *, package: bool) -> ModuleType:
+    folders = [str(file.parent)] if package else None
+    spec = importlib.util.spec_from_file_location(name, file, submodule_search_locations=folders)
+    assert spec is not None
+    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    sys.modules[path.stem] = module
+    sys.modules[name] = module  # build references name it
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
-        del sys.modules[path.stem]
-        raise PluginError(f"{path}: {type(error).__name__}: {error}") from error
+    except BaseException:
+        del sys.modules[name]
+        raise
     return module
 
 

@@ -15,7 +15,6 @@ from crowdbot.plugins.planners.dwa_build import build
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import build as build_goal_seek
 
-
 Array = NDArray[np.float64]
 
 

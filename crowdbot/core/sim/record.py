@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal, cast
 
@@ -65,7 +65,7 @@ def record_robot(setup: RunSetup) -> Outcome:
     parts: EnvironmentParts = registry.build(scenario.environment)
     model: RobotModel = registry.build(robot.model)
     engine = build_crowd(scenario, realise(scenario), parts, registry)
-    infos: dict[str, SensorInfo] = {n: registry.build(x).info() for n, x in robot.sensors.items()}
+    infos = {n: _framed(n, registry.build(x).info()) for n, x in robot.sensors.items()}
     visible = select_sensors(setup.choice.needs, infos, setup.choice.name)
     sensors = set(infos) if setup.record == "all" else {*visible, *_odometry(infos)}
     task = robot_task(robot, parts)
@@ -190,6 +190,11 @@ class _FailedHost(PlannerHost):
         """Raise what the planner raised."""
         del obs
         raise self._error
+
+
+def _framed(name: str, info: SensorInfo) -> SensorInfo:
+    """A sensor does not know its own name; its frame is called by it."""
+    return info if info.category == "odometry" else replace(info, frame=name)
 
 
 def _odometry(infos: Mapping[str, SensorInfo]) -> set[str]:

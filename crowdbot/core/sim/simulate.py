@@ -140,9 +140,14 @@ def simulate(
         record = files.read_record(request.directory)
         assert record is not None
         return Run(request.directory, record, reused=True, _keep=keep)
-    references = _references(request) if request.references else {}
+    references = _references(request) if _wants_references(request) else {}
     record = _record_run(request, identity, references)
     return Run(request.directory, record, _keep=keep)
+
+
+def _wants_references(request: Request) -> bool:
+    """Without people a run is its own reference; there is nothing to compare."""
+    return request.references and request.scenario.crowd is not None
 
 
 def _identity(request: Request) -> dict[str, Any]:
@@ -151,7 +156,11 @@ def _identity(request: Request) -> dict[str, Any]:
     return {
         "scenario": scenario.id,
         "suite": request.suite,
-        "planner": {**request.choice.spec_dump, "name": request.choice.name},
+        "planner": {
+            **request.choice.spec_dump,
+            "name": request.choice.name,
+            "label": request.choice.label,
+        },
         "seed": request.seed,
         "hashes": {
             "spec": content_hash(scenario, registry.spec_versions(scenario)),
@@ -168,7 +177,7 @@ def _reusable(request: Request, identity: Mapping[str, Any]) -> bool:
         record is not None
         and record.get("run_id") == provenance.digest(identity)
         and record.get("recorded") == request.record
-        and bool(record.get("references")) >= request.references
+        and (bool(record.get("references")) or not _wants_references(request))
     )
 
 
@@ -176,8 +185,6 @@ def _reusable(request: Request, identity: Mapping[str, Any]) -> bool:
 def _references(request: Request) -> dict[str, Path]:
     """Recordings of the calibration runs, simulated where they are missing."""
     scenario = request.scenario
-    if scenario.crowd is None:
-        return {}
     alone = scenario.references.get("robot_alone") or scenario.model_copy(update={"crowd": None})
     crowd = scenario.references.get("crowd_alone") or scenario.model_copy(update={"robots": {}})
     (robot,) = scenario.robots.values()

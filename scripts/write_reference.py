@@ -1,0 +1,202 @@
+"""Writes docs/reference/scenario.md from the models; a test compares the page with them.
+
+Example: .venv/bin/python scripts/write_reference.py
+"""
+
+from __future__ import annotations
+
+import re
+import types
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from pydantic import BaseModel, SerializeAsAny
+from pydantic.fields import FieldInfo
+
+from crowdbot.core.registry import Registry, discover
+from crowdbot.dsl.base import CATEGORIES, ComponentSpec, Mount, Range, Rectangle
+from crowdbot.dsl.quantities import UNITS, Quantity
+from crowdbot.dsl.suite import ScenarioDocument, Seeds, SuiteDocument, SuiteHead
+
+PAGE = Path(__file__).parent.parent / "docs" / "reference" / "scenario.md"
+
+_HEAD = """\
+# Scenarios and suites: every field
+
+<!-- Written by scripts/write_reference.py: change the models, not this page. -->
+
+A *scenario* holds everything the robot meets; the planner is never part of it. A *suite* expands
+to a list of scenarios; [Change a scenario](../howto/change_a_scenario.md) shows one. What each
+error means is on the page [errors](errors.md). The fields of planners are on
+[planners](planners.md), those of metrics on their pages in [metrics](metrics/).
+`crowdbot plugins show KIND` prints the fields of any component that is installed.
+
+A quantity is a number in the unit of its column, or text with a unit of the same dimension, such
+as `80 cm/s`. World frame: x along the corridor, y left, z up, angles counter-clockwise.
+"""
+_COMPONENTS = ("environment", "crowd policy", "cost function", "robot", "sensor")
+_SHARED = (Mount, Range, Rectangle)
+_NAMES = {float: "number", int: "integer", str: "text", bool: "true or false", Any: "anything"}
+_BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
+
+
+def scenario_page() -> str:
+    """The whole page as Markdown."""
+    registry = discover(allow=())
+    parts = [_HEAD, _units(), *_documents(), *_scenario(registry), *_components(registry)]
+    return "\n".join([*parts, *_shared()]).rstrip() + "\n"
+
+
+def _units() -> str:
+    rows = [f"| {dimension} | {', '.join(units)} |" for dimension, units in UNITS.items()]
+    head = ["## Units", "", "The first unit of each dimension is that of a bare number.", ""]
+    return "\n".join([*head, "| dimension | units |", "|---|---|", *rows, ""])
+
+
+def _documents() -> Iterator[str]:
+    yield _section("## A suite document", SuiteDocument)
+    yield _section("### suite", SuiteHead)
+    yield _section("### seeds", Seeds)
+    yield _section("## A scenario document", ScenarioDocument)
+
+
+def _scenario(registry: Registry) -> Iterator[str]:
+    yield _section("## A scenario", registry.scenario_model)
+    for path, model in _nested(registry.scenario_model, ""):
+        yield _section(f"### {path}", model)
+
+
+def _components(registry: Registry) -> Iterator[str]:
+    for category in _COMPONENTS:
+        yield f"## {_plural(category).capitalize()}\n"
+        for kind, component in registry.components(category).items():
+            about = f"`kind: {kind}`, {component.summary}."
+            yield _section(f"### {kind}", component.spec, about)
+
+
+def _plural(category: str) -> str:
+    return f"{category[:-1]}ies" if category.endswith("y") else f"{category}s"
+
+
+def _shared() -> Iterator[str]:
+    yield "## Shared parts\n"
+    for model in _SHARED:
+        yield _section(f"### {model.__name__.lower()}", model)
+
+
+def _nested(model: type[BaseModel], prefix: str) -> Iterator[tuple[str, type[BaseModel]]]:
+    """Plain models below a model, with the path at which they are written."""
+    for name, info in model.model_fields.items():
+        inner, named = _model_of(info.annotation)
+        if info.exclude or inner is None or issubclass(inner, ComponentSpec) or inner in _SHARED:
+            continue
+        path = f"{prefix}{name}.NAME" if named else f"{prefix}{name}"
+        yield path, inner
+        yield from _nested(inner, f"{path}.")
+
+
+def _model_of(annotation: Any) -> tuple[type[BaseModel] | None, bool]:
+    """The model inside an annotation, and whether it is a member of a map."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation, False
+    named = get_origin(annotation) in (dict, Mapping)
+    for part in get_args(annotation)[1 if named else 0 :]:
+        inner, deeper = _model_of(part)
+        if inner is not None:
+            return inner, named or deeper
+    return None, False
+
+
+def _section(heading: str, model: type[BaseModel], about: str = "") -> str:
+    lines = [heading, "", *([about, ""] if about else []), _prose(model), ""]
+    rows = [_row(n, i) for n, i in model.model_fields.items() if n != "kind" and not i.exclude]
+    head = ["| field | type | unit | default | meaning |", "|---|---|---|---|---|"]
+    return "\n".join([*lines, *head, *rows, ""])
+
+
+def _prose(model: type[BaseModel]) -> str:
+    """A model's docstring; that of the base class for a narrowed one."""
+    text = next(c.__doc__ for c in model.__mro__ if "__doc__" in vars(c) and c.__doc__)
+    return re.sub(r"\s*\n\s*", " ", text.strip()).replace("``", "`")
+
+
+def _row(name: str, info: FieldInfo) -> str:
+    unit = ", ".join(_units_of(info.annotation, info.metadata))
+    cells = [f"`{name}`", _type(info), unit, _default(info), info.description or _about(info)]
+    return "| " + " | ".join(c.replace("|", "\\|") for c in cells) + " |"
+
+
+def _about(info: FieldInfo) -> str:
+    """The first sentence of a part's own docstring, for a field without a description."""
+    inner, _ = _model_of(info.annotation)
+    if inner is None:
+        return ""
+    base = next((c for c in CATEGORIES if issubclass(inner, c)), inner)
+    text = _prose(base).removeprefix("Abstract: ")
+    return re.split(r"[.:](?:\s|$)", text[0].upper() + text[1:])[0] + "."
+
+
+def _units_of(annotation: Any, metadata: Any) -> list[str]:
+    found = [m.si_unit for m in metadata if isinstance(m, Quantity)]
+    if found or get_origin(annotation) not in (tuple, Annotated):
+        return found
+    inner = [a for a in get_args(annotation) if get_origin(a) is Annotated]
+    return [u for a in inner for u in _units_of(get_args(a)[0], get_args(a)[1:])]
+
+
+def _type(info: FieldInfo) -> str:
+    words, bounds = _word(info.annotation), []
+    for item in info.metadata:
+        for bound, sign in _BOUNDS.items():
+            if hasattr(item, bound):
+                bounds.append(f"{sign} {getattr(item, bound)}")
+        if pattern := getattr(item, "pattern", None):
+            bounds.append(f"matching `{pattern}`")
+    return " ".join([words, ", ".join(sorted(bounds, reverse=True))]).strip()
+
+
+def _word(annotation: Any) -> str:
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin is Literal:
+        return " or ".join(f"`{a}`" for a in arguments)
+    if origin in (Union, types.UnionType):
+        words = list(dict.fromkeys(_word(a) for a in arguments if a is not type(None)))
+        return " or ".join([*words, *(["`null`"] if type(None) in arguments else [])])
+    if origin is Annotated or origin is SerializeAsAny:
+        return _word(arguments[0])
+    if origin in (dict, Mapping):
+        return "map" if arguments[1] is Any else f"map of {_word(arguments[1])}".rstrip()
+    if origin in (list, tuple):
+        counted = [_word(a) for a in arguments if a is not Ellipsis]
+        return "list of " + (", ".join(counted) if len(set(counted)) > 1 else _many(arguments))
+    if isinstance(annotation, type) and issubclass(annotation, ComponentSpec):
+        return f"[{annotation.category}](#{_plural(annotation.category).replace(' ', '-')})"
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        name = annotation.__name__.lower()
+        return f"[{name}](#{name})" if annotation in _SHARED else "map"
+    return _NAMES.get(annotation, "anything")
+
+
+def _many(arguments: tuple[Any, ...]) -> str:
+    count = "" if Ellipsis in arguments or len(arguments) == 1 else f"{len(arguments)} × "
+    return f"{count}{_word(arguments[0])}"
+
+
+def _default(info: FieldInfo) -> str:
+    if info.is_required():
+        return "required"
+    value = info.default
+    if isinstance(value, BaseModel):
+        return "its defaults"
+    if value is None:
+        return "`null`"
+    if isinstance(value, str):
+        return f"`{value}`" if value else "empty"
+    if isinstance(value, list | tuple | dict):
+        return f"`[{', '.join(map(str, value))}]`" if value else "empty"
+    return f"{value:.6g}"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(scenario_page(), encoding="utf-8")
