@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from crowdbot.dsl.diagnostics import Diagnostic
 
 
+#: So many names are listed in full when none looks like the one that was given.
+_FEW = 12
+
+
 class CrowdbotError(Exception):
     """Base of all errors with a message meant for people."""
 
@@ -47,8 +51,12 @@ class UnknownNameError(InputError):
     """A name that nothing answers to; the message ends with the nearest names."""
 
     def __init__(self, what: str, name: str, known: Iterable[str]) -> None:
-        self.what, self.name, self.near = what, name, nearest(name, known)
-        super().__init__(f"unknown {what} '{name}'{did_you_mean(self.near)}")
+        names = sorted(known)
+        self.what, self.name, self.near = what, name, nearest(name, names)
+        hint = did_you_mean(self.near)
+        if not hint and 0 < len(names) <= _FEW:
+            hint = f"; there are: {', '.join(names)}"
+        super().__init__(f"unknown {what} '{name}'{hint}")
 
 
 class UsageError(CrowdbotError):

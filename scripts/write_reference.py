@@ -166,7 +166,8 @@ def _word(annotation: Any) -> str:
     if origin is Annotated or origin is SerializeAsAny:
         return _word(arguments[0])
     if origin in (dict, Mapping):
-        return "map" if arguments[1] is Any else f"map of {_word(arguments[1])}".rstrip()
+        inner = _word(arguments[1])
+        return "map" if arguments[1] is Any else f"map of {'maps' if inner == 'map' else inner}"
     if origin in (list, tuple):
         counted = [_word(a) for a in arguments if a is not Ellipsis]
         return "list of " + (", ".join(counted) if len(set(counted)) > 1 else _many(arguments))

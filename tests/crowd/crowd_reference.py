@@ -105,7 +105,8 @@ def _rvo(spec: RvoSpec, s: Situation, u: Array) -> Array:
             first = np.minimum(first, segment_time(a, b, seen_as, s.radius))
     miss = np.hypot(u[:, 0] - s.preferred[0], u[:, 1] - s.preferred[1])
     fast = np.hypot(u[:, 0], u[:, 1]) > s.max_speed * (1.0 + 1e-12)
-    return np.where(fast, np.inf, spec.w / first + miss)
+    with np.errstate(divide="ignore"):
+        return np.where(fast, np.inf, spec.w / first + miss)
 
 
 def disc_time(offset: Array, v: Array, reach: float) -> Array:
@@ -128,7 +129,7 @@ def segment_time(a: Array, b: Array, v: Array, radius: float) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         crossing = abs(distance) / closing  # of the centre, as the original engine tests it
         at = v @ along * crossing - a @ along
-        touch = (abs(distance) - radius) / closing
+        touch = np.maximum(0.0, (abs(distance) - radius) / closing)
     hit = (closing > 1e-5 / length) & (at >= 0.0) & (at <= length)
     return np.minimum(first, np.where(hit, touch, np.inf))
 

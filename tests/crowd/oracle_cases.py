@@ -56,11 +56,15 @@ class Case:
         """Velocities (N, 2) after one step from a state (N, 4)."""
         view = self.view(state)
         difference = self.choose(view) - state[:, 2:]
-        acceleration = _limit(
-            difference / max(self.relaxation, self.dt), self.agents.max_acceleration
-        )
+        time = self._time(state)[:, np.newaxis]
+        acceleration = _limit(difference / time, self.agents.max_acceleration)
         velocity = _limit(state[:, 2:] + acceleration * self.dt, self.agents.max_speed)
         return velocity + self._push(view) * self.dt / self.agents.mass[:, np.newaxis]
+
+    def _time(self, state: Array) -> Array:
+        """In which the chosen velocity is reached; who has arrived stops at once."""
+        arrived = np.hypot(*(self.goal - state[:, :2]).T) <= self.agents.radius
+        return np.where(arrived, self.dt, max(self.relaxation, self.dt))
 
     def view(self, state: Array) -> CrowdView:
         """The torus' images stand in the view as further bodies."""
@@ -99,19 +103,21 @@ class Case:
         """Whether float32 rounding may have decided agent i's choice.
 
         The original's velocity is reached from an input changed by at most 1e-5, or the cost of
-        its choice lies within 1e-3 (relative) or 1e-6 (absolute) of the least cost.
+        its choice lies within 1e-3 (relative) or 1e-6 (absolute) of the least cost, be the
+        candidates at exactly the largest speed allowed or forbidden.
         """
         view = self.view(state)
         u, total = choice_costs(view, self.specs, self.candidates * self.scale[i], i)
         velocity = state[i, 2:] + np.array(
-            [_limit((c - state[i, 2:])[np.newaxis] / max(self.relaxation, self.dt),
+            [_limit((c - state[i, 2:])[np.newaxis] / self._time(state)[i],
                     self.agents.max_acceleration[i])[0] for c in u]
         ) * self.dt  # fmt: skip
         velocity = _limit(velocity, self.agents.max_speed[i])
         same = np.hypot(*(velocity + self._push(view)[i] * self.dt - theirs).T) < CLOSE
-        least = float(np.min(total))
-        if np.any(same & (total <= least + max(1e-3 * abs(least), 1e-6))):
-            return True
+        on_limit = np.hypot(*u.T) > self.agents.max_speed[i] * (1.0 - 1e-6)
+        for least in (float(np.min(total)), float(np.min(total[~on_limit]))):
+            if np.any(same & (total <= least + max(1e-3 * abs(least), 1e-6))):
+                return True
         return any(
             np.hypot(*(self.step(state + rng.uniform(-1e-5, 1e-5, state.shape))[i] - theirs))
             < CLOSE

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -24,7 +25,7 @@ from crowdbot.core.sim.runner import INTERRUPTED, Outcome, Progress
 from crowdbot.core.trajectory import Trajectories
 from crowdbot.dsl.canonical import content_hash, dump_scenario_yaml
 from crowdbot.dsl.scenario import Scenario
-from crowdbot.errors import InputError, Interrupted
+from crowdbot.errors import InputError, Interrupted, PlannerHungError
 
 Recorded = Literal["all", "used", "none"]
 _REPLAY_RATE = 8.0  # scans per second that the replay page holds, Hz
@@ -220,7 +221,7 @@ def _reference(
     short = run_id.removeprefix("cb1-sha256:")[:16]
     final = request.out / "references" / f"{name}-{short}"
     if not files.is_complete(final, run_id):
-        with files.partial(final) as folder:
+        with _partial(final) as folder:
             outcome = simulate_it(_setup(request, scenario, folder, name))
             _check_interrupted(outcome, folder)
             _write_scenario(folder, scenario)
@@ -228,6 +229,16 @@ def _reference(
             files.write_json(folder / files.RECORD, record)
             files.publish(folder, final)
     return final / files.RECORDING
+
+
+@contextmanager
+def _partial(final: Path) -> Iterator[Path]:
+    """A directory aside; a planner that hangs in it is told together with what is left."""
+    with files.partial(final) as folder:
+        try:
+            yield folder
+        except PlannerHungError as error:
+            raise PlannerHungError(f"{error}; what was recorded: {folder}") from error
 
 
 def _read_references(paths: Mapping[str, Path]) -> References:
@@ -239,7 +250,7 @@ def _record_run(
     request: Request, identity: Mapping[str, Any], references: Mapping[str, Path]
 ) -> dict[str, Any]:
     final = request.directory
-    with files.partial(final) as folder:
+    with _partial(final) as folder:
         outcome = record_robot(_setup(request, request.scenario, folder, "run"))
         _check_interrupted(outcome, folder)
         run = read_trajectories(folder / files.RECORDING)

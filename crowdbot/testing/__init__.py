@@ -1,1 +1,0 @@
-"""What extension authors test with."""
