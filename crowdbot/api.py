@@ -40,8 +40,7 @@ def load(path_or_name: str | Path, scenario: str | None = None) -> Expansion | S
     expansion = open_spec(str(path_or_name), registry())
     if scenario is not None:
         return pick(expansion, scenario)
-    alone = len(expansion.scenarios) == 1 and expansion.scenarios[0].id == expansion.suite_id
-    return expansion.scenarios[0] if alone else expansion
+    return expansion.scenarios[0] if expansion.single else expansion
 
 
 def expand(suite: Expansion) -> list[Scenario]:

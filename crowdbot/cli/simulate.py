@@ -78,7 +78,7 @@ def simulate(
             planner_settings=planner_set or (),
             seed=seed,
             out=out,
-            suite=expansion.suite_id,
+            suite="scenarios" if expansion.single else expansion.suite_id,
             metrics=expansion.metrics,
             record=record.value,
             references=references,

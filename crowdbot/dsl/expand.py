@@ -39,6 +39,12 @@ class Expansion:
     metrics: tuple[str, ...] | None = None
     trees: dict[str, Node] = field(default_factory=dict, repr=False)
 
+    @property
+    def single(self) -> bool:
+        """Whether the document holds one scenario by itself, no matrix of them."""
+        ids = [s.id.partition("+")[0] for s in self.scenarios]
+        return ids == [self.suite_id]
+
 
 def load_document(
     path: Path,

@@ -1,10 +1,12 @@
+from typing import Any
+
 import numpy as np
 
 import crowdbot
 
 t = np.arange(0.0, 10.0, 0.1)
 still = np.zeros_like(t)
-robot = {
+robot: dict[str, Any] = {
     "t": t,
     "robot_x": 0.5 * t,
     "robot_y": still,
