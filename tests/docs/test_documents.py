@@ -1,0 +1,169 @@
+"""Every page: links, code blocks, commands, decisions."""
+
+from __future__ import annotations
+
+import re
+import runpy
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from doc_pages import PAGES, ROOT, anchors, blocks, commands, links, name_of, read, sessions
+
+import crowdbot
+from crowdbot.cli import _load, command_names, main
+from crowdbot.core.library import pick
+
+FILES = sorted([*ROOT.glob("docs/*/files/*.py"), *ROOT.glob("docs/*/files/*.yaml")])
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_relative_links_resolve(page: Path) -> None:
+    for link in links(page):
+        if re.match(r"[a-z]+:", link):
+            continue
+        path, _, anchor = link.partition("#")
+        target = page.parent / path if path else page
+        assert target.exists(), f"{link} leads nowhere"
+        if anchor and target.suffix == ".md":
+            assert anchor in anchors(target), f"{link}: no such heading"
+
+
+def test_links_outside_the_repository_are_few_and_known() -> None:
+    known = {
+        "https://drake.mit.edu",
+        "https://keepachangelog.com/en/1.1.0/",
+        "https://mcap.dev",
+        "https://semver.org/spec/v2.0.0.html",
+    }
+    found = {link for page in PAGES for link in links(page) if re.match(r"[a-z]+:", link)}
+    assert found <= known, f"check these by hand, then add them: {found - known}"
+
+
+def test_the_index_lists_every_page() -> None:
+    index = ROOT / "docs" / "index.md"
+    listed = {(index.parent / link.partition("#")[0]).resolve() for link in links(index)}
+    pages = {p.resolve() for p in (ROOT / "docs").rglob("*.md")} - {index.resolve()}
+    assert pages - listed == set()
+
+
+def test_blocks_that_name_a_file_equal_it() -> None:
+    named = [b for page in PAGES for b in blocks(page) if b.names is not None]
+    for block in named:
+        assert block.names is not None
+        assert block.text == block.names.read_text(encoding="utf-8"), block.names
+    shown = {b.names.resolve() for b in named if b.names is not None}
+    assert shown == {f.resolve() for f in FILES}
+
+
+def test_commands_in_the_text_exist() -> None:
+    found = list(commands())
+    assert len(found) > 20
+    for page, words in found:
+        where = f"{page}: {' '.join(words)}"
+        assert words[0] in command_names(), where
+        command = _load(words[0])
+        if words[1:2] and words[1] in getattr(command, "commands", {}):
+            command = command.commands[words[1]]
+        known = {o for p in command.params for o in (*p.opts, *p.secondary_opts)}
+        assert {w for w in words if w.startswith("-")} <= known, where
+
+
+def _cheap(words: list[str], output: list[str]) -> bool:
+    """Whether the shown output comes without simulating anything."""
+    plain = words[0] in ("expand", "validate") and "scenario.yml" not in words
+    return bool(output) and (plain or output[0].startswith(("error: ", "--set:")))
+
+
+SHOWN = [(p, w, o) for p, w, o in sessions() if _cheap(w, o)]
+
+
+@pytest.mark.parametrize(("page", "words", "output"), SHOWN, ids=[" ".join(w) for _, w, _ in SHOWN])
+def test_shown_output_is_what_comes(
+    page: str,
+    words: list[str],
+    output: list[str],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir((ROOT / page).parent / "files" if page.startswith("docs/howto") else ROOT)
+    main(words)
+    said = capsys.readouterr()
+    assert (said.out + said.err).splitlines() == output
+
+
+def test_scenarios_in_the_text_exist() -> None:
+    suite = crowdbot.load("challenge-2020")
+    assert isinstance(suite, crowdbot.Suite)
+    ids = [w[2] for _, w in commands() if w[:2] == ["simulate", "challenge-2020"]]
+    assert ids
+    for wanted in ids:
+        if wanted == "counter-d0250":  # stands for a message about something else
+            continue
+        assert pick(suite, wanted).id == wanted
+
+
+def test_the_suite_of_the_howto_expands() -> None:
+    suite = crowdbot.load(ROOT / "docs" / "howto" / "files" / "my_suite.yaml")
+    assert isinstance(suite, crowdbot.Suite)
+    assert [s.id for s in suite.scenarios] == ["in-few", "in-many", "counter-few", "counter-many"]
+
+
+def test_own_arrays_print_what_the_page_shows() -> None:
+    page = ROOT / "docs" / "howto" / "score_own_data.md"
+    (shown,) = (b.text for b in blocks(page) if b.language == "text")
+    script = ROOT / "docs" / "howto" / "files" / "own_arrays.py"
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
+    assert [line.rstrip() for line in done.stdout.splitlines()] == [
+        line.rstrip() for line in shown.splitlines()
+    ]
+
+
+def test_the_page_of_all_fields_is_fresh() -> None:
+    script = runpy.run_path(str(ROOT / "scripts" / "write_reference.py"))
+    text: str = script["scenario_page"]()
+    assert read("reference/scenario.md") == text, "run scripts/write_reference.py"
+
+
+def test_decisions_are_numbered_and_whole() -> None:
+    decisions = sorted((ROOT / "docs" / "decisions").glob("*.md"))
+    assert [int(d.name[:4]) for d in decisions] == list(range(1, len(decisions) + 1))
+    for decision in decisions:
+        text = decision.read_text(encoding="utf-8")
+        assert text.startswith(f"# {decision.name[:4]} "), decision.name
+        for part in ("## Context", "## Decision", "## Consequences"):
+            assert part in text, f"{decision.name}: {part}"
+
+
+def test_decisions_that_the_code_refers_to_exist() -> None:
+    mentioned = {
+        number
+        for file in (ROOT / "crowdbot").rglob("*.py")
+        for number in re.findall(r"docs/decisions/(\d{4})", file.read_text(encoding="utf-8"))
+    }
+    written = {d.name[:4] for d in (ROOT / "docs" / "decisions").glob("*.md")}
+    assert "0004" in mentioned
+    assert mentioned <= written
+
+
+def test_every_dependency_has_a_reason() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    listed = [*project["project"]["dependencies"], *project["dependency-groups"]["dev"]]
+    names = {re.split(r"[<>=!~\[ ]", entry)[0] for entry in listed}
+    given = set(re.findall(r"^\| ([\w.-]+) \|", read("decisions/0001-dependencies.md"), re.M))
+    assert given - {"package"} == names
+
+
+def test_every_metric_has_a_page() -> None:
+    pages = {p.stem for p in (ROOT / "docs" / "reference" / "metrics").glob("*.md")}
+    from crowdbot.core.registry import discover
+
+    assert set(discover(allow=()).components("metric")) <= pages
+
+
+def test_the_picture_is_small() -> None:
+    picture = ROOT / "docs" / "images" / "replay.png"
+    assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    assert picture.stat().st_size < 300_000

@@ -1,0 +1,130 @@
+"""Commands, hooks and contracts, compared with what the code has."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from doc_pages import read, section
+
+from crowdbot import hookspecs
+from crowdbot.cli import _load, command_names
+from crowdbot.core import interfaces
+from crowdbot.core.registry import discover
+
+COMMANDS, PLUGINS = read("reference/commands.md"), read("reference/plugins.md")
+EVERYWHERE = {"--verbose", "-v", "--quiet", "-q"}
+
+
+def _commands() -> Iterator[tuple[str, Any]]:
+    for name in command_names():
+        command = _load(name)
+        yield name, command
+        for inner, child in getattr(command, "commands", {}).items():
+            yield f"{name} {inner}", child
+
+
+LIVE = dict(_commands())
+
+
+def _options(command: Any) -> set[str]:
+    params = [p for p in command.params if p.param_type_name == "option"]
+    return {o for p in params for o in (*p.opts, *p.secondary_opts)} - EVERYWHERE
+
+
+def test_every_command_has_a_heading_and_no_other() -> None:
+    assert re.findall(r"^## crowdbot (.*)$", COMMANDS, re.M) == _in_page_order()
+
+
+def _in_page_order() -> list[str]:
+    order = ["validate", "expand", "simulate", "evaluate", "plugins"]
+    assert set(order) <= set(command_names())
+    return sorted(LIVE, key=lambda n: order.index(n.split()[0]) if n.split()[0] in order else 99)
+
+
+@pytest.mark.parametrize("name", LIVE)
+def test_every_option_is_described_and_no_other(name: str) -> None:
+    text = section(COMMANDS, f"## crowdbot {name}")
+    rows = "\n".join(re.findall(r"^\|([^|]*(?:\\\|[^|]*)*)\|", text, re.M))
+    assert set(re.findall(r"(?<![\w-])--?[a-z][a-z-]*", rows)) == _options(LIVE[name])
+
+
+@pytest.mark.parametrize("name", LIVE)
+def test_every_command_has_an_example(name: str) -> None:
+    assert f"$ crowdbot {name}" in section(COMMANDS, f"## crowdbot {name}")
+
+
+def test_options_of_every_command_are_named_once() -> None:
+    head = COMMANDS.partition("\n## ")[0]
+    assert all(f"`{option}`" in head for option in EVERYWHERE)
+
+
+def _signature(function: Any) -> str:
+    return str(inspect.signature(function)).replace("'", "")
+
+
+HOOKS = {n: h for n, h in vars(hookspecs).items() if n.startswith("crowdbot_")}
+
+
+@pytest.mark.parametrize("name", HOOKS)
+def test_every_hook_is_described_with_its_signature(name: str) -> None:
+    assert f"`{name}{_signature(HOOKS[name])}`" in section(PLUGINS, f"### {name}")
+
+
+def test_no_other_hook_is_described() -> None:
+    assert set(re.findall(r"^### (crowdbot_\w+)$", PLUGINS, re.M)) == set(HOOKS)
+
+
+def _protocols() -> dict[str, Any]:
+    from crowdbot.core.crowd import policy
+
+    return {
+        name: value
+        for module in (interfaces, policy)
+        for name, value in vars(module).items()
+        if getattr(value, "_is_protocol", False) and value.__module__ == module.__name__
+    }
+
+
+@pytest.mark.parametrize("name", _protocols())
+def test_every_contract_is_described_with_its_signatures(name: str) -> None:
+    text = section(PLUGINS, f"### {name}")
+    methods = {n: m for n, m in vars(_protocols()[name]).items() if not n.startswith("_")}
+    assert methods
+    for method, value in methods.items():
+        function = value.fget if isinstance(value, property) else value
+        assert f"def {method}{_signature(function)}\n" in text
+
+
+@pytest.mark.parametrize("kind", discover(allow=()).components("cost function"))
+def test_cost_functions_have_the_described_arguments(kind: str) -> None:
+    registry = discover(allow=())
+    component = registry.find("cost function", kind)
+    cost = registry.build(component.spec.model_validate({"kind": kind}))
+    text = section(PLUGINS, "### Cost functions")
+    for name in ("base", "prepare", "excess"):
+        arguments = ", ".join(inspect.signature(getattr(cost, name).py_func).parameters)
+        assert f"`{name}({arguments})`" in text
+
+
+def test_entries_of_the_cost_arrays_are_described() -> None:
+    from crowdbot.core.crowd import cost
+
+    text = section(PLUGINS, "### Cost functions")
+    named = re.findall(r"`([A-Z][A-Z0-9_]+)`", text)
+    assert all(hasattr(cost, name) for name in named)
+    for row, first, size in (("agent", "PX", cost.AGENT_SIZE), ("near", "D2", cost.NEAR_COLUMNS)):
+        (entries,) = re.findall(rf"^\| `{row}` \|.*?((?:`[A-Z0-9_]+`(?:, )?)+)", text, re.M)
+        names = re.findall(r"`([A-Z0-9_]+)`", entries)
+        assert names[0] == first
+        assert [getattr(cost, n) for n in names] == list(range(size))
+
+
+def test_every_category_has_a_build_row() -> None:
+    from crowdbot.dsl.base import CATEGORIES
+
+    rows = re.findall(r"^\| ([a-z ]+) \| `build\(spec", PLUGINS, re.M)
+    assert set(rows) == {c.category for c in CATEGORIES}
