@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import hashlib
 import importlib.util
 import inspect
@@ -214,8 +215,9 @@ def _from_class(path: Path, name: str, parameters: Mapping[str, Any]) -> Planner
 
     def build() -> Planner:
         try:
-            made: Planner = kind(**parameters)
-        except Exception as error:
+            with contextlib.redirect_stdout(sys.stderr):
+                made: Planner = kind(**parameters)
+        except (Exception, SystemExit) as error:
             text = f"{type(error).__name__}: {error}"
             raise PlannerError(f"planner '{name}' cannot be made: {text}{_line(error)}") from error
         return made
@@ -256,7 +258,8 @@ def _import(path: Path) -> ModuleType:
     if str(file.parent) not in sys.path:
         sys.path.append(str(file.parent))
     try:
-        spec.loader.exec_module(module)
+        with contextlib.redirect_stdout(sys.stderr):
+            spec.loader.exec_module(module)
     except (Exception, SystemExit) as error:
         del sys.modules[unique]
         text = f"{type(error).__name__}: {error}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import json
 import os
@@ -53,6 +54,8 @@ def partial(final: Path) -> Iterator[Path]:
     """
     try:
         final.parent.mkdir(parents=True, exist_ok=True)
+        if final.is_file():
+            raise NotADirectoryError(errno.ENOTDIR, f"{final.name} is a file")
         folder, lock = _claim(final)
     except OSError as error:
         raise InputError(f"{final.parent}: cannot be written: {error.strerror}") from error
@@ -60,14 +63,13 @@ def partial(final: Path) -> Iterator[Path]:
         yield folder
     finally:
         with suppress(OSError):
-            (folder / _LOCK).unlink()
+            if _is_ours(lock, folder):  # once published, the name may be another process's
+                (folder / _LOCK).unlink()
         os.close(lock)
 
 
 def publish(folder: Path, final: Path) -> None:
     """Give a complete directory its final name, in place of what was there."""
-    with suppress(OSError):
-        (folder / _LOCK).unlink()
     for file in folder.iterdir():
         _sync(file)
     old = final.with_name(f"{final.name}.old-{os.getpid()}")
@@ -75,10 +77,13 @@ def publish(folder: Path, final: Path) -> None:
         final.rename(old)
     try:
         folder.rename(final)
-    except OSError:
-        if not final.is_dir():  # another process was faster with the very same run
+    except OSError as error:
+        if error.errno not in (errno.EEXIST, errno.ENOTEMPTY):
             raise
-        shutil.rmtree(folder)
+        shutil.rmtree(old, ignore_errors=True)  # another process was faster with the very same run
+        folder.rename(old)
+    with suppress(OSError):  # only now: until it is renamed, the folder must stay claimed
+        (final / _LOCK).unlink()
     _sync(final.parent)
     shutil.rmtree(old, ignore_errors=True)
 
@@ -87,18 +92,41 @@ def _claim(final: Path) -> tuple[Path, int]:
     for number in range(1, 1000):
         suffix = "" if number == 1 else f"-{number}"
         folder = final.with_name(f"{final.name}{suffix}.partial")
-        folder.mkdir(exist_ok=True)
-        lock = os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT, 0o644)
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            os.close(lock)
+        lock = _lock(folder)
+        if lock is None:
             continue
         for leftover in folder.iterdir():
             if leftover.name != _LOCK:
                 shutil.rmtree(leftover) if leftover.is_dir() else leftover.unlink()
         return folder, lock
     raise InputError(f"{final}: a thousand runs of it are going on already")
+
+
+def _lock(folder: Path) -> int | None:
+    """Make a folder and lock it; None when another process has it."""
+    while True:
+        try:
+            folder.mkdir(exist_ok=True)
+            lock = os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT, 0o644)
+        except (FileNotFoundError, FileExistsError):  # published in between
+            if folder.is_file():
+                raise
+            continue
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(lock)
+            return None
+        if _is_ours(lock, folder):
+            return lock
+        os.close(lock)  # the lock of a folder that has another name by now
+
+
+def _is_ours(lock: int, folder: Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(lock), (folder / _LOCK).stat())
+    except FileNotFoundError:
+        return False
 
 
 def _sync(path: Path) -> None:

@@ -22,4 +22,5 @@ def is_due(tick: int, rate: float) -> bool:
 
 def _samples_until(tick: int, rate: float) -> int:
     """Number of samples n >= 0 with n / rate <= tick / 128."""
-    return int(tick * rate // TICKS_PER_SECOND) + 1 if tick >= 0 else 0
+    # 8.2 Hz is stored as a little less; its sample 123 still belongs to the tick at 15 s.
+    return int(tick * rate / TICKS_PER_SECOND + 1e-9) + 1 if tick >= 0 else 0

@@ -31,7 +31,7 @@ def test_one_step(name: str) -> None:
         differs = np.flatnonzero(np.hypot(*(ours - after[:, 2:]).T) >= CLOSE)
         total += len(ours)
         away += len(differs)
-        misses += sum(not case.is_tie(before, i, after[i, 2:], rng) for i in differs)
+        misses += sum(not case.is_tie(before, int(i), after[i, 2:], rng) for i in differs)
     print(f"{name}: {total} samples, {away} decided otherwise, {misses} of them no tie")
     assert misses == 0
     assert away <= TIES.get(name, 0.0) * total

@@ -69,7 +69,7 @@ def test_takes_the_exhaustive_minimum(mix: str, seed: int) -> None:
     view = scene(seed)
     chosen = choose(view, MIXES[mix])
     for i in np.flatnonzero(view.present):
-        u, total = choice_costs(view, MIXES[mix], FAN, i)
+        u, total = choice_costs(view, MIXES[mix], FAN, int(i))
         taken = int(np.argmin(np.hypot(*(u - chosen[i]).T)))
         assert np.hypot(*(u[taken] - chosen[i])) < 1e-9
         assert total[taken] <= np.min(total) + 1e-9 * max(1.0, abs(np.min(total)))
@@ -79,7 +79,7 @@ def test_takes_the_exhaustive_minimum(mix: str, seed: int) -> None:
 def test_equal_costs_go_to_the_first_candidate() -> None:
     """Standing still in front, then slow to fast, right to left: as the original engine does."""
     view = replace(scene(0, 1, 0), present=np.ones(1, np.bool_))
-    free = [TtcaDcaSpec(weight=0.0)]
+    free: list[CostFunctionSpec] = [TtcaDcaSpec(weight=0.0)]
     assert np.array_equal(choose(view, free), np.zeros((1, 2)))
 
 
@@ -117,7 +117,7 @@ def test_the_frame_does_not_matter(turn: str, mix: str) -> None:
     other = _turned(view, matrix, shift)
     found = choose(other, MIXES[mix])
     for i in np.flatnonzero(np.hypot(*(found - expected).T) > 1e-6):  # only by an exact tie
-        u, total = choice_costs(other, MIXES[mix], FAN, i)
+        u, total = choice_costs(other, MIXES[mix], FAN, int(i))
         costs = [total[np.argmin(np.hypot(*(u - v).T))] for v in (found[i], expected[i])]
         assert math.isclose(*costs, rel_tol=1e-9)
 

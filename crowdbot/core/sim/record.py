@@ -24,7 +24,7 @@ from crowdbot.core.interfaces import (
     SensorInfo,
     Task,
 )
-from crowdbot.core.planner_host import HostedCommand, PlannerHost
+from crowdbot.core.planner_host import RESET_LIMIT, HostedCommand, PlannerHost
 from crowdbot.core.planner_source import PlannerChoice, select_sensors
 from crowdbot.core.realise import realise
 from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter, RobotHeader
@@ -35,7 +35,7 @@ from crowdbot.core.sim.runner import INTERRUPTED, TIMEOUT, Outcome, Progress, ru
 from crowdbot.core.watchdog import Watchdog
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.dsl.seeds import stream_seed
-from crowdbot.errors import InputError, PlannerError
+from crowdbot.errors import InputError, PlannerError, PlannerHungError
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -171,12 +171,23 @@ def _host(
     """The planner, built and reset; one that fails in this fails again in its first step."""
     choice = setup.choice
     try:
-        host = PlannerHost(choice.build(), choice.name, model.limits, watchdog=watchdog)
+        planner = _build(choice, watchdog)
+        host = PlannerHost(planner, choice.name, model.limits, watchdog=watchdog)
         # Halved, so that planners may hand the seed to generators of signed integers.
         host.reset(task, sensors, stream_seed(setup.seed, robot, "planner") >> 1)
     except PlannerError as error:
         return _FailedHost(error, choice.name, model.limits)
     return host
+
+
+def _build(choice: PlannerChoice, watchdog: Watchdog) -> Planner:
+    """The planner itself; its constructor may load models, but not for ever."""
+    try:
+        with watchdog.patience(RESET_LIMIT), watchdog:
+            return choice.build()
+    except PlannerHungError:
+        text = f"planner '{choice.name}' could not be made within {RESET_LIMIT:g} s"
+        raise PlannerHungError(text) from None
 
 
 class _FailedHost(PlannerHost):

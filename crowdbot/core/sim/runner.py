@@ -80,14 +80,13 @@ def run(
     begin, cpu = time.perf_counter(), time.process_time()
     status, reason = TIMEOUT, f"time limit of {task.time_limit:g} s"
     try:
-        simulator.Initialize()
-        ended = False
+        ended = _has_ended(simulator.Initialize())
         while not ended:
             if stop():
                 status, reason = INTERRUPTED, "interrupted by the user"
                 break
             answer = simulator.AdvanceTo(context.get_time() + _LOOK)
-            ended = answer.reason() == SimulatorStatus.ReturnReason.kReachedTerminationCondition
+            ended = _has_ended(answer)
             if progress is not None:
                 _report(progress, stage, blocks, task, context, begin)
     except PlannerError as error:
@@ -106,6 +105,10 @@ def run(
         clamped=log.clamped,
         planner_step_time=log.step_times(),
     )
+
+
+def _has_ended(status: SimulatorStatus) -> bool:
+    return bool(status.reason() == SimulatorStatus.ReturnReason.kReachedTerminationCondition)
 
 
 def _crowd(blocks: Blocks, context: object) -> crowd_state.Array | None:

@@ -14,14 +14,14 @@ from crowdbot.core import provenance
 from crowdbot.core import run_directory as files
 from crowdbot.core.evaluate import Scores, score
 from crowdbot.core.interfaces import References
-from crowdbot.core.planner_source import PlannerChoice, resolve_planner
+from crowdbot.core.planner_source import PlannerChoice, resolve_planner, select_sensors
 from crowdbot.core.realise import realise
 from crowdbot.core.recording import read_scans, read_trajectories
 from crowdbot.core.registry import Registry
 from crowdbot.core.replay import write_replay
 from crowdbot.core.scores_table import write_scores_csv
 from crowdbot.core.sim.record import RunSetup, record_crowd, record_robot
-from crowdbot.core.sim.runner import INTERRUPTED, Outcome, Progress
+from crowdbot.core.sim.runner import INTERRUPTED, PLANNER_FAILED, Outcome, Progress
 from crowdbot.core.trajectory import Trajectories
 from crowdbot.dsl.canonical import content_hash, dump_scenario_yaml
 from crowdbot.dsl.scenario import Scenario
@@ -136,6 +136,7 @@ def simulate(
         raise InputError(
             f"{scenario.id} has {len(scenario.robots)} robots; this release simulates exactly one"
         )
+    _check_needs(request)
     identity = _identity(request)
     if not request.force and _reusable(request, identity):
         record = files.read_record(request.directory)
@@ -144,6 +145,13 @@ def simulate(
     references = _references(request) if _wants_references(request) else {}
     record = _record_run(request, identity, references)
     return Run(request.directory, record, _keep=keep)
+
+
+def _check_needs(request: Request) -> None:
+    """Refuse a planner whose sensors the robot lacks before anything is written."""
+    (robot,) = request.scenario.robots.values()
+    infos = {n: request.registry.build(x).info() for n, x in robot.sensors.items()}
+    select_sensors(request.choice.needs, infos, request.choice.name)
 
 
 def _wants_references(request: Request) -> bool:
@@ -220,7 +228,8 @@ def _reference(
     run_id = provenance.digest({"reference": name, **key})
     short = run_id.removeprefix("cb1-sha256:")[:16]
     final = request.out / "references" / f"{name}-{short}"
-    if not files.is_complete(final, run_id):
+    failed = (files.read_record(final) or {}).get("status") == PLANNER_FAILED
+    if failed or not files.is_complete(final, run_id):
         with _partial(final) as folder:
             outcome = simulate_it(_setup(request, scenario, folder, name))
             _check_interrupted(outcome, folder)

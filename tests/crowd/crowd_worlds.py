@@ -1,0 +1,80 @@
+"""Small crowds for tests of the engine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from crowd_reference import Array, agents_of
+from oracle_cases import compiled
+
+from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld
+from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd_setup import build_crowd
+from crowdbot.core.library import open_spec, pick
+from crowdbot.core.realise import realise
+from crowdbot.core.registry import discover
+from crowdbot.dsl.base import Range
+from crowdbot.plugins.crowd.rvo import RvoSpec
+from crowdbot.plugins.crowd.ttca_dca import TtcaDcaSpec
+from crowdbot.plugins.crowd.velocity_space import VelocitySpaceSpec
+from crowdbot.plugins.crowd.velocity_space_build import VelocitySpace
+
+WALLS = np.array([[-1.0, -5.0, 51.0, -5.0], [51.0, 5.0, -1.0, 5.0]])
+ENTRANCE, OUT = np.array([-1.0, 0.0, -5.0, 5.0]), np.array([50.0, 51.0, -5.0, 5.0])
+TICKS = 128
+
+
+@dataclass
+class Straight:
+    """Everybody goes on as before; no pushes."""
+
+    contact_stiffness: float = 0.0
+
+    def accelerations(self, view: CrowdView) -> Array:
+        return np.zeros_like(view.position)
+
+
+def world(**changes: object) -> CrowdWorld:
+    """The challenge's corridor."""
+    given: dict[str, object] = {
+        "walls": WALLS, "entrance": ENTRANCE, "out": OUT, "response": np.array([62.5, 125.0, 0.2]),
+        "robot_visible": True, "stiffness": 30000.0, "dissipation": 0.3, "goal_key": 2020,
+        "decision_rate": 16.0,
+    }  # fmt: skip
+    return CrowdWorld(**{**given, **changes})  # type: ignore[arg-type]
+
+
+def straight(position: Array, speed: float | Array = 1.2, **changes: object) -> CrowdEngine:
+    """People who walk straight on through everything."""
+    return CrowdEngine(agents_of(position, speed), world(**changes), lambda _: Straight())
+
+
+def walkers(agents: Agents, **changes: object) -> CrowdEngine:
+    """People of the challenge's kind."""
+    mix = [
+        TtcaDcaSpec(
+            weight=20.0, range=Range(value=5.0), sigma_ttca=0.3, sigma_dca=0.3,
+            sigma_angle_goal=3.0, sigma_speed_goal=0.01,
+        ),
+        RvoSpec(range=Range(value=0.3, measure="surface")),
+    ]  # fmt: skip
+    return CrowdEngine(
+        agents, world(**changes),
+        lambda a: VelocitySpace(VelocitySpaceSpec(), [compiled(c) for c in mix], a),
+    )  # fmt: skip
+
+
+def challenge(id_: str) -> CrowdEngine:
+    """The crowd of a scenario of the challenge."""
+    registry = discover()
+    scenario = pick(open_spec("challenge-2020", registry), id_)
+    parts = registry.build(scenario.environment)
+    engine = build_crowd(scenario, realise(scenario), parts, registry)
+    assert engine is not None
+    return engine
+
+
+def rows(flat: Array) -> Array:
+    """The agents' part of the state."""
+    return s.view(flat)[1]
