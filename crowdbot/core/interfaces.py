@@ -129,6 +129,7 @@ class SensorInfo:
         shape: shape of a reading's values.
         angles: (R,) beam angles in the sensor frame, rad, or None.
         memory: number of float64 the sensor keeps between readings (0: none).
+        random: whether ``read`` draws from ``rng``; if not, it must leave it alone.
     """
 
     category: str
@@ -141,6 +142,7 @@ class SensorInfo:
     range_min: float = 0.0
     range_max: float = float("inf")
     memory: int = 0
+    random: bool = True
 
 
 class Reading(NamedTuple):

@@ -9,36 +9,36 @@ Signatures (float64 everywhere, SI units, world frame unless said otherwise):
 
 - ``base(ux, uy, preferred, max_speed, params) -> cost``: candidate in the preferred frame, in
   which the preferred velocity is ``(preferred, 0)``; ``inf`` forbids the candidate.
-- ``prepare(agent, near, near_count, walls, params, work) -> items``: once per agent and
-  decision, writes what ``excess`` needs into ``work``; row 0 is for counts. Where it returns 0
-  the excess is zero and is not called.
+- ``prepare(agent, near, near_count, walls, wall_count, params, work) -> items``: once per agent
+  and decision, writes what ``excess`` needs into ``work``; row 0 is for counts. Where it returns
+  0 the excess is zero and is not called.
 - ``excess(ux, uy, budget, agent, work, params) -> cost``: may stop and return anything above
-  ``budget`` as soon as the cost exceeds it.
+  ``budget`` as soon as the cost exceeds it. Called for many candidates, in any order.
+
+Everything but numbers is a pointer to float64: ten thousands of calls per decision would
+otherwise spend most of their time on handing arrays over. Vectors are indexed as they are;
+``near_table``, ``wall_table`` and ``work_table`` give the others rows and columns, free of charge.
 """
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numba import carray, njit, types  # type: ignore[attr-defined]
-from numba.core.errors import NumbaExperimentalFeatureWarning
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+#: What compiled code is handed instead of an array; indexed like one.
+Pointer = Any
 
-# Passing compiled functions to a kernel works and is cached; numba says at each call that it is
-# experimental. The lock pins the version that was tested.
-warnings.filterwarnings("ignore", category=NumbaExperimentalFeatureWarning)
-
-_F, _V, _M = types.float64, types.float64[::1], types.float64[:, ::1]
-_POINTER = types.CPointer(_F)  # type: ignore[no-untyped-call]
-BASE = types.float64(_F, _F, _F, _F, _V)
-PREPARE = types.int64(_V, _M, types.int64, _M, _V, _M)
-EXCESS = types.float64(_F, _F, _F, _V, _M, _V)
+_F, _I = types.float64, types.int64
+_P = types.CPointer(_F)  # type: ignore[no-untyped-call]
+BASE = types.float64(_F, _F, _F, _F, _P)
+PREPARE = types.int64(_P, _P, _I, _P, _I, _P, _P)
+EXCESS = types.float64(_F, _F, _F, _P, _P, _P)
 
 # Entries of the ``agent`` vector.
 PX, PY, VX, VY, RADIUS, PREFERRED, FASTEST, TIME_STEP = range(8)
@@ -46,6 +46,8 @@ AGENT_SIZE = 8
 # Columns of ``near``: squared centre distance, relative position, velocity, sum of radii.
 D2, RX, RY, NVX, NVY, REACH = range(6)
 NEAR_COLUMNS = 6
+#: Columns of ``walls``: both ends of a segment.
+WALL_COLUMNS = 4
 # First two entries of every ``params`` vector.
 RANGE, FROM_SURFACE = range(2)
 #: Columns of ``work``; it has one row for each neighbour and wall, and the header.
@@ -74,35 +76,23 @@ class CompiledCost:
         return float(self.params[RANGE]) + (radius + largest_radius if from_surface else 0.0)
 
 
-class FunctionPointer(types.WrapperAddressProtocol):
-    """A compiled function as a plain address, which costs far less to pass than a dispatcher."""
-
-    def __init__(self, function: Any, signature: Any) -> None:
-        result = function.get_compile_result(signature)
-        self._function = function  # keeps the machine code alive
-        self._signature = signature
-        self._address = result.library.get_pointer_to_function(
-            result.fndesc.llvm_cfunc_wrapper_name
-        )
-
-    def __wrapper_address__(self) -> int:
-        """Address of the C wrapper."""
-        return int(self._address)
-
-    def signature(self) -> Any:
-        """Numba signature."""
-        return self._signature
+# Numba wants a length; it is not checked.
+_ANY = 1
 
 
-# Slices of an array that numba owns cost two atomic operations each; slices of a borrowed one
-# cost nothing. The owner must outlive the borrowed view.
-@njit(types.float64[:, ::1](_POINTER, types.int64, types.int64), cache=True)
-def borrow2(pointer: Any, rows: int, columns: int) -> Any:
-    """View of a matrix that somebody else owns."""
-    return carray(pointer, (rows, columns))
+@njit(cache=True)
+def near_table(near: Pointer) -> Any:
+    """Neighbours as rows of `NEAR_COLUMNS`."""
+    return carray(near, (_ANY, NEAR_COLUMNS))
 
 
-@njit(types.float64[:, :, ::1](_POINTER, types.int64, types.int64, types.int64), cache=True)
-def borrow3(pointer: Any, layers: int, rows: int, columns: int) -> Any:
-    """View of a three-dimensional array that somebody else owns."""
-    return carray(pointer, (layers, rows, columns))
+@njit(cache=True)
+def wall_table(walls: Pointer) -> Any:
+    """Walls as rows of `WALL_COLUMNS`."""
+    return carray(walls, (_ANY, WALL_COLUMNS))
+
+
+@njit(cache=True)
+def work_table(work: Pointer) -> Any:
+    """The scratch table as rows of `WORK_COLUMNS`."""
+    return carray(work, (_ANY, WORK_COLUMNS))

@@ -17,6 +17,7 @@ from crowdbot.core.ticks import TICK, ticks
 
 Array = NDArray[np.float64]
 NOBODY = np.zeros((0, 6))
+_SEEN = np.array([0, 1, 2, 3, 5])  # columns of a robot that people know: all but its true radius
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,7 +88,7 @@ class CrowdEngine:
 
     def _decide(self, flat: Array, robots: Array) -> None:
         _, rows = s.view(flat)
-        seen = np.ascontiguousarray(robots[:, [0, 1, 2, 3, 5]])
+        seen = robots[:, _SEEN]
         if not self.world.robot_visible:
             seen[:, 2:4] = 0.0
         view = CrowdView(

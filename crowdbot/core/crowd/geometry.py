@@ -52,9 +52,9 @@ def time_to_segment(
     cross = vx * sy - vy * sx
     if abs(cross) < 1e-5:  # parallel
         return first
-    t_centre = (ax * sy - ay * sx) / cross  # when the centre crosses the line
-    along = (vx * t_centre - ax) * sx + (vy * t_centre - ay) * sy
-    if t_centre >= 0.0 and 0.0 <= along <= sx * sx + sy * sy:
-        earlier = radius * math.hypot(sx, sy) / abs(cross)
-        first = min(first, max(0.0, t_centre - earlier))
+    # The point of the line that is touched lies abreast of the centre when it is touched.
+    t = (ax * sy - ay * sx) / cross - radius * math.hypot(sx, sy) / abs(cross)
+    along = (vx * t - ax) * sx + (vy * t - ay) * sy
+    if t >= 0.0 and 0.0 <= along <= sx * sx + sy * sy:
+        first = min(first, t)
     return first

@@ -7,6 +7,7 @@ runs give equal bytes.
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +38,12 @@ def _qos(*, latched: bool) -> str:
     )
 
 
+@dataclass(slots=True)
+class _Channel:
+    id: int
+    messages: int = 0
+
+
 class McapFile:
     """Topics are opened by their first message."""
 
@@ -53,8 +60,7 @@ class McapFile:
         self._writer = Writer(self._stream, chunk_size=CHUNK_SIZE, compression=CompressionType.ZSTD)
         self._writer.start(profile="ros2", library="crowdbot")
         self._schemas: dict[str, int] = {}
-        self._channels: dict[str, int] = {}
-        self._counts: dict[str, int] = {}
+        self._channels: dict[str, _Channel] = {}
 
     def put(self, topic: str, ns: int, message: Any, *, latched: bool = False) -> None:
         """Append one message, logged at ``ns`` nanoseconds of simulated time."""
@@ -66,9 +72,9 @@ class McapFile:
         """Append one message that is already serialised."""
         channel = self._channels.get(topic)
         if channel is None:
-            channel = self._channels[topic] = self._open(topic, msgtype, latched)
-        sequence = self._counts[topic] = self._counts.get(topic, -1) + 1
-        self._writer.add_message(channel, ns, data, ns, sequence)
+            channel = self._channels[topic] = _Channel(self._open(topic, msgtype, latched))
+        self._writer.add_message(channel.id, ns, data, ns, channel.messages)
+        channel.messages += 1
 
     def flush(self) -> None:
         """Finish the open chunk and hand all bytes to the operating system."""

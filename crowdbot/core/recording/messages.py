@@ -247,9 +247,14 @@ def _point(x: float, y: float, z: float) -> Any:
     return new("geometry_msgs/Point", x=x, y=y, z=z)
 
 
+def half_turn(yaw: float) -> tuple[float, float]:
+    """Last two numbers, z and w, of the quaternion of a turn about z."""
+    return math.sin(0.5 * yaw), math.cos(0.5 * yaw)
+
+
 def _quaternion(yaw: float) -> Any:
-    half = 0.5 * yaw
-    return new("geometry_msgs/Quaternion", x=0.0, y=0.0, z=math.sin(half), w=math.cos(half))
+    z, w = half_turn(yaw)
+    return new("geometry_msgs/Quaternion", x=0.0, y=0.0, z=z, w=w)
 
 
 def _pose(x: float, y: float, yaw: float) -> Any:

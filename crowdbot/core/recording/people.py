@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Array
 from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording import template
 from crowdbot.core.recording.header import AgentsHeader
 
+PEOPLE = "crowdbot_msgs/msg/Pedestrians"
 MARKER = "visualization_msgs/msg/Marker"
 #: Slower people keep the heading they had, m/s.
 HEADING_MIN_SPEED = 0.1
@@ -27,23 +29,23 @@ class PeopleMessages:
         self._radius = agents.radius.astype(np.float32)
         self._heading = np.zeros(len(self._id))
         self._height = float(np.median(agents.radius)) if len(self._id) else 0.3
-        self._template = _Template(self._spheres(np.full((1, 3), 1.5)), 1.5)
+        self._marker = _MarkerTemplate(self._spheres(np.full((1, 3), 1.5)), 1.5)
+        self._people: dict[int, template.Template] = {}  # by how many are there
 
-    def pedestrians(self, ns: int, state: Array) -> Any:
+    def pedestrians(self, ns: int, state: Array) -> bytes:
         """``crowdbot_msgs/msg/Pedestrians`` of those who are there; ``state`` is (4, M)."""
-        x, y, vx, vy = state
+        _, _, vx, vy = state
         moving = np.hypot(vx, vy) > HEADING_MIN_SPEED
         np.copyto(self._heading, np.arctan2(vy, vx), where=moving)
         there = _present(state)
-        columns = [c[there].astype(np.float32) for c in (x, y, vx, vy, self._heading)]
-        names = ("x", "y", "vx", "vy", "heading")
-        return ros.new(
-            "crowdbot_msgs/Pedestrians",
-            header=ros.header(ns, "map"),
-            id=self._id[there],
-            radius=self._radius[there],
-            **dict(zip(names, columns, strict=True)),
-        )
+        ids = self._id[there]
+        blank = self._people.get(len(ids))
+        if blank is None:
+            blank = self._people[len(ids)] = template.pedestrians(len(ids))
+        columns = state[:, there].astype(np.float32)
+        heading = self._heading[there].astype(np.float32)
+        everything = (ids, *columns, heading, self._radius[there])
+        return blank.fill(template.stamp(ns), *[column.tobytes() for column in everything])
 
     def marker(self, ns: int, state: Array) -> bytes:
         """The serialised sphere list of those who are there; ``state`` is (4, M)."""
@@ -53,7 +55,7 @@ class PeopleMessages:
         points[:, :2] = xy.T
         if len(points) == 0:
             return ros.to_cdr(self._spheres(points, ns))
-        return self._template.fill(ns, points)
+        return self._marker.fill(ns, points)
 
     def _spheres(self, points: Array, ns: int = 0) -> Any:
         size = 2.0 * self._height
@@ -65,7 +67,7 @@ def _present(state: Array) -> NDArray[np.bool_]:
     return there
 
 
-class _Template:
+class _MarkerTemplate:
     """A serialised list marker whose points are swapped for others.
 
     rosbags serialises points one object at a time, which alone would cost 2 ms per simulated
@@ -83,8 +85,7 @@ class _Template:
 
     def fill(self, ns: int, points: Array) -> bytes:
         """The marker with ``points`` (K, 3), K > 0, stamped ``ns``."""
-        stamp = np.array([ns // 10**9, ns % 10**9], np.uint32).tobytes()
-        count = np.uint32(len(points)).tobytes()
+        stamp, count = template.stamp(ns), len(points).to_bytes(4, "little")
         return b"".join(
             (self._head, stamp, self._before, count, self._padding, points.tobytes(), self._after)
         )

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from enum import StrEnum
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from crowdbot.core.interfaces import Array, SensorInfo
-from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording import template
 
 
 class Topic(StrEnum):
@@ -34,10 +34,11 @@ class Topic(StrEnum):
 
 
 class SensorTopic(NamedTuple):
-    """A topic and the function that makes its messages from (ns, info, values)."""
+    """A topic, and the function that makes its messages from (ns, values)."""
 
     name: str
-    message: Callable[[int, SensorInfo, Array], Any]
+    msgtype: str
+    message: Callable[[int, Array], bytes]
 
 
 def sensor_topics(sensors: Mapping[str, SensorInfo]) -> dict[str, SensorTopic]:
@@ -47,11 +48,11 @@ def sensor_topics(sensors: Mapping[str, SensorInfo]) -> dict[str, SensorTopic]:
     for name, info in sensors.items():
         if name in odometry:
             topic = "/odom" if name == odometry[0] else f"/{name}/odom"
-            topics[name] = SensorTopic(topic, _odometry)
+            topics[name] = _odometry(topic)
         elif is_scan(info):
-            topics[name] = SensorTopic(scan_topic(name), _scan)
+            topics[name] = _scan(scan_topic(name), info)
         else:
-            topics[name] = SensorTopic(f"/{name}", _numbers)
+            topics[name] = _numbers(f"/{name}", info)
     return topics
 
 
@@ -69,16 +70,32 @@ def is_scan(info: SensorInfo) -> bool:
     return bool(angles.ndim == 1 and np.ptp(steps) < 1e-6) if steps.size else True
 
 
-def _odometry(ns: int, info: SensorInfo, values: Array) -> Any:
-    del info
-    return ros.odometry(ns, "base_footprint", values)
+def _odometry(topic: str) -> SensorTopic:
+    blank = template.odometry("base_footprint")
+
+    def message(ns: int, values: Array) -> bytes:
+        x, y, yaw, v, w = values.tolist()
+        turn, one = template.turn(yaw), template.one
+        return blank.fill(template.stamp(ns), template.two(x, y), turn, one(v), one(w))
+
+    return SensorTopic(topic, blank.msgtype, message)
 
 
-def _scan(ns: int, info: SensorInfo, values: Array) -> Any:
+def _scan(topic: str, info: SensorInfo) -> SensorTopic:
     assert info.angles is not None  # by is_scan
-    return ros.laser_scan(ns, info, info.angles, values)
+    blank = template.laser_scan(info, info.angles)
+
+    def message(ns: int, values: Array) -> bytes:
+        return blank.fill(template.stamp(ns), values.astype(np.float32).tobytes())
+
+    return SensorTopic(topic, blank.msgtype, message)
 
 
-def _numbers(ns: int, info: SensorInfo, values: Array) -> Any:
-    del ns, info
-    return ros.numbers(values)
+def _numbers(topic: str, info: SensorInfo) -> SensorTopic:
+    blank = template.numbers(info.shape)
+
+    def message(ns: int, values: Array) -> bytes:
+        del ns
+        return blank.fill(np.asarray(values, np.float64).tobytes())
+
+    return SensorTopic(topic, blank.msgtype, message)

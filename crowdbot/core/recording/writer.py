@@ -7,17 +7,20 @@ computed from; all others are for ROS tools and may be left out.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Array, Command, Pose, Reading
+from crowdbot.core.interfaces import Array, Command, Reading
 from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording import template
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.header import RecordingHeader
-from crowdbot.core.recording.people import MARKER, PeopleMessages
+from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
+from crowdbot.core.recording.template import Template
 from crowdbot.core.recording.topics import Topic, sensor_topics
 
 BASE = "base_footprint"
@@ -52,6 +55,9 @@ class RecordingWriter:
         self._ros = record != "none"
         self._people = PeopleMessages(header.agents) if header.agents else None
         self._sensors = sensor_topics(header.sensors)
+        self._clock, self._twist = template.clock(), template.twist()
+        self._truth, self._pose = template.transform("map", BASE), template.pose_stamped("map")
+        self._state_of, self._signal_of = cache(template.run_state), cache(template.signal)
         self._now = 0
         self._closed = False
         self._file.put(Topic.HEADER, 0, header.to_message(), latched=True)
@@ -76,15 +82,11 @@ class RecordingWriter:
             signals: name -> value at this time.
         """
         self._now = ns = ros.nanoseconds(t)
-        raw = ros.new(
-            "crowdbot_msgs/RunState",
-            t=t,
-            robot=np.array(() if robot is None else robot, np.float64),
-            agents=np.array(() if agents is None else agents, np.float64).ravel(),
-            has_jump=jump is not None,
-            jump=np.array(() if jump is None else jump, np.bool_),
-        )
-        self._file.put(Topic.STATE, ns, raw)
+        rows = [np.asarray(() if a is None else a, np.float64) for a in (robot, agents)]
+        jumped = np.asarray(() if jump is None else jump, np.bool_)
+        blank = self._state_of(rows[0].size, rows[1].size, None if jump is None else jumped.size)
+        parts = (rows[0].tobytes(), rows[1].tobytes(), jumped.tobytes())
+        self._put(Topic.STATE, ns, blank, template.one(t), *parts)
         for name, value in (signals or {}).items():
             self.signal(t, name, value)
         if self._ros:
@@ -94,15 +96,14 @@ class RecordingWriter:
         """One reading of a sensor that the header lists."""
         if not self._ros:
             return
-        topic, info = self._sensors[sensor], self._header.sensors[sensor]
-        ns = ros.nanoseconds(reading.stamp)
-        self._file.put(topic.name, ns, topic.message(ns, info, reading.values))
+        topic, ns = self._sensors[sensor], ros.nanoseconds(reading.stamp)
+        self._file.put_bytes(topic.name, ns, topic.msgtype, topic.message(ns, reading.values))
 
     def command(self, t: float, command: Command) -> None:
         """What the planner wants the robot to do."""
         if self._ros:
-            message = ros.twist(command.v, command.vy, command.w)
-            self._file.put(Topic.COMMAND, ros.nanoseconds(t), message)
+            parts = template.two(command.v, command.vy), template.one(command.w)
+            self._put(Topic.COMMAND, ros.nanoseconds(t), self._twist, *parts)
 
     def planner_time(self, t: float, seconds: float) -> None:
         """Wall time of one planner step; the only number here that two equal runs disagree on."""
@@ -168,18 +169,23 @@ class RecordingWriter:
         self._file.close()
 
     def _value(self, topic: Topic, t: float, name: str, value: float) -> None:
-        message = ros.new("crowdbot_msgs/Signal", t=t, name=name, value=value)
-        self._file.put(topic, ros.nanoseconds(t), message)
+        blank = self._signal_of(name)
+        self._put(topic, ros.nanoseconds(t), blank, template.one(t), template.one(value))
+
+    def _put(self, topic: Topic, ns: int, blank: Template, *parts: bytes) -> None:
+        self._file.put_bytes(topic, ns, blank.msgtype, blank.fill(*parts))
 
     def _ros_state(self, ns: int, robot: Sequence[float] | None, agents: Array | None) -> None:
-        self._file.put(Topic.CLOCK, ns, ros.clock(ns))
+        stamp = template.stamp(ns)
+        self._put(Topic.CLOCK, ns, self._clock, stamp)
         if robot is not None:
-            pose = Pose(float(robot[0]), float(robot[1]), float(robot[2]))
-            truth = ros.transform(ns, "map", BASE, (pose.x, pose.y, 0.0), pose.yaw)
-            self._file.put(Topic.TF, ns, ros.transforms([truth]))
-            self._file.put(Topic.POSE, ns, ros.pose_stamped(ns, "map", pose))
+            x, y, yaw = robot[:3]
+            parts = stamp, template.two(x, y), template.turn(yaw)
+            self._put(Topic.TF, ns, self._truth, *parts)
+            self._put(Topic.POSE, ns, self._pose, *parts)
         if self._people is not None and agents is not None:
-            self._file.put(Topic.PEOPLE, ns, self._people.pedestrians(ns, agents))
+            people = self._people.pedestrians(ns, agents)
+            self._file.put_bytes(Topic.PEOPLE, ns, PEOPLE, people)
             data = self._people.marker(ns, agents)
             self._file.put_bytes(Topic.PEOPLE_MARKER, ns, MARKER, data)
 

@@ -76,57 +76,72 @@ def _near_people(
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _hit_wall(
-    wall: Array, heights: Array, o: Array, dx: float, dy: float, dz: float
-) -> tuple[float, float]:
-    """Distance and incidence of one ray on one wall; distance inf if it misses."""
+def _hit_wall(wall: Array, heights: Array, o: Array, dx: float, dy: float, dz: float) -> float:
+    """Distance of one ray to one wall; inf if it misses."""
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
     px, py = wall[0] - o[0], wall[1] - o[1]
     across = dx * ey - dy * ex
     if across == 0.0:  # parallel, or a wall without length
-        return math.inf, 0.0
+        return math.inf
     t = (px * ey - py * ex) / across
     s = (px * dy - py * dx) / across
     z = o[2] + t * dz
     if t < 0.0 or s < -_OVERLAP or s > 1.0 + _OVERLAP or z < heights[0] or z > heights[1]:
-        return math.inf, 0.0
-    return t, math.acos(min(1.0, abs(across) / math.hypot(ex, ey)))
+        return math.inf
+    return float(t)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _wall_incidence(wall: Array, dx: float, dy: float) -> float:
+    """Angle between a ray and the normal of a wall that it hits."""
+    ex, ey = wall[2] - wall[0], wall[3] - wall[1]
+    return math.acos(min(1.0, abs(dx * ey - dy * ex) / math.hypot(ex, ey)))
 
 
 @numba.njit(cache=True, error_model="numpy")
 def _hit_cylinder(
-    cx: float, cy: float, r: float, height: float, o: Array, dx: float, dy: float, dz: float
-) -> tuple[float, float]:
-    """Distance and incidence of one ray on one solid cylinder; distance inf if it misses."""
-    px, py = cx - o[0], cy - o[1]
+    px: float, py: float, r: float, height: float, oz: float, dx: float, dy: float, dz: float
+) -> tuple[float, bool]:
+    """Distance of one ray to one solid cylinder, whether on its side; inf if it misses.
+
+    The axis is at (px, py) from the origin of the ray, which is ``oz`` above the floor.
+    """
     flat = dx * dx + dy * dy
     side = dx * py - dy * px
     room = r * r * flat - side * side
     if room < 0.0:
-        return math.inf, 0.0
+        return math.inf, False
     enter, leave = -math.inf, math.inf
     if flat > 0.0:
         along, half = dx * px + dy * py, math.sqrt(room)
         enter, leave = (along - half) / flat, (along + half) / flat
     elif px * px + py * py > r * r:
-        return math.inf, 0.0
+        return math.inf, False
     lateral = True
     if dz != 0.0:
-        floor, top = -o[2] / dz, (height - o[2]) / dz
+        floor, top = -oz / dz, (height - oz) / dz
         low, high = min(floor, top), max(floor, top)
         if low > enter:
             enter, lateral = low, False
         leave = min(leave, high)
-    elif o[2] < 0.0 or o[2] > height:
-        return math.inf, 0.0
+    elif oz < 0.0 or oz > height:
+        return math.inf, False
     if leave < 0.0 or enter > leave:
-        return math.inf, 0.0
-    if enter <= 0.0:  # the origin is inside or on the surface
-        return 0.0, 0.0
+        return math.inf, False
+    return max(enter, 0.0), lateral  # 0: the origin is inside or on the surface
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _cylinder_incidence(
+    px: float, py: float, r: float, t: float, lateral: bool, dx: float, dy: float, dz: float
+) -> float:
+    """Angle between a ray and the normal of a cylinder that it hits at distance ``t``."""
+    if t <= 0.0:
+        return 0.0
     cosine = abs(dz)
     if lateral:
-        cosine = abs(dx * (enter * dx - px) + dy * (enter * dy - py)) / r
-    return enter, math.acos(min(1.0, cosine))
+        cosine = abs(dx * (t * dx - px) + dy * (t * dy - py)) / r
+    return math.acos(min(1.0, cosine))
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -145,6 +160,7 @@ def cast_rays(
 
     Bodies out of range are sorted out once per run of equal origins, and people are tried from
     the nearest to the farthest, so that a ray stops at the first that no later one can beat.
+    Angles are computed for the nearest hit alone.
     """
     rays = origins.shape[0]
     distance = np.full(rays, np.inf)
@@ -153,6 +169,7 @@ def cast_rays(
     near_wall = np.empty(walls.shape[0], dtype=np.int64)
     near = np.empty(people.shape[0], dtype=np.int64)
     gap = np.empty(people.shape[0])
+    disc = np.empty((people.shape[0], 3))  # of those near: position from the origin, radius
     wall_count = people_count = 0
     for k in range(rays):
         o = origins[k]
@@ -161,25 +178,37 @@ def cast_rays(
         ):  # heights do not matter to what is near
             wall_count = _near_walls(walls, o[0], o[1], max_range, near_wall)
             people_count = _near_people(people, present, radius, o[0], o[1], max_range, gap, near)
+            for j in range(people_count):
+                i = near[j]
+                disc[j, 0], disc[j, 1] = people[i, 0] - o[0], people[i, 1] - o[1]
+                disc[j, 2] = radius[i]
         dx, dy, dz = directions[k, 0], directions[k, 1], directions[k, 2]
         length = math.sqrt(dx * dx + dy * dy + dz * dz)
         dx, dy, dz = dx / length, dy / length, dz / length
-        best, angle, hit = math.inf, 0.0, -1
+        best, hit, side_hit = math.inf, -1, False
         for j in range(wall_count):
             i = near_wall[j]
-            t, a = _hit_wall(walls[i], wall_heights[i], o, dx, dy, dz)
+            t = _hit_wall(walls[i], wall_heights[i], o, dx, dy, dz)
             if t < best:
-                best, angle, hit = t, a, -(2 + i)
+                best, hit = t, -(2 + i)
+        winner = -1  # place of a person among those near
         for j in range(people_count):
             if gap[j] > best:
                 break
-            i = near[j]
-            side = dx * (people[i, 1] - o[1]) - dy * (people[i, 0] - o[0])
-            if side * side > radius[i] * radius[i]:  # quick: passes beside it
+            px, py, r = disc[j, 0], disc[j, 1], disc[j, 2]
+            side = dx * py - dy * px
+            if side * side > r * r:  # quick: passes beside it
                 continue
-            t, a = _hit_cylinder(people[i, 0], people[i, 1], radius[i], height[i], o, dx, dy, dz)
+            t, lateral = _hit_cylinder(px, py, r, height[near[j]], o[2], dx, dy, dz)
             if t < best:
-                best, angle, hit = t, a, i
-        if best <= max_range:
-            distance[k], incidence[k], body[k] = best, angle, hit
+                best, winner, side_hit = t, j, lateral
+        if best > max_range:
+            continue
+        distance[k] = best
+        if winner >= 0:
+            px, py, r = disc[winner, 0], disc[winner, 1], disc[winner, 2]
+            body[k] = near[winner]
+            incidence[k] = _cylinder_incidence(px, py, r, best, side_hit, dx, dy, dz)
+        else:
+            body[k], incidence[k] = hit, _wall_incidence(walls[-2 - hit], dx, dy)
     return distance, incidence, body

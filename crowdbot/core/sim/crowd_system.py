@@ -18,7 +18,7 @@ from crowdbot.core.ticks import TICK
 
 
 class CrowdSystem(LeafSystem):
-    """Input: robot state. Outputs: crowd state, generalised force on the plant."""
+    """Input: robot state. Outputs: crowd state, contacts ended, generalised force on the plant."""
 
     def __init__(self, engine: CrowdEngine, rig: RobotPlant, perceived_radius: float) -> None:
         super().__init__()
@@ -31,19 +31,22 @@ class CrowdSystem(LeafSystem):
         self._port = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         crowd = self.DeclareDiscreteState(engine.initial_state())
         force = self.DeclareDiscreteState(plant.num_velocities())
+        contacts = self.DeclareDiscreteState(1)
         self.DeclareStateOutputPort(ports.CROWD_STATE, crowd)
+        self.DeclareStateOutputPort(ports.CONTACTS, contacts)
         self.DeclareStateOutputPort(ports.ROBOT_FORCE, force)
         self._crowd, self._force = DiscreteStateIndex(crowd), DiscreteStateIndex(force)
+        self._contacts = DiscreteStateIndex(contacts)
         self.DeclarePeriodicUnrestrictedUpdateEvent(TICK, 0.0, self._update)
 
     def _update(self, context: Context, state: State) -> None:
-        x = self._port.Eval(context)
-        row = self._robot[0]
-        row[0], row[1], row[2], row[3] = x[0], x[1], x[3], x[4]
+        x, y, _, vx, vy, *_ = self._port.Eval(context).tolist()
+        self._robot[0, :4] = x, y, vx, vy
         values = state.get_mutable_discrete_state()
         crowd = values.get_mutable_value(self._crowd)
         self._engine.advance(crowd, self._robot)
+        header = crowd[: s.HEADER_SIZE].tolist()
+        fx, fy, i = header[s.ROBOT_FX], header[s.ROBOT_FY], self._start
         force = values.get_mutable_value(self._force)
-        fx, fy, i = crowd[s.ROBOT_FX], crowd[s.ROBOT_FY], self._start
-        force[i], force[i + 1] = -self._lever * fy, self._lever * fx
-        force[i + 3], force[i + 4] = fx, fy
+        force[i : i + 5] = -self._lever * fy, self._lever * fx, 0.0, fx, fy
+        values.get_mutable_value(self._contacts)[0] = header[s.CONTACTS]

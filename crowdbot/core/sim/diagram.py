@@ -103,6 +103,7 @@ def build_diagram(
             size,
             seed=run_seed,
             robot=robot_name,
+            on_reading=log.writer.reading,
         ),
     )
     builder.Connect(robot_state, bank.GetInputPort(ports.ROBOT_STATE))
@@ -130,13 +131,13 @@ def build_diagram(
         "metric_logger", MetricLogger(log, task, size, scenario.rates.log)
     )
     builder.Connect(robot_state, logger.GetInputPort(ports.ROBOT_STATE))
-    recorder = builder.AddNamedSystem("recorder", Recorder(log.writer, bank, sensors))
-    builder.Connect(bank.GetOutputPort(ports.READINGS), recorder.GetInputPort(ports.READINGS))
+    builder.AddNamedSystem("recorder", Recorder(log.writer))
     if crowd is not None:
         for block in (bank, logger):
             builder.Connect(
                 crowd.GetOutputPort(ports.CROWD_STATE), block.GetInputPort(ports.CROWD_STATE)
             )
+        builder.Connect(crowd.GetOutputPort(ports.CONTACTS), logger.GetInputPort(ports.CONTACTS))
 
     return Blocks(
         diagram=builder.Build(),

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pydrake.systems.framework import Context, EventStatus, LeafSystem
 
 from crowdbot.core.arrival import entry_fraction, inside
-from crowdbot.core.interfaces import RobotState, Task
+from crowdbot.core.interfaces import Array, RobotState, Task
 from crowdbot.core.run_log import RunLog
 from crowdbot.core.sim import ports
 from crowdbot.core.ticks import TICK, TICKS_PER_SECOND, ticks
@@ -25,26 +25,37 @@ class MetricLogger(LeafSystem):
         self._previous = (0.0, 0.0)
         self.goal_time: float | None = None
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
-        self._crowd = (
-            self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size) if crowd_size else None
-        )
+        self._crowd = self._contacts = None
+        if crowd_size:
+            self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size)
+            self._contacts = self.DeclareVectorInputPort(ports.CONTACTS, 1)
         self.DeclarePeriodicPublishEvent(TICK, 0.0, self._publish)
 
-    def _publish(self, context: Context) -> EventStatus:
+    def _publish(self, context: Context) -> EventStatus | None:
         tick = round(context.get_time() * TICKS_PER_SECOND)
         if tick == self._last_tick:  # Initialize and the first step may both publish t = 0
-            return EventStatus.Succeeded()
+            return None
         self._last_tick = tick
         t = tick * TICK
         robot = RobotState(*self._robot.Eval(context).tolist())
-        crowd = None if self._crowd is None else self._crowd.Eval(context)
+        sampled = tick % self._ticks_per_sample == 0
+        crowd = self._crowd_state(context, always=sampled)
         if crowd is not None:
             self._log.book_contacts(crowd)
-        if tick % self._ticks_per_sample == 0:
+        if sampled:
             self._log.sample(t, robot, crowd)
         return self._watch(t, robot)
 
-    def _watch(self, t: float, robot: RobotState) -> EventStatus:
+    def _crowd_state(self, context: Context, *, always: bool) -> Array | None:
+        """The crowd, where there is something to log: it is copied each time it is looked at."""
+        if self._crowd is None or self._contacts is None:
+            return None
+        if not always and int(self._contacts.Eval(context)[0]) == self._log.contacts:
+            return None
+        crowd: Array = self._crowd.Eval(context)
+        return crowd
+
+    def _watch(self, t: float, robot: RobotState) -> EventStatus | None:
         zone = self._task.goal_zone
         if inside(zone, robot.x, robot.y):
             fraction = entry_fraction(zone, *self._previous, robot.x, robot.y) if t > 0.0 else 1.0
@@ -53,4 +64,4 @@ class MetricLogger(LeafSystem):
         self._previous = (robot.x, robot.y)
         if t >= self._task.time_limit:
             return EventStatus.ReachedTermination(self, "time limit")
-        return EventStatus.Succeeded()
+        return None

@@ -36,7 +36,8 @@ class PlannerSystem(LeafSystem):
         on_signal: Callable[[float, str, float], None],
     ) -> None:
         super().__init__()
-        self._host, self._robot, self._task = host, robot, task
+        self._host, self._drive, self._task = host, robot.drive, task
+        self._dv, self._dw = robot.limits.a_max * TICK, robot.limits.alpha_max * TICK
         self._ticks = ticks(rate)
         self._slots = {n: s for n, s in bank.slots.items() if n in visible}
         self._odometry = next(
@@ -56,15 +57,18 @@ class PlannerSystem(LeafSystem):
     def _update(self, context: Context, values: DiscreteValues) -> None:
         state = values.get_mutable_value(self._command)
         tick, v, w, slewed_v, slewed_w = state.tolist()
-        if int(tick) % self._ticks == 0:
+        due = int(tick) % self._ticks == 0
+        if not due and slewed_v == v and slewed_w == w:
+            state[0] = tick + 1.0  # all the rest stays as it is
+            return
+        if due:
             t = tick * TICK
             hosted = self._host.step(self._observe(self._port.Eval(context), t))
             v, w = hosted.command.v, hosted.command.w
             self._on_step(t, hosted)
-        limits, drive = self._robot.limits, self._robot.drive
-        slewed_v = _slew(slewed_v, v, limits.a_max * TICK)
-        slewed_w = _slew(slewed_w, w, limits.alpha_max * TICK)
+        slewed_v, slewed_w = _slew(slewed_v, v, self._dv), _slew(slewed_w, w, self._dw)
         state[:] = (tick + 1.0, v, w, slewed_v, slewed_w)
+        drive = self._drive
         across = 0.5 * drive.track * slewed_w
         values.get_mutable_value(self._desired)[2:] = (
             (slewed_v - across) / drive.command_radius,
@@ -75,7 +79,7 @@ class PlannerSystem(LeafSystem):
         if self._odometry is None:
             pose, twist = self._task.start, (0.0, 0.0)
         else:
-            x, y, yaw, v, w = bank[self._odometry.values]
+            x, y, yaw, v, w = bank[self._odometry.values].tolist()
             pose, twist = Pose(x, y, yaw), (v, w)
         return Observation(
             t=t,

@@ -36,7 +36,7 @@ class RobotStateSystem(LeafSystem):
         )
 
     def _calc(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self.convert(self._port.Eval(context)))
+        output.get_mutable_value()[:] = self.convert(self._port.Eval(context))
 
     def convert(self, state: Array) -> RobotState:
         """Plant state (quaternion w, x, y, z; position; …) as a `RobotState`."""

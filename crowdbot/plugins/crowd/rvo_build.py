@@ -24,8 +24,11 @@ from crowdbot.core.crowd.cost import (
     RY,
     VX,
     VY,
-    Array,
     CompiledCost,
+    Pointer,
+    near_table,
+    wall_table,
+    work_table,
 )
 from crowdbot.core.crowd.geometry import nearest_on_segment, time_to_disc, time_to_segment
 from crowdbot.plugins.crowd.rvo import RvoSpec
@@ -34,7 +37,7 @@ _W = 2  # entry of params
 
 
 @njit(BASE, cache=True, error_model="numpy")
-def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Array) -> float:
+def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     if math.hypot(ux, uy) > max_speed * (1.0 + 1e-12):
         return math.inf
     return math.hypot(ux - preferred, uy)
@@ -42,9 +45,16 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Arra
 
 @njit(PREPARE, cache=True, error_model="numpy")
 def _prepare(
-    agent: Array, near: Array, near_count: int, walls: Array, params: Array, work: Array
+    agent: Pointer,
+    near: Pointer,
+    near_count: int,
+    walls: Pointer,
+    wall_count: int,
+    params: Pointer,
+    work: Pointer,
 ) -> int:
     """Row 0: number of neighbours, of walls. Then r, v_j, d^2 - R^2; then ends of walls from p."""
+    near, walls, work = near_table(near), wall_table(walls), work_table(work)
     discs = 0
     for j in range(near_count):
         reach = params[RANGE] + params[FROM_SURFACE] * near[j, REACH]
@@ -58,7 +68,7 @@ def _prepare(
     walls_near = 0
     px, py, radius = agent[PX], agent[PY], agent[RADIUS]
     reach = params[RANGE] + params[FROM_SURFACE] * radius
-    for s in range(walls.shape[0]):
+    for s in range(wall_count):
         nx, ny = nearest_on_segment(px, py, walls[s, 0], walls[s, 1], walls[s, 2], walls[s, 3])
         d2 = (px - nx) ** 2 + (py - ny) ** 2
         if radius * radius < d2 <= reach * reach:  # walls that overlap are ignored, too
@@ -71,7 +81,10 @@ def _prepare(
 
 
 @njit(EXCESS, cache=True, error_model="numpy")
-def _excess(ux: float, uy: float, budget: float, agent: Array, work: Array, params: Array) -> float:
+def _excess(
+    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+) -> float:
+    work = work_table(work)
     vx, vy = 2.0 * ux - agent[VX], 2.0 * uy - agent[VY]
     discs, segments = int(work[0, 0]), int(work[0, 1])
     too_soon = params[_W] / budget if budget > 0.0 else math.inf

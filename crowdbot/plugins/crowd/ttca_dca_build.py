@@ -29,8 +29,10 @@ from crowdbot.core.crowd.cost import (
     RY,
     VX,
     VY,
-    Array,
     CompiledCost,
+    Pointer,
+    near_table,
+    work_table,
 )
 from crowdbot.plugins.crowd.ttca_dca import TtcaDcaSpec
 
@@ -41,7 +43,7 @@ _WEIGHT = 6  # column of work
 
 
 @njit(BASE, cache=True, error_model="numpy")
-def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Array) -> float:
+def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     angle = abs(math.atan2(uy, ux)) if ux != 0.0 or uy != 0.0 else 0.0
     slower = (math.hypot(ux, uy) - preferred) / params[_SIGMA_SPEED]
     ahead = math.exp(-0.5 * (angle / params[_SIGMA_ANGLE]) ** 2)
@@ -50,9 +52,16 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Arra
 
 @njit(PREPARE, cache=True, error_model="numpy")
 def _prepare(
-    agent: Array, near: Array, near_count: int, walls: Array, params: Array, work: Array
+    agent: Pointer,
+    near: Pointer,
+    near_count: int,
+    walls: Pointer,
+    wall_count: int,
+    params: Pointer,
+    work: Pointer,
 ) -> int:
     """Row 0: number of neighbours. Then d, q, v_j, k / sum(k), heaviest first."""
+    near, work = near_table(near), work_table(work)
     total, count = 0.0, 0
     for j in range(near_count):
         rx, ry, reach = near[j, RX], near[j, RY], near[j, REACH]
@@ -86,7 +95,10 @@ def _prepare(
 
 
 @njit(EXCESS, cache=True, error_model="numpy")
-def _excess(ux: float, uy: float, budget: float, agent: Array, work: Array, params: Array) -> float:
+def _excess(
+    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+) -> float:
+    work = work_table(work)
     cost = 0.0
     for j in range(1, int(work[0, 0]) + 1):
         dx, dy, qx, qy = work[j, 0], work[j, 1], work[j, 2], work[j, 3]

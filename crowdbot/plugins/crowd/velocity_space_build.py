@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
-import numpy as np
+from numba import njit
 
 from crowdbot.core.crowd.cost import Array, CompiledCost
 from crowdbot.core.crowd.policy import Agents, CrowdView
@@ -24,15 +25,34 @@ class VelocitySpace:
 
     def accelerations(self, view: CrowdView) -> Array:
         """Towards the chosen velocity, limited by each agent's largest acceleration."""
-        difference = self._sampler.choose(view) - view.velocity
-        towards_goal = view.goal - view.position
-        arrived = np.hypot(towards_goal[:, 0], towards_goal[:, 1]) <= view.agents.radius
-        time = np.where(arrived, view.dt, max(self._relaxation, view.dt))
-        acceleration = difference / time[:, np.newaxis]
-        norm = np.hypot(acceleration[:, 0], acceleration[:, 1])
-        limit = view.agents.max_acceleration
-        scale = np.where(norm > limit, limit / np.maximum(norm, 1e-12), 1.0)
-        return acceleration * scale[:, np.newaxis]
+        acceleration = self._sampler.choose(view)
+        _accelerate(
+            acceleration, view.position, view.velocity, view.goal, view.agents.radius,
+            view.agents.max_acceleration, max(self._relaxation, view.dt), view.dt,
+        )  # fmt: skip
+        return acceleration
+
+
+@njit(cache=True, error_model="numpy")
+def _accelerate(
+    chosen: Array,
+    position: Array,
+    velocity: Array,
+    goal: Array,
+    radius: Array,
+    limit: Array,
+    relaxation: float,
+    dt: float,
+) -> None:
+    """Turn chosen velocities into accelerations, in place; who has arrived stops at once."""
+    for i in range(chosen.shape[0]):
+        to_goal = math.hypot(goal[i, 0] - position[i, 0], goal[i, 1] - position[i, 1])
+        time = dt if to_goal <= radius[i] else relaxation
+        ax = (chosen[i, 0] - velocity[i, 0]) / time
+        ay = (chosen[i, 1] - velocity[i, 1]) / time
+        norm = math.hypot(ax, ay)
+        scale = limit[i] / norm if norm > limit[i] else 1.0
+        chosen[i, 0], chosen[i, 1] = ax * scale, ay * scale
 
 
 def build(spec: VelocitySpaceSpec, costs: Sequence[CompiledCost], agents: Agents) -> VelocitySpace:

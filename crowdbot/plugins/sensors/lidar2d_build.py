@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Pose, SensorInfo
@@ -55,24 +56,46 @@ class Lidar2d:
         distance, _, _ = scene.cast(*self._rays(scene, pose), spec.range_max)
         # Drawn for every beam, so that one beam's noise does not depend on what the others hit.
         noise = spec.noise * rng.standard_normal(len(distance))
-        hit = np.isfinite(distance)
-        ranges = np.clip(distance + noise, spec.range_min, spec.range_max)
-        return np.where(hit, ranges, np.inf)
+        _measure(distance, noise, spec.range_min, spec.range_max)
+        return distance
 
     def _rays(self, scene: Scene, pose: Pose) -> tuple[Array, Array]:
         """Origins and directions (R, 3) in the world frame."""
         mount = self._spec.mount
         c, s = math.cos(pose.yaw), math.sin(pose.yaw)
         base = BASE_HEIGHT if scene.robot is None else scene.robot.z
-        origins = np.empty((len(self._cos), 3))
-        origins[:, 0] = pose.x + c * mount.x - s * mount.y
-        origins[:, 1] = pose.y + s * mount.x + c * mount.y
-        origins[:, 2] = base + mount.z
+        origins, directions = np.empty((len(self._cos), 3)), np.empty((len(self._cos), 3))
+        x, y = pose.x + c * mount.x - s * mount.y, pose.y + s * mount.x + c * mount.y
         c, s = math.cos(pose.yaw + mount.yaw), math.sin(pose.yaw + mount.yaw)
-        directions = np.zeros_like(origins)
-        directions[:, 0] = c * self._cos - s * self._sin
-        directions[:, 1] = s * self._cos + c * self._sin
+        _aim(x, y, base + mount.z, c, s, self._cos, self._sin, origins, directions)
         return origins, directions
+
+
+@njit(cache=True, error_model="numpy")
+def _aim(
+    x: float,
+    y: float,
+    z: float,
+    c: float,
+    s: float,
+    cos: Array,
+    sin: Array,
+    origins: Array,
+    directions: Array,
+) -> None:
+    """Level rays from one point, turned by the angle with cosine c and sine s."""
+    for k in range(len(cos)):
+        origins[k, 0], origins[k, 1], origins[k, 2] = x, y, z
+        directions[k, 0], directions[k, 1] = c * cos[k] - s * sin[k], s * cos[k] + c * sin[k]
+        directions[k, 2] = 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def _measure(distance: Array, noise: Array, shortest: float, longest: float) -> None:
+    """Add the noise to the distances of hits, in place."""
+    for k in range(len(distance)):
+        if distance[k] < math.inf:
+            distance[k] = min(max(distance[k] + noise[k], shortest), longest)
 
 
 def build(spec: Lidar2dSpec) -> Lidar2d:

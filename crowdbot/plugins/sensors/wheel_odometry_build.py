@@ -40,6 +40,7 @@ class WheelOdometry:
             shape=(5,),
             ros_type="nav_msgs/msg/Odometry",
             memory=READING.stop,
+            random=False,
         )
 
     def info(self) -> SensorInfo:
