@@ -2,3 +2,7 @@
 
 Only `crowdbot.core.sim` knows Drake.
 """
+
+from crowdbot.core.kernel_cache import use_kernel_cache
+
+use_kernel_cache()

@@ -191,7 +191,7 @@ class Dwa:
         rates = np.append(
             np.linspace(left, right, spec.yaw_rates), (wish, max(left, min(right, 0.0)))
         )
-        return np.stack(np.meshgrid(speeds, rates, indexing="ij"), axis=-1).reshape(-1, 2)
+        return np.column_stack([np.repeat(speeds, len(rates)), np.tile(rates, len(speeds))])
 
     def _is_lost(self, distance: float) -> bool:
         """Whether the robot has come no nearer to the goal for long: it needs a map."""

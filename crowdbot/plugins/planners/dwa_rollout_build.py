@@ -36,7 +36,9 @@ def _nearest(points: Array, velocities: Array, t: float, x: float, y: float) -> 
     for i in range(points.shape[0]):
         dx = points[i, 0] + velocities[i, 0] * t - x
         dy = points[i, 1] + velocities[i, 1] * t - y
-        best = min(best, dx * dx + dy * dy)
+        d2 = dx * dx + dy * dy
+        if d2 < best:
+            best = d2
     return math.sqrt(best)
 
 

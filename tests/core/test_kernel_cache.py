@@ -1,0 +1,50 @@
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from crowdbot.core.kernel_cache import kernel_folder
+
+CALLEE = "from numba import njit\n@njit(cache=True)\ndef inner():\n    return {}\n"
+CALLER = (
+    "import os, sys\n"
+    "from pathlib import Path\n"
+    "from crowdbot.core.kernel_cache import kernel_folder\n"
+    "os.environ['NUMBA_CACHE_DIR'] = str(kernel_folder(Path(__file__).parent))\n"
+    "from numba import njit\n"
+    "from callee import inner\n"
+    "@njit(cache=True)\ndef outer():\n    return inner()\n"
+    "print(outer())\n"
+)
+
+
+def test_a_changed_callee_in_another_file_is_compiled_again(tmp_path: Path) -> None:
+    (tmp_path / "caller.py").write_text(CALLER)
+    answers = []
+    for number in (1, 22):
+        (tmp_path / "callee.py").write_text(CALLEE.format(number))
+        done = subprocess.run(
+            [sys.executable, "caller.py"], cwd=tmp_path, capture_output=True, text=True, check=True
+        )
+        answers.append(int(done.stdout))
+    assert answers == [1, 22]
+
+
+def test_equal_sources_share_a_folder(tmp_path: Path) -> None:
+    (tmp_path / "a.py").write_text("1")
+    before = kernel_folder(tmp_path)
+    assert kernel_folder(tmp_path) == before
+    (tmp_path / "b.py").write_text("2")
+    assert kernel_folder(tmp_path) != before
+
+
+def test_a_read_only_package_uses_the_users_cache(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    assert kernel_folder(tmp_path).parent == tmp_path / "cache" / "crowdbot"
