@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from crowdbot.api import evaluate, expand, load, score, simulate
     from crowdbot.core.evaluate import Scores
     from crowdbot.core.score import Score
-    from crowdbot.core.sim.simulate import Run
+    from crowdbot.core.sim.request import Run
     from crowdbot.core.trajectory import Trajectories
     from crowdbot.dsl.expand import Expansion as Suite
     from crowdbot.dsl.scenario import Scenario
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "CrowdbotError": "crowdbot.errors",
-    "Run": "crowdbot.core.sim.simulate",
+    "Run": "crowdbot.core.sim.request",
     "Scenario": "crowdbot.dsl.scenario",
     "Score": "crowdbot.core.score",
     "Scores": "crowdbot.core.evaluate",

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from crowdbot.core.sim.simulate import Run
+    from crowdbot.core.sim.request import Run
 
 
 class Record(StrEnum):

@@ -5,96 +5,27 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from crowdbot.core import provenance
 from crowdbot.core import run_directory as files
 from crowdbot.core.evaluate import Scores, score
-from crowdbot.core.interfaces import References
-from crowdbot.core.planner_source import PlannerChoice, resolve_planner, select_sensors
+from crowdbot.core.planner_source import resolve_planner, select_sensors
 from crowdbot.core.realise import realise
 from crowdbot.core.recording import read_scans, read_trajectories
 from crowdbot.core.registry import Registry
 from crowdbot.core.replay import write_replay
 from crowdbot.core.scores_table import write_scores_csv
 from crowdbot.core.sim.record import RunSetup, record_crowd, record_robot
-from crowdbot.core.sim.runner import INTERRUPTED, PLANNER_FAILED, Outcome, Progress
+from crowdbot.core.sim.request import Request, Run, read_references
+from crowdbot.core.sim.runner import INTERRUPTED, PLANNER_FAILED, Outcome
 from crowdbot.core.trajectory import Trajectories
 from crowdbot.dsl.canonical import content_hash, dump_scenario_yaml
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError, Interrupted, PlannerHungError
 
-Recorded = Literal["all", "used", "none"]
 _REPLAY_RATE = 8.0  # scans per second that the replay page holds, Hz
-
-
-@dataclass(frozen=True)
-class Run:
-    """A complete run on disk.
-
-    Attributes:
-        directory: where its files are.
-        record: ``run.json``.
-        scores: what was computed when it was made.
-        reused: it had been there already.
-    """
-
-    directory: Path
-    record: Mapping[str, Any] = field(repr=False)
-    reused: bool = False
-    _keep: object = field(default=None, repr=False, compare=False)
-
-    @property
-    def status(self) -> str:
-        """``arrived``, ``timeout`` or ``planner_failed``."""
-        return str(self.record["status"])
-
-    @cached_property
-    def trajectories(self) -> Trajectories:
-        """The run itself, read from its recording."""
-        return read_trajectories(self.directory / files.RECORDING)
-
-    @cached_property
-    def references(self) -> References:
-        """The calibration runs, as far as they were computed."""
-        paths: Mapping[str, str] = self.record["references"]
-        return _read_references({n: (self.directory / p).resolve() for n, p in paths.items()})
-
-
-@dataclass(frozen=True, kw_only=True)
-class Request:
-    """What to simulate, and how.
-
-    Attributes:
-        out: root of the run directories.
-        suite: first folder below it.
-        record: which sensors are simulated and recorded.
-        metrics: patterns of the metrics to score; None is all.
-        stop: asked several times a simulated second; True ends the run as interrupted.
-        on_hang: called when a planner cannot be interrupted; should end the process.
-    """
-
-    scenario: Scenario
-    choice: PlannerChoice
-    registry: Registry
-    seed: int
-    out: Path
-    suite: str = "scenarios"
-    record: Recorded = "all"
-    references: bool = True
-    force: bool = False
-    metrics: Sequence[str] | None = None
-    progress: Callable[[Progress], None] | None = None
-    stop: Callable[[], bool] = lambda: False
-    on_hang: Callable[[], object] | None = None
-
-    @property
-    def directory(self) -> Path:
-        """Where the run goes."""
-        return self.out / self.suite / self.scenario.id / self.choice.label / f"seed-{self.seed}"
 
 
 def simulate(
@@ -250,10 +181,6 @@ def _partial(final: Path) -> Iterator[Path]:
             raise PlannerHungError(f"{error}; what was recorded: {folder}") from error
 
 
-def _read_references(paths: Mapping[str, Path]) -> References:
-    return References(**{name: read_trajectories(path) for name, path in paths.items()})
-
-
 # --------------------------------------------------------------------------- the run
 def _record_run(
     request: Request, identity: Mapping[str, Any], references: Mapping[str, Path]
@@ -263,7 +190,7 @@ def _record_run(
         outcome = record_robot(_setup(request, request.scenario, folder, "run"))
         _check_interrupted(outcome, folder)
         run = read_trajectories(folder / files.RECORDING)
-        calibration = _read_references(references)
+        calibration = read_references(references)
         scores = score(
             request.registry,
             run,

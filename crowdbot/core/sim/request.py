@@ -1,0 +1,91 @@
+"""What to simulate, and what came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+from crowdbot.core import run_directory as files
+from crowdbot.core.interfaces import References
+from crowdbot.core.planner_source import PlannerChoice
+from crowdbot.core.recording import read_trajectories
+from crowdbot.core.registry import Registry
+from crowdbot.core.sim.runner import Progress
+from crowdbot.core.trajectory import Trajectories
+from crowdbot.dsl.scenario import Scenario
+
+Recorded = Literal["all", "used", "none"]
+
+
+@dataclass(frozen=True)
+class Run:
+    """A complete run on disk.
+
+    Attributes:
+        directory: where its files are.
+        record: ``run.json``.
+        scores: what was computed when it was made.
+        reused: it had been there already.
+    """
+
+    directory: Path
+    record: Mapping[str, Any] = field(repr=False)
+    reused: bool = False
+    _keep: object = field(default=None, repr=False, compare=False)
+
+    @property
+    def status(self) -> str:
+        """``arrived``, ``timeout`` or ``planner_failed``."""
+        return str(self.record["status"])
+
+    @cached_property
+    def trajectories(self) -> Trajectories:
+        """The run itself, read from its recording."""
+        return read_trajectories(self.directory / files.RECORDING)
+
+    @cached_property
+    def references(self) -> References:
+        """The calibration runs, as far as they were computed."""
+        paths: Mapping[str, str] = self.record["references"]
+        return read_references({n: (self.directory / p).resolve() for n, p in paths.items()})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """What to simulate, and how.
+
+    Attributes:
+        out: root of the run directories.
+        suite: first folder below it.
+        record: which sensors are simulated and recorded.
+        metrics: patterns of the metrics to score; None is all.
+        stop: asked several times a simulated second; True ends the run as interrupted.
+        on_hang: called when a planner cannot be interrupted; should end the process.
+    """
+
+    scenario: Scenario
+    choice: PlannerChoice
+    registry: Registry
+    seed: int
+    out: Path
+    suite: str = "scenarios"
+    record: Recorded = "all"
+    references: bool = True
+    force: bool = False
+    metrics: Sequence[str] | None = None
+    progress: Callable[[Progress], None] | None = None
+    stop: Callable[[], bool] = lambda: False
+    on_hang: Callable[[], object] | None = None
+
+    @property
+    def directory(self) -> Path:
+        """Where the run goes."""
+        return self.out / self.suite / self.scenario.id / self.choice.label / f"seed-{self.seed}"
+
+
+def read_references(paths: Mapping[str, Path]) -> References:
+    """The recordings of the calibration runs, by name."""
+    return References(**{name: read_trajectories(path) for name, path in paths.items()})
