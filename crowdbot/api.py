@@ -14,8 +14,8 @@ from crowdbot.dsl.scenario import Scenario
 
 if TYPE_CHECKING:
     from crowdbot.core.evaluate import MetricParameters, Scores
-    from crowdbot.core.sim.runner import Progress
     from crowdbot.core.sim.request import Run
+    from crowdbot.core.sim.runner import Progress
     from crowdbot.core.trajectory import Trajectories
 
 
