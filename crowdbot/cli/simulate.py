@@ -114,19 +114,27 @@ def _import_simulate() -> Callable[..., Run]:
 
 @contextmanager
 def _interruptible() -> Iterator[Callable[[], bool]]:
-    """The first Ctrl-C asks the run to end and keep its recording; the second one insists."""
-    asked = False
+    """The first Ctrl-C asks the run to end and keep its recording; the second one insists.
+
+    While nothing runs yet, as when kernels are compiled, the first one is enough.
+    """
+    asked = running = False
 
     def handler(number: int, frame: FrameType | None) -> None:
         nonlocal asked
         del number, frame
-        if asked:
+        if asked or not running:
             raise KeyboardInterrupt
         asked = True
 
+    def stop() -> bool:
+        nonlocal running
+        running = True
+        return asked
+
     previous = signal.signal(signal.SIGINT, handler)
     try:
-        yield lambda: asked
+        yield stop
     finally:
         signal.signal(signal.SIGINT, previous)
 
