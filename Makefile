@@ -36,4 +36,4 @@ lock:
 		--quiet --group dev pyproject.toml -o requirements.lock
 
 clean:
-	rm -rf .venv runs .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf crowdbot/__pycache__/kernels-* .venv runs .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -248,7 +248,3 @@ class Metric(Protocol):
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """One score per variant; a status instead of NaN."""
         ...
-
-
-#: Named numeric parameters.
-Parameters = Mapping[str, Any]
