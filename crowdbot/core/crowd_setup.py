@@ -6,7 +6,7 @@ import numpy as np
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
 from crowdbot.core.interfaces import EnvironmentParts
-from crowdbot.core.realise import Realisation
+from crowdbot.core.realisation import Realisation
 from crowdbot.core.registry import Registry
 from crowdbot.dsl.scenario import Crowd, Scenario
 
@@ -20,25 +20,23 @@ def build_crowd(
         return None
     costs = [registry.build(c) for c in crowd.costs.values()]
     return CrowdEngine(
-        _agents(crowd, realisation),
+        _agents(realisation),
         _world(scenario, crowd, realisation, parts),
         lambda agents: registry.build(crowd.policy, costs, agents),
     )
 
 
-def _agents(crowd: Crowd, drawn: Realisation) -> Agents:
-    def everyone(value: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-        return np.full(len(drawn.id), value)
-
-    return Agents(
+def _agents(drawn: Realisation) -> Agents:
+    return Agents.of(
         id=drawn.id,
         x=drawn.x,
         y=drawn.y,
         preferred_speed=drawn.speed,
-        radius=everyone(crowd.body.radius),
-        max_speed=everyone(crowd.body.max_speed),
-        max_acceleration=everyone(crowd.body.max_acceleration),
-        mass=everyone(crowd.body.mass),
+        radius=drawn.radius,
+        max_speed=drawn.max_speed,
+        max_acceleration=drawn.max_acceleration,
+        mass=drawn.mass,
+        start_time=drawn.start_time,
     )
 
 

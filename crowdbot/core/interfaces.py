@@ -50,6 +50,10 @@ class EnvironmentParts:
         stops_crowd: (S,) bool, people avoid the segment.
         zones: name -> (K, 2) polygon, counter-clockwise, m.
         portals: name -> (x0, x1, y0, y1), m.
+        pillars: (P, 3) x, y and radius of round obstacles for robot and people, m.
+        pillar_heights: (P, 2) bottom and top, m.
+        torus: (x0, x1, y0, y1) of a floor on which people who leave on one side come back on the
+            other and see each other across the border, m; None for a floor with borders.
     """
 
     walls: Array
@@ -58,6 +62,9 @@ class EnvironmentParts:
     stops_crowd: NDArray[np.bool_]
     zones: Mapping[str, Array]
     portals: Mapping[str, tuple[float, float, float, float]]
+    pillars: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    pillar_heights: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    torus: tuple[float, float, float, float] | None = None
 
 
 # ---------------------------------------------------------------------- robot

@@ -1,16 +1,12 @@
-"""Realisation: a scenario's crowd, drawn: who starts where, how fast, with which goals."""
+"""Draws a scenario's crowd: who starts where, how fast, with which goals."""
 
 from __future__ import annotations
-
-import csv
-import hashlib
-import io
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.dsl.scenario import Crowd, Scenario
+from crowdbot.core.realisation import Realisation
+from crowdbot.dsl.scenario import AtGoal, Crowd, Scenario
 from crowdbot.dsl.seeds import stream_seed
 from crowdbot.errors import InputError
 
@@ -18,31 +14,6 @@ Array = NDArray[np.float64]
 
 #: Attempts to place one person before the zone counts as full.
 _ATTEMPTS = 10_000
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Realisation:
-    """The table of agents. x, y (m) and speed (m/s) are (N,); ``goal_key`` keys their goals."""
-
-    id: NDArray[np.int64]
-    x: Array
-    y: Array
-    speed: Array
-    goal_key: int
-
-    def to_csv(self) -> str:
-        """The table as text, decimals that read back exactly."""
-        text = io.StringIO()
-        rows = csv.writer(text, lineterminator="\n")
-        rows.writerow(["id", "x", "y", "speed", "goal_key"])
-        for i, x, y, s in zip(self.id, self.x, self.y, self.speed, strict=True):
-            rows.writerow([int(i), repr(float(x)), repr(float(y)), repr(float(s)), self.goal_key])
-        return text.getvalue()
-
-    @property
-    def hash(self) -> str:
-        """Content hash of the table."""
-        return f"cb1-sha256:{hashlib.sha256(self.to_csv().encode()).hexdigest()}"
 
 
 def realise(scenario: Scenario) -> Realisation:
@@ -53,8 +24,7 @@ def realise(scenario: Scenario) -> Realisation:
     """
     crowd = scenario.crowd
     if crowd is None:
-        none = np.zeros(0)
-        return Realisation(id=np.zeros(0, np.int64), x=none, y=none, speed=none, goal_key=0)
+        return Realisation.nobody()
     zone = scenario.environment.zones[crowd.flow.area]
     count = round(crowd.flow.density * zone.area)
     seed, key = crowd.seed.root, crowd.seed.key
@@ -64,11 +34,26 @@ def realise(scenario: Scenario) -> Realisation:
     low = np.array([zone.x[0] + margin, zone.y[0] + margin])
     high = np.array([zone.x[1] - margin, zone.y[1] - margin])
     position = _scatter(spawn, count, low, high, 2.0 * crowd.body.radius)
+    flow, body = crowd.flow, crowd.body
+    portals = flow.portals if flow.direction == "in" else (flow.portals[1], flow.portals[0])
+    everyone = np.ones(count)
+    at_goal: AtGoal = "portal"
     return Realisation(
         id=np.arange(count, dtype=np.int64),
         x=position[:, 0],
         y=position[:, 1],
+        heading=np.zeros(count),
         speed=_speeds(pace, count, crowd),
+        radius=body.radius * everyone,
+        mass=body.mass * everyone,
+        max_speed=body.max_speed * everyone,
+        max_acceleration=body.max_acceleration * everyone,
+        start_time=np.zeros(count),
+        group=np.full(count, -1, dtype=np.int64),
+        policy=("",) * count,
+        at_goal=(at_goal,) * count,
+        portals=(portals,) * count,
+        goals=((),) * count,
         goal_key=stream_seed(seed, key, "crowd.goal"),
     )
 

@@ -37,6 +37,9 @@ from crowdbot.dsl.quantities import (
     PositiveStiffness,
 )
 
+#: What an agent does at the end of its route.
+AtGoal = Literal["portal", "stop", "remove", "loop"]
+
 
 class CrowdSeed(Spec):
     """Where the crowd's random numbers come from; equal seeds draw equal people."""
@@ -185,6 +188,7 @@ OUTSIDE_HASH = ("id", "title", "references")
 
 __all__ = [
     "OUTSIDE_HASH",
+    "AtGoal",
     "Body",
     "Contact",
     "Crowd",

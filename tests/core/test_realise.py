@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from crowdbot.core.library import open_spec, pick
-from crowdbot.core.realise import Realisation, realise
+from crowdbot.core.realisation import COLUMNS, Realisation
+from crowdbot.core.realise import realise
 from crowdbot.core.registry import discover
 from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.scenario import Scenario
@@ -86,15 +87,29 @@ def test_streams_are_independent() -> None:
 def test_without_a_crowd_the_table_is_empty() -> None:
     drawn = _drawn("in-d0125-slow-c01-r02", "crowd=null")
     assert len(drawn.id) == len(drawn.x) == 0
-    assert drawn.to_csv() == "id,x,y,speed,goal_key\n"
+    assert drawn.to_csv() == ",".join(COLUMNS) + "\n"
 
 
 def test_the_table_reads_back_exactly() -> None:
     drawn = _drawn()
-    rows = np.loadtxt(drawn.to_csv().splitlines()[1:], delimiter=",", usecols=(0, 1, 2, 3))
-    assert np.array_equal(rows[:, 0], drawn.id)
-    for column, values in zip(rows.T[1:], (drawn.x, drawn.y, drawn.speed), strict=True):
-        assert np.array_equal(column, values)
+    again = Realisation.from_csv(drawn.to_csv())
+    assert again.hash == drawn.hash
+    assert again.x.tobytes() == drawn.x.tobytes()
+    assert again.portals == drawn.portals
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("id,x", "id,z", "line 1: an agents table has the columns"),
+        ("\n1,", "\none,", "line 3: invalid literal"),
+        ("portal,", "stay,", "line 2: unknown at_goal 'stay'"),
+        ("75.0", "nan", "line 2: numbers must be finite"),
+    ],
+)
+def test_a_broken_table_names_its_line(old: str, new: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        Realisation.from_csv(_drawn().to_csv().replace(old, new, 1))
 
 
 @pytest.mark.parametrize("std", ["0 m/s", "5 m/s"])

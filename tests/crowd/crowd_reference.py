@@ -165,7 +165,7 @@ def agents_of(
     def all_of(value: float | Array) -> Array:
         return np.array(np.broadcast_to(value, (n,)), np.float64)
 
-    return Agents(
+    return Agents.of(
         id=np.arange(n), x=position[:, 0].copy(), y=position[:, 1].copy(),
         preferred_speed=all_of(speed), radius=all_of(radius), max_speed=all_of(max_speed),
         max_acceleration=all_of(max_acceleration), mass=all_of(75.0),

@@ -138,7 +138,7 @@ def load(name: str) -> Case:
     settings = json.loads(str(arrays["settings"]))
     goal, table = arrays["agents"][:, :2], arrays["agents"][:, 2:]
     before = arrays["before"].astype(np.float64)
-    agents = Agents(
+    agents = Agents.of(
         id=np.arange(len(table)), x=before[0, :, 0].copy(), y=before[0, :, 1].copy(),
         radius=table[:, 0].copy(), preferred_speed=table[:, 1].copy(),
         max_speed=table[:, 2].copy(), max_acceleration=table[:, 3].copy(), mass=table[:, 4].copy(),

@@ -56,7 +56,8 @@ def test_the_order_of_agents_does_not_matter(seed: int) -> None:
     """Permuted with their ids, everybody walks the very same way."""
     agents = _agents(50, seed)
     order = np.random.default_rng(seed).permutation(50)
-    shuffled = Agents(**{f: getattr(agents, f)[order] for f in Agents.__dataclass_fields__})
+    names = ("id", "x", "y", "preferred_speed", "radius", "max_speed", "max_acceleration", "mass")
+    shuffled = Agents.of(**{name: getattr(agents, name)[order] for name in names})
     robots = np.array([[14.0, 0.1, 0.3, 0.0, 0.178, 0.428]])
     first, second = _run(walkers(agents), 3.0, robots), _run(walkers(shuffled), 3.0, robots)
     assert rows(second) == pytest.approx(rows(first)[order], abs=1e-9)

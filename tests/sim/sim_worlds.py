@@ -189,7 +189,7 @@ def person(
     x: float, y: float = 0.0, speed: float = 1.2, response: Sequence[float] = (0.0, 0.0, 0.2)
 ) -> CrowdEngine:
     """One person who walks straight in -x along y = 0, come what may."""
-    agents = Agents(
+    agents = Agents.of(
         id=np.zeros(1, np.int64), x=np.array([x]), y=np.array([y]),
         preferred_speed=np.array([speed]), radius=np.array([0.33]), max_speed=np.array([3.0]),
         max_acceleration=np.array([5.0]), mass=np.array([75.0]),

@@ -1,0 +1,1 @@
+"""Checks that crowdbot's own components pass, for authors of other ones."""
