@@ -23,6 +23,7 @@ from pydrake.systems.primitives import ConstantVectorSource
 
 from crowdbot.api import registry
 from crowdbot.core.library import open_spec, pick
+from crowdbot.core.lock import population
 from crowdbot.core.planner_source import resolve_planner
 from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.diagram import robot_task
@@ -60,6 +61,7 @@ def whole(world: Scenario, planner: str) -> float:
         outcome = record_robot(
             RunSetup(
                 scenario=world,
+                agents=population(world, registry()).agents,
                 registry=registry(),
                 choice=resolve_planner(planner, registry()),
                 seed=0,

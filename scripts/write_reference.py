@@ -15,7 +15,17 @@ from pydantic import BaseModel, SerializeAsAny
 from pydantic.fields import FieldInfo
 
 from crowdbot.core.registry import Registry, discover
+from crowdbot.dsl.areas import Area
 from crowdbot.dsl.base import CATEGORIES, ComponentSpec, Mount, Range, Rectangle
+from crowdbot.dsl.parameters import (
+    AccelerationDraw,
+    Draw,
+    DurationDraw,
+    LengthDraw,
+    MassDraw,
+    SpeedDistribution,
+    SpeedDraw,
+)
 from crowdbot.dsl.quantities import UNITS, Quantity
 from crowdbot.dsl.suite import ScenarioDocument, Seeds, SuiteDocument, SuiteHead
 
@@ -36,7 +46,8 @@ A quantity is a number in the unit of its column, or text with a unit of the sam
 as `80 cm/s`. World frame: x along the corridor, y left, z up, angles counter-clockwise.
 """
 _COMPONENTS = ("environment", "crowd policy", "cost function", "robot", "sensor")
-_SHARED = (Mount, Range, Rectangle)
+_DRAWS = (LengthDraw, SpeedDraw, AccelerationDraw, MassDraw, DurationDraw)
+_SHARED = (Mount, Range, Rectangle, Area, SpeedDistribution, *_DRAWS)
 _NAMES = {float: "number", int: "integer", str: "text", bool: "true or false", Any: "anything"}
 _BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
 
@@ -139,7 +150,7 @@ def _about(info: FieldInfo) -> str:
 
 def _units_of(annotation: Any, metadata: Any) -> list[str]:
     found = [m.si_unit for m in metadata if isinstance(m, Quantity)]
-    if found or get_origin(annotation) not in (tuple, Annotated):
+    if found or get_origin(annotation) not in (tuple, Annotated, Union, types.UnionType):
         return found
     inner = [a for a in get_args(annotation) if get_origin(a) is Annotated]
     return [u for a in inner for u in _units_of(get_args(a)[0], get_args(a)[1:])]
@@ -151,7 +162,7 @@ def _type(info: FieldInfo) -> str:
         for bound, sign in _BOUNDS.items():
             if hasattr(item, bound):
                 bounds.append(f"{sign} {getattr(item, bound)}")
-        if pattern := getattr(item, "pattern", None):
+        if isinstance(pattern := getattr(item, "pattern", None), str):
             bounds.append(f"matching `{pattern}`")
     return " ".join([words, ", ".join(sorted(bounds, reverse=True))]).strip()
 
@@ -181,13 +192,16 @@ def _word(annotation: Any) -> str:
 
 def _many(arguments: tuple[Any, ...]) -> str:
     count = "" if Ellipsis in arguments or len(arguments) == 1 else f"{len(arguments)} × "
-    return f"{count}{_word(arguments[0])}"
+    word = _word(arguments[0])
+    return f"{count}{'maps' if word == 'map' else word}"
 
 
 def _default(info: FieldInfo) -> str:
     if info.is_required():
         return "required"
     value = info.default
+    if isinstance(value, Draw):
+        return f"{value.value:.6g}"
     if isinstance(value, BaseModel):
         return "its defaults"
     if value is None:

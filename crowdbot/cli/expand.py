@@ -85,7 +85,7 @@ def _one(
         return json.dumps(content, indent=2) + "\n"
     if explain:
         return explain_yaml(scenario, expansion.trees[scenario.id])
-    return dump_scenario_yaml(scenario)
+    return dump_scenario_yaml(scenario, registry.spec_versions(scenario))
 
 
 def _row(expansion: Expansion, scenario: Scenario, registry: Registry) -> dict[str, str]:

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
+from crowdbot.core.crowd.policy import LOOP, PORTAL, REMOVE, STOP
 from crowdbot.core.interfaces import EnvironmentParts
 from crowdbot.core.realisation import Realisation
 from crowdbot.core.registry import Registry
-from crowdbot.dsl.scenario import Crowd, Scenario
+from crowdbot.dsl.scenario import Crowd, NamedPolicy, Scenario
+from crowdbot.errors import InputError
+
+#: Names of the portals of a stream, from and to.
+Flow = tuple[str, str]
+
+_AT_GOAL = {"portal": PORTAL, "stop": STOP, "remove": REMOVE, "loop": LOOP}
 
 
 def build_crowd(
@@ -18,15 +28,63 @@ def build_crowd(
     crowd = scenario.crowd
     if crowd is None:
         return None
-    costs = [registry.build(c) for c in crowd.costs.values()]
+    flows, policies = _flows(realisation), _policies(crowd, realisation)
+    agents = _agents(realisation, flows, list(policies))
+    return _engine(scenario, crowd, realisation, parts, registry, agents, flows, policies)
+
+
+def _engine(
+    scenario: Scenario,
+    crowd: Crowd,
+    realisation: Realisation,
+    parts: EnvironmentParts,
+    registry: Registry,
+    agents: Agents,
+    flows: Sequence[Flow],
+    policies: dict[str, Crowd | NamedPolicy],
+) -> CrowdEngine:
+    """The engine; it knows one stream between portals and one policy so far.
+
+    Raises:
+        InputError: the crowd has people who do something else.
+    """
+    missing = {
+        "routes with an end": np.any(agents.at_goal != PORTAL),
+        "people who enter later": np.any(agents.start_time > 0.0),
+        "several pairs of portals": len(flows) > 1,
+        "several policies": len(policies) > 1,
+    }
+    if any(missing.values()):
+        words = " and ".join(name for name, needed in missing.items() if needed)
+        raise InputError(f"{scenario.id}: the crowd engine cannot simulate {words} yet")
+    (group,) = policies.values()
+    costs = [registry.build(c) for c in group.costs.values()]
+    boxes = _boxes(flows, parts)
     return CrowdEngine(
-        _agents(realisation),
-        _world(scenario, crowd, realisation, parts),
-        lambda agents: registry.build(crowd.policy, costs, agents),
+        agents,
+        _world(scenario, crowd, realisation, parts, boxes[0, 0], boxes[0, 1]),
+        lambda a: registry.build(group.policy, costs, a),
     )
 
 
-def _agents(drawn: Realisation) -> Agents:
+def _flows(drawn: Realisation) -> list[Flow]:
+    """The streams between portals, in the order of the agents."""
+    return list(dict.fromkeys(pair for pair in drawn.portals if any(pair)))
+
+
+def _boxes(flows: Sequence[Flow], parts: EnvironmentParts) -> NDArray[np.float64]:
+    """(F, 2, 4) entrance and exit of each stream, x0, x1, y0, y1, m."""
+    boxes = [[parts.portals[name] for name in flow] for flow in flows]
+    return np.array(boxes, dtype=np.float64).reshape(-1, 2, 4)
+
+
+def _policies(crowd: Crowd, drawn: Realisation) -> dict[str, Crowd | NamedPolicy]:
+    """The policies that somebody follows, by name; the crowd's own is first, without a name."""
+    used = {name: crowd.policies[name] for name in sorted(set(drawn.policy) - {""})}
+    return {"": crowd, **used}
+
+
+def _agents(drawn: Realisation, flows: Sequence[Flow], policies: Sequence[str]) -> Agents:
     return Agents.of(
         id=drawn.id,
         x=drawn.x,
@@ -37,18 +95,26 @@ def _agents(drawn: Realisation) -> Agents:
         max_acceleration=drawn.max_acceleration,
         mass=drawn.mass,
         start_time=drawn.start_time,
+        at_goal=[_AT_GOAL[word] for word in drawn.at_goal],
+        flow=[flows.index(pair) if any(pair) else 0 for pair in drawn.portals],
+        policy=[policies.index(name) for name in drawn.policy],
+        routes=drawn.goals,
     )
 
 
 def _world(
-    scenario: Scenario, crowd: Crowd, drawn: Realisation, parts: EnvironmentParts
+    scenario: Scenario,
+    crowd: Crowd,
+    drawn: Realisation,
+    parts: EnvironmentParts,
+    entrance: NDArray[np.float64],
+    out: NDArray[np.float64],
 ) -> CrowdWorld:
-    names = crowd.flow.portals if crowd.flow.direction == "in" else crowd.flow.portals[::-1]
     response = crowd.robot_response
     return CrowdWorld(
         walls=np.ascontiguousarray(parts.walls[parts.stops_crowd]),
-        entrance=np.array(parts.portals[names[0]]),
-        out=np.array(parts.portals[names[1]]),
+        entrance=np.ascontiguousarray(entrance),
+        out=np.ascontiguousarray(out),
         response=np.array(
             [response.stiffness_moving, response.stiffness_stopped, response.slow_speed]
         ),

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import atexit
 import os
+import shutil
 import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Sequence
 from fnmatch import fnmatchcase
+from functools import cache, cached_property, partial
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from crowdbot.core.registry import Registry
 from crowdbot.dsl.expand import Expansion, expand_document, load_document
+from crowdbot.dsl.lock import Locked, LockFiles
 from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.suite import Installed, Suite
 from crowdbot.errors import InputError, UnknownNameError
 
 _BUILTIN = "builtin"
+_UNPACKED = "crowdbot-unpacked-"
 
 
 def open_spec(spec: str, registry: Registry, overrides: Sequence[str] = ()) -> Expansion:
@@ -30,16 +35,72 @@ def open_spec(spec: str, registry: Registry, overrides: Sequence[str] = ()) -> E
         SpecError: the document is wrong; every error at once.
         UnknownNameError: neither a file nor a packaged suite has this name.
     """
-    with _folders(registry) as roots:
-        path, name = _find(spec, roots)
-        suite = load_document(path, roots, name=name, metrics=registry.components("metric"))
-        return expand_document(suite, registry.scenario_model, overrides)
+    expansion, _ = open_suite(spec, registry, overrides)
+    return expansion
+
+
+def open_suite(
+    spec: str, registry: Registry, overrides: Sequence[str] = ()
+) -> tuple[Expansion, LockFiles]:
+    """As `open_spec`, with the files of the lock, which need not exist."""
+    roots = _folders(registry)
+    path, name = _find(spec, roots)
+    suite = load_document(path, roots, name=name, installed=installed(registry))
+    expansion = expand_document(suite, registry.scenario_model, overrides)
+    files = LockFiles(path, spec)
+    if files.lock_path.exists():
+        _attach(expansion, files, _Origins(suite, registry, expansion, overrides))
+    return expansion, files
+
+
+def check_writable(files: LockFiles) -> None:
+    """Whether a lock may be written where it belongs.
+
+    Raises:
+        InputError: it belongs into an installed package.
+    """
+    folder = files.lock_path.parent.resolve()
+    installed_ = {"site-packages", "dist-packages"} & set(folder.parts)
+    if installed_ or any(part.startswith(_UNPACKED) for part in folder.parts):
+        raise InputError(
+            f"{files.spec} belongs to an installed package, which is not changed; copy its "
+            "folder, or write a suite of your own that extends it, and lock that"
+        )
+
+
+class _Origins:
+    """The scenarios as the suite has them, without ``--set``; expanded when somebody asks."""
+
+    def __init__(
+        self, suite: Suite, registry: Registry, expansion: Expansion, overrides: Sequence[str]
+    ) -> None:
+        self._suite, self._registry = suite, registry
+        self._given = None if overrides else expansion.scenarios
+
+    def scenario(self, index: int) -> Scenario:
+        return self._scenarios[index]
+
+    @cached_property
+    def _scenarios(self) -> list[Scenario]:
+        return self._given or expand_document(self._suite, self._registry.scenario_model).scenarios
+
+
+def _attach(expansion: Expansion, files: LockFiles, origins: _Origins) -> None:
+    for index, scenario in enumerate(expansion.scenarios):
+        scenario.lock_to(Locked(files, partial(origins.scenario, index)))
+
+
+def installed(registry: Registry) -> Installed:
+    """What is installed, in the words of documents."""
+    versions = {
+        c.kind: (c.spec_version, p.distribution) for p in registry.plugins for c in p.components
+    }
+    return Installed(registry.components("metric"), versions)
 
 
 def suite_names(registry: Registry) -> list[str]:
     """Names of all packaged suites."""
-    with _folders(registry) as roots:
-        return sorted(_packaged(roots))
+    return sorted(_packaged(_folders(registry)))
 
 
 def pick(expansion: Expansion, wanted: str | None) -> Scenario:
@@ -95,7 +156,7 @@ def _find(spec: str, roots: dict[str, list[Path]]) -> tuple[Path, str]:
     path, packaged = Path(spec), _packaged(roots)
     looks_like_path = path.suffix in (".yaml", ".yml") or os.sep in spec or "/" in spec
     if not looks_like_path and spec in packaged:
-        return packaged[spec], _shown(packaged[spec])
+        return packaged[spec], _shown(packaged[spec], spec)
     if looks_like_path or os.path.lexists(spec):
         return path, spec
     raise UnknownNameError("suite", spec, packaged)
@@ -111,22 +172,21 @@ def _packaged(roots: dict[str, list[Path]]) -> dict[str, Path]:
     }
 
 
-@contextmanager
-def _folders(registry: Registry) -> Iterator[dict[str, list[Path]]]:
+def _folders(registry: Registry) -> dict[str, list[Path]]:
     """Plugin name -> its scenario folders as real ones; those inside archives are unpacked."""
-    with ExitStack() as stack:
-        roots: dict[str, list[Path]] = {}
-        for plugin in registry.plugins:
-            folders = [f for f in plugin.scenario_dirs if f.is_dir()]
-            if folders:
-                roots[plugin.name] = [_real(folder, stack) for folder in folders]
-        yield roots
+    roots: dict[str, list[Path]] = {}
+    for plugin in registry.plugins:
+        folders = [f for f in plugin.scenario_dirs if f.is_dir()]
+        if folders:
+            roots[plugin.name] = [f if isinstance(f, Path) else _unpacked(f) for f in folders]
+    return roots
 
 
-def _real(folder: Traversable, stack: ExitStack) -> Path:
-    if isinstance(folder, Path):
-        return folder
-    target = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="crowdbot-")))
+@cache
+def _unpacked(folder: Traversable) -> Path:
+    """A folder of an archive as a real one, which lives as long as the process."""
+    target = Path(tempfile.mkdtemp(prefix=_UNPACKED))
+    atexit.register(shutil.rmtree, target, ignore_errors=True)
     _unpack(folder, target)
     return target
 
@@ -140,8 +200,9 @@ def _unpack(folder: Traversable, target: Path) -> None:
             (target / item.name).write_bytes(item.read_bytes())
 
 
-def _shown(path: Path) -> str:
-    """A path for messages: relative if it is below the working directory."""
-    if path.is_absolute() and path.is_relative_to(Path.cwd()):
+def _shown(path: Path, spec: str) -> str:
+    """A packaged file for messages: relative below the working directory, else as in `extends`."""
+    if path.is_relative_to(Path.cwd()):
         return str(path.relative_to(Path.cwd()))
-    return str(path)
+    plugin, _, _ = spec.rpartition(":")
+    return f"{plugin or _BUILTIN}:{path.name}"

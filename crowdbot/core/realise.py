@@ -1,19 +1,25 @@
-"""Draws a scenario's crowd: who starts where, how fast, with which goals."""
+"""Draws a scenario's crowd: who starts where, how fast, with which goals.
+
+First explicit agents, then the flow, then the spawns by name: each keeps clear of those before.
+"""
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Iterator, Sequence
+from itertools import count
+from typing import Any
 
+import numpy as np
+
+from crowdbot.core.floor import Floor
+from crowdbot.core.placing import ATTEMPTS
 from crowdbot.core.realisation import Realisation
-from crowdbot.dsl.scenario import AtGoal, Crowd, Scenario
-from crowdbot.dsl.seeds import stream_seed
+from crowdbot.core.spawning import SpawnDraw, Streams, draw_speeds, heading_to, stream_heading
+from crowdbot.dsl.scenario import Crowd, Flow, Scenario
+from crowdbot.dsl.spawning import Agent
 from crowdbot.errors import InputError
 
-Array = NDArray[np.float64]
-
-#: Attempts to place one person before the zone counts as full.
-_ATTEMPTS = 10_000
+Row = dict[str, Any]
 
 
 def realise(scenario: Scenario) -> Realisation:
@@ -25,64 +31,85 @@ def realise(scenario: Scenario) -> Realisation:
     crowd = scenario.crowd
     if crowd is None:
         return Realisation.nobody()
-    zone = scenario.environment.zones[crowd.flow.area]
-    count = round(crowd.flow.density * zone.area)
-    seed, key = crowd.seed.root, crowd.seed.key
-    spawn = np.random.default_rng(stream_seed(seed, key, "crowd.spawn"))
-    pace = np.random.default_rng(stream_seed(seed, key, "crowd.speed"))
-    margin = crowd.body.radius
-    low = np.array([zone.x[0] + margin, zone.y[0] + margin])
-    high = np.array([zone.x[1] - margin, zone.y[1] - margin])
-    position = _scatter(spawn, count, low, high, 2.0 * crowd.body.radius)
-    flow, body = crowd.flow, crowd.body
-    portals = flow.portals if flow.direction == "in" else (flow.portals[1], flow.portals[0])
-    everyone = np.ones(count)
-    at_goal: AtGoal = "portal"
-    return Realisation(
-        id=np.arange(count, dtype=np.int64),
-        x=position[:, 0],
-        y=position[:, 1],
-        heading=np.zeros(count),
-        speed=_speeds(pace, count, crowd),
-        radius=body.radius * everyone,
-        mass=body.mass * everyone,
-        max_speed=body.max_speed * everyone,
-        max_acceleration=body.max_acceleration * everyone,
-        start_time=np.zeros(count),
-        group=np.full(count, -1, dtype=np.int64),
-        policy=("",) * count,
-        at_goal=(at_goal,) * count,
-        portals=(portals,) * count,
-        goals=((),) * count,
-        goal_key=stream_seed(seed, key, "crowd.goal"),
-    )
+    streams = Streams(crowd.seed.root, crowd.seed.key)
+    floor = Floor([robot.task.start[:2] for robot in scenario.robots.values()])
+    explicit = [_agent_row(a, scenario, crowd, streams) for a in crowd.agents]
+    for row in explicit:
+        floor.add(row["x"], row["y"], row["radius"])
+    drawn = [] if crowd.flow is None else _flow_rows(crowd.flow, scenario, crowd, streams, floor)
+    group = max((agent.group for agent in crowd.agents), default=-1) + 1
+    for name, spawn in sorted(crowd.spawns.items()):
+        rows = SpawnDraw(name, spawn, scenario, crowd, streams).rows(floor, group)
+        group = max(group, *(row["group"] + 1 for row in rows))
+        drawn += rows
+    key = {"goal_key": streams.seed("crowd.goal")}
+    numbered = [*explicit, *_numbered(drawn, {agent.id for agent in crowd.agents})]
+    return Realisation.from_rows(sorted((row | key for row in numbered), key=lambda r: r["id"]))
 
 
-def _scatter(
-    rng: np.random.Generator, count: int, low: Array, high: Array, spacing: float
-) -> Array:
-    """Random points (count, 2) of a box, no two closer than ``spacing``."""
-    points = np.full((count, 2), np.inf)
-    for i in range(count):
-        for _ in range(_ATTEMPTS):
-            point = low + (high - low) * rng.random(2)
-            offset = points[:i] - point
-            if not np.any(offset[:, 0] ** 2 + offset[:, 1] ** 2 < spacing * spacing):
-                points[i] = point
+def _numbered(rows: Sequence[Row], taken: set[int]) -> Iterator[Row]:
+    """Rows with the smallest numbers that no explicit agent has, in order."""
+    free = (n for n in count() if n not in taken)
+    return (row | {"id": n} for row, n in zip(rows, free, strict=False))
+
+
+def _flow_rows(
+    flow: Flow, scenario: Scenario, crowd: Crowd, streams: Streams, floor: Floor
+) -> list[Row]:
+    """The people of the flow, spread over its zone."""
+    zone = scenario.environment.zones[flow.area]
+    people = round(flow.density * zone.area)
+    rng, body = streams.rng("crowd.spawn"), crowd.body
+    low = np.array([zone.x[0] + body.radius, zone.y[0] + body.radius])
+    high = np.array([zone.x[1] - body.radius, zone.y[1] - body.radius])
+    points: list[tuple[float, float]] = []
+    for i in range(people):
+        for _ in range(ATTEMPTS):
+            x, y = (low + (high - low) * rng.random(2)).tolist()
+            if floor.is_free(x, y, body.radius):
                 break
         else:
-            raise InputError(f"only {i} of {count} people fit into the crowd's zone")
-    return points
+            raise InputError(f"only {i} of {people} people fit into the crowd's zone")
+        floor.add(x, y, body.radius)
+        points.append((x, y))
+    assert crowd.speed is not None  # checked with the document
+    speeds = draw_speeds(streams.rng("crowd.speed"), people, crowd.speed)
+    portals = flow.portals if flow.direction == "in" else flow.portals[::-1]
+    common: Row = {
+        "heading": stream_heading(portals, scenario.environment.portals),
+        "radius": body.radius,
+        "mass": body.mass,
+        "max_speed": body.max_speed,
+        "max_acceleration": body.max_acceleration,
+        "start_time": 0.0,
+        "group": -1,
+        "policy": "",
+        "at_goal": "portal",
+        "portals": portals,
+        "goals": (),
+    }
+    return [
+        common | {"x": x, "y": y, "speed": speed}
+        for (x, y), speed in zip(points, speeds, strict=True)
+    ]
 
 
-def _speeds(rng: np.random.Generator, count: int, crowd: Crowd) -> Array:
-    """Normal, truncated at three standard deviations and at 5 % of the mean."""
-    mean, std = crowd.speed.mean, crowd.speed.std
-    low, high = max(mean - 3.0 * std, 0.05 * mean), mean + 3.0 * std
-    speeds = np.empty(count)
-    for i in range(count):
-        draw = rng.normal(mean, std)
-        while not low <= draw <= high:
-            draw = rng.normal(mean, std)
-        speeds[i] = draw
-    return speeds
+def _agent_row(agent: Agent, scenario: Scenario, crowd: Crowd, streams: Streams) -> Row:
+    """An explicit agent, the crowd's values where it has none of its own."""
+    row = agent.model_dump()
+    for name in ("radius", "mass", "max_speed", "max_acceleration"):
+        if row[name] is None:
+            row[name] = getattr(crowd.body, name)
+    if agent.speed is None:
+        assert crowd.speed is not None  # checked with the document
+        rng = streams.rng("crowd.agents.speed", agent.id)
+        row["speed"] = draw_speeds(rng, 1, crowd.speed)[0]
+    if agent.heading is None:
+        row["heading"] = (
+            stream_heading(agent.portals, scenario.environment.portals)
+            if agent.portals
+            else heading_to(agent.x, agent.y, agent.goals[0])
+        )
+    row["at_goal"] = "portal" if agent.portals else agent.at_goal or "stop"
+    row["portals"] = agent.portals or ("", "")
+    return row

@@ -25,7 +25,7 @@ from pydantic import BaseModel, Field, SerializeAsAny, create_model
 from crowdbot import hookspecs
 from crowdbot.core.component import Component
 from crowdbot.dsl.base import CATEGORIES, ComponentSpec
-from crowdbot.dsl.scenario import Crowd, Robot, Scenario
+from crowdbot.dsl.scenario import Crowd, NamedPolicy, Robot, Scenario
 from crowdbot.errors import PluginError, UnknownNameError
 
 GROUP = "crowdbot"
@@ -85,21 +85,34 @@ class Registry:
     @cached_property
     def scenario_model(self) -> type[Scenario]:
         """`Scenario`, narrowed to the installed components."""
+        policy: Any = (self._union("crowd policy"), ...)
+        costs = self._named(Crowd, "costs", self._union("cost function"))
+        named: Any = create_model(
+            "NamedPolicy",
+            __base__=NamedPolicy,
+            __doc__=NamedPolicy.__doc__,
+            policy=policy,
+            costs=costs,
+        )
         crowd: Any = create_model(
             "Crowd",
             __base__=Crowd,
-            policy=(self._union("crowd policy"), ...),
-            costs=self._named(Crowd, "costs", self._union("cost function")),
+            __doc__=Crowd.__doc__,
+            policy=policy,
+            costs=costs,
+            policies=self._named(Crowd, "policies", named),
         )
         robot: Any = create_model(
             "Robot",
             __base__=Robot,
+            __doc__=Robot.__doc__,
             model=(self._union("robot"), ...),
             sensors=self._named(Robot, "sensors", self._union("sensor")),
         )
         return create_model(
             "Scenario",
             __base__=Scenario,
+            __doc__=Scenario.__doc__,
             environment=(self._union("environment"), ...),
             crowd=(crowd | None, None),
             robots=self._named(Scenario, "robots", robot),
@@ -110,6 +123,8 @@ class Registry:
         used: list[ComponentSpec] = [scenario.environment]
         if scenario.crowd is not None:
             used += [scenario.crowd.policy, *scenario.crowd.costs.values()]
+            for named in scenario.crowd.policies.values():
+                used += [named.policy, *named.costs.values()]
         for entry in scenario.robots.values():
             used += [entry.model, *entry.sensors.values()]
         return {s.kind: self.find(s.category, s.kind).spec_version for s in used}

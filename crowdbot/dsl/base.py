@@ -78,6 +78,8 @@ class Range(Spec):
     A bare length is short for a range between centres.
     """
 
+    model_config = ConfigDict(json_schema_extra={"short": "value"})
+
     value: PositiveLength = Field(default=5.0, description="Distance, m.")
     measure: Literal["centre", "surface"] = Field(
         default="centre", description="Between centres, or between the surfaces of the discs."
@@ -121,6 +123,8 @@ class CrowdPolicySpec(ComponentSpec):
     """Abstract: how people decide where to walk."""
 
     category: ClassVar[str] = "crowd policy"
+    #: Whether the policy is nothing without cost functions.
+    needs_costs: ClassVar[bool] = False
 
 
 class CostFunctionSpec(ComponentSpec):

@@ -42,14 +42,22 @@ def content_hash(scenario: Scenario, kinds: Mapping[str, int]) -> str:
     return PREFIX + hashlib.sha256(canonical_bytes(scenario, kinds)).hexdigest()
 
 
-def dump_scenario_yaml(scenario: Scenario) -> str:
-    """A document that reads back to the same scenario, with references, and the same hash."""
+def dump_scenario_yaml(scenario: Scenario, kinds: Mapping[str, int] | None = None) -> str:
+    """A document that reads back to the same scenario, with references, and the same hash.
+
+    Args:
+        scenario: a validated scenario.
+        kinds: kind -> spec_version, which the document then asks for.
+    """
     content = plain(scenario)
     references = {
         name: difference(content, {**plain(other), "id": scenario.id, "title": scenario.title})
         for name, other in scenario.references.items()
     }
-    document: dict[str, Any] = {"crowdbot": 1, "scenario": content}
+    document: dict[str, Any] = {"crowdbot": 1}
+    if kinds:
+        document["kinds"] = dict(sorted(kinds.items()))
+    document["scenario"] = content
     if references:
         document["references"] = references
     return _HEADER + to_yaml(document)

@@ -20,6 +20,8 @@ CODES = {
     "E011": "not a map",
     "E012": "format version",
     "E013": "neither suite nor scenario",
+    "E014": "version of a component",
+    "E015": "table of agents",
     "E102": "unknown field",
     "E103": "missing field",
     "E110": "bad quantity",
@@ -31,10 +33,18 @@ CODES = {
     "E116": "text of the wrong form",
     "E120": "unknown kind",
     "E121": "unknown metric",
-    "E130": "unknown zone or portal",
+    "E130": "unknown zone, portal, goal area or policy",
     "E131": "number of people that is not whole",
-    "E132": "start outside the environment",
+    "E132": "place outside the environment",
     "E133": "policy without cost functions",
+    "E134": "crowd without people",
+    "E135": "people without a speed",
+    "E136": "area too small for its people",
+    "E137": "group sizes that never occur",
+    "E138": "number of an agent used twice",
+    "E139": "agents in each other's place",
+    "E140": "goal area without a next one",
+    "E141": "people without a goal",
     "E201": "missing include",
     "E202": "include cycle",
     "E203": "include outside the root folder",
@@ -44,10 +54,16 @@ CODES = {
     "E207": "too many combinations",
     "E208": "unknown axis",
     "E209": "empty axis",
+    "E210": "unknown label",
+    "E211": "empty selection",
+    "E212": "suite without an id of its own",
     "E301": "plugin collision",
 }
 REFERENCE = "docs/reference/errors.md"
+#: Nobody reads more of them; documents that have more are broken in some other way.
+MAX_ERRORS = 1000
 _WINDOW = 100
+_LONGEST = 400
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,7 +108,7 @@ class Diagnostic:
 
     def headline(self) -> str:
         """``file:line:column: error[code] message``."""
-        return f"{self.mark}: error[{self.code}] {self.message}"
+        return f"{self.mark}: error[{self.code}] {_clip(self.message)}"
 
     def sort_key(self) -> tuple[str, int, int, str, str]:
         """By position, then code."""
@@ -104,8 +120,8 @@ class Diagnostic:
         return {
             "code": self.code,
             "title": CODES[self.code],
-            "message": self.message,
-            "hint": self.hint,
+            "message": _clip(self.message),
+            "hint": _clip(self.hint),
             "file": self.mark.source.name,
             "line": self.mark.line + 1,
             "column": self.mark.column + 1,
@@ -119,11 +135,13 @@ def render(diagnostics: Iterable[Diagnostic]) -> str:
     """All errors for people, with a last line that counts them."""
     found = list(diagnostics)
     count = "1 error" if len(found) == 1 else f"{len(found)} errors"
+    if len(found) >= MAX_ERRORS:
+        count = f"at least {count}"
     return "\n".join([*(_render_one(d) for d in found), f"{count}; see {REFERENCE}"])
 
 
 def _render_one(diagnostic: Diagnostic) -> str:
-    lines = [diagnostic.headline(), *_snippet(diagnostic.mark, diagnostic.hint)]
+    lines = [diagnostic.headline(), *_snippet(diagnostic.mark, _clip(diagnostic.hint))]
     lines += [f"  {what} {mark}" for what, mark in diagnostic.also]
     lines += [f"  included from {_place(mark)}" for mark in _includers(diagnostic.mark)]
     return "\n".join(lines)
@@ -141,6 +159,13 @@ def _snippet(mark: Mark, hint: str) -> list[str]:
         f"{mark.line + 1:>5} | {shown}".rstrip(),
         f"      | {' ' * column}{carets} {hint}".rstrip(),
     ]
+
+
+def _clip(text: str) -> str:
+    """A text that quotes something huge, without most of it."""
+    if len(text) <= _LONGEST:
+        return text
+    return f"{text[: _LONGEST // 2]} … {text[-_LONGEST // 2 :]}"
 
 
 def _includers(mark: Mark) -> list[Mark]:

@@ -3,24 +3,46 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from crowdbot.dsl import semantics
-from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
+from crowdbot.dsl.diagnostics import MAX_ERRORS, Diagnostic, Mark, Source
 from crowdbot.dsl.include import Loader, Roots
-from crowdbot.dsl.matrix import combinations
+from crowdbot.dsl.matrix import REPLICATE, combinations
 from crowdbot.dsl.merge import merge, nest, undot
 from crowdbot.dsl.nodes import Entry, Node, parse, to_data
+from crowdbot.dsl.reuse import ValidParts
 from crowdbot.dsl.scenario import Scenario
-from crowdbot.dsl.suite import Suite, read_suite
+from crowdbot.dsl.suite import Installed, Suite, read_suite
 from crowdbot.dsl.validation import locate, validate
 from crowdbot.errors import SpecError, UsageError
 
 #: With these the rest of a document is still worth looking at.
-_GO_ON = frozenset({"E003", "E102", "E103", "E111", "E112", "E116", "E121", "E204", "E205", "E208"})
+_GO_ON = frozenset(
+    {
+        "E003",
+        "E102",
+        "E103",
+        "E111",
+        "E112",
+        "E116",
+        "E014",
+        "E120",
+        "E121",
+        "E204",
+        "E205",
+        "E208",
+        "E210",
+        "E211",
+        "E212",
+    }
+)
+
+#: Errors of single scenarios after which the rest of a suite is not looked at any more.
+_ENOUGH = 50_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +73,7 @@ def load_document(
     roots: Roots | None = None,
     *,
     name: str = "",
-    metrics: Collection[str] | None = None,
+    installed: Installed | None = None,
 ) -> Suite:
     """Read a suite or scenario file and everything it extends.
 
@@ -59,7 +81,7 @@ def load_document(
         path: the file.
         roots: plugin name -> packaged folders that ``extends`` may read.
         name: what messages call the file; default: the path as given.
-        metrics: kinds of the installed metrics; None leaves the suite's list unchecked.
+        installed: the installed components; None leaves metrics and versions unchecked.
 
     Raises:
         SpecError: the document cannot be taken apart; with every error found so far.
@@ -68,7 +90,7 @@ def load_document(
     root = loader.load(name or str(path))
     problems = loader.problems
     if all(d.code in _GO_ON for d in problems):
-        suite = read_suite(root, problems, metrics)
+        suite = read_suite(root, problems, installed)
         if suite is not None and all(d.code in _GO_ON for d in problems):
             return suite
     raise SpecError(_sorted(problems))
@@ -100,6 +122,16 @@ class _Folded:
     reference: str
 
 
+@dataclass(frozen=True, slots=True)
+class _Bare:
+    """A combination: its id, key of the crowd's seed, label of the replicate, tree."""
+
+    name: str
+    key: str
+    replicate: str
+    tree: Node
+
+
 class _Expander:
     """One expansion: memories of shared parts, and the errors so far."""
 
@@ -111,40 +143,58 @@ class _Expander:
         self._suffix = "+" + _digest(overrides) if overrides else ""
         self._data: dict[Node, Any] = {}
         self._seeds: dict[str, Node] = {}
+        self._parts = ValidParts()
         self._validated: dict[tuple[tuple[str, int], ...], Scenario] = {}
-        self._total = 0
+        self._total = self._noted = 0
 
     def run(self) -> Expansion:
         scenarios, trees = [], {}
-        for name, key, bare in self._trees():
+        for bare in self._trees():
+            if self._noted > _ENOUGH:
+                break
             self._total += 1
-            tree = self._with_seed(bare, key)
-            scenario = self._validate(name, tree)
+            tree = self._complete(bare)
+            scenario = self._validate(bare.name, tree)
             references = {
-                reference: self._validate(name, self._with_seed(merge(bare, over), key), reference)
+                reference: self._validate(bare.name, self._complete(bare, over), reference)
                 for reference, over in self._suite.references.items()
             }
             if scenario is not None:
                 scenarios.append(scenario.model_copy(update={"references": references}))
-                trees[name] = tree
+                trees[bare.name] = tree
         problems = [*self._problems, *self._folded()]
         if problems:
             raise SpecError(_sorted(problems))
         suite = self._suite
         return Expansion(suite.id, suite.title, scenarios, suite.metrics, trees)
 
-    def _trees(self) -> Iterator[tuple[str, str, Node]]:
-        """Id, key of the crowd's seed and tree of each combination."""
-        suite = self._suite
-        keyed = [axis.name in suite.crowd_axes for axis in suite.axes]
+    def _trees(self) -> Iterator[_Bare]:
+        """The combinations that stay, as trees."""
+        suite, axes = self._suite, [axis.name for axis in self._suite.axes]
         for combination in combinations(suite.base, suite.axes):
-            labels = combination.labels
-            key = "-".join(label for label, wanted in zip(labels, keyed, strict=True) if wanted)
-            name = "-".join(labels) or suite.scenario_id
-            yield name and name + self._suffix, key, merge(combination.tree, self._set)
+            if suite.kept is not None and combination.labels not in suite.kept:
+                continue
+            labels = dict(zip(axes, combination.labels, strict=True))
+            key = "-".join(labels[axis] for axis in suite.crowd_axes)
+            replicate = labels.pop(REPLICATE, "")
+            name = "-".join(labels.values()) or suite.scenario_id
+            name = f"{name}-{replicate}" if name and replicate else name
+            yield _Bare(name and name + self._suffix, key, replicate, combination.tree)
 
-    def _with_seed(self, tree: Node, key: str) -> Node:
-        """Write root and key of the seed into a suite's crowd, under what the document says."""
+    def _complete(self, bare: _Bare, reference: Node | None = None) -> Node:
+        """The reference, ``--set`` and the seed laid over a combination, in this order."""
+        tree = bare.tree
+        if reference is None:
+            tree = merge(tree, self._set)
+        else:
+            tree = merge(merge(tree, reference), _unless_removed(self._set, reference))
+        return self._with_seed(tree, bare.key, bare.replicate)
+
+    def _with_seed(self, tree: Node, key: str, replicate: str) -> Node:
+        """Write root and key of the seed into a suite's crowd, under what the document says.
+
+        A replicate draws other people even where the document writes the key itself.
+        """
         crowd = tree.entries.get("crowd")
         if self._suite.seed is None or crowd is None or not crowd.node.entries:
             return tree
@@ -153,8 +203,12 @@ class _Expander:
             parts = {"root": self._suite.seed, "key": Node(mark, key)}
             seed = Node(mark, {k: Entry(mark, node) for k, node in parts.items()}, implied=True)
             self._seeds[key] = nest(("seed",), seed, mark)
-        seeded = replace(crowd, node=merge(self._seeds[key], crowd.node))
-        return replace(tree, value={**tree.entries, "crowd": seeded})
+        node = merge(self._seeds[key], crowd.node)
+        own = locate(crowd.node, ("seed", "key"))
+        if replicate and not own.rest and isinstance(own.node.value, str):
+            joined = replace(own.node, value=f"{own.node.value}-{replicate}".lstrip("-"))
+            node = merge(node, nest(("seed", "key"), joined, joined.mark))
+        return replace(tree, value={**tree.entries, "crowd": replace(crowd, node=node)})
 
     def _validate(self, name: str, tree: Node, reference: str = "") -> Scenario | None:
         """Validate a tree; equal ones of other combinations are validated once."""
@@ -164,8 +218,12 @@ class _Expander:
             return known.model_copy(update={"id": name})
         if name:
             data = {**data, "id": name}
-        scenario, found = validate(self._model, data, tree)
+        scenario = self._with_known_parts(tree, data)
+        found: list[Diagnostic] = []
+        if scenario is None:
+            scenario, found = validate(self._model, data, tree)
         if scenario is not None:
+            self._parts.add(tree, scenario)
             found = semantics.check(scenario, tree)
         for diagnostic in found:
             self._note(diagnostic, name, reference)
@@ -174,7 +232,15 @@ class _Expander:
         self._validated[shared] = scenario
         return scenario
 
+    def _with_known_parts(self, tree: Node, data: dict[str, Any]) -> Scenario | None:
+        """The scenario, made of parts that are known to be valid; None if that does not work."""
+        try:
+            return self._model.model_validate(self._parts.fill(tree, data))
+        except Exception:  # also a validator that does not expect validated parts
+            return None
+
     def _note(self, diagnostic: Diagnostic, name: str, reference: str) -> None:
+        self._noted += 1
         key = (diagnostic.code, diagnostic.mark, diagnostic.message)
         folded = self._errors.setdefault(key, _Folded(diagnostic, [], reference))
         if not folded.ids or folded.ids[-1] != name:
@@ -186,10 +252,23 @@ class _Expander:
             if folded.reference:
                 notes.append(f"in reference '{folded.reference}'")
             if len(folded.ids) < self._total:
-                notes.append(
-                    f"in {len(folded.ids)} of {self._total} combinations, first: {folded.ids[0]}"
-                )
+                of = f"the first {self._total}" if self._noted > _ENOUGH else str(self._total)
+                notes.append(f"in {len(folded.ids)} of {of} combinations, first: {folded.ids[0]}")
             yield replace(folded.diagnostic, hint="; ".join(notes))
+
+
+def _unless_removed(change: Node, reference: Node) -> Node:
+    """A change without what goes into parts that a reference removes: they stay removed."""
+    entries = {}
+    for key, entry in change.entries.items():
+        over = reference.child(key)
+        if over is None:
+            entries[key] = entry
+        elif over.entries and entry.node.entries:
+            entries[key] = replace(entry, node=_unless_removed(entry.node, over))
+        elif over.value is not None and over.value != {}:
+            entries[key] = entry
+    return replace(change, value=entries, implied=change.implied or not entries)
 
 
 def _parse_overrides(overrides: Sequence[str], problems: list[Diagnostic]) -> Node:
@@ -217,7 +296,7 @@ def _digest(overrides: Sequence[str]) -> str:
 
 
 def _sorted(problems: Sequence[Diagnostic]) -> list[Diagnostic]:
-    return sorted(dict.fromkeys(problems), key=Diagnostic.sort_key)
+    return sorted(dict.fromkeys(problems), key=Diagnostic.sort_key)[:MAX_ERRORS]
 
 
 def where(tree: Node, *path: str) -> Mark | None:

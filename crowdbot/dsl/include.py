@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
+from crowdbot.dsl.agents_csv import read_agents
 from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
 from crowdbot.dsl.merge import merge, undot
 from crowdbot.dsl.nodes import Node, parse, read_text
@@ -60,7 +61,39 @@ class Loader:
             self.problems.append(Diagnostic("E011", f"the document {what}", root.mark))
             return Node(root.mark, {})
         here = replace(file, chain=(*file.chain, file.path.resolve()))
-        return self._resolve(root, here)
+        return self._resolve(self._with_rows(undot(root, self.problems), here), here)
+
+    def _with_rows(self, node: Node, file: _File, below: str = "") -> Node:
+        """A tree in which the rows of each table stand for ``crowd.agents: {csv: FILE}``."""
+        changed = {}
+        for key, entry in node.entries.items():
+            table = entry.node.child("csv") if (below, key) == ("crowd", "agents") else None
+            made = (
+                self._with_rows(entry.node, file, key)
+                if table is None
+                else self._rows(entry.node, table, file)
+            )
+            if made is not entry.node:
+                changed[key] = replace(entry, node=made)
+        return replace(node, value={**node.entries, **changed}) if changed else node
+
+    def _rows(self, agents: Node, table: Node, file: _File) -> Node:
+        """The rows of a table of agents; none if it cannot be read, its error is kept."""
+        nothing = Node(table.mark, ())
+        for key, entry in agents.entries.items():
+            if key != "csv":
+                self._add("E102", f"unknown field '{key}' beside 'csv'", entry.key)
+        found = self._named_file(table, file, "E015", "csv wants the path of a table")
+        if found is None:
+            return nothing
+        source = Source(found.name, (), table.mark)
+        try:
+            text = _read_text(found, source)
+        except SpecError as error:
+            self.problems += [d for d in error.diagnostics if d not in self.problems]
+            return nothing
+        source = Source(found.name, text.split("\n"), table.mark)
+        return replace(read_agents(text, source, self.problems), mark=table.mark)
 
     def _resolve(self, root: Node, file: _File) -> Node:
         """Resolve ``extends`` at the root and in ``base`` and ``scenario``."""
@@ -74,7 +107,7 @@ class Loader:
     def _extended(self, node: Node, file: _File) -> Node:
         entries = dict(node.entries)
         extends = entries.pop("extends", None)
-        own = undot(replace(node, value=entries), self.problems)
+        own = replace(node, value=entries)
         if extends is None:
             return own
         items = extends.node.value if isinstance(extends.node.value, tuple) else (extends.node,)
@@ -84,18 +117,24 @@ class Loader:
         return merge(tree, own if own.entries else replace(own, implied=True))
 
     def _include(self, item: Node, file: _File) -> Node:
-        nothing = Node(item.mark, {}, implied=True)
+        found = self._named_file(item, file, "E111", "extends wants a path or a list of paths")
+        if found is None:
+            return Node(item.mark, {}, implied=True)
+        return self._read(found, item.mark)
+
+    def _named_file(self, item: Node, file: _File, code: str, wanted: str) -> _File | None:
+        """The file that a value names, if it may be read; else the error is kept."""
         if not isinstance(item.value, str):
-            self._add("E111", "extends wants a path or a list of paths", item.mark)
-            return nothing
+            self._add(code, wanted, item.mark)
+            return None
         found = self._find(item.value, item.mark, file)
         if found is None:
-            return nothing
+            return None
         self._count += 1
         if self._count > MAX_INCLUDES:
             self._add("E206", f"more than {MAX_INCLUDES} files are included", item.mark)
-            return nothing
-        return self._read(found, item.mark)
+            return None
+        return found
 
     def _find(self, text: str, mark: Mark, file: _File) -> _File | None:
         """The file that a path means, if it may be read; else the error is kept."""
@@ -122,8 +161,15 @@ class Loader:
         if not exists:
             self._add("E201", f"no file '{text}'", mark, self._similar(path))
             return None
-        name = text if colon else os.path.normpath(os.path.join(os.path.dirname(file.name), text))  # noqa: PTH118, PTH120 - text, not files
+        name = text if colon else self._beside(file.name, text)
         return self._unless_cycle(_File(path, name, file.chain), mark)
+
+    def _beside(self, name: str, text: str) -> str:
+        """What people call a file that another one names."""
+        plugin, colon, path = name.rpartition(":")
+        if plugin not in self.roots:
+            plugin, colon, path = "", "", name
+        return plugin + colon + os.path.normpath(os.path.join(os.path.dirname(path), text))  # noqa: PTH118, PTH120 - text, not files
 
     def _unless_cycle(self, found: _File, mark: Mark) -> _File | None:
         target = found.path.resolve()

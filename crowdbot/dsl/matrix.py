@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from crowdbot.dsl.diagnostics import Diagnostic, Mark
+from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
 from crowdbot.dsl.merge import kind_of, merge
 from crowdbot.dsl.nodes import Node
 
 MAX_COMBINATIONS = 10_000
+MAX_AXES = 64
+
+#: Name of the axis that ``replicates: N`` adds behind the others.
+REPLICATE = "replicate"
 
 _NAME = re.compile(r"[A-Za-z0-9_]+")
 _Path = tuple[str, ...]
@@ -34,23 +37,49 @@ class Combination:
     tree: Node
 
 
-def read_axes(matrix: Node | None, problems: list[Diagnostic]) -> tuple[Axis, ...]:
-    """Axes as they are written, dotted keys written out; errors are added to ``problems``."""
-    if matrix is None or matrix.value is None:
-        return ()
-    if not isinstance(matrix.value, dict):
+def read_axes(
+    matrix: Node | None, problems: list[Diagnostic], replicates: Node | None = None
+) -> tuple[Axis, ...]:
+    """Axes as they are written, dotted keys written out; errors are added to ``problems``.
+
+    Args:
+        matrix: the map of axes.
+        problems: errors so far.
+        replicates: how often everything is repeated; more than once adds the axis `REPLICATE`.
+    """
+    if matrix is not None and matrix.value is not None and not isinstance(matrix.value, dict):
         problems.append(Diagnostic("E111", "matrix wants a map of axes", matrix.mark))
         return ()
-    axes = [
-        _read_axis(name, entry.key, entry.node, problems) for name, entry in matrix.entries.items()
-    ]
+    listed = matrix.entries if matrix else {}
+    axes = [_read_axis(name, entry.key, entry.node, problems) for name, entry in listed.items()]
     _check_overlap(axes, problems)
-    count = math.prod(len(axis.labels) for axis in axes)
-    if count > MAX_COMBINATIONS:
-        text = f"the matrix has {count} combinations; at most {MAX_COMBINATIONS} are allowed"
-        problems.append(Diagnostic("E207", text, matrix.mark))
+    if replicates is not None and isinstance(replicates.value, int) and replicates.value > 1:
+        if REPLICATE in listed:
+            text = f"axis '{REPLICATE}' is the one that 'replicates' adds; rename it"
+            problems.append(Diagnostic("E010", text, listed[REPLICATE].key))
+            return tuple(axes)
+        if replicates.value <= MAX_COMBINATIONS:
+            axes.append(_replicate_axis(replicates.value, replicates.mark))
+    if _too_many(axes, problems, (matrix or replicates or Node(Mark(Source("")), {})).mark):
         return ()
     return tuple(axes)
+
+
+def _replicate_axis(count: int, mark: Mark) -> Axis:
+    """Labels n01, n02, …: those of a small count stay the same in a larger one."""
+    nothing = Node(mark, {}, implied=True)
+    return Axis(REPLICATE, {f"n{number:02d}": nothing for number in range(1, count + 1)})
+
+
+def _too_many(axes: Sequence[Axis], problems: list[Diagnostic], mark: Mark) -> bool:
+    count = math.prod(len(axis.labels) for axis in axes)
+    if count <= MAX_COMBINATIONS and len(axes) <= MAX_AXES:
+        return False
+    what = f"{count} combinations" if count > MAX_COMBINATIONS else f"{len(axes)} axes"
+    most = MAX_COMBINATIONS if count > MAX_COMBINATIONS else MAX_AXES
+    text = f"the suite has {what}; at most {most} are allowed"
+    problems.append(Diagnostic("E207", text, mark))
+    return True
 
 
 def combinations(base: Node, axes: Sequence[Axis]) -> Iterator[Combination]:
@@ -90,16 +119,22 @@ def _check_name(what: str, name: str, key: Mark, problems: list[Diagnostic]) -> 
 
 def _check_overlap(axes: Sequence[Axis], problems: list[Diagnostic]) -> None:
     """Order would decide which of two axes wins, so that they may not write the same field."""
-    written = [_written(axis) for axis in axes]
-    for (i, first), (j, second) in itertools.combinations(enumerate(written), 2):
-        clash = next(
-            (p for p in second for q in first if p[: len(q)] == q or q[: len(p)] == p), None
-        )
-        if clash is not None:
-            text = f"axes '{axes[i].name}' and '{axes[j].name}' both write {'.'.join(clash)}"
-            other = next(q for q in first if clash[: len(q)] == q or q[: len(clash)] == clash)
-            also = (("also written at", first[other]),)
-            problems.append(Diagnostic("E205", text, second[clash], also=also))
+    leaves: dict[_Path, tuple[str, Mark]] = {}
+    above: dict[_Path, tuple[str, Mark]] = {}  # what is written somewhere below a path
+    for axis in axes:
+        written, told = _written(axis), set[str]()
+        for path, mark in written.items():
+            found = [leaves[path[:n]] for n in range(len(path) + 1) if path[:n] in leaves]
+            for name, place in [*found, *([above[path]] if path in above else [])]:
+                if name not in told:
+                    told.add(name)
+                    text = f"axes '{name}' and '{axis.name}' both write {'.'.join(path)}"
+                    also = (("also written at", place),)
+                    problems.append(Diagnostic("E205", text, mark, also=also))
+        for path, mark in written.items():
+            leaves.setdefault(path, (axis.name, mark))
+            for n in range(len(path)):
+                above.setdefault(path[:n], (axis.name, mark))
 
 
 def _written(axis: Axis) -> dict[_Path, Mark]:

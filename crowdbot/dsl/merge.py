@@ -106,16 +106,19 @@ def _part_marks(parts: list[str], dotted: str, mark: Mark) -> list[Mark]:
 
 
 def _join(out: dict[str, Entry], key: str, entry: Entry, problems: list[Diagnostic]) -> None:
-    """Add an entry to a map; two writings of one field in the same map are an error."""
+    """Add an entry to a map; two writings of one field in the same map are an error.
+
+    `undot` made every map anew, so that they may be added to in place.
+    """
     old = out.get(key)
     if old is None:
         out[key] = entry
     elif old.node.entries and entry.node.entries:
-        plain, other = (entry, old) if old.node.implied else (old, entry)
-        entries = dict(plain.node.entries)
+        swap = old.node.implied and not entry.node.implied
+        plain, other = (entry, old) if swap else (old, entry)
         for name, child in other.node.entries.items():
-            _join(entries, name, child, problems)
-        out[key] = replace(plain, node=replace(plain.node, value=entries))
+            _join(plain.node.entries, name, child, problems)
+        out[key] = plain
     else:
         also = (("first written at", old.key),)
         problems.append(Diagnostic("E003", f"duplicate key '{key}'", entry.key, also=also))

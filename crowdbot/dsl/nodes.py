@@ -8,7 +8,9 @@ and merges keys; a document that means something else than it says is refused he
 from __future__ import annotations
 
 import math
+import os
 import re
+import stat
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -100,6 +102,12 @@ def to_data(node: Node, memo: dict[Node, Any] | None = None) -> Any:
     return memo[node]
 
 
+def count(node: Node) -> int:
+    """How many values a tree has."""
+    items = node.value if isinstance(node.value, tuple) else ()
+    return 1 + sum(count(e.node) for e in node.entries.values()) + sum(map(count, items))
+
+
 def read_text(path: Path, name: str) -> str:
     """Text of a file: UTF-8 with or without a byte order mark, any line ends.
 
@@ -107,7 +115,9 @@ def read_text(path: Path, name: str) -> str:
         SpecError: E001, there is no such file or it is no text of reasonable size.
     """
     try:
-        with path.open("rb") as file:
+        with open(path, "rb", opener=_without_waiting) as file:
+            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+                raise _unreadable(name, "is a device or pipe, not a file")
             raw = file.read(MAX_BYTES + 1)
     except IsADirectoryError:
         raise _unreadable(name, "is a folder, not a file") from None
@@ -141,6 +151,11 @@ def parse(text: str, source: Source, problems: list[Diagnostic], shift: int = 0)
         SpecError: the text is no YAML, or nothing sensible can follow.
     """
     return _Builder(text, source, problems, shift).document()
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    """Opening a pipe that nobody writes to would wait for ever."""
+    return os.open(path, flags | os.O_NONBLOCK)
 
 
 def _unreadable(name: str, why: str) -> SpecError:

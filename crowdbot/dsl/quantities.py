@@ -1,7 +1,12 @@
 """Physical quantities: SI floats that also read ``"0.8 m/s"``.
 
-A bare number is in the SI unit of its dimension. A string is ``<number> <unit>``; a unit of
-another dimension is an error that lists the known ones.
+A bare number is in the SI unit of its dimension. Text is a decimal number and a unit of that
+dimension, with or without blanks between them (``30deg``; a unit that begins with a digit, like
+``1/m^2``, needs one). ``m/s²`` is ``m/s^2``, ``µs`` is ``us``, ``30°`` is ``30 deg``. Text
+without a unit is an error: whoever writes text wants to say a unit.
+
+The value is the float nearest to the exact product of number and factor, so that ``5 cm`` is
+0.05. In angles pi is the float ``math.pi``, so that ``30 deg`` is ``math.pi / 6`` to the last bit.
 """
 
 from __future__ import annotations
@@ -9,32 +14,50 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Annotated, Any
 
 from annotated_types import Ge, Gt
 from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-_DEG = math.pi / 180.0
+from crowdbot.errors import did_you_mean, nearest
 
-#: dimension -> unit -> factor to SI. The first unit of each dimension is the SI unit.
-UNITS: dict[str, dict[str, float]] = {
-    "length": {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "ft": 0.3048, "in": 0.0254},
-    "speed": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001, "km/h": 1.0 / 3.6, "mph": 0.44704},
-    "acceleration": {"m/s^2": 1.0, "cm/s^2": 0.01},
-    "angle": {"rad": 1.0, "deg": _DEG, "°": _DEG, "turn": 2.0 * math.pi},
-    "angular speed": {"rad/s": 1.0, "deg/s": _DEG, "rpm": 2.0 * math.pi / 60.0},
-    "angular acceleration": {"rad/s^2": 1.0, "deg/s^2": _DEG},
-    "duration": {"s": 1.0, "ms": 0.001, "us": 1e-6, "min": 60.0, "h": 3600.0},
-    "frequency": {"Hz": 1.0, "1/s": 1.0, "kHz": 1000.0},
-    "density": {"1/m^2": 1.0, "p/m^2": 1.0},
-    "mass": {"kg": 1.0, "g": 0.001, "t": 1000.0},
-    "stiffness": {"N/m": 1.0, "N/mm": 1000.0, "kN/m": 1000.0},
-    "steering stiffness": {"1/s^2": 1.0},
-    "damping": {"s/m": 1.0},
+_PI = Fraction(math.pi)
+
+#: dimension -> unit -> exact factor to SI. The first unit of each dimension is the SI unit.
+#: Foot, inch and mile: the international ones of 1959.
+_FACTORS: dict[str, dict[str, int | str | Fraction]] = {
+    "length": {
+        "m": 1, "cm": "0.01", "mm": "0.001", "km": 1000, "ft": "0.3048", "in": "0.0254",
+    },
+    "speed": {
+        "m/s": 1, "cm/s": "0.01", "mm/s": "0.001", "km/h": "1000/3600", "mph": "0.44704",
+    },
+    "acceleration": {"m/s^2": 1, "cm/s^2": "0.01", "mm/s^2": "0.001"},
+    "angle": {"rad": 1, "mrad": "0.001", "deg": _PI / 180, "turn": 2 * _PI},
+    "angular speed": {"rad/s": 1, "mrad/s": "0.001", "deg/s": _PI / 180, "rpm": _PI / 30},
+    "angular acceleration": {"rad/s^2": 1, "deg/s^2": _PI / 180},
+    "duration": {"s": 1, "ms": "1e-3", "us": "1e-6", "min": 60, "h": 3600},
+    "frequency": {"Hz": 1, "1/s": 1, "kHz": 1000},
+    "density": {"1/m^2": 1, "p/m^2": 1},
+    "mass": {"kg": 1, "g": "0.001", "t": 1000},
+    "force": {"N": 1, "kN": 1000},
+    "stiffness": {"N/m": 1, "N/cm": 100, "N/mm": 1000, "kN/m": 1000},
+    "steering stiffness": {"1/s^2": 1},
+    "damping": {"s/m": 1},
+}  # fmt: skip
+UNITS: dict[str, dict[str, Fraction]] = {
+    dimension: {unit: Fraction(factor) for unit, factor in units.items()}
+    for dimension, units in _FACTORS.items()
 }
 
-_TEXT = re.compile(r"^([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*)$")
+_NUMBER = r"[+-]?(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_TEXT = re.compile(rf"({_NUMBER})( *)(.*)", re.DOTALL)
+#: Other ways to write a part of a unit.
+_SPELLINGS = {"²": "^2", "µ": "u", "μ": "u", "°": "deg"}
+#: Longer numbers are nobody's measurement, and powers of ten beyond a float's cost memory.
+_MAX_DIGITS, _MAX_EXPONENT = 100, 400
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,32 +75,128 @@ class Quantity:
         """Turn text into an SI float; leave everything else to the float schema.
 
         Raises:
-            PydanticCustomError: the text is no number with a unit of this dimension.
+            PydanticCustomError: ``quantity``, the text is no number with a unit of this
+                dimension; its context has ``text``, ``dimension``, ``units`` and ``hint``.
         """
         if not isinstance(value, str):
             return value
-        units = UNITS[self.dimension]
-        match = _TEXT.match(value.strip())
-        factor = units.get(match[2].strip()) if match else None
-        if match is None or factor is None:
-            raise PydanticCustomError(
-                "quantity",
-                "'{text}' is not a quantity of {dimension} (known units: {units})",
-                {"text": value, "dimension": self.dimension, "units": ", ".join(units)},
-            )
-        return float(match[1]) * factor
+        match = _TEXT.fullmatch(value)
+        if match is None:
+            raise self._error(value, self._advice(value))
+        number, blank, unit = match.groups()
+        factor = UNITS[self.dimension].get(plain_unit(unit))
+        if factor is None or (unit[0].isdigit() and not blank):
+            raise self._error(value, self._advice(value, number, unit))
+        product = _exact(number)
+        result = None if product is None else _float(product * factor)
+        if result is None:
+            raise self._error(value, "the number is too large, too small or too long")
+        return result
+
+    def _error(self, text: str, hint: str) -> PydanticCustomError:
+        return PydanticCustomError(
+            "quantity",
+            "'{text}' is not a quantity of {dimension} (known units: {units})",
+            {
+                "text": text,
+                "dimension": self.dimension,
+                "units": ", ".join(UNITS[self.dimension]),
+                "hint": hint,
+            },
+        )
+
+    def _advice(self, text: str, number: str = "", unit: str = "") -> str:
+        """What to write instead."""
+        if not number:
+            return f"write a number and a unit, such as '1 {self.si_unit}'"
+        if not unit:
+            return f"write '{text.strip()} {self.si_unit}', or the number without quotes"
+        name = plain_unit(unit.strip())
+        if name in UNITS[self.dimension]:
+            return f"write '{number} {name}'"
+        if number in ("0", "+0", "-0") and name[0].isdigit():
+            return "a number does not begin with a zero"
+        if near := _near(name, UNITS[self.dimension]):
+            return did_you_mean([near]).removeprefix("; ")
+        owner = next((d for d, units in UNITS.items() if name in units), None)
+        return f"'{name}' is a unit of {owner}" if owner else ""
 
     def __get_pydantic_core_schema__(
         self, source: type[Any], handler: GetCoreSchemaHandler
     ) -> CoreSchema:
         number = handler(source)
-        units = "|".join(re.escape(u) for u in UNITS[self.dimension])
-        text = core_schema.str_schema(pattern=rf"^[+-]?[0-9.]+([eE][+-]?[0-9]+)? ?({units})$")
+        text = core_schema.str_schema(pattern=self.pattern(number.get("gt"), number.get("ge")))
         return core_schema.no_info_before_validator_function(
             self.parse,
             number,
             json_schema_input_schema=core_schema.union_schema([number, text]),
         )
+
+    def pattern(self, above: float | None = None, least: float | None = None) -> str:
+        """Regular expression of the texts that `parse` takes, for JSON Schema.
+
+        Args:
+            above: if 0, neither minus signs nor zeros fit.
+            least: if 0, minus signs fit before zeros only.
+        """
+        units = [p for u in UNITS[self.dimension] for p in _written(u)]
+        bare = "|".join(re.escape(u) for u in units if not u[0].isdigit())
+        blank = "|".join(re.escape(u) for u in units if u[0].isdigit())
+        tails = [f" *(?:{bare})" if bare else "", f" +(?:{blank})" if blank else ""]
+        sign = {(True, False): r"(?!-)(?=\+?[0-9.]*[1-9])", (False, True): r"(?!-[0-9.]*[1-9])"}
+        front = sign.get((above == 0, least == 0), "")
+        return f"^{front}{_NUMBER}(?:{'|'.join(t for t in tails if t)})$"
+
+
+def plain_unit(unit: str) -> str:
+    """A unit as `UNITS` spells it."""
+    for written, plain in _SPELLINGS.items():
+        unit = unit.replace(written, plain)
+    return unit
+
+
+def _written(unit: str) -> list[str]:
+    """All spellings of a unit that read back to it."""
+    found = [unit]
+    for written, plain in _SPELLINGS.items():
+        if plain != "u" or unit == "us":
+            found += [other for u in found if (other := u.replace(plain, written)) != u]
+    return list(dict.fromkeys(found))
+
+
+def _near(name: str, units: dict[str, Fraction]) -> str | None:
+    """The unit that a typing error was meant to be, or None."""
+    loose = {re.sub(r"[\^*·. ]", "", u).lower(): u for u in units}
+    short = re.sub(r"[\^*·. ]", "", name).lower()
+    short = short.replace("secs", "s").replace("sec", "s").replace("hr", "h")
+    if short in loose:
+        return loose[short]
+    if short.startswith("/") and f"1{short}" in loose:
+        return loose[f"1{short}"]
+    words = {"metre": "m", "meter": "m", "second": "s", "degree": "deg", "hertz": "Hz",
+             "radian": "rad", "minute": "min", "hour": "h", "kph": "km/h", "kmh": "km/h",
+             "mps": "m/s"}  # fmt: skip
+    word = words.get(short.removesuffix("s")) or words.get(short)
+    if word in units:
+        return word
+    return next(iter(nearest(name, units, 1)), None) if len(name) > 2 else None
+
+
+def _exact(number: str) -> Fraction | None:
+    """The number as it is written; None if it is out of every float's reach."""
+    exponent = re.split("[eE]", number)[1:] or ["0"]
+    if len(number) > _MAX_DIGITS or abs(int(exponent[0])) > _MAX_EXPONENT:
+        return None
+    return Fraction(number)
+
+
+def _float(value: Fraction) -> float | None:
+    """The nearest float; None if it is infinite, or zero for something that is not."""
+    try:
+        result = float(value)  # a quotient of integers, which Python rounds correctly
+    except OverflowError:
+        return None
+    return None if result == 0.0 and value != 0 else result
 
 
 Length = Annotated[float, Quantity("length")]

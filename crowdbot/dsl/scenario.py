@@ -10,8 +10,9 @@ from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field, SerializeAsAny, field_validator
+from pydantic import Field, PrivateAttr, SerializeAsAny, field_validator
 
+from crowdbot.dsl.areas import GoalArea
 from crowdbot.dsl.base import (
     CostFunctionSpec,
     CrowdPolicySpec,
@@ -20,12 +21,13 @@ from crowdbot.dsl.base import (
     SensorSpec,
     Spec,
 )
+from crowdbot.dsl.lock import Locked
+from crowdbot.dsl.parameters import SpeedDistribution
 from crowdbot.dsl.quantities import (
     Angle,
     Length,
     NonNegativeDamping,
     NonNegativeLength,
-    NonNegativeSpeed,
     NonNegativeSteeringStiffness,
     PositiveAcceleration,
     PositiveDensity,
@@ -36,9 +38,10 @@ from crowdbot.dsl.quantities import (
     PositiveSpeed,
     PositiveStiffness,
 )
+from crowdbot.dsl.spawning import Agents, RouteEnd, Spawn
 
 #: What an agent does at the end of its route.
-AtGoal = Literal["portal", "stop", "remove", "loop"]
+AtGoal = Literal["portal", RouteEnd]
 
 
 class CrowdSeed(Spec):
@@ -59,13 +62,6 @@ class Flow(Spec):
     )
     density: PositiveDensity = Field(description="People per area of the start zone, 1/m^2.")
     area: str = Field(description="Zone in which people start.")
-
-
-class SpeedDistribution(Spec):
-    """Preferred speeds: a normal distribution, truncated at three standard deviations."""
-
-    mean: PositiveSpeed = Field(description="Mean preferred speed, m/s.")
-    std: NonNegativeSpeed = Field(description="Standard deviation, m/s.")
 
 
 class Body(Spec):
@@ -103,15 +99,34 @@ class RobotResponse(Spec):
     )
 
 
-class Crowd(Spec):
-    """Who walks, from where to where, and how they decide."""
+class NamedPolicy(Spec):
+    """A policy that some agents follow instead of the crowd's own."""
 
-    flow: Flow
-    speed: SpeedDistribution
+    policy: SerializeAsAny[CrowdPolicySpec]
+    costs: dict[str, SerializeAsAny[CostFunctionSpec]] = Field(
+        default={}, description="Named cost functions of a velocity-space policy."
+    )
+
+
+class Crowd(Spec):
+    """Who walks, from where to where, and how they decide: a flow, spawns, explicit agents."""
+
+    flow: Flow | None = None
+    spawns: dict[str, Spawn] = Field(default={}, description="Named spawns.")
+    goal_areas: dict[str, GoalArea] = Field(default={}, description="Named areas of goals.")
+    agents: Agents = Field(
+        default=(), strict=False, description="Explicit agents: rows, or `{csv: FILE}`."
+    )
+    speed: SpeedDistribution | None = Field(
+        default=None, description="Preferred speeds of all who have none of their own."
+    )
     body: Body = Field(default=Body(), description="Common to all agents.")
     policy: SerializeAsAny[CrowdPolicySpec]
     costs: dict[str, SerializeAsAny[CostFunctionSpec]] = Field(
         default={}, description="Named cost functions of a velocity-space policy."
+    )
+    policies: dict[str, NamedPolicy] = Field(
+        default={}, description="Named policies for spawns and agents that follow another one."
     )
     robot_response: RobotResponse = Field(
         default=RobotResponse(), description="How people take the robot."
@@ -181,6 +196,21 @@ class Scenario(Spec):
     references: Mapping[str, Scenario] = Field(
         default={}, exclude=True, repr=False, description="Calibration runs, by name."
     )
+    _locked: Locked | None = PrivateAttr(default=None)  # where its agents are frozen
+
+    def __eq__(self, other: object) -> bool:
+        """Equal in content; where the agents are frozen does not count."""
+        return isinstance(other, Scenario) and self.__dict__ == other.__dict__
+
+    @property
+    def locked(self) -> Locked | None:
+        """Where its agents are frozen, if they are."""
+        return self._locked
+
+    def lock_to(self, locked: Locked) -> None:
+        """Say where the agents are frozen, also those of the references."""
+        for scenario in (self, *self.references.values()):
+            scenario._locked = locked
 
 
 #: Fields of a scenario that do not change what happens in it.
@@ -195,6 +225,7 @@ __all__ = [
     "CrowdSeed",
     "Flow",
     "Goal",
+    "NamedPolicy",
     "Rates",
     "Robot",
     "RobotResponse",

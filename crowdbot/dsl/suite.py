@@ -6,6 +6,8 @@
     suite: {id: …, seed: …}     scenario: {id: …, environment: …, …}
     base: {…}
     matrix: {axis: {label: {override}}}
+    only: {axis: [label, …]}    exclude: {axis: [label, …]}
+    replicates: N
     seeds: {crowd: [axis, …]}
     metrics: [name, …]
     references: {name: {override}}
@@ -13,29 +15,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import math
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
+from importlib import metadata
 from typing import Annotated, Any
 
 from annotated_types import Ge, Le
-from pydantic import Field
+from pydantic import Field, WithJsonSchema
 
 from crowdbot.dsl.base import Spec
 from crowdbot.dsl.diagnostics import Diagnostic, Mark
-from crowdbot.dsl.matrix import Axis, read_axes
-from crowdbot.dsl.nodes import Node, to_data
-from crowdbot.dsl.validation import validate
+from crowdbot.dsl.matrix import MAX_COMBINATIONS, REPLICATE, Axis, read_axes
+from crowdbot.dsl.nodes import Node, count, to_data
+from crowdbot.dsl.selection import Kept, read_selection
+from crowdbot.dsl.validation import missing_package, validate
 from crowdbot.errors import did_you_mean, nearest
 
 #: The version of the document format that this release reads.
 FORMAT = 1
 
+MAX_REFERENCES = 16
+MAX_FIELDS = 10_000_000
+
 #: Fields of a scenario that a document never writes there.
 _ELSEWHERE = {
     "id": "ids are made of the labels of the matrix",
     "references": "references stand beside 'base' or 'scenario'",
+    "extends": "'extends' stands at the top of a file, or in 'base' or 'scenario'",
 }
+
+
+_LABELS = {"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]}
+_CHOICE = {"type": "object", "additionalProperties": _LABELS, "minProperties": 1}
+_CHOICES = {
+    "anyOf": [_CHOICE, {"type": "array", "items": _CHOICE, "minItems": 1}, {"type": "null"}]
+}
+
+#: Checked by `read_selection`, which knows the axes.
+_Choices = Annotated[Any, WithJsonSchema(_CHOICES)]
+#: Checked by `_check_versions`: the dots of a plugin's kinds make maps.
+_Versions = Annotated[
+    Any,
+    WithJsonSchema({"type": "object", "additionalProperties": {"type": "integer", "minimum": 1}}),
+]
 
 
 class SuiteHead(Spec):
@@ -61,9 +85,15 @@ class SuiteDocument(Spec):
     suite: SuiteHead
     base: dict[str, Any] = Field(description="What all scenarios have in common.")
     matrix: Any = Field(default=None, description="Axes of variation.")
+    only: _Choices = Field(default=None, description="Labels by axis; the rest is left out.")
+    exclude: _Choices = Field(default=None, description="Labels by axis that are left out.")
+    replicates: Annotated[int, Ge(1), Le(MAX_COMBINATIONS)] = Field(
+        default=1, description="How often each scenario is repeated, with other people each time."
+    )
     seeds: Seeds | None = Field(default=None, description="Axes of the random numbers.")
     metrics: list[str] | None = Field(default=None, description="Metrics to score; default all.")
     references: dict[str, dict[str, Any]] = Field(default={}, description="Calibration runs.")
+    kinds: _Versions = Field(default=None, description="Least spec_version of components, by kind.")
 
 
 class ScenarioDocument(Spec):
@@ -73,6 +103,7 @@ class ScenarioDocument(Spec):
     scenario: dict[str, Any] = Field(description="All fields of one scenario.")
     metrics: list[str] | None = Field(default=None, description="Metrics to score; default all.")
     references: dict[str, dict[str, Any]] = Field(default={}, description="Calibration runs.")
+    kinds: _Versions = Field(default=None, description="Least spec_version of components, by kind.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +114,7 @@ class Suite:
         scenario_id: id of the only scenario of a document without axes; empty if it has none.
         seed: root seed with the place where it is written, or None for a single scenario.
         crowd_axes: names of the axes whose labels make the crowd's seed key.
+        kept: labels of the combinations that stay; None: all.
         problems: errors found so far.
     """
 
@@ -96,17 +128,31 @@ class Suite:
     metrics: tuple[str, ...] | None
     references: dict[str, Node]
     problems: tuple[Diagnostic, ...]
+    kept: Kept | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Installed:
+    """What is installed, as far as a document speaks of it.
+
+    Attributes:
+        metrics: kinds of the metrics.
+        versions: kind of any component -> its spec_version and the distribution that has it.
+    """
+
+    metrics: Collection[str]
+    versions: Mapping[str, tuple[int, str]]
 
 
 def read_suite(
-    root: Node, problems: list[Diagnostic], metrics: Collection[str] | None = None
+    root: Node, problems: list[Diagnostic], installed: Installed | None = None
 ) -> Suite | None:
     """Take a document apart.
 
     Args:
         root: the merged tree of the whole document.
         problems: errors so far; more are added.
-        metrics: kinds of the installed metrics; None leaves the names unchecked.
+        installed: None leaves metrics and versions unchecked.
 
     Returns:
         None if the document is too broken to look at its scenarios.
@@ -121,7 +167,9 @@ def read_suite(
     model = ScenarioDocument if root.child("suite") is None else SuiteDocument
     _, found = validate(model, to_data(root), root)
     problems += found
-    _check_metrics(root.child("metrics"), metrics, problems)
+    if installed is not None:
+        _check_metrics(root.child("metrics"), installed.metrics, problems)
+        _check_versions(root.child("kinds"), installed.versions, problems)
     single = model is ScenarioDocument
     body = root.child("scenario" if single else "base")
     if body is None or not isinstance(body.value, dict):
@@ -141,19 +189,31 @@ def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> Suite:
     head = root.child("suite")
     name = _text(head.child("id") if head else None, "suite")
     title = _text(head.child("title") if head else None, "")
-    axes = read_axes(root.child("matrix"), problems)
+    axes = read_axes(root.child("matrix"), problems, root.child("replicates"))
     _check_elsewhere(body, ("id", "references"), problems)
     for axis in axes:
         for over in axis.labels.values():
             _check_elsewhere(over, ("id", "references"), problems)
+    _check_own_id(head, problems)
     seed = head.child("seed") if head else None
     if seed is None or not isinstance(seed.value, int):
         seed = Node(head.mark if head else root.mark, 0)
     crowd_axes = _crowd_axes(root, axes, problems)
+    kept = read_selection(root, axes, problems)
+    _check_size(root, body, axes, problems)
     return Suite(
         name, title, name, seed, body, axes, crowd_axes, _metrics(root), _references(root),
-        tuple(problems),
+        tuple(problems), kept,
     )  # fmt: skip
+
+
+def _check_own_id(head: Node | None, problems: list[Diagnostic]) -> None:
+    """Two suites of one id would write their runs into one folder."""
+    own = head.child("id") if head else None
+    includer = own.mark.source.included_from if own else None
+    if own is not None and includer is not None:
+        text = f"the suite has no id of its own, only that of the included '{own.value}'"
+        problems.append(Diagnostic("E212", text, includer, "add e.g. 'suite.id: my-suite'"))
 
 
 def _right_version(root: Node, problems: list[Diagnostic]) -> bool:
@@ -165,11 +225,27 @@ def _right_version(root: Node, problems: list[Diagnostic]) -> bool:
         text = "the format version must be a whole number"
         problems.append(Diagnostic("E012", text, node.mark, f"write 'crowdbot: {FORMAT}'"))
     elif node.value > FORMAT:
-        text = f"format {node.value} needs a newer release of crowdbot; this one reads {FORMAT}"
-        problems.append(Diagnostic("E012", text, node.mark, "pip install --upgrade crowdbot"))
+        text = (
+            f"format {node.value} needs crowdbot {node.value}.0 or newer; "
+            f"this is {metadata.version('crowdbot')}, which reads format {FORMAT}"
+        )
+        hint = f"pip install 'crowdbot>={node.value}.0'"
+        problems.append(Diagnostic("E012", text, node.mark, hint))
     else:
         return True
     return False
+
+
+def _check_size(root: Node, body: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) -> None:
+    """Bounds the work that a small file can ask for."""
+    references = root.child("references")
+    if references is not None and len(references.entries) > MAX_REFERENCES:
+        text = f"the suite has {len(references.entries)} references; at most {MAX_REFERENCES}"
+        problems.append(Diagnostic("E207", f"{text} are allowed", references.mark))
+    combinations = math.prod(len(axis.labels) for axis in axes)
+    if (fields := count(body)) * combinations > MAX_FIELDS:
+        text = f"{combinations} combinations of {fields} fields are too many for one suite"
+        problems.append(Diagnostic("E207", text, body.mark))
 
 
 def _crowd_axes(root: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) -> tuple[str, ...]:
@@ -185,7 +261,7 @@ def _crowd_axes(root: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) 
             text = f"the matrix has no axis '{item.value}'"
             problems.append(Diagnostic("E208", text, item.mark, hint))
     wanted = {item.value for item in listed.value if isinstance(item.value, str)}
-    return tuple(name for name in known if name in wanted)
+    return tuple(name for name in known if name in wanted or name == REPLICATE)
 
 
 def _check_elsewhere(body: Node, names: tuple[str, ...], problems: list[Diagnostic]) -> None:
@@ -196,16 +272,46 @@ def _check_elsewhere(body: Node, names: tuple[str, ...], problems: list[Diagnost
             problems.append(Diagnostic("E102", text, mark, _ELSEWHERE[name]))
 
 
-def _check_metrics(
-    listed: Node | None, known: Collection[str] | None, problems: list[Diagnostic]
-) -> None:
-    if listed is None or known is None or not isinstance(listed.value, tuple):
+def _check_metrics(listed: Node | None, known: Collection[str], problems: list[Diagnostic]) -> None:
+    if listed is None or not isinstance(listed.value, tuple):
         return
     for item in listed.value:
         name = item.value
         if isinstance(name, str) and not any(fnmatchcase(kind, name) for kind in known):
             hint = did_you_mean(nearest(name, known)).removeprefix("; ")
             problems.append(Diagnostic("E121", f"unknown metric '{name}'", item.mark, hint))
+
+
+def _check_versions(
+    wanted: Node | None, known: Mapping[str, tuple[int, str]], problems: list[Diagnostic]
+) -> None:
+    """Components older than those the document was written for."""
+    for kind, key, node in _leaves(wanted) if wanted else ():
+        if not kind or type(node.value) is not int or node.value < 1:
+            text = "kinds wants a map of kinds with their version, a whole number from 1"
+            problems.append(Diagnostic("E111", text, node.mark))
+        elif kind not in known:
+            hint = did_you_mean(nearest(kind, known)).removeprefix("; ") or missing_package(kind)
+            problems.append(Diagnostic("E120", f"unknown kind '{kind}'", key, hint))
+        elif node.value > known[kind][0]:
+            version, distribution = known[kind]
+            text = (
+                f"the document needs version {node.value} of '{kind}'; "
+                f"{distribution} has version {version}"
+            )
+            hint = f"pip install --upgrade {distribution.split()[0]}"
+            problems.append(Diagnostic("E014", text, node.mark, hint))
+
+
+def _leaves(
+    node: Node, path: str = "", key: Mark | None = None
+) -> Iterator[tuple[str, Mark, Node]]:
+    if not node.entries:
+        if path or node.value not in (None, {}):
+            yield path, key or node.mark, node
+        return
+    for name, entry in node.entries.items():
+        yield from _leaves(entry.node, f"{path}.{name}" if path else name, key or entry.key)
 
 
 def _metrics(root: Node) -> tuple[str, ...] | None:

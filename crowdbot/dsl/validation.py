@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from crowdbot.dsl.diagnostics import Diagnostic, Mark
+from crowdbot.dsl.diagnostics import MAX_ERRORS, Diagnostic, Mark
 from crowdbot.dsl.merge import kind_of
 from crowdbot.dsl.nodes import Entry, Node
 from crowdbot.errors import PluginError, did_you_mean, nearest
@@ -35,7 +35,7 @@ def validate(model: type[M], data: Any, tree: Node) -> tuple[M | None, list[Diag
     try:
         return model.model_validate(data), []
     except ValidationError as error:
-        details = error.errors(include_url=False)
+        details = error.errors(include_url=False)[:MAX_ERRORS]
         return None, [diagnose(detail, tree, model) for detail in details]
     except Exception as error:
         text = f"a validator of the installed components failed: {type(error).__name__}: {error}"
@@ -72,7 +72,8 @@ def locate(tree: Node, loc: Iterable[str | int], model: type[BaseModel] | None =
     types: tuple[Any, ...] = (model,) if model else ()
     while rest:
         tag = kind_of(node)
-        if rest[0] == tag and (len(rest) > 1 or node.child(rest[0]) is None):
+        chosen = rest[0] == tag and (len(rest) > 1 or node.child(rest[0]) is None)
+        if chosen or str(rest[0]).startswith("<"):  # a member of a union, no name
             rest.pop(0)
             continue
         child = node.child(rest[0])
@@ -120,7 +121,8 @@ def diagnose(error: Error, tree: Node, model: type[BaseModel]) -> Diagnostic:
 def _unknown_field(parent: Place, name: str) -> Diagnostic:
     entry = parent.node.entries.get(name)
     mark = entry.key if entry else parent.node.mark
-    hint = did_you_mean(nearest(name, field_names(parent))[:1]).removeprefix("; ")
+    others = [known for known in field_names(parent) if known != name]
+    hint = did_you_mean(nearest(name, others)[:1]).removeprefix("; ")
     where = f" in {parent.name}" if parent.path else ""
     if entry and entry.dotted:
         text = f"'{entry.dotted}' overrides nothing: no field '{name}'{where}"
@@ -148,6 +150,12 @@ def missing_field(tree: Node, place: Place, name: str) -> Diagnostic:
     )
 
 
+def missing_package(kind: str) -> str:
+    """A hint for a kind with a plugin's name in front; nothing for one without."""
+    prefix, dot, _ = kind.partition(".")
+    return f"is the package providing '{prefix}' installed?" if dot else ""
+
+
 def _unknown_kind(error: Error, place: Place) -> Diagnostic:
     kind = place.node.child("kind") or place.node
     context = error["ctx"]
@@ -159,7 +167,7 @@ def _unknown_kind(error: Error, place: Place) -> Diagnostic:
     if near:
         hint = did_you_mean(near).removeprefix("; ")
     elif dot and not any(k.startswith(f"{prefix}.") for k in known):
-        hint = f"is the package providing '{prefix}' installed?"
+        hint = missing_package(str(kind.value))
     else:
         hint = f"known: {', '.join(known)}"
     return Diagnostic("E120", f"unknown {category} kind '{kind.value}'", kind.mark, hint)
@@ -176,7 +184,7 @@ def _bad_value(error: Error, kind: str, place: Place) -> tuple[str, str, str]:
         return (
             "E110",
             f"'{context['text']}' is not {article} {dimension} (known units: {units})",
-            "",
+            str(context.get("hint", "")),
         )
     if kind == "literal_error":
         words = str(context["expected"])

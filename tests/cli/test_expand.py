@@ -52,8 +52,8 @@ def test_explain(capsys: Captured) -> None:
     assert main(argv) == 0
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     places = {line[0]: line[-1] for line in lines if "#" in line}
-    assert places["density:"].endswith("challenge-2020.yaml:40")
-    assert places["length:"].endswith("parts/corridor_50x10.yaml:4")
+    assert places["density:"].endswith("challenge-2020.yaml:41")
+    assert places["length:"].endswith("parts/corridor_50x10.yaml:5")
     assert places["height:"] == "--set:1"
     assert places["wall_height:"] == "default"
     assert main(["expand", "challenge-2020", "--explain"]) == 2

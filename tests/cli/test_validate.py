@@ -63,7 +63,7 @@ def test_github(capsys: Captured) -> None:
 @pytest.mark.parametrize(
     ("spec", "text"),
     [
-        ("chalenge-2020", "did you mean 'challenge-2020'?"),
+        ("chalenge-2020", "did you mean 'challenge-2020'"),
         ("none.yaml", "o such file"),
         (str(DATA), "is a folder"),
     ],

@@ -38,6 +38,7 @@ def test_everybody_has_a_place_and_a_pace(density: str, count: int, speed: str) 
     gap = np.hypot(drawn.x[:, None] - drawn.x, drawn.y[:, None] - drawn.y) + 9.0 * np.eye(count)
     assert np.min(gap) >= 0.66
     assert scenario.crowd is not None
+    assert scenario.crowd.speed is not None
     mean, std = scenario.crowd.speed.mean, scenario.crowd.speed.std
     assert np.all(np.abs(drawn.speed - mean) <= 3.0 * std)
     assert np.mean(drawn.speed) == pytest.approx(mean, abs=4.0 * std / np.sqrt(count))

@@ -16,7 +16,11 @@ import crowdbot
 from crowdbot.cli import _load, command_names, main
 from crowdbot.core.library import pick
 
-FILES = sorted([*ROOT.glob("docs/*/files/*.py"), *ROOT.glob("docs/*/files/*.yaml")])
+FILES = sorted(
+    f for kind in ("*.py", "**/*.yaml", "*.csv") for f in ROOT.glob(f"docs/*/files/{kind}")
+)
+#: Pages whose commands are run where their files are.
+BESIDE_FILES = ("docs/howto", "docs/tutorial/first_scenario", "docs/explanation/pitfalls")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
@@ -88,7 +92,8 @@ def test_shown_output_is_what_comes(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.chdir((ROOT / page).parent / "files" if page.startswith("docs/howto") else ROOT)
+    beside = page.startswith(BESIDE_FILES)
+    monkeypatch.chdir((ROOT / page).parent / "files" if beside else ROOT)
     main(words)
     said = capsys.readouterr()
     assert (said.out + said.err).splitlines() == output

@@ -40,7 +40,8 @@ def test_every_command_has_a_heading_and_no_other() -> None:
 
 
 def _in_page_order() -> list[str]:
-    order = ["validate", "expand", "simulate", "evaluate", "plugins"]
+    order = ["validate", "expand", "schema", "diff", "view", "lock"]
+    order += ["simulate", "evaluate", "plugins"]
     assert set(order) <= set(command_names())
     return sorted(LIVE, key=lambda n: order.index(n.split()[0]) if n.split()[0] in order else 99)
 

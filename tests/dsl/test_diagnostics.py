@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from crowdbot.core.library import installed
 from crowdbot.core.registry import discover
 from crowdbot.dsl.diagnostics import CODES, Diagnostic, Mark, Source, render
 from crowdbot.dsl.expand import expand_document, load_document
@@ -23,10 +24,11 @@ CASES = sorted(p.stem for p in DATA.glob("*.yaml"))
 
 
 def errors_of(name: str) -> tuple[Diagnostic, ...]:
-    metrics = REGISTRY.components("metric")
     with pytest.raises(SpecError) as caught:
         expand_document(
-            load_document(DATA / f"{name}.yaml", name=f"{name}.yaml", metrics=metrics),
+            load_document(
+                DATA / f"{name}.yaml", name=f"{name}.yaml", installed=installed(REGISTRY)
+            ),
             REGISTRY.scenario_model,
         )
     return caught.value.diagnostics

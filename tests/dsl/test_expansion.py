@@ -109,10 +109,12 @@ def test_precedence(write: Write) -> None:
     write("crowd.speed: {mean: 2, std: 0.2}\n", "parts/two.yaml")
     text = SUITE.replace("parts/minimal.yaml", "[parts/minimal.yaml, parts/two.yaml]")
     path = write(text + "matrix: {m: {a: {}, b: {crowd.speed.mean: 3}}}\n")
-    means = [s.crowd.speed.mean for s in expand(path).scenarios if s.crowd]
+    means = [s.crowd.speed.mean for s in expand(path).scenarios if s.crowd and s.crowd.speed]
     assert means == [2.0, 3.0]
     means = [
-        s.crowd.speed.mean for s in expand(path, "crowd.speed.mean=4 km/h").scenarios if s.crowd
+        s.crowd.speed.mean
+        for s in expand(path, "crowd.speed.mean=4 km/h").scenarios
+        if s.crowd and s.crowd.speed
     ]
     assert means == pytest.approx([4 / 3.6] * 2)
 
@@ -152,7 +154,7 @@ def test_a_suite_may_extend_a_suite(write: Write) -> None:
     child = "crowdbot: 1\nextends: s.yaml\nsuite.id: t\nbase.crowd.speed.mean: 1.5\n"
     found = expand(write(child, "t.yaml"))
     assert found.suite_id == "t"
-    assert [s.crowd.speed.mean for s in found.scenarios if s.crowd] == [1.5, 1.5]
+    assert [s.crowd.speed.mean for s in found.scenarios if s.crowd and s.crowd.speed] == [1.5, 1.5]
 
 
 def test_sensor_is_removed_by_null(write: Write) -> None:

@@ -26,7 +26,7 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.core.planner_host import RESET_LIMIT, HostedCommand, PlannerHost
 from crowdbot.core.planner_source import PlannerChoice, select_sensors
-from crowdbot.core.realise import realise
+from crowdbot.core.realisation import Realisation
 from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter, RobotHeader
 from crowdbot.core.registry import Registry
 from crowdbot.core.run_log import RunLog
@@ -43,6 +43,7 @@ class RunSetup:
     """What one recording needs."""
 
     scenario: Scenario
+    agents: Realisation
     registry: Registry
     choice: PlannerChoice
     seed: int
@@ -64,7 +65,7 @@ def record_robot(setup: RunSetup) -> Outcome:
     ((name, robot),) = scenario.robots.items()
     parts: EnvironmentParts = registry.build(scenario.environment)
     model: RobotModel = registry.build(robot.model)
-    engine = build_crowd(scenario, realise(scenario), parts, registry)
+    engine = build_crowd(scenario, setup.agents, parts, registry)
     infos = {n: _framed(n, registry.build(x).info()) for n, x in robot.sensors.items()}
     visible = select_sensors(setup.choice.needs, infos, setup.choice.name)
     sensors = set(infos) if setup.record == "all" else {*visible, *_odometry(infos)}
@@ -104,7 +105,7 @@ def record_crowd(setup: RunSetup, duration: float) -> Outcome:
     """Simulate the scenario's people without a robot, and without Drake."""
     scenario, registry = setup.scenario, setup.registry
     parts: EnvironmentParts = registry.build(scenario.environment)
-    engine = build_crowd(scenario, realise(scenario), parts, registry)
+    engine = build_crowd(scenario, setup.agents, parts, registry)
     if engine is None:
         raise InputError(f"{scenario.id} has no crowd")
     header = RecordingHeader(scenario=scenario.id, agents=_agents(engine), walls=parts.walls)

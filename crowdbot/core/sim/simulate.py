@@ -11,8 +11,8 @@ from typing import Any
 from crowdbot.core import provenance
 from crowdbot.core import run_directory as files
 from crowdbot.core.evaluate import Scores, score
+from crowdbot.core.lock import Population, population
 from crowdbot.core.planner_source import resolve_planner, select_sensors
-from crowdbot.core.realise import realise
 from crowdbot.core.recording import read_scans, read_trajectories
 from crowdbot.core.registry import Registry
 from crowdbot.core.replay import write_replay
@@ -51,7 +51,8 @@ def simulate(
         options: further fields of `Request`.
 
     Raises:
-        InputError: the scenario has no robot, the planner or the folder is wrong.
+        InputError: the scenario has no robot, the planner or the folder is wrong, or the lock
+            of the suite does not fit it any more.
         PlannerHungError: a planner step never returned; a ``.partial`` directory is left.
         Interrupted: ``stop`` said so; a ``.partial`` directory is left.
     """
@@ -68,13 +69,14 @@ def simulate(
             f"{scenario.id} has {len(scenario.robots)} robots; this release simulates exactly one"
         )
     _check_needs(request)
-    identity = _identity(request)
+    people = population(scenario, registry)
+    identity = _identity(request, people)
     if not request.force and _reusable(request, identity):
         record = files.read_record(request.directory)
         assert record is not None
         return Run(request.directory, record, reused=True, _keep=keep)
-    references = _references(request) if _wants_references(request) else {}
-    record = _record_run(request, identity, references)
+    references = _references(request, people) if _wants_references(request) else {}
+    record = _record_run(request, identity, people, references)
     return Run(request.directory, record, _keep=keep)
 
 
@@ -90,7 +92,7 @@ def _wants_references(request: Request) -> bool:
     return request.references and request.scenario.crowd is not None
 
 
-def _identity(request: Request) -> dict[str, Any]:
+def _identity(request: Request, people: Population) -> dict[str, Any]:
     """Everything that decides what happens in a run."""
     scenario, registry = request.scenario, request.registry
     return {
@@ -104,7 +106,7 @@ def _identity(request: Request) -> dict[str, Any]:
         "seed": request.seed,
         "hashes": {
             "spec": content_hash(scenario, registry.spec_versions(scenario)),
-            "realisation": realise(scenario).hash,
+            "realisation": people.agents.hash,
         },
         "versions": provenance.versions(),
         "plugins": provenance.plugins(registry),
@@ -122,17 +124,21 @@ def _reusable(request: Request, identity: Mapping[str, Any]) -> bool:
 
 
 # ------------------------------------------------------------------------ references
-def _references(request: Request) -> dict[str, Path]:
+def _references(request: Request, people: Population) -> dict[str, Path]:
     """Recordings of the calibration runs, simulated where they are missing."""
     scenario = request.scenario
     alone = scenario.references.get("robot_alone") or scenario.model_copy(update={"crowd": None})
     crowd = scenario.references.get("crowd_alone") or scenario.model_copy(update={"robots": {}})
     (robot,) = scenario.robots.values()
+    if (crowd.crowd, crowd.environment) != (scenario.crowd, scenario.environment):
+        people = population(crowd, request.registry)  # else the same ones, also near the robot
+    nobody = population(alone, request.registry)
     return {
         "robot_alone": _reference(
             request,
             "robot_alone",
             alone,
+            nobody,
             {"planner": request.choice.spec_dump, "seed": request.seed},
             lambda setup: record_robot(setup),
         ),
@@ -140,7 +146,8 @@ def _references(request: Request) -> dict[str, Path]:
             request,
             "crowd_alone",
             crowd,
-            {"realisation": realise(crowd).hash, "duration": robot.task.time_limit},
+            people,
+            {"realisation": people.agents.hash, "duration": robot.task.time_limit},
             lambda setup: record_crowd(setup, robot.task.time_limit),
         ),
     }
@@ -150,6 +157,7 @@ def _reference(
     request: Request,
     name: str,
     scenario: Scenario,
+    people: Population,
     depends_on: Mapping[str, Any],
     simulate_it: Callable[[RunSetup], Outcome],
 ) -> Path:
@@ -162,9 +170,9 @@ def _reference(
     failed = (files.read_record(final) or {}).get("status") == PLANNER_FAILED
     if failed or not files.is_complete(final, run_id):
         with _partial(final) as folder:
-            outcome = simulate_it(_setup(request, scenario, folder, name))
+            outcome = simulate_it(_setup(request, scenario, people, folder, name))
             _check_interrupted(outcome, folder)
-            _write_scenario(folder, scenario)
+            _write_scenario(folder, scenario, request.registry)
             record = {"run_id": run_id, "reference": name, **key, **_ending(outcome)}
             files.write_json(folder / files.RECORD, record)
             files.publish(folder, final)
@@ -183,11 +191,14 @@ def _partial(final: Path) -> Iterator[Path]:
 
 # --------------------------------------------------------------------------- the run
 def _record_run(
-    request: Request, identity: Mapping[str, Any], references: Mapping[str, Path]
+    request: Request,
+    identity: Mapping[str, Any],
+    people: Population,
+    references: Mapping[str, Path],
 ) -> dict[str, Any]:
     final = request.directory
     with _partial(final) as folder:
-        outcome = record_robot(_setup(request, request.scenario, folder, "run"))
+        outcome = record_robot(_setup(request, request.scenario, people, folder, "run"))
         _check_interrupted(outcome, folder)
         run = read_trajectories(folder / files.RECORDING)
         calibration = read_references(references)
@@ -199,6 +210,7 @@ def _record_run(
             metrics="*" if request.metrics is None else request.metrics,
         )
         record = _run_record(request, identity, references, outcome, run)
+        record["agents"] = people.source
         _write_files(request, folder, run, scores, record)
         files.publish(folder, final)
     return record
@@ -231,7 +243,7 @@ def _write_files(
     request: Request, folder: Path, run: Trajectories, scores: Scores, record: Mapping[str, Any]
 ) -> None:
     scenario = request.scenario
-    _write_scenario(folder, scenario)
+    _write_scenario(folder, scenario, request.registry)
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
     arrival = record["goal_time"]
     write_replay(
@@ -253,9 +265,12 @@ def _write_files(
     files.write_json(folder / files.RECORD, record)
 
 
-def _setup(request: Request, scenario: Scenario, folder: Path, stage: str) -> RunSetup:
+def _setup(
+    request: Request, scenario: Scenario, people: Population, folder: Path, stage: str
+) -> RunSetup:
     return RunSetup(
         scenario=scenario,
+        agents=people.agents,
         registry=request.registry,
         choice=request.choice,
         seed=request.seed,
@@ -282,8 +297,8 @@ def _ending(outcome: Outcome) -> dict[str, Any]:
     }
 
 
-def _write_scenario(folder: Path, scenario: Scenario) -> None:
-    text = dump_scenario_yaml(scenario)
+def _write_scenario(folder: Path, scenario: Scenario, registry: Registry) -> None:
+    text = dump_scenario_yaml(scenario, registry.spec_versions(scenario))
     (folder / files.SCENARIO).write_text(text, encoding="utf-8")
 
 

@@ -6,7 +6,7 @@ Space", I3D 2020.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Le
 from pydantic import Field
@@ -19,6 +19,7 @@ from crowdbot.dsl.quantities import NonNegativeDuration, NonNegativeSteeringStif
 class VelocitySpaceSpec(CrowdPolicySpec):
     """Regular samples on a fan around the preferred velocity, standing still included."""
 
+    needs_costs: ClassVar[bool] = True
     kind: Literal["velocity_space"] = "velocity_space"
     method: Literal["sampling"] = Field(default="sampling", description="How costs are minimised.")
     relaxation_time: NonNegativeDuration = Field(

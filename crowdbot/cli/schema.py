@@ -1,0 +1,77 @@
+"""``crowdbot schema``: JSON Schemas of documents, made from the components that are installed."""
+
+from __future__ import annotations
+
+import json
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from crowdbot.cli._files import write_file
+from crowdbot.errors import UsageError
+
+if TYPE_CHECKING:
+    from crowdbot.core.registry import Registry
+
+
+class Document(StrEnum):
+    """What a schema describes."""
+
+    SUITE = "suite"
+    SCENARIO = "scenario"
+    PLANNER = "planner"
+    PART = "part"
+
+
+def schema(
+    document: Annotated[
+        Document, typer.Argument(help="part: a file that others name in 'extends'.")
+    ],
+    canonical: Annotated[
+        bool,
+        typer.Option("--canonical", help="Of what crowdbot writes: numbers only, every field."),
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write there instead of stdout.")
+    ] = None,
+) -> None:
+    """Print the JSON Schema of a document, for editors; plugins' components are in it.
+
+    Example: crowdbot schema suite --out suite.schema.json
+    """
+    from crowdbot.core.registry import discover
+
+    if canonical and document not in (Document.SCENARIO, Document.PLANNER):
+        raise UsageError(
+            f"a {document} has no canonical form; 'crowdbot schema scenario --canonical' is that "
+            "of its scenarios"
+        )
+    text = to_text(build(document, discover(), canonical=canonical))
+    if out is None:
+        typer.echo(text, nl=False)
+    else:
+        write_file(out, text.encode())
+
+
+def build(document: str, registry: Registry, *, canonical: bool = False) -> dict[str, Any]:
+    """The schema of a kind of document."""
+    from crowdbot.dsl import schema as schemas
+
+    metrics = registry.components("metric")
+    if document == Document.PLANNER:
+        planners = [c.spec for c in registry.components("planner").values()]
+        return schemas.planner_schema(planners, canonical=canonical)
+    if document == Document.SUITE:
+        return schemas.suite_schema(registry.scenario_model, metrics)
+    if document == Document.PART:
+        return schemas.part_schema(registry.scenario_model)
+    if canonical:
+        return schemas.canonical_scenario_schema(registry.scenario_model)
+    return schemas.scenario_schema(registry.scenario_model, metrics)
+
+
+def to_text(schema: dict[str, Any]) -> str:
+    """JSON as it is printed and committed."""
+    return json.dumps(schema, indent=1, ensure_ascii=False) + "\n"

@@ -1,0 +1,106 @@
+"""``crowdbot view``: a scenario from above before it is run; the replay page of a run."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crowdbot.cli._files import write_file
+from crowdbot.errors import InputError, UsageError
+
+if TYPE_CHECKING:
+    from crowdbot.core.registry import Registry
+    from crowdbot.core.view.shapes import Drawing
+
+_FORMATS = (".html", ".svg", ".png")
+
+
+def view(
+    spec: Annotated[
+        str, typer.Argument(metavar="SPEC|RUN_DIR", help="File, name of a suite, or a run.")
+    ],
+    scenario: Annotated[
+        str | None, typer.Argument(metavar="[ID]", help="Id, unique beginning, or pattern.")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="FILE.html, .svg or .png; default: ID.html, here."),
+    ] = None,
+    open_: Annotated[bool, typer.Option("--open", help="Show it in the browser.")] = False,
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change the scenario; repeatable."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Path and facts as JSON.")] = False,
+) -> None:
+    """Draw a scenario from above, or find the replay page of a run. Nothing is simulated.
+
+    Example: crowdbot view challenge-2020 counter-d0500-fast-c20-r05 --out scenario.png
+    """
+    facts: dict[str, str] = {}
+    if Path(spec).is_dir():
+        if scenario is not None or out is not None or overrides:
+            raise UsageError(f"{spec} is a run, whose page is there already: no ID, --out or --set")
+        path = _replay(Path(spec))
+    else:
+        path, facts = _draw(spec, scenario, out, overrides or [])
+    if as_json:
+        typer.echo(json.dumps({"path": str(path), "facts": facts}, indent=2, ensure_ascii=False))
+    else:
+        typer.echo(path)
+    if open_:
+        typer.launch(str(path.resolve()))
+
+
+def _replay(run: Path) -> Path:
+    from crowdbot.core.run_directory import RECORD, REPLAY
+
+    if not (run / RECORD).is_file():
+        raise InputError(f"{run}: no run directory, there is no {RECORD} in it")
+    if not (run / REPLAY).is_file():
+        raise InputError(f"{run}: the run has no {REPLAY}")
+    return run / REPLAY
+
+
+def _draw(
+    spec: str, wanted: str | None, out: Path | None, overrides: list[str]
+) -> tuple[Path, dict[str, str]]:
+    from crowdbot.core.library import open_spec, pick
+    from crowdbot.core.lock import population
+    from crowdbot.core.registry import discover
+    from crowdbot.core.view.build import build_scene
+    from crowdbot.core.view.draw import draw
+    from crowdbot.core.view.facts import scenario_facts
+    from crowdbot.dsl.canonical import content_hash
+
+    if out is not None and out.suffix.lower() not in _FORMATS:
+        raise UsageError(f"--out {out}: the name must end in {', '.join(_FORMATS)}")
+    registry: Registry = discover()
+    expansion = open_spec(spec, registry, overrides)
+    chosen = pick(expansion, wanted)
+    people = population(chosen, registry)
+    spec_hash = content_hash(chosen, registry.spec_versions(chosen))
+    facts = scenario_facts(chosen, people.agents, spec_hash)
+    title = chosen.id if expansion.single else f"{expansion.suite_id}/{chosen.id}"
+    path = out or Path(f"{chosen.id.replace('/', '_')}.html")
+    scene = build_scene(chosen, people.agents, registry)
+    heading = path.suffix.lower() != ".html"
+    write_file(path, _content(draw(scene, title, facts, heading=heading), path.suffix.lower()))
+    return path, facts
+
+
+def _content(drawing: Drawing, suffix: str) -> bytes:
+    if suffix == ".png":
+        from crowdbot.core.view.png import to_png
+
+        return to_png(drawing)
+    if suffix == ".svg":
+        from crowdbot.core.view.svg import to_svg
+
+        return to_svg(drawing).encode()
+    from crowdbot.core.view.page import to_html
+
+    return to_html(drawing).encode()

@@ -1,0 +1,201 @@
+"""Locks with numbers: drawing the agents of a suite once, and reading them ever after."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import Literal
+
+from crowdbot.core.lock_check import check_fits, spec_of, values_of
+from crowdbot.core.realisation import Realisation
+from crowdbot.core.realise import realise
+from crowdbot.core.registry import Registry
+from crowdbot.dsl.expand import Expansion
+from crowdbot.dsl.lock import (
+    LOCK,
+    Draw,
+    Lock,
+    LockedScenario,
+    LockFiles,
+    draw_inputs,
+    join_tables,
+    split_values,
+    table_hash,
+)
+from crowdbot.dsl.scenario import Scenario
+from crowdbot.errors import InputError
+
+_NAME = re.compile(r"[A-Za-z0-9_.+-]+")
+
+
+@dataclass(frozen=True, slots=True)
+class Population:
+    """The agents of a scenario, and whether they were read from a lock."""
+
+    agents: Realisation
+    source: Literal["locked", "drawn", "none"]
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """A new lock, its tables by draw, and how many of these were drawn just now."""
+
+    lock: Lock
+    tables: Mapping[str, str]
+    drawn: int
+
+
+def population(scenario: Scenario, registry: Registry) -> Population:
+    """The agents of a scenario: from its suite's lock, drawn only where there is none.
+
+    Agents are drawn all the same when ``--set`` or Python code changed something that the
+    drawing depends on.
+
+    Raises:
+        InputError: the lock does not fit the suite any more.
+    """
+    if scenario.crowd is None:
+        return Population(Realisation.nobody(), "none")
+    if scenario.locked is None:
+        return Population(realise(scenario), "drawn")
+    files = scenario.locked.files
+    check_fits(files, scenario.locked.origin(), registry)
+    draw = files.lock.draw_of(draw_inputs(scenario))
+    if draw is None:
+        return Population(realise(scenario), "drawn")
+    text = files.table(draw)
+    try:
+        return Population(Realisation.from_csv(text), "locked")
+    except InputError as error:
+        raise InputError(f"{files.agents_path.name}: table '{draw}': {error}") from None
+
+
+def make_lock(expansion: Expansion, registry: Registry, old: LockFiles | None) -> Made:
+    """Freeze a suite; tables whose inputs did not change since ``old`` are kept as they are.
+
+    Raises:
+        InputError: a crowd cannot be drawn, or the old lock is none.
+    """
+    draws, tables, by_inputs, drawn = dict[str, Draw](), dict[str, str](), dict[str, str](), 0
+    for scenario in _with_crowd(expansion):
+        inputs = draw_inputs(scenario)
+        if inputs in by_inputs:
+            continue
+        kept = _kept(old, inputs)
+        table = realise(scenario).to_csv() if kept is None else kept
+        drawn += kept is None
+        name = _free_name(scenario, expansion.suite_id, draws)
+        by_inputs[inputs], tables[name] = name, table
+        draws[name] = Draw(inputs=inputs, realisation=table_hash(table))
+    scenarios, common = _scenarios(expansion, registry, by_inputs, draws)
+    kinds = {k: v for s in expansion.scenarios for k, v in registry.spec_versions(s).items()}
+    lock = Lock(
+        lock=LOCK,
+        crowdbot=metadata.version("crowdbot"),
+        suite=expansion.suite_id,
+        kinds=dict(sorted(kinds.items())),
+        common=common,
+        draws=draws,
+        scenarios=scenarios,
+    )
+    return Made(lock, tables, drawn)
+
+
+def write_lock(files: LockFiles, made: Made) -> None:
+    """Write both files aside, then give them their names; both or none.
+
+    Raises:
+        InputError: the folder cannot be written to.
+    """
+    texts = {
+        files.agents_path: join_tables(made.tables),
+        files.lock_path: made.lock.text(),
+    }
+    aside = {path: path.with_name(f".{path.name}.{os.getpid()}.part") for path in texts}
+    before = {path: path.read_bytes() if path.exists() else None for path in texts}
+    try:
+        for path, part in aside.items():
+            _write(part, texts[path].encode())
+        try:
+            for path, part in aside.items():
+                part.replace(path)
+        except OSError:
+            _restore(before)
+            raise
+    except OSError as error:
+        folder, why = files.lock_path.parent, error.strerror or error
+        raise InputError(
+            f"the lock cannot be written into {folder}: {str(why).lower()}; copy the suite into a "
+            "folder of your own and lock it there"
+        ) from error
+    finally:
+        for part in aside.values():
+            part.unlink(missing_ok=True)
+
+
+def _kept(old: LockFiles | None, inputs: str) -> str | None:
+    """The table that was drawn from these inputs before, if it is there and whole."""
+    name = old.lock.draw_of(inputs) if old else None
+    if old is None or name is None:
+        return None
+    try:
+        return old.table(name)
+    except InputError:
+        return None
+
+
+def _with_crowd(expansion: Expansion) -> Iterator[Scenario]:
+    for scenario in expansion.scenarios:
+        for one in (scenario, *scenario.references.values()):
+            if one.crowd is not None:
+                yield one
+
+
+def _free_name(scenario: Scenario, suite: str, taken: Mapping[str, object]) -> str:
+    """The draw's seed key if it has one; numbered if other inputs have the same."""
+    assert scenario.crowd is not None
+    key = scenario.crowd.seed.key
+    name = key if _NAME.fullmatch(key) else suite
+    numbered = (f"{name}~{number}" for number in itertools.count(2))
+    return name if name not in taken else next(n for n in numbered if n not in taken)
+
+
+def _scenarios(
+    expansion: Expansion,
+    registry: Registry,
+    by_inputs: Mapping[str, str],
+    draws: Mapping[str, Draw],
+) -> tuple[dict[str, LockedScenario], dict[str, object]]:
+    common, rest = split_values({s.id: values_of(s) for s in expansion.scenarios})
+    found = {}
+    for scenario in expansion.scenarios:
+        draw = by_inputs[draw_inputs(scenario)] if scenario.crowd is not None else None
+        found[scenario.id] = LockedScenario(
+            spec=spec_of(scenario, registry),
+            realisation=draws[draw].realisation if draw else Realisation.nobody().hash,
+            draw=draw,
+            values=rest[scenario.id],
+        )
+    return found, common
+
+
+def _write(path: Path, content: bytes) -> None:
+    with path.open("wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _restore(before: Mapping[Path, bytes | None]) -> None:
+    with suppress(OSError):
+        for path, content in before.items():
+            if content is None:
+                path.unlink(missing_ok=True)
+            else:
+                path.write_bytes(content)

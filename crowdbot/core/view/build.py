@@ -1,0 +1,92 @@
+"""From a scenario's words to a scene.
+
+Sensors are drawn from their specs alone: building them would compile ray casting.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from crowdbot.core.realisation import Realisation
+from crowdbot.core.registry import Registry
+from crowdbot.core.view.scene import RobotView, Scene, Sector
+from crowdbot.core.view.shapes import Point
+from crowdbot.dsl.areas import Area
+from crowdbot.dsl.base import SensorSpec
+from crowdbot.dsl.scenario import Crowd, Robot, Scenario
+
+
+def build_scene(scenario: Scenario, people: Realisation, registry: Registry) -> Scene:
+    """Build the environment and look up everything else.
+
+    Args:
+        scenario: what is drawn.
+        people: its agents, drawn or read from a lock.
+        registry: the installed components.
+    """
+    areas = {} if scenario.crowd is None else _areas(scenario.crowd)
+    return Scene(
+        parts=registry.build(scenario.environment),
+        people=people,
+        robots=tuple(_robot(n, r, registry) for n, r in scenario.robots.items()),
+        areas=areas,
+    )
+
+
+def _areas(crowd: Crowd) -> dict[str, dict[str, tuple[Point, ...]]]:
+    """Areas of their own; those that are zones are drawn as zones."""
+    spawns = {n: s.area.corners for n, s in crowd.spawns.items() if isinstance(s.area, Area)}
+    goals = {n: g.area.corners for n, g in crowd.goal_areas.items() if isinstance(g.area, Area)}
+    return {"spawn": spawns, "goal-area": goals}
+
+
+def _robot(name: str, robot: Robot, registry: Registry) -> RobotView:
+    x, y, yaw = robot.task.start
+    return RobotView(
+        name=name,
+        x=x,
+        y=y,
+        yaw=yaw,
+        radius=registry.build(robot.model).footprint_radius,
+        goal=robot.task.goal.zone,
+        sensors=tuple(_sectors(robot, x, y, yaw)),
+    )
+
+
+def _sectors(robot: Robot, x: float, y: float, yaw: float) -> Iterator[Sector]:
+    for name, spec in robot.sensors.items():
+        seen = field_of_view(spec)
+        if seen is None:
+            continue
+        start, end, reach = seen
+        mount = getattr(spec, "mount", None)
+        mx, my, turned = (mount.x, mount.y, mount.yaw) if mount is not None else (0.0, 0.0, 0.0)
+        c, s = math.cos(yaw), math.sin(yaw)
+        yield Sector(
+            name=name,
+            x=x + c * mx - s * my,
+            y=y + s * mx + c * my,
+            start=yaw + turned + start,
+            end=yaw + turned + end,
+            reach=reach,
+        )
+
+
+def field_of_view(spec: SensorSpec) -> tuple[float, float, float] | None:
+    """First and last angle (rad) and reach (m) of a sensor, by the names of its fields.
+
+    ``range_max`` with ``angle_min`` and ``angle_max``, or with one opening angle; None for a
+    sensor that looks nowhere, such as odometry.
+    """
+    reach = getattr(spec, "range_max", None)
+    if not isinstance(reach, float):
+        return None
+    low, high = getattr(spec, "angle_min", None), getattr(spec, "angle_max", None)
+    if isinstance(low, float) and isinstance(high, float):
+        return low, high, reach
+    for name in ("horizontal_fov", "fov", "field_of_view", "opening_angle"):
+        width = getattr(spec, name, None)
+        if isinstance(width, float):
+            return -0.5 * width, 0.5 * width, reach
+    return None

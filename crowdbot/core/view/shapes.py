@@ -1,0 +1,134 @@
+"""Shapes of a drawing, in pixels: x to the right, y down. What they look like is their role."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Path:
+    """A line, or an area if it is closed. ``inside``: nothing of it shows outside the map."""
+
+    points: tuple[Point, ...]
+    role: str
+    closed: bool = False
+    inside: bool = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Disc:
+    """A disc; ``about`` is shown on a hover."""
+
+    centre: Point
+    radius: float
+    role: str
+    about: str = ""
+    inside: bool = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Text:
+    """A line of text; ``anchor`` is start, middle or end; turned counter-clockwise, degrees."""
+
+    at: Point
+    text: str
+    role: str
+    size: float = 12.0
+    anchor: str = "start"
+    turned: float = 0.0
+
+
+Shape = Path | Disc | Text
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drawing:
+    """Shapes in the order in which they are painted.
+
+    Attributes:
+        width, height: px.
+        map_box: x, y, width and height of the part that shows the world, px.
+        facts: name -> text, what the drawing says in words.
+    """
+
+    width: float
+    height: float
+    map_box: tuple[float, float, float, float]
+    title: str
+    shapes: tuple[Shape, ...]
+    facts: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Look:
+    """What a role looks like: names of `LIGHT` and `DARK`, widths in px."""
+
+    fill: str = ""
+    opacity: float = 1.0
+    stroke: str = ""
+    width: float = 1.0
+    dash: tuple[float, ...] = ()
+    bold: bool = False
+
+
+LIGHT = {
+    "page": "#f3f1ec", "floor": "#fffefb", "grid": "#f0ede6", "grid_strong": "#e2ded4",
+    "ink": "#22262b", "muted": "#6a6f76", "wall": "#3a3f46", "zone": "#8a8577",
+    "portal": "#8459a8", "robot": "#f08a24", "robot_edge": "#3d2205", "goal": "#2e9e5b",
+    "sensor": "#00929c", "person_edge": "#2b4a68", "arrow": "#2b4a68", "route": "#b0518f",
+}  # fmt: skip
+DARK = {
+    "page": "#14171b", "floor": "#1c2025", "grid": "#23282e", "grid_strong": "#313840",
+    "ink": "#e8e6e1", "muted": "#99a0a8", "wall": "#b9c0c8", "zone": "#8f8b80",
+    "portal": "#b48be0", "robot": "#ff9f40", "robot_edge": "#2a1600", "goal": "#4cc77f",
+    "sensor": "#35d0d8", "person_edge": "#0f1b28", "arrow": "#9fc3e6", "route": "#e08cc2",
+}  # fmt: skip
+
+#: Colours of people from slow to fast, the same on both grounds.
+SPEEDS = ("#345a84", "#4a7097", "#6186aa", "#7a9dbd", "#94b3ce", "#afc8dd", "#c9dcec", "#e2eef8")
+for _palette in (LIGHT, DARK):
+    _palette.update({f"speed_{i}": colour for i, colour in enumerate(SPEEDS)})
+
+LOOKS = {
+    "page": Look(fill="page"),
+    "floor": Look(fill="floor"),
+    "grid": Look(stroke="grid"),
+    "grid-strong": Look(stroke="grid_strong"),
+    "frame": Look(stroke="grid_strong"),
+    "zone": Look(fill="zone", opacity=0.09, stroke="zone", width=1.0, dash=(2.0, 3.0)),
+    "portal": Look(fill="portal", opacity=0.16, stroke="portal", width=1.2),
+    "goal-area": Look(fill="route", opacity=0.12, stroke="route", width=1.2, dash=(4.0, 3.0)),
+    "spawn": Look(fill="arrow", opacity=0.07, stroke="arrow", width=1.0, dash=(1.0, 3.0)),
+    "goal": Look(fill="goal", opacity=0.14, stroke="goal", width=2.0, dash=(7.0, 4.0)),
+    "wall": Look(stroke="wall", width=4.0),
+    "wall-robot": Look(stroke="robot", width=2.5, dash=(9.0, 5.0)),
+    "wall-crowd": Look(stroke="arrow", width=2.5, dash=(3.0, 4.0)),
+    "torus": Look(stroke="portal", width=2.0, dash=(10.0, 4.0, 2.0, 4.0)),
+    "pillar": Look(fill="wall"),
+    "sensor": Look(fill="sensor", opacity=0.05, stroke="sensor", width=1.0, dash=(5.0, 4.0)),
+    "group": Look(stroke="arrow", width=5.0, opacity=0.35),
+    "route": Look(stroke="route", width=1.0, dash=(3.0, 3.0)),
+    "robot-goal": Look(fill="goal", stroke="floor", width=1.5),
+    "route-end": Look(fill="route", stroke="floor", width=1.0),
+    **{
+        f"person-{i}": Look(fill=f"speed_{i}", stroke="person_edge", width=1.0)
+        for i in range(len(SPEEDS))
+    },
+    **{f"ramp-{i}": Look(fill=f"speed_{i}") for i in range(len(SPEEDS))},
+    "arrow": Look(stroke="arrow", width=1.4),
+    "robot": Look(fill="robot", stroke="robot_edge", width=1.8),
+    "robot-nose": Look(stroke="robot_edge", width=2.2),
+    "scale": Look(stroke="ink", width=2.5),
+    "text": Look(fill="ink"),
+    "text-strong": Look(fill="ink", bold=True),
+    "text-muted": Look(fill="muted"),
+    "text-zone": Look(fill="zone", bold=True),
+    "text-portal": Look(fill="portal", bold=True),
+    "text-goal": Look(fill="goal", bold=True),
+    "text-route": Look(fill="route", bold=True),
+    "text-robot": Look(fill="robot", bold=True),
+}

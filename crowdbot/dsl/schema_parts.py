@@ -1,0 +1,294 @@
+"""The parts that schemas are made of: pydantic's JSON Schema, opened for people who write.
+
+pydantic describes complete documents. Here every map of fields becomes partial, learns dotted
+keys (``flow.density``, by pattern), and a place that takes one of several components asks for
+``kind`` first, so that an editor offers the fields of that kind alone.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from itertools import chain, count
+from typing import Any
+
+from pydantic import BaseModel
+from pydantic.json_schema import models_json_schema
+
+Json = dict[str, Any]
+
+_REF = "#/$defs/"
+_NULL: Json = {"type": "null"}
+#: The scenario's field that no document writes there; its abstract type is of no use.
+_ELSEWHERE = "references"
+
+
+class Parts:
+    """Definitions made from models.
+
+    Args:
+        models: the first one is the root.
+        canonical: numbers only, every field required.
+        layered: documents are laid over each other, so that fields may be missing, removed by
+            ``null`` or written with dots.
+    """
+
+    def __init__(
+        self, *models: type[BaseModel], canonical: bool = False, layered: bool = True
+    ) -> None:
+        mode: Any = "serialization" if canonical else "validation"
+        keys, whole = models_json_schema([(m, mode) for m in models])
+        roots = [_short(keys[m, mode]["$ref"]) for m in models]
+        names = _short_names(whole["$defs"], roots)
+        self._canonical, self._layered = canonical, layered and not canonical
+        self._raw = _renamed(_without_titles(whole["$defs"]), names)
+        self._roots = [names[r] for r in roots]
+        self._made: Json = {}
+        self._unions: dict[tuple[str, ...], str] = {}
+
+    def root(self, without: Sequence[str]) -> Json:
+        """The first root's fields, some left out."""
+        raw = self._raw[self._roots[0]]
+        fields = {k: v for k, v in raw["properties"].items() if k not in without}
+        return self._model({**raw, "properties": fields})
+
+    def union(self) -> Json:
+        """A document that is one of the roots, told apart by ``kind``."""
+        return self.one_of(self._roots)
+
+    def outer(self, model: type[BaseModel]) -> Json:
+        """A document's outermost fields with ``required`` as the model has it."""
+        raw = _without_titles(model.model_json_schema())
+        self._raw |= raw.pop("$defs", {})
+        made = {k: self._place(v, k) for k, v in raw["properties"].items()}
+        return {**raw, "properties": made}
+
+    def named(self, name: str, schema: Json) -> Json:
+        """A reference to a definition that is written once."""
+        self._made[name] = schema
+        return {"$ref": _REF + name}
+
+    def used_by(self, content: Json) -> Json:
+        """The definitions that a schema needs, directly or not, sorted by name."""
+        found: Json = {}
+        waiting = list(_refs(content))
+        while waiting:
+            name = waiting.pop()
+            if name not in found:
+                found[name] = described(self._definition(name))
+                waiting += _refs(found[name])
+        return dict(sorted(found.items()))
+
+    def one_of(self, names: Sequence[str]) -> Json:
+        """A component of one of several kinds, told apart by ``kind``."""
+        kinds = {self._kind(n): n for n in names}
+        words = [
+            {"const": k, "description": self._raw[n].get("description", "")}
+            for k, n in kinds.items()
+        ]
+        cases = [
+            {
+                "if": {"properties": {"kind": {"const": kind}}, "required": ["kind"]},
+                "then": {"$ref": _REF + name},
+            }
+            for kind, name in kinds.items()
+        ]
+        if self._layered:
+            any_kind = {"anyOf": [{"$ref": _REF + n} for n in names]}
+            cases.append({"if": {"not": {"required": ["kind"]}}, "then": any_kind})
+        kind_field = {"description": "Which component this is.", "oneOf": words}
+        required = {} if self._layered else {"required": ["kind"]}
+        return {"type": "object", "properties": {"kind": kind_field}, **required, "allOf": cases}
+
+    # ------------------------------------------------------------ making definitions
+    def _definition(self, name: str) -> Json:
+        if name not in self._made:
+            self._made[name] = self._model(self._raw[name])
+        made: Json = self._made[name]
+        return made
+
+    def _model(self, raw: Json) -> Json:
+        """A map of fields as it is written."""
+        if "properties" not in raw:
+            return raw
+        made = {k: v for k, v in raw.items() if k not in ("required", "short")}
+        fields = raw["properties"]
+        places = {k: self._place(v, k) for k, v in fields.items()}
+        if not self._layered:
+            required = sorted(fields) if self._canonical else raw.get("required", [])
+            return {**made, "properties": places, "required": required}
+        kept = "kind" if "const" in fields.get("kind", {}) else None
+        places = {k: v if k == kept else _or_null(v) for k, v in places.items()}
+        dotted = dict(sorted(self._paths(fields)))
+        patterns = {"patternProperties": dotted} if dotted else {}
+        return {**made, "properties": places, **patterns}
+
+    def _place(self, raw: Json, name: str) -> Json:
+        """The schema of a field's value."""
+        extra = {k: v for k, v in raw.items() if k in ("description", "default")}
+        names = self._components(raw)
+        if names:
+            return {**extra, **self._union(tuple(names), name)}
+        if "$ref" in raw:
+            model = _short(raw["$ref"])
+            about = {k: v for k, v in self._raw[model].items() if k == "description"}
+            return {**about, **extra, **self._with_short_form(model)}
+        if "anyOf" in raw:
+            return {**raw, "anyOf": [self._place(a, name) for a in raw["anyOf"]]}
+        if isinstance(raw.get("additionalProperties"), dict):
+            return self._map(raw, name)
+        if "items" in raw:
+            return {**raw, "items": self._place(raw["items"], name)}
+        return raw
+
+    def _union(self, names: tuple[str, ...], field: str) -> Json:
+        """A reference to one definition for each set of components, named after a field."""
+        if names not in self._unions:
+            others = (f"{field}{i}" for i in count(2))
+            free = next(n for n in chain([field], others) if n not in self._made)
+            self._unions[names] = free
+            self._made[free] = self.one_of(names)
+        return {"$ref": _REF + self._unions[names]}
+
+    def _with_short_form(self, name: str) -> Json:
+        """A part; or, where it has a short form, the one field that is enough."""
+        field = self._raw[name].get("short")
+        if field is None or self._canonical:
+            return {"$ref": _REF + name}
+        whole, short = {"$ref": _REF + name}, self._raw[name]["properties"][field]["anyOf"]
+        return {"anyOf": [*short, whole]}
+
+    def _map(self, raw: Json, name: str) -> Json:
+        """Named members; a dotted key leads into one of them."""
+        member = self._place(raw["additionalProperties"], name)
+        made = {k: v for k, v in raw.items() if k != "additionalProperties"}
+        if not self._layered:
+            return {**made, "additionalProperties": member}
+        dotted = {f"^[^.]+\\.{p}$": v for p, v in self._below(raw["additionalProperties"], name)}
+        patterns = {"^[^.]+$": _or_null(member), **dotted}
+        return {**made, "patternProperties": patterns, "additionalProperties": False}
+
+    # ------------------------------------------------------------------- dotted keys
+    def _paths(self, fields: Json) -> Iterator[tuple[str, Json]]:
+        """Pattern and schema of every dotted key into some fields."""
+        for name, raw in fields.items():
+            for path, schema in self._below(raw, name):
+                yield f"^{name}\\.{path}$", schema
+
+    def _below(self, raw: Json, name: str) -> Iterator[tuple[str, Json]]:
+        """Paths below a value, as patterns without anchors."""
+        models = self._components(raw) or self._models(raw)
+        fields = list(dict.fromkeys(f for m in models for f in self._raw[m]["properties"]))
+        for field in fields:
+            owners = [m for m in models if field in self._raw[m]["properties"]]
+            places = [{"$ref": f"{_REF}{m}/properties/{field}"} for m in owners]
+            yield field, places[0] if len(places) == 1 else {"anyOf": places}
+            deeper: dict[str, list[Json]] = {}
+            for owner in owners:
+                for path, schema in self._below(self._raw[owner]["properties"][field], field):
+                    deeper.setdefault(path, []).append(schema)
+            for path, schemas in deeper.items():
+                yield f"{field}\\.{path}", _any_of(schemas)
+        for member in self._members(raw):
+            yield "[^.]+", _or_null(self._place(member, name))
+            for path, schema in self._below(member, name):
+                yield f"[^.]+\\.{path}", schema
+
+    def _components(self, raw: Json) -> list[str]:
+        """Definitions of the components that a place takes; none for another place."""
+        listed = raw.get("oneOf", [raw])
+        names = [_short(one["$ref"]) for one in listed if "$ref" in one]
+        return [n for n in names if "const" in self._raw[n].get("properties", {}).get("kind", {})]
+
+    def _models(self, raw: Json) -> list[str]:
+        """Definitions of plain maps of fields that a place takes."""
+        names = [_short(one["$ref"]) for one in raw.get("anyOf", [raw]) if "$ref" in one]
+        return [n for n in names if "properties" in self._raw[n]]
+
+    def _members(self, raw: Json) -> list[Json]:
+        maps = [one.get("additionalProperties") for one in raw.get("anyOf", [raw])]
+        return [m for m in maps if isinstance(m, dict)]
+
+    def _kind(self, name: str) -> str:
+        return str(self._raw[name]["properties"]["kind"]["const"])
+
+
+def described(schema: Json) -> Json:
+    """A copy without the double backticks of docstrings."""
+    return json.loads(json.dumps(schema).replace("``", "`"))  # type: ignore[no-any-return]
+
+
+def _or_null(schema: Json) -> Json:
+    """A value, or ``null``, which goes back to the default."""
+    if "$ref" in schema:
+        rest = {k: v for k, v in schema.items() if k != "$ref"}
+        return {**rest, "anyOf": [{"$ref": schema["$ref"]}, _NULL]}
+    if "anyOf" in schema:
+        return {**schema, "anyOf": [*(a for a in schema["anyOf"] if a != _NULL), _NULL]}
+    if "const" in schema:
+        rest = {k: v for k, v in schema.items() if k != "const"}
+        return _or_null({**rest, "enum": [schema["const"]]})
+    if "enum" in schema:
+        return {**schema, "type": ["string", "null"], "enum": [*schema["enum"], None]}
+    if isinstance(schema.get("type"), str):
+        return {**schema, "type": [schema["type"], "null"]}
+    return schema
+
+
+def _any_of(schemas: Sequence[Json]) -> Json:
+    flat = [s for one in schemas for s in one.get("anyOf", [one])]
+    unique = list({json.dumps(s, sort_keys=True): s for s in flat}.values())
+    return unique[0] if len(unique) == 1 else {"anyOf": unique}
+
+
+def _short(reference: str) -> str:
+    return reference.removeprefix(_REF)
+
+
+def _refs(schema: Any) -> Iterator[str]:
+    """Names of the definitions that a schema refers to."""
+    if isinstance(schema, dict):
+        for key, value in schema.items():
+            if key == "$ref" and isinstance(value, str):
+                yield _short(value).partition("/")[0]
+            else:
+                yield from _refs(value)
+    elif isinstance(schema, list):
+        for item in schema:
+            yield from _refs(item)
+
+
+def _without_titles(schema: Any, *, names: bool = False) -> Any:
+    """A copy without the titles that pydantic makes of names; ``names``: keys are names."""
+    if isinstance(schema, list):
+        return [_without_titles(item) for item in schema]
+    if not isinstance(schema, dict):
+        return schema
+    return {
+        key: _without_titles(value, names=key in ("properties", "$defs") and not names)
+        for key, value in schema.items()
+        if names or key != "title" or not isinstance(value, str)
+    }
+
+
+def _short_names(defs: Json, roots: Sequence[str]) -> dict[str, str]:
+    """Definition -> class name, for those in use; the long name where two classes share one."""
+    used, waiting = set[str](), list(roots)
+    while waiting:
+        name = waiting.pop()
+        if name not in used:
+            used.add(name)
+            fields = defs[name].get("properties", {})
+            waiting += _refs({k: v for k, v in fields.items() if k != _ELSEWHERE})
+    shared = Counter(n.rpartition("__")[2] for n in used)
+    return {n: last if shared[last := n.rpartition("__")[2]] == 1 else n for n in used}
+
+
+def _renamed(schema: Any, names: dict[str, str]) -> Any:
+    """The definitions that have a name, under that name."""
+    text = json.dumps({new: schema[old] for old, new in sorted(names.items())})
+    reference = re.compile(rf'"{re.escape(_REF)}([^"]+)"')
+    renamed = reference.sub(lambda m: f'"{_REF}{names.get(m[1], m[1])}"', text)
+    return json.loads(renamed)
