@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
+from crowdbot.core.crowd.draws import chosen
 from crowdbot.core.interfaces import EnvironmentParts
 from crowdbot.core.realisation import Realisation
 from crowdbot.core.registry import Registry
 from crowdbot.dsl.scenario import Crowd, Scenario
+from crowdbot.dsl.seeds import stream_seed
 
 
 def build_crowd(
@@ -20,13 +22,13 @@ def build_crowd(
         return None
     costs = [registry.build(c) for c in crowd.costs.values()]
     return CrowdEngine(
-        _agents(realisation),
+        _agents(realisation, crowd),
         _world(scenario, crowd, realisation, parts),
         lambda agents: registry.build(crowd.policy, costs, agents),
     )
 
 
-def _agents(drawn: Realisation) -> Agents:
+def _agents(drawn: Realisation, crowd: Crowd) -> Agents:
     return Agents.of(
         id=drawn.id,
         x=drawn.x,
@@ -37,6 +39,11 @@ def _agents(drawn: Realisation) -> Agents:
         max_acceleration=drawn.max_acceleration,
         mass=drawn.mass,
         start_time=drawn.start_time,
+        ignores_robot=chosen(
+            stream_seed(crowd.seed.root, crowd.seed.key, "crowd.reaction"),
+            drawn.id,
+            crowd.robot_response.ignoring,
+        ),
     )
 
 
@@ -46,9 +53,11 @@ def _world(
     names = crowd.flow.portals if crowd.flow.direction == "in" else crowd.flow.portals[::-1]
     response = crowd.robot_response
     return CrowdWorld(
-        walls=np.ascontiguousarray(parts.walls[parts.stops_crowd]),
-        entrance=np.array(parts.portals[names[0]]),
-        out=np.array(parts.portals[names[1]]),
+        walls=parts.walls[parts.stops_crowd],
+        pillars=parts.pillars,
+        torus=parts.torus,
+        entrance=np.array([parts.portals[names[0]]]),
+        out=np.array([parts.portals[names[1]]]),
         response=np.array(
             [response.stiffness_moving, response.stiffness_stopped, response.slow_speed]
         ),
