@@ -31,6 +31,7 @@ def run_crowd(
     flat = engine.initial_state()
     per_sample, last = ticks(log_rate), round(duration * TICKS_PER_SECOND)
     for tick in range(last + 1):
+        log.book(flat)
         if tick % per_sample == 0:
             log.sample(tick * TICK, None, flat)
             if on_sample is not None:

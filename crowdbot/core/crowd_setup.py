@@ -8,12 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
+from crowdbot.core.crowd.draws import chosen
+from crowdbot.core.crowd.engine import PolicyFactory
 from crowdbot.core.crowd.policy import LOOP, PORTAL, REMOVE, STOP
 from crowdbot.core.interfaces import EnvironmentParts
 from crowdbot.core.realisation import Realisation
 from crowdbot.core.registry import Registry
 from crowdbot.dsl.scenario import Crowd, NamedPolicy, Scenario
-from crowdbot.errors import InputError
+from crowdbot.dsl.seeds import stream_seed
 
 #: Names of the portals of a stream, from and to.
 Flow = tuple[str, str]
@@ -29,42 +31,16 @@ def build_crowd(
     if crowd is None:
         return None
     flows, policies = _flows(realisation), _policies(crowd, realisation)
-    agents = _agents(realisation, flows, list(policies))
-    return _engine(scenario, crowd, realisation, parts, registry, agents, flows, policies)
-
-
-def _engine(
-    scenario: Scenario,
-    crowd: Crowd,
-    realisation: Realisation,
-    parts: EnvironmentParts,
-    registry: Registry,
-    agents: Agents,
-    flows: Sequence[Flow],
-    policies: dict[str, Crowd | NamedPolicy],
-) -> CrowdEngine:
-    """The engine; it knows one stream between portals and one policy so far.
-
-    Raises:
-        InputError: the crowd has people who do something else.
-    """
-    missing = {
-        "routes with an end": np.any(agents.at_goal != PORTAL),
-        "people who enter later": np.any(agents.start_time > 0.0),
-        "several pairs of portals": len(flows) > 1,
-        "several policies": len(policies) > 1,
-    }
-    if any(missing.values()):
-        words = " and ".join(name for name, needed in missing.items() if needed)
-        raise InputError(f"{scenario.id}: the crowd engine cannot simulate {words} yet")
-    (group,) = policies.values()
-    costs = [registry.build(c) for c in group.costs.values()]
-    boxes = _boxes(flows, parts)
     return CrowdEngine(
-        agents,
-        _world(scenario, crowd, realisation, parts, boxes[0, 0], boxes[0, 1]),
-        lambda a: registry.build(group.policy, costs, a),
+        _agents(crowd, realisation, flows, list(policies)),
+        _world(scenario, crowd, realisation, parts, _boxes(flows, parts)),
+        [_factory(group, registry) for group in policies.values()],
     )
+
+
+def _factory(group: Crowd | NamedPolicy, registry: Registry) -> PolicyFactory:
+    costs = [registry.build(cost) for cost in group.costs.values()]
+    return lambda agents: registry.build(group.policy, costs, agents)
 
 
 def _flows(drawn: Realisation) -> list[Flow]:
@@ -84,7 +60,9 @@ def _policies(crowd: Crowd, drawn: Realisation) -> dict[str, Crowd | NamedPolicy
     return {"": crowd, **used}
 
 
-def _agents(drawn: Realisation, flows: Sequence[Flow], policies: Sequence[str]) -> Agents:
+def _agents(
+    crowd: Crowd, drawn: Realisation, flows: Sequence[Flow], policies: Sequence[str]
+) -> Agents:
     return Agents.of(
         id=drawn.id,
         x=drawn.x,
@@ -99,6 +77,11 @@ def _agents(drawn: Realisation, flows: Sequence[Flow], policies: Sequence[str]) 
         flow=[flows.index(pair) if any(pair) else 0 for pair in drawn.portals],
         policy=[policies.index(name) for name in drawn.policy],
         routes=drawn.goals,
+        ignores_robot=chosen(
+            stream_seed(crowd.seed.root, crowd.seed.key, "crowd.reaction"),
+            drawn.id,
+            crowd.robot_response.ignoring,
+        ),
     )
 
 
@@ -107,14 +90,16 @@ def _world(
     crowd: Crowd,
     drawn: Realisation,
     parts: EnvironmentParts,
-    entrance: NDArray[np.float64],
-    out: NDArray[np.float64],
+    boxes: NDArray[np.float64],
 ) -> CrowdWorld:
     response = crowd.robot_response
     return CrowdWorld(
-        walls=np.ascontiguousarray(parts.walls[parts.stops_crowd]),
-        entrance=np.ascontiguousarray(entrance),
-        out=np.ascontiguousarray(out),
+        walls=parts.walls[parts.stops_crowd],
+        pillars=parts.pillars,
+        torus=parts.torus,
+        entrance=boxes[:, 0],
+        out=boxes[:, 1],
+        exit_point=crowd.exit_point,
         response=np.array(
             [response.stiffness_moving, response.stiffness_stopped, response.slow_speed]
         ),

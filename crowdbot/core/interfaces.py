@@ -52,6 +52,9 @@ class EnvironmentParts:
         portals: name -> (x0, x1, y0, y1), m.
         pillars: (P, 3) x, y and radius of round obstacles for robot and people, m.
         pillar_heights: (P, 2) bottom and top, m.
+        solids: convex outlines (K, 2), counter-clockwise, of what the robot collides with as a
+            whole, m; sensors and people meet their sides, which are among ``walls``.
+        solid_heights: (B, 2) bottom and top, m.
         torus: (x0, x1, y0, y1) of a floor on which people who leave on one side come back on the
             other and see each other across the border, m; None for a floor with borders.
     """
@@ -64,6 +67,8 @@ class EnvironmentParts:
     portals: Mapping[str, tuple[float, float, float, float]]
     pillars: Array = field(default_factory=lambda: np.zeros((0, 3)))
     pillar_heights: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    solids: tuple[Array, ...] = ()
+    solid_heights: Array = field(default_factory=lambda: np.zeros((0, 2)))
     torus: tuple[float, float, float, float] | None = None
 
 

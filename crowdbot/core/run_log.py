@@ -22,11 +22,11 @@ class RunLog:
     def __init__(self, writer: RecordingWriter, agent_id: NDArray[np.int64]) -> None:
         self.writer = writer
         self._id = agent_id
-        self._trip = np.zeros(len(agent_id))  # trip number at the latest sample
-        self._trip_start = np.zeros(len(agent_id))
-        self._arrived = np.zeros(len(agent_id))  # latest arrival that is booked
+        self._jumps = np.zeros(len(agent_id))  # at the latest sample
+        self._arrivals = np.zeros(len(agent_id))  # what is booked already
         self._touches = np.zeros(len(agent_id))
         self.contacts = 0
+        self.trips = 0
         self.clamped = 0
         self._steps = 0
         self._step_sum = self._step_max = 0.0
@@ -37,20 +37,27 @@ class RunLog:
         if crowd is not None:
             _, people = s.view(crowd)
             agents = people[:, s.X : s.VY + 1].T.copy()
-            agents[:, people[:, s.WAITING] != 0.0] = np.nan
-            jump = people[:, s.TRIP] != self._trip
-            self._book_trips(people)
+            agents[:, people[:, s.WAITING] != s.PRESENT] = np.nan
+            jump = people[:, s.JUMPS] != self._jumps
+            self._jumps = people[:, s.JUMPS].copy()
         self.writer.state(t, None if robot is None else _robot_row(robot), agents, jump)
 
-    def book_contacts(self, crowd: Array) -> None:
-        """Record contacts that ended since the last call; to be called every tick."""
-        if int(crowd[s.CONTACTS]) == self.contacts:
-            return
-        _, people = s.view(crowd)
-        for i in np.flatnonzero(people[:, s.TOUCHES] != self._touches):
-            self._contact(people, i)
-        self._touches = people[:, s.TOUCHES].copy()
-        self.contacts = int(crowd[s.CONTACTS])
+    @property
+    def events(self) -> int:
+        """Number of trips and contacts that are booked."""
+        return self.trips + self.contacts
+
+    def book(self, crowd: Array) -> None:
+        """Record trips and contacts that ended since the last call; to be called every tick."""
+        header, people = s.view(crowd)
+        if int(header[s.TRIPS]) != self.trips:
+            self._book_trips(people)
+            self.trips = int(header[s.TRIPS])
+        if int(header[s.CONTACTS]) != self.contacts:
+            for i in np.flatnonzero(people[:, s.TOUCHES] != self._touches):
+                self._contact(people, i)
+            self._touches = people[:, s.TOUCHES].copy()
+            self.contacts = int(header[s.CONTACTS])
 
     def command(self, t: float, command: Command, seconds: float, clamped: bool) -> None:
         """One step of the planner."""
@@ -70,22 +77,21 @@ class RunLog:
         """Book what is still going on at the end: trips that were not finished, contacts."""
         if crowd is None:
             return
+        self.book(crowd)
         _, people = s.view(crowd)
-        self._book_trips(people)
-        for i in np.flatnonzero(people[:, s.WAITING] == 0.0):
-            self.writer.trip(int(self._id[i]), self._trip_start[i], t, False)
+        under_way = (people[:, s.ON_TRIP] != 0.0) & (people[:, s.WAITING] == s.PRESENT)
+        for i in np.flatnonzero(under_way):
+            self.writer.trip(int(self._id[i]), float(people[i, s.TRIP_START]), t, False)
         for i in np.flatnonzero(people[:, s.TOUCHING] != 0.0):
             self._contact(people, i)
             self.contacts += 1
 
     def _book_trips(self, people: Array) -> None:
-        """At most one arrival and one re-entry per agent lie between two samples."""
-        for i in np.flatnonzero(people[:, s.ARRIVED] != self._arrived):
-            end = float(people[i, s.ARRIVED])
-            self.writer.trip(int(self._id[i]), float(self._trip_start[i]), end, True)
-        self._arrived = people[:, s.ARRIVED].copy()
-        self._trip = people[:, s.TRIP].copy()
-        self._trip_start = people[:, s.TRIP_START].copy()
+        """At most one arrival per agent lies between two ticks."""
+        for i in np.flatnonzero(people[:, s.ARRIVALS] != self._arrivals):
+            start, end = people[i, s.LAST_START], people[i, s.ARRIVED]
+            self.writer.trip(int(self._id[i]), float(start), float(end), True)
+        self._arrivals = people[:, s.ARRIVALS].copy()
 
     def _contact(self, people: Array, i: np.signedinteger[Any]) -> None:
         row = people[i]

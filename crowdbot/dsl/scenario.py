@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Le
-from pydantic import Field, PrivateAttr, SerializeAsAny, field_validator
+from annotated_types import Ge, Gt, Le, Lt
+from pydantic import Field, PrivateAttr, SerializeAsAny, field_validator, model_validator
 
 from crowdbot.dsl.areas import GoalArea
 from crowdbot.dsl.base import (
@@ -79,9 +79,17 @@ class Body(Spec):
 class RobotResponse(Spec):
     """How people take the robot: behaviour, not contact.
 
-    Inside the perceived disc they feel a one-sided steering force, ``stiffness × overlap``.
+    Those who yield see it, and inside the perceived disc they feel a one-sided steering force,
+    ``stiffness × overlap``. Those who ignore it walk as if it were not there, until they touch it.
     """
 
+    reaction: Literal["yield", "ignore", "mixed"] = Field(
+        default="yield", description="Who takes notice of the robot: all, nobody, or some."
+    )
+    ignoring_fraction: Annotated[float, Gt(0), Lt(1)] | None = Field(
+        default=None,
+        description="With `mixed`: the fraction of people who ignore the robot, drawn by id.",
+    )
     margin: NonNegativeLength = Field(
         default=0.25, description="Perceived radius minus real radius of the robot, m."
     )
@@ -97,6 +105,19 @@ class RobotResponse(Spec):
     velocity: Literal["visible", "hidden"] = Field(
         default="visible", description="Whether people see how the robot moves."
     )
+
+    @model_validator(mode="after")
+    def _fraction_of_a_mixture(self) -> RobotResponse:
+        if (self.reaction == "mixed") != (self.ignoring_fraction is not None):
+            raise ValueError("reaction 'mixed' and ignoring_fraction belong together")
+        return self
+
+    @property
+    def ignoring(self) -> float:
+        """Fraction of people who ignore the robot."""
+        if self.ignoring_fraction is not None:
+            return self.ignoring_fraction
+        return 1.0 if self.reaction == "ignore" else 0.0
 
 
 class NamedPolicy(Spec):
@@ -127,6 +148,11 @@ class Crowd(Spec):
     )
     policies: dict[str, NamedPolicy] = Field(
         default={}, description="Named policies for spawns and agents that follow another one."
+    )
+    exit_point: Literal["random", "offset"] = Field(
+        default="random",
+        description="Where people come out of a portal: anywhere in it, or opposite to where "
+        "they went in.",
     )
     robot_response: RobotResponse = Field(
         default=RobotResponse(), description="How people take the robot."

@@ -45,7 +45,7 @@ def _log(count: int) -> tuple[RunLog, Rows, Any, Any]:
     rows = Rows()
     flat = np.zeros(s.size(count))
     _, people = s.view(flat)
-    people[:, s.X] = np.arange(count)
+    people[:, s.X], people[:, s.ON_TRIP] = np.arange(count), 1.0
     return RunLog(cast(RecordingWriter, rows), np.arange(count) + 10), rows, flat, people
 
 
@@ -62,27 +62,41 @@ def test_absent_people_are_nan_and_present_ones_copied() -> None:
     assert list(jump) == [False] * 3
 
 
+def _arrive(flat: Any, i: int, start: float, end: float, **columns: float) -> None:
+    """What the engine writes at an arrival."""
+    header, people = s.view(flat)
+    header[s.TRIPS] += 1.0
+    people[i, s.ARRIVALS] += 1.0
+    people[i, [s.LAST_START, s.ARRIVED, s.ON_TRIP]] = start, end, 0.0
+    for name, value in columns.items():
+        people[i, getattr(s, name)] = value
+
+
 def test_a_trip_is_booked_once_when_it_is_over() -> None:
     log, rows, flat, people = _log(2)
     log.sample(0.0, None, flat)
-    people[1, [s.WAITING, s.ARRIVED]] = 1.0, 0.51
+    log.book(flat)
+    _arrive(flat, 1, 0.0, 0.51, WAITING=s.AT_PORTAL)
+    log.book(flat)
+    log.book(flat)
     log.sample(0.5625, None, flat)
-    log.sample(0.6250, None, flat)
     assert rows.trips == [(11, 0.0, 0.51, True)]
-    people[1, [s.WAITING, s.TRIP, s.TRIP_START]] = 0.0, 1.0, 0.65
-    log.sample(0.6875, None, flat)
-    log.sample(0.75, None, flat)
+    people[1, [s.WAITING, s.JUMPS, s.TRIP_START, s.ON_TRIP]] = s.PRESENT, 1.0, 0.65, 1.0
+    for t in (0.6875, 0.75):
+        log.book(flat)
+        log.sample(t, None, flat)
     assert [list(row[3]) for row in rows.states] == [
-        [False, False], [False, False], [False, False], [False, True], [False, False],
+        [False, False], [False, False], [False, True], [False, False],
     ]  # fmt: skip
     log.finish(1.0, flat)
     assert rows.trips[1:] == [(10, 0.0, 1.0, False), (11, 0.65, 1.0, False)]
 
 
 def test_leaving_and_coming_back_between_two_samples() -> None:
-    log, rows, flat, people = _log(1)
+    log, rows, flat, _people = _log(1)
     log.sample(0.0, None, flat)
-    people[0, [s.ARRIVED, s.TRIP, s.TRIP_START]] = 0.02, 1.0, 0.03
+    _arrive(flat, 0, 0.0, 0.02, JUMPS=1.0, TRIP_START=0.03, ON_TRIP=1.0)
+    log.book(flat)
     log.sample(0.0625, None, flat)
     assert rows.trips == [(10, 0.0, 0.02, True)]
     assert list(rows.states[-1][3]) == [True]
@@ -90,25 +104,43 @@ def test_leaving_and_coming_back_between_two_samples() -> None:
     assert rows.trips[-1] == (10, 0.03, 0.07, False)
 
 
-def test_events_after_the_last_sample_are_booked_at_the_end() -> None:
-    log, rows, flat, people = _log(2)
+def test_several_waypoints_between_two_samples_are_trips_but_no_jumps() -> None:
+    log, rows, flat, _people = _log(1)
     log.sample(0.0, None, flat)
-    people[0, [s.ARRIVED, s.WAITING]] = 0.04, 1.0
+    for start, end in ((0.0, 0.01), (0.01, 0.03), (0.03, 0.04)):
+        _arrive(flat, 0, start, end, TRIP_START=end, ON_TRIP=1.0)
+        log.book(flat)
+    log.sample(0.0625, None, flat)
+    assert rows.trips == [(10, 0.0, 0.01, True), (10, 0.01, 0.03, True), (10, 0.03, 0.04, True)]
+    assert list(rows.states[-1][3]) == [False]
+
+
+@pytest.mark.parametrize("where", [s.NOT_YET, s.GONE, s.AT_PORTAL])
+def test_who_is_outside_at_the_end_is_on_no_trip(where: float) -> None:
+    log, rows, flat, people = _log(2)
+    people[1, s.WAITING] = where
     log.finish(0.05, flat)
-    assert rows.trips == [(10, 0.0, 0.04, True), (11, 0.0, 0.05, False)]
+    assert rows.trips == [(10, 0.0, 0.05, False)]
+
+
+def test_who_rests_at_the_goal_is_on_no_trip() -> None:
+    log, rows, flat, _people = _log(1)
+    _arrive(flat, 0, 0.0, 0.04)
+    log.finish(9.0, flat)
+    assert rows.trips == [(10, 0.0, 0.04, True)]
 
 
 def test_contacts_are_booked_when_they_end() -> None:
     log, rows, flat, people = _log(2)
     people[1, s.TOUCHING] = 1.0
-    log.book_contacts(flat)
+    log.book(flat)
     assert rows.contacts == []
     columns = [s.TOUCH_START, s.TOUCH_END, s.TOUCH_IMPULSE, s.TOUCH_PEAK, s.TOUCH_SPEED]
     people[1, columns] = 0.1, 0.2, 3.0, 400.0, 0.7
     people[1, [s.TOUCHING, s.TOUCHES]] = 0.0, 1.0
     flat[s.CONTACTS] = 1.0
-    log.book_contacts(flat)
-    log.book_contacts(flat)
+    log.book(flat)
+    log.book(flat)
     assert rows.contacts == [
         {"t0": 0.1, "t1": 0.2, "agent": 11, "impulse": 3.0, "peak_force": 400.0,
          "relative_speed": 0.7}
@@ -123,7 +155,7 @@ def test_two_contacts_in_one_tick() -> None:
     log, rows, flat, people = _log(3)
     people[[0, 2], s.TOUCHES] = 1.0
     flat[s.CONTACTS] = 2.0
-    log.book_contacts(flat)
+    log.book(flat)
     assert [c["agent"] for c in rows.contacts] == [10, 12]
 
 

@@ -127,9 +127,8 @@ def segment_time(a: Array, b: Array, v: Array, radius: float) -> Array:
     distance = float(a @ normal)
     closing = (v @ normal) * np.sign(distance)
     with np.errstate(divide="ignore", invalid="ignore"):
-        crossing = abs(distance) / closing  # of the centre, as the original engine tests it
-        at = v @ along * crossing - a @ along
         touch = np.maximum(0.0, (abs(distance) - radius) / closing)
+        at = v @ along * touch - a @ along
     hit = (closing > 1e-5 / length) & (at >= 0.0) & (at <= length)
     return np.minimum(first, np.where(hit, touch, np.inf))
 

@@ -35,6 +35,20 @@ class Straight:
         return np.zeros_like(view.position)
 
 
+@dataclass
+class ToGoal:
+    """Everybody walks straight to the goal, through everything, and stops there; no pushes."""
+
+    contact_stiffness: float = 0.0
+
+    def velocities(self, view: CrowdView, dt: float) -> Array:
+        assert dt > 0.0
+        offset = view.goal - view.position
+        distance = np.hypot(offset[:, 0], offset[:, 1])
+        pace = np.where(distance > view.agents.radius, view.agents.preferred_speed, 0.0)
+        return np.asarray(offset * (pace / np.maximum(distance, 1e-9))[:, np.newaxis])
+
+
 def world(**changes: object) -> CrowdWorld:
     """The challenge's corridor."""
     given: dict[str, object] = {

@@ -16,6 +16,7 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact import keep_off, push_apart
 
 DT = 1.0 / TICKS
+NO_WALLS, NO_DISCS = np.zeros((0, 4)), np.zeros((0, 3))
 
 
 def _people(position: list[tuple[float, float]]) -> Array:
@@ -26,8 +27,9 @@ def _people(position: list[tuple[float, float]]) -> Array:
 
 def _push(people: Array, radius: float = 0.33, walls: Array | None = None) -> Array:
     order = np.argsort(people[:, s.X], kind="stable")
-    segments = np.zeros((0, 4)) if walls is None else walls
-    push_apart(people, np.full(len(people), radius), order, segments, 62.5)
+    segments = NO_WALLS if walls is None else walls
+    count = len(people)
+    push_apart(people, np.full(count, radius), order, segments, NO_DISCS, np.full(count, 62.5))
     return people[:, s.PUSH_X : s.PUSH_Y + 1]
 
 
@@ -54,7 +56,7 @@ def test_pushes_balance_and_match_all_pairs(position: list[tuple[float, float]])
 def test_people_of_different_size_are_found() -> None:
     people = _people([(0.0, 0.0), (0.9, 0.0), (0.2, 3.0)])
     order = np.argsort(people[:, s.X], kind="stable")
-    push_apart(people, np.array([0.2, 0.8, 0.2]), order, np.zeros((0, 4)), 10.0)
+    push_apart(people, np.array([0.2, 0.8, 0.2]), order, NO_WALLS, NO_DISCS, np.full(3, 10.0))
     assert people[0, s.PUSH_X] == pytest.approx(-1.0)
     assert people[1, s.PUSH_X] == pytest.approx(1.0)
 
@@ -63,6 +65,16 @@ def test_a_wall_pushes_back() -> None:
     wall = np.array([[-5.0, 0.0, 5.0, 0.0]])
     assert _push(_people([(0.0, 0.23)]), walls=wall)[0] == pytest.approx([0.0, 6.25])
     assert _push(_people([(0.0, 0.4)]), walls=wall)[0] == pytest.approx([0.0, 0.0])
+
+
+def test_a_pillar_pushes_by_each_agents_own_stiffness() -> None:
+    people = _people([(1.0, 0.0), (-1.0, 0.0), (0.0, 3.0)])
+    pillar = np.array([[0.0, 0.0, 0.8]])
+    push_apart(
+        people, np.full(3, 0.33), np.array([1, 2, 0]), NO_WALLS, pillar, np.array([10.0, 20, 30])
+    )
+    assert people[:, s.PUSH_X] == pytest.approx([1.3, -2.6, 0.0])
+    assert people[:, s.PUSH_Y] == pytest.approx([0.0, 0.0, 0.0])
 
 
 def _robot(x: float, y: float, vx: float = 0.0, vy: float = 0.0) -> Array:

@@ -5,10 +5,20 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from crowdbot.core.crowd.cost import D2, NEAR_COLUMNS
 from crowdbot.core.crowd.geometry import nearest_on_segment, time_to_disc, time_to_segment
+from crowdbot.core.crowd.neighbours import (
+    BODY_COLUMNS,
+    BODY_RADIUS,
+    INDEX,
+    gather,
+    sort_bodies,
+    strip_height,
+)
 
 COORDINATE = st.floats(-6.0, 6.0)
 SPEED = st.floats(-3.0, 3.0)
@@ -93,3 +103,29 @@ def test_time_to_a_long_wall() -> None:
     assert time_to_segment(0.0, -2.0, 0.33, -50.0, 5.0, 50.0, 5.0) == math.inf
     assert time_to_segment(2.0, 0.0, 0.33, -50.0, 5.0, 50.0, 5.0) == math.inf
     assert time_to_segment(0.0, 0.0, 0.33, -50.0, 5.0, 50.0, 5.0) == math.inf
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_neighbours_are_those_of_a_plain_search(seed: int) -> None:
+    """In a crowd, in a column, in a row, around an outlier, at equal places."""
+    rng = np.random.default_rng(seed)
+    count = 150
+    bodies = np.zeros((count, BODY_COLUMNS))
+    bodies[:, :2] = rng.uniform(-15.0, 15.0, (count, 2)) * ((1, 1), (0, 1), (1, 0))[seed % 3]
+    bodies[:, BODY_RADIUS], bodies[:, INDEX] = rng.uniform(0.2, 0.5, count), np.arange(count)
+    bodies[0, :2] = (1e6, -1e6) if seed > 2 else bodies[1, :2]
+    for distance in (0.5, 3.0, 1e7):
+        table = np.zeros_like(bodies)
+        height = strip_height(bodies, count, distance)
+        low, starts = sort_bodies(bodies, count, height, table)
+        assert np.array_equal(np.sort(table[:, INDEX]), np.arange(count))
+        near = np.zeros((count, NEAR_COLUMNS))
+        for me in range(0, count, 7):
+            found = gather(table, starts, low, height, me, distance, near)
+            offset = table[:, :2] - table[me, :2]
+            expected = np.sum(offset * offset, axis=1) < distance * distance
+            expected[me] = False
+            assert found == np.count_nonzero(expected)
+            assert np.allclose(
+                sorted(near[:found, D2]), sorted(np.sum(offset * offset, axis=1)[expected])
+            )

@@ -10,8 +10,10 @@ import pytest
 from crowd_reference import Array, agents_of, choice_costs
 from oracle_cases import compiled
 
+from crowdbot.core.crowd.candidates import Sampling, fan
+from crowdbot.core.crowd.mix import Mix
 from crowdbot.core.crowd.policy import CrowdView
-from crowdbot.core.crowd.sampling import Sampler, fan
+from crowdbot.core.crowd.sampling import Sampler
 from crowdbot.dsl.base import CostFunctionSpec, Range
 from crowdbot.plugins.crowd.rvo import RvoSpec
 from crowdbot.plugins.crowd.ttca_dca import TtcaDcaSpec
@@ -59,8 +61,8 @@ def scene(seed: int, count: int = 60, robots: int = 1, length: float = 12.0) -> 
     )  # fmt: skip
 
 
-def choose(view: CrowdView, mix: list[CostFunctionSpec], candidates: Array = FAN) -> Array:
-    return Sampler(candidates, [compiled(c) for c in mix], view.agents).choose(view)
+def choose(view: CrowdView, mix: list[CostFunctionSpec]) -> Array:
+    return Sampler(Sampling(), Mix([compiled(c) for c in mix], view.agents)).choose(view)
 
 
 @pytest.mark.parametrize("mix", list(MIXES))
@@ -199,4 +201,5 @@ def test_the_fan() -> None:
     assert np.allclose(speed.reshape(3, 19), np.array([[1.0], [2.0], [3.0]]) / 3.0)
     assert np.allclose(angle.reshape(3, 19), np.linspace(-math.pi / 2, math.pi / 2, 19))
     around = fan(2, 8, 2.0 * math.pi)[1:]
+    assert np.array_equal(fan(1, 8, 2.0 * math.pi, include_base=False), around)
     assert len(np.unique(np.round(around, 9), axis=0)) == 8  # no direction twice

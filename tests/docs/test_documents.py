@@ -9,6 +9,7 @@ import sys
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 from doc_pages import PAGES, ROOT, anchors, blocks, commands, links, name_of, read, sessions
 
@@ -124,6 +125,32 @@ def test_own_arrays_print_what_the_page_shows() -> None:
     assert [line.rstrip() for line in done.stdout.splitlines()] == [
         line.rstrip() for line in shown.splitlines()
     ]
+
+
+def test_the_crowd_alone_prints_what_the_page_shows() -> None:
+    page = ROOT / "docs" / "howto" / "simulate_a_crowd.md"
+    (shown,) = (b.text for b in blocks(page) if b.language == "text")
+    script = ROOT / "docs" / "howto" / "files" / "crowd_alone.py"
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
+    assert done.stdout == shown
+
+
+def test_people_get_through_the_floor_of_the_howto() -> None:
+    from crowdbot.core.crowd_setup import build_crowd
+    from crowdbot.core.realise import realise
+    from crowdbot.core.registry import discover
+
+    suite = crowdbot.load(ROOT / "docs" / "howto" / "files" / "my_floor.yaml")
+    assert isinstance(suite, crowdbot.Suite)
+    assert [s.id for s in suite.scenarios] == ["heeded", "ignored"]
+    scenario, registry = suite.scenarios[0], discover(allow=())
+    parts = registry.build(scenario.environment)
+    engine = build_crowd(scenario, realise(scenario), parts, registry)
+    assert engine is not None
+    _, place = engine.run(30.0)
+    assert np.nanmax(np.abs(place[..., 1])) < 6.0
+    back = np.diff(place[..., 0], axis=0) < -10.0  # through the portal
+    assert np.sum(back) >= 0.9 * len(engine.agents)
 
 
 def test_the_page_of_all_fields_is_fresh() -> None:

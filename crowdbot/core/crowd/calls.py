@@ -15,7 +15,7 @@ from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 from numba.extending import intrinsic
 
-from crowdbot.core.crowd.cost import BASE, EXCESS, PREPARE
+from crowdbot.core.crowd.cost import BASE, EXCESS, GRADIENT, OPTIMUM, PREPARE
 
 
 def address_of(function: Any, signature: Any) -> int:
@@ -69,6 +69,18 @@ def _excess(
     return _call(EXCESS)
 
 
+def _gradient(
+    _: Any, at: Any, ux: Any, uy: Any, agent: Any, work: Any, params: Any, out: Any
+) -> tuple[Any, Any]:
+    return _call(GRADIENT)
+
+
+def _optimum(_: Any, at: Any, agent: Any, work: Any, params: Any, out: Any) -> tuple[Any, Any]:
+    return _call(OPTIMUM)
+
+
 call_base: Any = intrinsic(_base)
 call_prepare: Any = intrinsic(_prepare)
 call_excess: Any = intrinsic(_excess)
+call_gradient: Any = intrinsic(_gradient)
+call_optimum: Any = intrinsic(_optimum)

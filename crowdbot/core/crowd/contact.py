@@ -121,7 +121,7 @@ def _end_touch(header: Array, agents: Array, i: int) -> None:
 def keep_off(
     agents: Array, i: int, radius: Array, robots: Array, response: Array
 ) -> tuple[float, float]:
-    """Steering away from robots (m/s^2): behaviour of people, felt by them alone.
+    """Steering away from robots (m/s^2): behaviour of people who heed them, felt by them alone.
 
     Args:
         response: stiffness beside a moving and beside a stopped robot (1/s^2), and the robot
@@ -144,23 +144,36 @@ def keep_off(
 
 @njit(cache=True, error_model="numpy")
 def push_apart(
-    agents: Array, radius: Array, order: NDArray[np.int64], walls: Array, stiffness: float
+    agents: Array,
+    radius: Array,
+    order: NDArray[np.int64],
+    walls: Array,
+    discs: Array,
+    stiffness: Array,
 ) -> None:
-    """Push of overlapping people and of walls, m/s^2, into the PUSH columns.
+    """Push of overlapping people, walls and fixed discs, m/s^2, into the PUSH columns.
 
     Args:
-        order: (N,) agents sorted by x.
+        order: (N,) all agents in any order; sorted by x afterwards.
         walls: (S, 4) segments.
+        discs: (D, 3) x, y, radius: pillars, and people as they appear across a border.
+        stiffness: (N,) of what each agent feels, 1/s^2.
     """
     largest = 0.0
     for i in range(agents.shape[0]):
         agents[i, PUSH_X] = agents[i, PUSH_Y] = 0.0
         largest = max(largest, radius[i])
+    _sort_along_x(agents, order)
     for a in range(order.shape[0]):
         i = order[a]
         if agents[i, WAITING] != 0.0:
             continue
-        _push_by_walls(agents, i, radius[i], walls, stiffness)
+        _push_by_walls(agents, i, radius[i], walls, stiffness[i])
+        for d in range(discs.shape[0]):
+            reach = radius[i] + discs[d, 2]
+            px, py = _push(agents[i, X] - discs[d, 0], agents[i, Y] - discs[d, 1], reach)
+            agents[i, PUSH_X] += stiffness[i] * px
+            agents[i, PUSH_Y] += stiffness[i] * py
         for b in range(a + 1, order.shape[0]):
             j = order[b]
             if agents[j, X] - agents[i, X] >= radius[i] + largest:
@@ -170,17 +183,41 @@ def push_apart(
 
 
 @njit(cache=True, error_model="numpy")
-def _push_pair(agents: Array, i: int, j: int, reach: float, stiffness: float) -> None:
-    dx, dy = agents[i, X] - agents[j, X], agents[i, Y] - agents[j, Y]
+def _sort_along_x(agents: Array, order: NDArray[np.int64]) -> None:
+    """By x, then by row, so that the result does not depend on the order before.
+
+    From one tick to the next hardly anybody changes places: few steps.
+    """
+    for a in range(1, order.shape[0]):
+        i = order[a]
+        x, b = agents[i, X], a
+        while b > 0:
+            j = order[b - 1]
+            if agents[j, X] < x or (agents[j, X] == x and j < i):
+                break
+            order[b] = j
+            b -= 1
+        order[b] = i
+
+
+@njit(cache=True, error_model="numpy")
+def _push(dx: float, dy: float, reach: float) -> tuple[float, float]:
+    """How far discs overlap (m), away from the other; zero for centres on each other."""
     d2 = dx * dx + dy * dy
     if d2 >= reach * reach or d2 == 0.0:
-        return
+        return 0.0, 0.0
     distance = math.sqrt(d2)
-    push = stiffness * (reach - distance) / distance
-    agents[i, PUSH_X] += push * dx
-    agents[i, PUSH_Y] += push * dy
-    agents[j, PUSH_X] -= push * dx
-    agents[j, PUSH_Y] -= push * dy
+    push = (reach - distance) / distance
+    return push * dx, push * dy
+
+
+@njit(cache=True, error_model="numpy")
+def _push_pair(agents: Array, i: int, j: int, reach: float, stiffness: Array) -> None:
+    px, py = _push(agents[i, X] - agents[j, X], agents[i, Y] - agents[j, Y], reach)
+    agents[i, PUSH_X] += stiffness[i] * px
+    agents[i, PUSH_Y] += stiffness[i] * py
+    agents[j, PUSH_X] -= stiffness[j] * px
+    agents[j, PUSH_Y] -= stiffness[j] * py
 
 
 @njit(cache=True, error_model="numpy")
@@ -188,9 +225,6 @@ def _push_by_walls(agents: Array, i: int, radius: float, walls: Array, stiffness
     x, y = agents[i, X], agents[i, Y]
     for s in range(walls.shape[0]):
         nx, ny = nearest_on_segment(x, y, walls[s, 0], walls[s, 1], walls[s, 2], walls[s, 3])
-        d2 = (x - nx) ** 2 + (y - ny) ** 2
-        if 0.0 < d2 < radius * radius:
-            distance = math.sqrt(d2)
-            push = stiffness * (radius - distance) / distance
-            agents[i, PUSH_X] += push * (x - nx)
-            agents[i, PUSH_Y] += push * (y - ny)
+        px, py = _push(x - nx, y - ny, radius)
+        agents[i, PUSH_X] += stiffness * px
+        agents[i, PUSH_Y] += stiffness * py

@@ -9,65 +9,86 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.agents import PORTAL, Agents
 from crowdbot.core.crowd.contact import push_apart
-from crowdbot.core.crowd.policy import Agents, CrowdPolicy, CrowdView
-from crowdbot.core.crowd.portals import draw_goal
+from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdPolicy, CrowdView
+from crowdbot.core.crowd.portals import draw_goal, enter
+from crowdbot.core.crowd.routes import head_for
 from crowdbot.core.crowd.step import tick
-from crowdbot.core.ticks import TICK, ticks
+from crowdbot.core.crowd.torus import ENDLESS
+from crowdbot.core.crowd.willed import willed
+from crowdbot.core.crowd.world import CrowdWorld
+from crowdbot.core.ticks import TICK, TICKS_PER_SECOND, ticks
 
 Array = NDArray[np.float64]
+#: Makes the policy of a set of agents.
+PolicyFactory = Callable[[Agents], CrowdPolicy]
+
 NOBODY = np.zeros((0, 6))
 _SEEN = np.array([0, 1, 2, 3, 5])  # columns of a robot that people know: all but its true radius
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CrowdWorld:
-    """Where a crowd walks and how it takes robots.
+@dataclass(frozen=True, slots=True)
+class _Group:
+    """Agents who follow one policy and see the same."""
 
-    Attributes:
-        walls: (S, 4) segments that people avoid, m.
-        entrance, out: (4,) boxes x0, x1, y0, y1 of the portals, m.
-        response: (3,) see `crowdbot.core.crowd.contact.keep_off`.
-        robot_visible: whether people see the robot's velocity.
-        stiffness, dissipation: contact with the robot, N/m and s/m.
-        goal_key: key of the counter-based draws of goals and entries.
-        decision_rate: Hz.
-    """
-
-    walls: Array
-    entrance: Array
-    out: Array
-    response: Array
-    robot_visible: bool
-    stiffness: float
-    dissipation: float
-    goal_key: int
-    decision_rate: float
+    policy: CrowdPolicy
+    members: NDArray[np.bool_]
+    heeds_robot: bool
 
 
 class CrowdEngine:
-    """Advances a flat state vector in place; keeps no state of its own."""
+    """Advances a flat state vector in place; keeps no state of its own.
+
+    Args:
+        agents: everybody, present or to come.
+        world: where they walk.
+        policies: how they decide: a policy, a function that makes one for the agents, or a list
+            of these to which `Agents.policy` refers.
+
+    Raises:
+        ValueError: an agent refers to a policy or a portal that does not exist.
+    """
 
     def __init__(
-        self, agents: Agents, world: CrowdWorld, make_policy: Callable[[Agents], CrowdPolicy]
+        self,
+        agents: Agents,
+        world: CrowdWorld,
+        policies: CrowdPolicy | PolicyFactory | Sequence[CrowdPolicy | PolicyFactory],
     ) -> None:
+        world.check(agents)
         self.agents, self.world = agents, world
-        self._policy = make_policy(agents)
+        given = policies if isinstance(policies, Sequence) else [policies]
+        made = [p(agents) if callable(p) else p for p in given]
+        if len(agents) and not 0 <= agents.policy.min() <= agents.policy.max() < len(made):
+            raise ValueError(f"agents follow policy {agents.policy.max()} of {len(made)}")
+        self._groups = _groups(made, agents)
+        strength = [getattr(p, "contact_stiffness", CONTACT_STIFFNESS) for p in made]
+        self._push = np.array(strength, np.float64)[agents.policy]
         self._ticks_per_decision = ticks(world.decision_rate)
         self._key = np.uint64(world.goal_key)
+        self._torus = ENDLESS if world.torus is None else np.array(world.torus, np.float64)
+        self._in_turn = np.argsort(agents.id, kind="stable")
+        self._order = np.arange(len(agents))  # scratch, see `push_apart`
+        self._heeds = ~agents.ignores_robot
         self._reaction = np.zeros((len(agents), 2))
 
     def initial_state(self) -> Array:
-        """Everybody at the start, walking towards the first goal at preferred speed."""
+        """Those who start at once walk to their first goal at preferred speed; others wait."""
         flat = np.zeros(s.size(len(self.agents)))
         _, rows = s.view(flat)
         a = self.agents
         rows[:, s.X], rows[:, s.Y] = a.x, a.y
         for i in range(len(a)):
-            draw_goal(rows, i, a.id, a.radius, self.world.out, self._key)
-        to_goal = rows[:, s.GOAL_X : s.GOAL_Y + 1] - rows[:, s.X : s.Y + 1]
-        distance = np.maximum(np.hypot(to_goal[:, 0], to_goal[:, 1]), 1e-9)
-        rows[:, s.VX : s.VY + 1] = to_goal * (a.preferred_speed / distance)[:, np.newaxis]
+            if a.at_goal[i] == PORTAL:
+                draw_goal(rows, i, a.id, a.radius, self.world.out[a.flow[i]], self._key)
+            else:
+                head_for(rows, i, a.route, a.first)
+            if a.start_time[i] > 0.0:
+                rows[i, s.WAITING] = s.NOT_YET
+            else:
+                enter(rows, i, a.x[i], a.y[i], a.preferred_speed[i], 0.0)
+        rows[:, s.ON_TRIP] = (a.at_goal == PORTAL) | (np.diff(a.first) > 0)
         return flat
 
     def advance(self, flat: Array, robots: Array = NOBODY) -> None:
@@ -80,32 +101,83 @@ class CrowdEngine:
         if int(flat[s.TICK]) % self._ticks_per_decision == 0:
             self._decide(flat, robots)
         a, w = self.agents, self.world
+        _, rows = s.view(flat)
+        push_apart(rows, a.radius, self._order, w.walls, self._fixed(rows), self._push)
         tick(
-            flat, s.AGENT_COLUMNS, robots, a.id, a.radius, a.mass, a.preferred_speed,
-            a.max_speed, w.entrance, w.out, w.response, w.stiffness, w.dissipation,
-            self._key, TICK, self._reaction,
+            flat, s.AGENT_COLUMNS, robots, a.id, self._in_turn, a.radius, a.mass,
+            a.preferred_speed, a.max_speed, a.start_time, self._heeds, a.at_goal, a.flow,
+            a.route, a.first, w.entrance, w.out, w.exit_point == "offset", self._torus,
+            not w.parity, w.response, w.stiffness, w.dissipation, self._key, TICK, self._reaction,
         )  # fmt: skip
+
+    def run(self, duration: float, sample_rate: float = 16.0) -> tuple[Array, Array]:
+        """Simulate from the start, without robots.
+
+        Args:
+            duration: s.
+            sample_rate: Hz, a power of two up to 128.
+
+        Returns:
+            times (T,) in s and positions (T, N, 2) in m, NaN for who is not in the world.
+        """
+        flat, every = self.initial_state(), ticks(sample_rate)
+        times, positions = [], []
+        for now in range(round(duration * TICKS_PER_SECOND) + 1):
+            if now:
+                self.advance(flat)
+            if now % every == 0:
+                _, rows = s.view(flat)
+                here = rows[:, s.WAITING] == s.PRESENT
+                times.append(now * TICK)
+                positions.append(np.where(here[:, None], rows[:, s.X : s.Y + 1], np.nan))
+        return np.array(times), np.array(positions)
 
     def _decide(self, flat: Array, robots: Array) -> None:
         _, rows = s.view(flat)
         seen = robots[:, _SEEN]
         if not self.world.robot_visible:
             seen[:, 2:4] = 0.0
-        view = CrowdView(
+        nobody = seen[:0]
+        for group in self._groups:
+            view = self._view(flat, rows, group.members, seen if group.heeds_robot else nobody)
+            rows[view.decides, s.AX : s.AY + 1] = willed(group.policy, view)[view.decides]
+
+    def _view(
+        self, flat: Array, rows: Array, members: NDArray[np.bool_], robots: Array
+    ) -> CrowdView:
+        present = rows[:, s.WAITING] == s.PRESENT
+        return CrowdView(
             agents=self.agents,
             position=np.ascontiguousarray(rows[:, s.X : s.Y + 1]),
             velocity=np.ascontiguousarray(rows[:, s.VX : s.VY + 1]),
             goal=np.ascontiguousarray(rows[:, s.GOAL_X : s.GOAL_Y + 1]),
-            present=rows[:, s.WAITING] == 0.0,
-            robot=seen,
+            present=present,
+            robot=robots,
             walls=self.world.walls,
             dt=self._ticks_per_decision * TICK,
-        )
-        rows[:, s.AX : s.AY + 1] = self._policy.accelerations(view)
-        order = np.argsort(rows[:, s.X], kind="stable")
-        push_apart(
-            rows, self.agents.radius, order, self.world.walls, self._policy.contact_stiffness
+            t=float(flat[s.TICK]) * TICK,
+            decides=present & members,
+            pillars=self.world.pillars,
+            torus=self.world.torus,
+            diagonal=not self.world.parity,
         )
 
+    def _fixed(self, rows: Array) -> Array:
+        """Discs (D, 3) that push: pillars, and people across the border."""
+        if self.world.torus is None:
+            return self.world.pillars
+        reach = 2.0 * float(np.max(self.agents.radius, initial=0.0))
+        everybody = np.ones(len(rows), np.bool_)
+        view = self._view(np.zeros(1), rows, everybody, np.zeros((0, 5)))
+        return np.ascontiguousarray(view.others(reach)[:, [0, 1, 4]])
 
-__all__: Sequence[str] = ("CrowdEngine", "CrowdWorld")
+
+def _groups(policies: Sequence[CrowdPolicy], agents: Agents) -> list[_Group]:
+    """Everybody, by policy and by whether they heed robots."""
+    found = []
+    for number, policy in enumerate(policies):
+        for ignores in (False, True):
+            members = (agents.policy == number) & (agents.ignores_robot == ignores)
+            if np.any(members):
+                found.append(_Group(policy, members, not ignores))
+    return found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 
 
@@ -58,3 +59,49 @@ def time_to_segment(
     if t >= 0.0 and 0.0 <= along <= sx * sx + sy * sy:
         first = min(first, t)
     return first
+
+
+@njit(cache=True, error_model="numpy")
+def crossing_time(
+    vx: float, vy: float, radius: float, ax: float, ay: float, bx: float, by: float
+) -> float:
+    """As `time_to_segment`, in the original engine's way.
+
+    There the interior of a segment counts if the centre, not the point of contact, is going to
+    cross it.
+    """
+    first = math.inf
+    for ex, ey in ((ax, ay), (bx, by)):
+        first = min(first, time_to_disc(ex, ey, vx, vy, ex * ex + ey * ey - radius * radius))
+    sx, sy = bx - ax, by - ay
+    cross = vx * sy - vy * sx
+    if abs(cross) < 1e-5:
+        return first
+    t = (ax * sy - ay * sx) / cross
+    along = (vx * t - ax) * sx + (vy * t - ay) * sy
+    if t >= 0.0 and 0.0 <= along <= sx * sx + sy * sy:
+        first = min(first, max(0.0, t - radius * math.hypot(sx, sy) / abs(cross)))
+    return first
+
+
+@njit(cache=True, error_model="numpy")
+def single_angle(ax: float, ay: float, bx: float, by: float) -> float:
+    """Angle between two vectors in [0, pi] with the rounding of the original engine.
+
+    In single precision; 0 if a vector vanishes or rounding puts the cosine outside [-1, 1].
+    """
+    ax32, ay32, bx32, by32 = np.float32(ax), np.float32(ay), np.float32(bx), np.float32(by)
+    dot = np.float32(np.float32(ax32 * bx32) + np.float32(ay32 * by32))
+    a = np.float32(np.sqrt(np.float32(np.float32(ax32 * ax32) + np.float32(ay32 * ay32))))
+    b = np.float32(np.sqrt(np.float32(np.float32(bx32 * bx32) + np.float32(by32 * by32))))
+    lengths = np.float32(a * b)
+    if lengths == np.float32(0.0):
+        return 0.0
+    cosine = float(np.float32(dot / lengths))
+    return float(np.float32(math.acos(cosine))) if -1.0 <= cosine <= 1.0 else 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def opposite_taken_for_parallel(ax: float, ay: float, bx: float, by: float) -> bool:
+    """Whether the original takes the angle between two opposite vectors for 0."""
+    return ax * bx + ay * by < 0.0 and single_angle(ax, ay, bx, by) == 0.0

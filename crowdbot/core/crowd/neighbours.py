@@ -1,4 +1,4 @@
-"""Neighbour search: bodies sorted along x, swept from each one outwards."""
+"""Neighbour search: bodies in strips across y, sorted along x within each strip."""
 
 from __future__ import annotations
 
@@ -6,79 +6,169 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd.cost import D2, NVX, NVY, REACH, RX, RY, Array
+from crowdbot.core.crowd.cost import (
+    AX,
+    AY,
+    BX,
+    BY,
+    D2,
+    NEAR_COLUMNS,
+    NPX,
+    NPY,
+    NVX,
+    NVY,
+    NX,
+    NY,
+    REACH,
+    RX,
+    RY,
+    STATIC,
+    WALL_D2,
+    Array,
+)
+from crowdbot.core.crowd.geometry import nearest_on_segment
 
-# Columns of a sorted body table.
-BX, BY, BVX, BVY, BRADIUS, BINDEX = range(6)
-BODY_COLUMNS = 6
+# Columns of a body table: position, velocity, radius, preferred velocity, 1 for a pillar, index
+# of the agent or -1.
+X, Y, VX, VY, BODY_RADIUS, WANTED_X, WANTED_Y, PILLAR, INDEX = range(9)
+BODY_COLUMNS = 9
+_NARROWEST = 1.0  # strip, m
+_MOST_STRIPS = 512
+
+Starts = NDArray[np.int64]
 
 
 @njit(cache=True, error_model="numpy")
-def sort_bodies(
-    position: Array,
-    velocity: Array,
-    radius: Array,
-    present: NDArray[np.bool_],
-    robots: Array,
-    bodies: Array,
-) -> int:
-    """Write everybody present and the robots to ``bodies``; return how many they are.
-
-    Args:
-        position, velocity: (N, 2).
-        radius, present: (N,).
-        robots: (K, 5) x, y, vx, vy, radius; their index is -1.
-        bodies: (>= N + K, 6) output, sorted by x; people before robots where x is equal.
-    """
-    people = position.shape[0]
-    x = np.empty(people + robots.shape[0])
-    who = np.empty(people + robots.shape[0], np.int64)
-    count = 0
-    for i in range(people):
-        if present[i]:
-            x[count], who[count] = position[i, 0], i
-            count += 1
-    for r in range(robots.shape[0]):
-        x[count], who[count] = robots[r, 0], people + r
-        count += 1
-    order = np.argsort(x[:count], kind="mergesort")  # stable
+def strip_height(bodies: Array, count: int, reach: float) -> float:
+    """Height of strips that suits a search within ``reach``, m."""
+    low, high = np.inf, -np.inf
     for b in range(count):
-        i = who[order[b]]
-        if i < people:
-            bodies[b, BX], bodies[b, BY] = position[i, 0], position[i, 1]
-            bodies[b, BVX], bodies[b, BVY] = velocity[i, 0], velocity[i, 1]
-            bodies[b, BRADIUS], bodies[b, BINDEX] = radius[i], i
-        else:
-            bodies[b, :BINDEX], bodies[b, BINDEX] = robots[i - people], -1.0
-    return count
+        low, high = min(low, bodies[b, Y]), max(high, bodies[b, Y])
+    height = max(_NARROWEST, 0.5 * min(reach, high - low))
+    return max(height, (high - low) / (_MOST_STRIPS - 1))
 
 
 @njit(cache=True, error_model="numpy")
-def gather(bodies: Array, total: int, me: int, distance: float, near: Array) -> int:
+def sort_bodies(bodies: Array, count: int, height: float, table: Array) -> tuple[float, Starts]:
+    """Write the first ``count`` bodies to ``table``, strip by strip, each sorted by x.
+
+    The order depends on where bodies are, not on their order in ``bodies``.
+
+    Returns:
+        lower border of the first strip (m); then for each strip, and for none after the last, its
+        first row and where the latest search in it began, which spares the next one the way.
+    """
+    low, high = np.inf, -np.inf
+    for b in range(count):
+        low, high = min(low, bodies[b, Y]), max(high, bodies[b, Y])
+    strips = int((high - low) / height) + 1 if count else 0
+    starts = np.zeros((strips + 1, 2), np.int64)
+    order = np.argsort(bodies[:count, X], kind="mergesort")  # stable
+    for b in range(1, count):  # equal x: by y
+        a = b
+        while (
+            a > 0
+            and bodies[order[a - 1], X] == bodies[order[a], X]
+            and bodies[order[a - 1], Y] > bodies[order[a], Y]
+        ):
+            order[a - 1], order[a] = order[a], order[a - 1]
+            a -= 1
+    for b in range(count):
+        starts[int((bodies[b, Y] - low) / height) + 1, 0] += 1
+    for s in range(strips):
+        starts[s + 1, 0] += starts[s, 0]
+    starts[:, 1] = starts[:, 0]
+    place = starts[:, 0].copy()
+    for a in range(count):
+        b = order[a]
+        strip = int((bodies[b, Y] - low) / height)
+        for column in range(BODY_COLUMNS):
+            table[place[strip], column] = bodies[b, column]
+        place[strip] += 1
+    return low, starts
+
+
+@njit(cache=True, error_model="numpy")
+def gather(
+    table: Array, starts: Starts, low: float, height: float, me: int, distance: float, near: Array
+) -> int:
     """Write the bodies closer than ``distance`` (centres, strict) to ``near``; return how many.
 
     Args:
-        bodies: (>= B, 6) x, y, vx, vy, radius, index; sorted by x.
-        total: how many bodies there are, B.
+        table, starts, low, height: as `sort_bodies` left them.
         me: row of the body whose neighbours are sought.
         distance: m.
-        near: (>= B, 6) output, columns as in `crowdbot.core.crowd.cost`.
+        near: (>= B, `NEAR_COLUMNS`) output, columns as in `crowdbot.core.crowd.cost`.
     """
-    px, py, radius = bodies[me, BX], bodies[me, BY], bodies[me, BRADIUS]
-    first = me
-    while first > 0 and px - bodies[first - 1, BX] < distance:
-        first -= 1
+    px, py, radius = table[me, X], table[me, Y], table[me, BODY_RADIUS]
+    last = starts.shape[0] - 2
+    bottom = max(0, int(min((py - distance - low) / height, float(last))))
+    top = int(min((py + distance - low) / height, float(last)))
+    limit, count = distance * distance, 0
+    for strip in range(bottom, top + 1):
+        first, end = starts[strip, 1], starts[strip + 1, 0]
+        while first < end and table[first, X] <= px - distance:
+            first += 1
+        while first > starts[strip, 0] and table[first - 1, X] > px - distance:
+            first -= 1
+        starts[strip, 1] = first
+        for k in range(first, end):
+            rx = table[k, X] - px
+            if rx >= distance:
+                break
+            ry = table[k, Y] - py
+            d2 = rx * rx + ry * ry
+            if d2 >= limit or k == me:
+                continue
+            near[count, D2], near[count, RX], near[count, RY] = d2, rx, ry
+            near[count, NVX], near[count, NVY] = table[k, VX], table[k, VY]
+            near[count, REACH] = radius + table[k, BODY_RADIUS]
+            near[count, NPX], near[count, NPY] = table[k, WANTED_X], table[k, WANTED_Y]
+            near[count, STATIC] = table[k, PILLAR]
+            count += 1
+    return count
+
+
+@njit(cache=True, error_model="numpy")
+def gather_walls(walls: Array, px: float, py: float, distance: float, found: Array) -> int:
+    """Write the segments not farther than ``distance`` to ``found``; return how many.
+
+    Args:
+        walls: (S, 4) ends of segments, m.
+        found: (>= S, `WALL_COLUMNS`) output, columns as in `crowdbot.core.crowd.cost`.
+    """
     count = 0
-    for k in range(first, total):
-        rx = bodies[k, BX] - px
-        if rx >= distance:
-            break
-        ry = bodies[k, BY] - py
-        d2 = rx * rx + ry * ry
-        if k == me or d2 >= distance * distance:
+    for s in range(walls.shape[0]):
+        ax, ay, bx, by = walls[s, 0] - px, walls[s, 1] - py, walls[s, 2] - px, walls[s, 3] - py
+        if min(ax, bx) > distance or max(ax, bx) < -distance:
             continue
-        near[count, D2], near[count, RX], near[count, RY] = d2, rx, ry
-        near[count, NVX], near[count, NVY] = bodies[k, BVX], bodies[k, BVY]
-        near[count, REACH] = radius + bodies[k, BRADIUS]
+        if min(ay, by) > distance or max(ay, by) < -distance:
+            continue
+        nx, ny = nearest_on_segment(0.0, 0.0, ax, ay, bx, by)
+        d2 = nx * nx + ny * ny
+        if d2 > distance * distance:
+            continue
+        found[count, AX], found[count, AY], found[count, BX], found[count, BY] = ax, ay, bx, by
+        found[count, NX], found[count, NY], found[count, WALL_D2] = nx, ny, d2
         count += 1
     return count
+
+
+__all__ = [
+    "BODY_COLUMNS",
+    "BODY_RADIUS",
+    "INDEX",
+    "NEAR_COLUMNS",
+    "PILLAR",
+    "VX",
+    "VY",
+    "WANTED_X",
+    "WANTED_Y",
+    "Starts",
+    "X",
+    "Y",
+    "gather",
+    "gather_walls",
+    "sort_bodies",
+    "strip_height",
+]  # fmt: skip

@@ -2,108 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, Protocol
+import math
+from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd.agents import LOOP, PORTAL, REMOVE, STOP, Agents
+from crowdbot.core.crowd.torus import Box, images
 
 Array = NDArray[np.float64]
 
-
-#: What happens at the end of a route: through the flow's portals and on; standing still; out of
-#: the world for good; from the first point again.
-PORTAL, STOP, REMOVE, LOOP = range(4)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Agents:
-    """What an agent keeps for the whole run; SI units.
-
-    Attributes:
-        id, x, y, preferred_speed, radius, max_speed, max_acceleration, mass: (N,).
-        start_time: (N,) when the agent enters the world, s.
-        at_goal: (N,) ``PORTAL``, ``STOP``, ``REMOVE`` or ``LOOP``.
-        flow: (N,) row of the world's portals, for ``PORTAL``.
-        policy: (N,) number of the policy that the agent follows.
-        route: (W, 2) points of all routes in the agents' order, m; for all but ``PORTAL``.
-        first: (N + 1,) rows of ``route`` that belong to agent i: first[i] to first[i + 1].
-    """
-
-    id: NDArray[np.int64]
-    x: Array
-    y: Array
-    preferred_speed: Array
-    radius: Array
-    max_speed: Array
-    max_acceleration: Array
-    mass: Array
-    start_time: Array
-    at_goal: NDArray[np.int64]
-    flow: NDArray[np.int64]
-    policy: NDArray[np.int64]
-    route: Array
-    first: NDArray[np.int64]
-
-    def __len__(self) -> int:
-        return len(self.id)
-
-    @classmethod
-    def of(
-        cls,
-        *,
-        x: ArrayLike,
-        y: ArrayLike,
-        preferred_speed: ArrayLike = 1.4,
-        id: ArrayLike | None = None,
-        radius: ArrayLike = 0.33,
-        max_speed: ArrayLike = 3.0,
-        max_acceleration: ArrayLike = 5.0,
-        mass: ArrayLike = 75.0,
-        start_time: ArrayLike = 0.0,
-        at_goal: ArrayLike | None = None,
-        flow: ArrayLike = 0,
-        policy: ArrayLike = 0,
-        routes: Sequence[Sequence[tuple[float, float]]] | None = None,
-    ) -> Agents:
-        """Agents from rows or single numbers; with routes they stop at the end, else portals."""
-        count = len(np.atleast_1d(np.asarray(x)))
-        end = (PORTAL if routes is None else STOP) if at_goal is None else at_goal
-        lengths = [0] * count if routes is None else [len(route) for route in routes]
-        points = [point for route in routes or () for point in route]
-
-        def row(values: ArrayLike, dtype: type = np.float64) -> NDArray[Any]:
-            return np.array(np.broadcast_to(np.asarray(values, dtype=dtype), (count,)))
-
-        return cls(
-            id=row(np.arange(count) if id is None else id, np.int64),
-            x=row(x),
-            y=row(y),
-            preferred_speed=row(preferred_speed),
-            radius=row(radius),
-            max_speed=row(max_speed),
-            max_acceleration=row(max_acceleration),
-            mass=row(mass),
-            start_time=row(start_time),
-            at_goal=row(end, np.int64),
-            flow=row(flow, np.int64),
-            policy=row(policy, np.int64),
-            route=np.array(points, dtype=np.float64).reshape(-1, 2),
-            first=np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]),
-        )
+#: Push between overlapping people, walls and pillars where a policy does not say, 1/s^2.
+CONTACT_STIFFNESS = 62.5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrowdView:
-    """The crowd at one decision. Read-only; world frame.
+    """The crowd at one decision. Read-only; world frame, SI units.
 
     Attributes:
+        agents: what agents keep for the whole run.
         position, velocity, goal: (N, 2), m, m/s, m.
-        present: (N,) False for agents that wait outside the world.
-        robot: (K, 5) x, y, vx, vy and perceived radius of each robot.
-        walls: (S, 4) segments.
+        present: (N,) False for agents that are outside the world.
+        robot: (K, 5) x, y, vx, vy and perceived radius of each robot that these agents heed.
+        walls: (S, 4) segments, m.
         dt: time between decisions, s.
+        t: time of the decision, s.
+        decides: (N,) whose answer is used: those present who follow this policy and heed the
+            robots shown; None is all who are present. What is returned for others is ignored.
+        pillars: (P, 3) x, y and radius of round obstacles, m.
+        torus: (x0, x1, y0, y1) of a floor whose opposite borders are one, m.
+        diagonal: whether the torus is seen across its corners, too; the original engine sees it
+            along one axis at a time.
     """
 
     agents: Agents
@@ -114,16 +46,70 @@ class CrowdView:
     robot: Array
     walls: Array
     dt: float
+    t: float = 0.0
+    decides: NDArray[np.bool_] | None = None
+    pillars: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    torus: Box | None = None
+    diagonal: bool = True
+
+    def others(self, reach: float = math.inf) -> Array:
+        """Discs (K, 5) that are seen beside the people: x, y, vx, vy, radius; m, m/s.
+
+        Robots, then pillars, which stand, then people as they appear across the border.
+
+        Args:
+            reach: distance beyond which nobody sees a centre, m.
+        """
+        if not len(self.pillars) and self.torus is None:
+            return self.robot
+        found = [self.robot, _standing(self.pillars)]
+        if self.torus is not None:
+            here = self.present
+            people = np.column_stack([self.position, self.velocity, self.agents.radius])[here]
+            found.append(images(people, self.torus, reach, diagonal=self.diagonal))
+        return np.concatenate(found)
 
 
-class CrowdPolicy(Protocol):
-    """Compute all, then apply all: the result does not depend on the agents' order."""
+def _standing(pillars: Array) -> Array:
+    discs = np.zeros((len(pillars), 5))
+    discs[:, :2], discs[:, 4] = pillars[:, :2], pillars[:, 2]
+    return discs
 
-    @property
-    def contact_stiffness(self) -> float:
-        """Push between overlapping people and walls, 1/s^2."""
-        ...
+
+class AcceleratingPolicy(Protocol):
+    """Compute all, then apply all: the result does not depend on the agents' order.
+
+    A policy of either kind may have an attribute ``contact_stiffness``: the push between
+    overlapping people, walls and pillars, 1/s^2; without it, `CONTACT_STIFFNESS`.
+    """
 
     def accelerations(self, view: CrowdView) -> Array:
         """Accelerations (N, 2) by the agents' own will, held until the next decision, m/s^2."""
         ...
+
+
+class VelocityPolicy(Protocol):
+    """The same for models that choose velocities."""
+
+    def velocities(self, view: CrowdView, dt: float) -> Array:
+        """Velocities (N, 2) to be reached within ``dt`` (s) at the latest decision, m/s.
+
+        Agents get there as far as their largest acceleration and speed allow.
+        """
+        ...
+
+
+CrowdPolicy = AcceleratingPolicy | VelocityPolicy
+
+__all__ = [
+    "CONTACT_STIFFNESS",
+    "LOOP",
+    "PORTAL",
+    "REMOVE",
+    "STOP",
+    "AcceleratingPolicy",
+    "Agents",
+    "CrowdPolicy",
+    "CrowdView",
+    "VelocityPolicy",
+]

@@ -7,17 +7,19 @@ from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import draws
+from crowdbot.core.crowd.routes import end_trip, start_trip
 from crowdbot.core.crowd.state import (
-    ARRIVED,
+    AT_PORTAL,
     ATTEMPT,
     AX,
     AY,
     GOAL_X,
     GOAL_Y,
+    JUMPS,
+    PRESENT,
     PUSH_X,
     PUSH_Y,
     TRIP,
-    TRIP_START,
     VX,
     VY,
     WAITING,
@@ -68,43 +70,78 @@ def draw_goal(
 
 @njit(cache=True, error_model="numpy")
 def leave(agents: Array, i: int, when: float) -> None:
-    """Take agent i out of the world at the end of its trip."""
-    agents[i, WAITING], agents[i, ARRIVED], agents[i, ATTEMPT] = 1.0, when, 0.0
+    """Take agent i out of the world at the end of its trip; its position is where it left."""
+    end_trip(agents, i, when)
+    agents[i, WAITING], agents[i, ATTEMPT] = AT_PORTAL, 0.0
 
 
 @njit(cache=True, error_model="numpy")
-def try_to_enter(
-    agents: Array,
-    i: int,
-    ids: NDArray[np.int64],
-    radius: Array,
-    preferred: Array,
-    robots: Array,
-    entrance: Array,
-    out: Array,
-    key: np.uint64,
-    now: float,
-) -> bool:
-    """Try one random point of the in-portal; start a new trip there if it is free."""
-    trip, attempt = int(agents[i, TRIP]), int(agents[i, ATTEMPT])
-    agents[i, ATTEMPT] += 1.0
-    u = draws.uniform(key, ids[i], trip, draws.ENTRY, 2 * attempt)
-    v = draws.uniform(key, ids[i], trip, draws.ENTRY, 2 * attempt + 1)
-    x, y = point_in(entrance, radius[i], u, v)
+def _share(at: float, low: float, high: float, margin: float) -> float:
+    """Where a coordinate lies between the sides of a box shrunk by a margin, 0 to 1."""
+    room = high - low - 2.0 * margin
+    return min(1.0, max(0.0, (at - low - margin) / room)) if room > 0.0 else 0.5
+
+
+@njit(cache=True, error_model="numpy")
+def is_free(agents: Array, i: int, radius: Array, robots: Array, x: float, y: float) -> bool:
+    """Whether agent i could stand at a point: on nobody, and clear of robots."""
     for r in range(robots.shape[0]):
         if (robots[r, 0] - x) ** 2 + (robots[r, 1] - y) ** 2 < CLEAR_OF_ROBOT**2:
             return False
     for j in range(agents.shape[0]):
         free = radius[i] + radius[j]
         away = (agents[j, X] - x) ** 2 + (agents[j, Y] - y) ** 2
-        if j != i and agents[j, WAITING] == 0.0 and away < free * free:
+        if j != i and agents[j, WAITING] == PRESENT and away < free * free:
             return False
-    agents[i, TRIP], agents[i, WAITING], agents[i, TRIP_START] = trip + 1.0, 0.0, now
-    draw_goal(agents, i, ids, radius, out, key)
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def enter(agents: Array, i: int, x: float, y: float, preferred: float, now: float) -> None:
+    """Put agent i into the world, on the way to its goal at preferred speed."""
+    agents[i, WAITING], agents[i, X], agents[i, Y] = PRESENT, x, y
     gx, gy = agents[i, GOAL_X] - x, agents[i, GOAL_Y] - y
     distance = np.hypot(gx, gy)
-    agents[i, X], agents[i, Y] = x, y
-    agents[i, VX], agents[i, VY] = preferred[i] * gx / distance, preferred[i] * gy / distance
+    pace = preferred / distance if distance > 0.0 else 0.0
+    agents[i, VX], agents[i, VY] = pace * gx, pace * gy
     for column in (AX, AY, PUSH_X, PUSH_Y):
         agents[i, column] = 0.0
-    return True
+    start_trip(agents, i, now)
+
+
+@njit(cache=True, error_model="numpy")
+def try_to_re_enter(
+    agents: Array,
+    i: int,
+    ids: NDArray[np.int64],
+    radius: Array,
+    preferred: float,
+    robots: Array,
+    entrance: Array,
+    out: Array,
+    keep_offset: bool,
+    key: np.uint64,
+    now: float,
+) -> None:
+    """Try one point of the in-portal; start a new trip there if it is free.
+
+    Args:
+        entrance, out: (4,) boxes of the agent's flow.
+        keep_offset: the point lies in the in-portal as the agent left the out-portal; else it
+            is drawn anew in each attempt.
+    """
+    trip, attempt = int(agents[i, TRIP]), int(agents[i, ATTEMPT])
+    agents[i, ATTEMPT] += 1.0
+    if keep_offset:
+        u = _share(agents[i, X], out[0], out[1], radius[i])
+        v = _share(agents[i, Y], out[2], out[3], radius[i])
+    else:
+        u = draws.uniform(key, ids[i], trip, draws.ENTRY, 2 * attempt)
+        v = draws.uniform(key, ids[i], trip, draws.ENTRY, 2 * attempt + 1)
+    x, y = point_in(entrance, radius[i], u, v)
+    if not is_free(agents, i, radius, robots, x, y):
+        return
+    agents[i, TRIP] = trip + 1.0
+    agents[i, JUMPS] += 1.0
+    draw_goal(agents, i, ids, radius, out, key)
+    enter(agents, i, x, y, preferred, now)

@@ -1,235 +1,288 @@
 """Sampling in velocity space: each agent takes the candidate of least total cost.
 
-Candidates are fixed in the frame of the preferred velocity. Their base costs are tabulated and
-sorted once per agent, so that the search stops at the first candidate whose lower bound exceeds
-the best cost so far: exact branch and bound.
+Candidates are fixed in some frame. Where that is the frame of the preferred velocity, their base
+costs are tabulated and sorted once per agent, so that the search stops at the first candidate
+whose lower bound exceeds the best cost so far: exact branch and bound. In other frames the bounds
+are computed at each decision, and candidates above the best cost are passed over.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd.calls import address_of, call_base, call_excess, call_prepare
+from crowdbot.core.crowd.candidates import (
+    ALONG_PREFERRED,
+    ZERO,
+    Sampling,
+    draw_candidates,
+    radius_of,
+)
 from crowdbot.core.crowd.cost import (
     AGENT_SIZE,
-    BASE,
-    EXCESS,
-    FASTEST,
-    NEAR_COLUMNS,
+    MAX_ACCELERATION,
+    MAX_SPEED,
+    PARITY,
     PREFERRED,
-    PREPARE,
-    PX,
-    PY,
-    RADIUS,
+    PVX,
+    RANDOM,
     TIME_STEP,
-    VX,
-    VY,
-    WORK_COLUMNS,
     Array,
-    CompiledCost,
 )
-from crowdbot.core.crowd.neighbours import (
-    BINDEX,
-    BODY_COLUMNS,
-    BRADIUS,
-    BVX,
-    BVY,
-    BX,
-    BY,
-    gather,
-    sort_bodies,
+from crowdbot.core.crowd.evaluate import Evaluator
+from crowdbot.core.crowd.mix import (
+    S_DT,
+    S_PARITY,
+    T_MAX_ACCELERATION,
+    T_MAX_SPEED,
+    T_PREFERRED,
+    Addresses,
+    Mix,
+    base_cost,
+    describe,
+    layers,
+    prepare,
 )
-from crowdbot.core.crowd.policy import Agents, CrowdView
+from crowdbot.core.crowd.neighbours import INDEX, WANTED_X, WANTED_Y, Starts
+from crowdbot.core.crowd.policy import CrowdView
+from crowdbot.core.crowd.search import (
+    AS_IT_IS,
+    frame_of,
+    in_world,
+    least_forbidden,
+    lower_bounds,
+    search,
+    try_in_order,
+)
+from crowdbot.core.crowd.single import polar, single_candidates
 
-Addresses = NDArray[np.intp]
-
-
-def fan(speeds: int, angles: int, opening: float) -> Array:
-    """Candidates (S, 2) for a preferred velocity (1, 0): rest, then rings, slow to fast.
-
-    Within a ring from -opening/2 to +opening/2, counter-clockwise.
-    """
-    turns = 2.0 * math.pi
-    step = opening / (angles if opening == turns else angles - 1)
-    theta = -0.5 * opening + step * np.arange(angles)
-    rings = [
-        np.column_stack([np.cos(theta), np.sin(theta)]) * (s / (speeds - 1))
-        for s in range(1, speeds)
-    ]
-    return np.concatenate([np.zeros((1, 2)), *rings])
+Indices = NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True)
-class CandidateTable:
-    """Per agent: lower bounds (N, S) in rising order and the candidates (N, S) they belong to."""
+class Sampler:
+    """A mix of costs over candidates, ready to decide for one set of agents."""
 
-    bound: Array
-    index: NDArray[np.int64]
+    def __init__(self, sampling: Sampling, mix: Mix) -> None:
+        self.sampling, self.mix = sampling, mix
+        s = sampling
+        self._candidates = np.zeros((s.random, 2)) if s.random else s.fan()
+        self._polar = np.zeros((1, 2)) if s.random else polar(s)
+        # Whether bounds are the same at each decision.
+        self._tabulated = not s.random and s.base == ZERO and s.direction == ALONG_PREFERRED
+        self._table_dt = math.nan
+        self._bound = np.zeros((0, 0))
+        self._index = np.zeros((0, 0), np.int64)
+        # Where each search begins: the previous choice is a good bound, and changes no choice.
+        self._first = np.zeros(len(mix.agents), np.int64)
+
+    def choose(self, view: CrowdView) -> Array:
+        """Chosen velocities (N, 2), m/s; zero for agents that are absent or have arrived."""
+        s, mix = self.sampling, self.mix
+        scene, settings = mix.scene(view), mix.settings(view)
+        if mix.vectorised:
+            return self._choose_slowly(view)
+        self._tabulate(settings)
+        chosen = np.zeros_like(view.position)
+        _choose(
+            scene.table, scene.starts, scene.low, scene.height, scene.who, scene.goal, scene.walls,
+            scene.reach, scene.agent, scene.near, scene.found, mix.traits, settings, mix.random,
+            mix.bases, mix.prepares, mix.excesses, mix.params, mix.weights, mix.work,
+            s.base, s.direction, s.radius, 0.5 * s.opening, s.random > 0, mix.ordered,
+            self._candidates, self._polar, self._tabulated, self._bound, self._index,
+            self._first, chosen,
+        )  # fmt: skip
+        return chosen
+
+    def candidates(self, view: CrowdView) -> Array:
+        """The regular candidates (N, S, 2) of everybody, or new random ones, world frame, m/s."""
+        s, mix = self.sampling, self.mix
+        scene, settings = mix.scene(view), mix.settings(view)
+        found = np.zeros((len(view.position), *self._candidates.shape))
+        _candidates_of(
+            scene.table, scene.who, scene.goal, scene.agent, mix.traits, settings, mix.random,
+            s.base, s.direction, s.radius, 0.5 * s.opening, s.random > 0, self._candidates,
+            self._polar, found,
+        )  # fmt: skip
+        return found
+
+    def _choose_slowly(self, view: CrowdView) -> Array:
+        """Every candidate by every function, for mixes with vectorised ones."""
+        found = self.candidates(view)
+        total = Evaluator(self.mix).total(view, found)
+        best = np.argmin(total, axis=1)
+        rows = np.arange(len(found))
+        chosen = found[rows, best]
+        chosen[~np.isfinite(total[rows, best])] = 0.0
+        return np.asarray(chosen)
+
+    def _tabulate(self, settings: Array) -> None:
+        """Sum the base costs of a mix and sort each agent's candidates by them."""
+        dt = settings[S_DT]
+        if not self._tabulated or self._table_dt == dt:
+            return
+        mix = self.mix
+        total = np.zeros((len(mix.agents), len(self._candidates)))
+        _tabulate(
+            self._candidates, mix.traits, self.sampling.radius, dt, mix.bases, mix.params,
+            mix.weights, total,
+        )  # fmt: skip
+        self._index = np.argsort(total, axis=1, kind="stable")
+        self._bound = np.take_along_axis(total, self._index, axis=1)
+        self._table_dt = dt
 
 
 @njit(cache=True, error_model="numpy")
 def _tabulate(
     candidates: Array,
-    preferred: Array,
-    max_speed: Array,
-    base: int,
+    traits: Array,
+    radius: int,
+    dt: float,
+    bases: Addresses,
     params: Array,
-    weight: float,
+    weights: Array,
     total: Array,
 ) -> None:
-    at = params.ctypes.data
+    params_at = layers(params)
+    agent = np.zeros(AGENT_SIZE)
     for i in range(total.shape[0]):
+        agent[PREFERRED], agent[MAX_SPEED] = traits[i, T_PREFERRED], traits[i, T_MAX_SPEED]
+        agent[PVX], agent[TIME_STEP] = agent[PREFERRED], dt
+        agent[MAX_ACCELERATION] = traits[i, T_MAX_ACCELERATION]
+        if agent[PREFERRED] <= 0.0:
+            continue  # never asked for
+        scale = radius_of(agent, radius)
         for c in range(candidates.shape[0]):
-            ux, uy = preferred[i] * candidates[c, 0], preferred[i] * candidates[c, 1]
-            total[i, c] += weight * call_base(base, ux, uy, preferred[i], max_speed[i], at)
-
-
-def tabulate(candidates: Array, agents: Agents, costs: Sequence[CompiledCost]) -> CandidateTable:
-    """Sum the base costs of a mix and sort each agent's candidates by them."""
-    total = np.zeros((len(agents), len(candidates)))
-    for cost in costs:
-        _tabulate(
-            candidates, agents.preferred_speed, agents.max_speed, address_of(cost.base, BASE),
-            cost.params, cost.weight, total,
-        )  # fmt: skip
-    index = np.argsort(total, axis=1, kind="stable")
-    return CandidateTable(np.take_along_axis(total, index, axis=1), index)
-
-
-class Sampler:
-    """A mix of costs over a fan of candidates, ready to decide for one set of agents."""
-
-    def __init__(self, candidates: Array, costs: Sequence[CompiledCost], agents: Agents) -> None:
-        self._largest = float(np.max(agents.radius, initial=0.0))
-        # Few neighbours first.
-        self._mix = sorted(costs, key=lambda c: c.reach(self._largest, self._largest))
-        self._candidates = candidates
-        self._table = tabulate(candidates, agents, self._mix)
-        self._prepares = np.array([address_of(c.prepare, PREPARE) for c in self._mix], np.intp)
-        self._excesses = np.array([address_of(c.excess, EXCESS) for c in self._mix], np.intp)
-        width = max(len(c.params) for c in self._mix)
-        self._params = np.array([np.pad(c.params, (0, width - len(c.params))) for c in self._mix])
-        self._weights = np.array([c.weight for c in self._mix])
-        # Scratch, and where each search begins: the previous choice is a good bound. Neither
-        # changes what is chosen.
-        self._bodies = np.zeros((0, BODY_COLUMNS))
-        self._work = np.zeros((0, 0, WORK_COLUMNS))
-        self._first = np.zeros(len(agents), np.int64)
-
-    def choose(self, view: CrowdView) -> Array:
-        """Chosen velocities (N, 2), m/s; zero for agents that are absent."""
-        self._make_room(len(view.position) + len(view.robot), len(view.walls))
-        count = sort_bodies(
-            view.position, view.velocity, view.agents.radius, view.present, view.robot, self._bodies
-        )
-        largest = max([self._largest, *view.robot[:, -1].tolist()])
-        reach = max(c.reach(largest, largest) for c in self._mix)
-        chosen = np.zeros_like(view.position)
-        _choose(
-            self._bodies, count, view.goal, view.agents.preferred_speed, view.walls, reach, view.dt,
-            self._candidates, self._table.bound, self._table.index, self._prepares, self._excesses,
-            self._params, self._weights, self._work, self._first, chosen,
-        )  # fmt: skip
-        return chosen
-
-    def _make_room(self, bodies: int, walls: int) -> None:
-        if len(self._bodies) < bodies:
-            self._bodies = np.zeros((bodies, BODY_COLUMNS))
-        if self._work.shape[1] < 1 + bodies + walls:
-            self._work = np.zeros((len(self._mix), 1 + bodies + walls, WORK_COLUMNS))
+            ux, uy = scale * candidates[c, 0], scale * candidates[c, 1]
+            total[i, c] = base_cost(ux, uy, agent, bases, params_at, weights)
 
 
 @njit(cache=True, error_model="numpy")
 def _choose(
-    bodies: Array,
-    total: int,
+    table: Array,
+    starts: Starts,
+    low: float,
+    height: float,
+    who: NDArray[np.bool_],
     goal: Array,
-    preferred: Array,
     walls: Array,
     reach: float,
-    dt: float,
-    candidates: Array,
-    bound: Array,
-    index: NDArray[np.int64],
+    agent: Array,
+    near: Array,
+    found: Array,
+    traits: Array,
+    settings: Array,
+    random: Array,
+    bases: Addresses,
     prepares: Addresses,
     excesses: Addresses,
     params: Array,
     weights: Array,
     work: Array,
-    first: NDArray[np.int64],
+    base: int,
+    direction: int,
+    radius: int,
+    half: float,
+    drawn: bool,
+    ordered: bool,
+    candidates: Array,
+    regular: Array,
+    tabulated: bool,
+    bounds: Array,
+    indices: Indices,
+    first: Indices,
     chosen: Array,
 ) -> None:
     """Everybody's choice; see `Sampler`."""
-    agent = np.empty(AGENT_SIZE)
-    near = np.empty((bodies.shape[0], NEAR_COLUMNS))
-    # Addresses, for the pointers that cost functions take.
-    agent_at, near_at, walls_at = agent.ctypes.data, near.ctypes.data, walls.ctypes.data
-    params_at, work_at = _layers(params), _layers(work)
-    active = np.empty(weights.shape[0], np.int64)  # costs whose excess may differ from zero
-    for b in range(total):
-        i = int(bodies[b, BINDEX])
-        if i < 0:
+    params_at, work_at = layers(params), layers(work)
+    active = np.empty(weights.shape[0], np.int64)  # functions whose excess may differ from zero
+    bound = np.empty(candidates.shape[0])
+    index = np.arange(candidates.shape[0])
+    frame = np.empty(4)  # base, then direction times radius
+    fan = candidates
+    world = np.empty(candidates.shape if settings[S_PARITY] != 0.0 else (0, 2))
+    for b in range(table.shape[0]):
+        i = int(table[b, INDEX])
+        if i < 0 or not who[i] or (table[b, WANTED_X] == 0.0 and table[b, WANTED_Y] == 0.0):
             continue
-        gx, gy = goal[i, 0] - bodies[b, BX], goal[i, 1] - bodies[b, BY]
-        to_goal = math.hypot(gx, gy)
-        if to_goal <= bodies[b, BRADIUS]:
-            continue  # arrived: the chosen velocity stays zero
-        _describe(bodies, b, preferred[i], dt, agent)
-        near_count = gather(bodies, total, b, reach, near)
-        terms = 0
-        for k in range(weights.shape[0]):
-            items = call_prepare(
-                prepares[k], agent_at, near_at, near_count, walls_at, walls.shape[0], params_at[k],
-                work_at[k],
+        describe(table, b, traits, goal, settings, random, i, agent)
+        scale = frame_of(agent, base, direction, radius, frame)
+        terms = prepare(
+            table, starts, low, height, b, walls, reach, agent, near, found, prepares, params_at,
+            weights, work_at, active,
+        )  # fmt: skip
+        to_draw = drawn
+        if settings[S_PARITY] != 0.0 and not (ordered and drawn):
+            single_candidates(agent, regular, drawn, half, radius, base, direction, world)
+            frame[:], fan, to_draw = AS_IT_IS, world, False
+        if ordered:
+            best, place = try_in_order(
+                frame, fan, to_draw, half, scale, agent, bases, excesses, params_at, work_at,
+                weights, active[:terms],
             )  # fmt: skip
-            if items > 0 and weights[k] != 0.0:
-                active[terms] = k
-                terms += 1
-        ex, ey = preferred[i] * gx / to_goal, preferred[i] * gy / to_goal
-        best, best_index, best_place = math.inf, candidates.shape[0], first[i]
-        for attempt in range(-1, candidates.shape[0]):
-            c = first[i] if attempt < 0 else attempt
-            if attempt >= 0 and (bound[i, c] > best or c == first[i]):
-                if bound[i, c] > best:
-                    break
+        elif tabulated:
+            best, place = search(
+                frame, fan, bounds[i], indices[i], True, first[i], agent, excesses,
+                params_at, work_at, weights, active[:terms],
+            )  # fmt: skip
+        else:
+            if to_draw:
+                draw_candidates(agent, half, scale, fan)
+            start = lower_bounds(frame, fan, agent, bases, params_at, weights, bound)
+            best, place = search(
+                frame, fan, bound, index, False, start, agent, excesses, params_at, work_at,
+                weights, active[:terms],
+            )  # fmt: skip
+        random[i] = agent[RANDOM]
+        if best == math.inf:
+            if agent[PARITY] == 0.0:
                 continue
-            q = index[i, c]
-            ux = candidates[q, 0] * ex - candidates[q, 1] * ey
-            uy = candidates[q, 0] * ey + candidates[q, 1] * ex
-            cost = bound[i, c]
-            for term in range(terms):
-                k = active[term]
-                budget = (best - cost) / weights[k]
-                cost += weights[k] * call_excess(
-                    excesses[k], ux, uy, budget, agent_at, work_at[k], params_at[k]
-                )
-                if cost > best:
-                    break
-            if cost < best or (cost == best and q < best_index):
-                best, best_index, best_place = cost, q, c
-                chosen[i, 0], chosen[i, 1] = ux, uy
-        first[i] = best_place
+            place = least_forbidden(
+                frame, fan, agent, bases, excesses, params_at, work_at, weights,
+                active[:terms],
+            )  # fmt: skip
+            if place < 0:
+                continue
+            c = place
+        else:
+            c = indices[i, place] if tabulated and not ordered else place
+            first[i] = place
+        chosen[i, 0], chosen[i, 1] = in_world(frame, fan, c)
 
 
 @njit(cache=True, error_model="numpy")
-def _describe(bodies: Array, b: int, preferred: float, dt: float, agent: Array) -> None:
-    agent[PX], agent[PY], agent[VX], agent[VY] = (
-        bodies[b, BX], bodies[b, BY], bodies[b, BVX], bodies[b, BVY],
-    )  # fmt: skip
-    agent[RADIUS], agent[PREFERRED], agent[TIME_STEP] = bodies[b, BRADIUS], preferred, dt
-    agent[FASTEST] = preferred
-
-
-@njit(cache=True, error_model="numpy")
-def _layers(array: Array) -> Addresses:
-    """Addresses of the parts of an array along its first axis."""
-    at = np.empty(array.shape[0], np.intp)
-    for k in range(array.shape[0]):
-        at[k] = array.ctypes.data + k * array.strides[0]
-    return at
+def _candidates_of(
+    table: Array,
+    who: NDArray[np.bool_],
+    goal: Array,
+    agent: Array,
+    traits: Array,
+    settings: Array,
+    random: Array,
+    base: int,
+    direction: int,
+    radius: int,
+    half: float,
+    drawn: bool,
+    candidates: Array,
+    regular: Array,
+    result: Array,
+) -> None:
+    frame = np.empty(4)
+    for b in range(table.shape[0]):
+        i = int(table[b, INDEX])
+        if i < 0 or not who[i] or (table[b, WANTED_X] == 0.0 and table[b, WANTED_Y] == 0.0):
+            continue
+        describe(table, b, traits, goal, settings, random, i, agent)
+        scale = frame_of(agent, base, direction, radius, frame)
+        if settings[S_PARITY] != 0.0:
+            single_candidates(agent, regular, drawn, half, radius, base, direction, result[i])
+            random[i] = agent[RANDOM]
+            continue
+        if drawn:
+            draw_candidates(agent, half, scale, candidates)
+            random[i] = agent[RANDOM]
+        for c in range(candidates.shape[0]):
+            result[i, c, 0], result[i, c, 1] = in_world(frame, candidates, c)

@@ -16,15 +16,22 @@ TICK, ROBOT_JX, ROBOT_JY, PEOPLE_JX, PEOPLE_JY, ROBOT_FX, ROBOT_FY, CONTACTS, TR
 HEADER_SIZE = 9
 
 # Agent columns: position, velocity, willed acceleration, push by people and walls (m/s^2), goal;
-# trip number, 1 while waiting outside, attempts to re-enter, start of the trip, last arrival (s);
-# contact with the robot: 1 while touching, start, end (s), impulse (N s), peak force (N),
-# relative speed before (m/s), finished contacts.
+# trip number, where the agent is (below), attempts to re-enter, start of the trip, last arrival
+# (s); contact with the robot: 1 while touching, start, end (s), impulse (N s), peak force (N),
+# relative speed before (m/s), finished contacts; 1 while on a trip, start of the last finished
+# trip (s), finished trips, next point of the route, jumps through portals and across the border,
+# sizes of the torus that the agent has gone (m).
 (
     X, Y, VX, VY, AX, AY, PUSH_X, PUSH_Y, GOAL_X, GOAL_Y,
     TRIP, WAITING, ATTEMPT, TRIP_START, ARRIVED,
     TOUCHING, TOUCH_START, TOUCH_END, TOUCH_IMPULSE, TOUCH_PEAK, TOUCH_SPEED, TOUCHES,
-) = range(22)  # fmt: skip
-AGENT_COLUMNS = 22
+    ON_TRIP, LAST_START, ARRIVALS, WAYPOINT, JUMPS, LAP_X, LAP_Y,
+) = range(29)  # fmt: skip
+AGENT_COLUMNS = 29
+
+#: Values of ``WAITING``: in the world; outside, in front of the in-portal; outside, to start
+#: later; gone for good.
+PRESENT, AT_PORTAL, NOT_YET, GONE = 0.0, 1.0, 2.0, 3.0
 
 
 def size(agents: int) -> int:

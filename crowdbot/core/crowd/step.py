@@ -1,4 +1,4 @@
-"""One tick of the crowd: contact, motion, arrival, re-entry; everything in place."""
+"""One tick of the crowd: contact, motion, arrival, entry; everything in place."""
 
 from __future__ import annotations
 
@@ -8,15 +8,25 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from crowdbot.core.crowd.agents import PORTAL
 from crowdbot.core.crowd.contact import keep_off, robot_contact
-from crowdbot.core.crowd.portals import entry_fraction, leave, try_to_enter
+from crowdbot.core.crowd.portals import enter, entry_fraction, is_free, leave, try_to_re_enter
+from crowdbot.core.crowd.routes import end_trip, next_goal, reach_fraction
 from crowdbot.core.crowd.state import (
+    ARRIVALS,
+    AT_PORTAL,
     AX,
     AY,
+    GOAL_X,
+    GOAL_Y,
     HEADER_SIZE,
+    NOT_YET,
+    ON_TRIP,
+    PRESENT,
     PUSH_X,
     PUSH_Y,
     TICK,
+    TRIP_START,
     TRIPS,
     VX,
     VY,
@@ -25,6 +35,9 @@ from crowdbot.core.crowd.state import (
     X,
     Y,
 )
+from crowdbot.core.crowd.torus import wrap
+
+Rows = NDArray[np.int64]
 
 
 @njit(cache=True, error_model="numpy")
@@ -32,13 +45,23 @@ def tick(
     flat: Array,
     columns: int,
     robots: Array,
-    ids: NDArray[np.int64],
+    ids: Rows,
+    in_turn: Rows,
     radius: Array,
     mass: Array,
     preferred: Array,
     max_speed: Array,
+    start_time: Array,
+    heeds_robot: NDArray[np.bool_],
+    at_goal: Rows,
+    flow: Rows,
+    route: Array,
+    first: Rows,
     entrance: Array,
     out: Array,
+    keep_offset: bool,
+    torus: Array,
+    goals_wrap: bool,
     response: Array,
     stiffness: float,
     dissipation: float,
@@ -54,8 +77,11 @@ def tick(
     Args:
         flat: the crowd's state, changed in place.
         robots: (R, 6) as in `crowdbot.core.crowd.contact`.
-        entrance, out: (4,) boxes x0, x1, y0, y1.
+        in_turn: (N,) rows of agents by id: the order in which they enter.
+        torus: (4,) x0, x1, y0, y1, infinite where there is no border.
         reaction: (N, 2) scratch.
+
+    Everything else is as in `Agents` and `CrowdWorld`.
     """
     header, agents = flat[:HEADER_SIZE], flat[HEADER_SIZE:].reshape(-1, columns)
     now = header[TICK] * dt
@@ -64,21 +90,65 @@ def tick(
     if robots.shape[0] == 0:
         reaction[:] = 0.0
     for i in range(agents.shape[0]):
-        if agents[i, WAITING] != 0.0:
+        if agents[i, WAITING] != PRESENT:
             continue
-        x, y = agents[i, X], agents[i, Y]
-        ax, ay = keep_off(agents, i, radius, robots, response)
+        x, y, arrivals = agents[i, X], agents[i, Y], agents[i, ARRIVALS]
+        ax, ay = keep_off(agents, i, radius, robots, response) if heeds_robot[i] else (0.0, 0.0)
         ax += agents[i, PUSH_X] + reaction[i, 0] / mass[i]
         ay += agents[i, PUSH_Y] + reaction[i, 1] / mass[i]
         _move(agents, i, max_speed[i], ax, ay, dt)
-        fraction = entry_fraction(out, x, y, agents[i, X], agents[i, Y])
-        if fraction <= 1.0:
-            leave(agents, i, now + fraction * dt)
-            header[TRIPS] += 1.0
-    for i in range(agents.shape[0]):
-        if agents[i, WAITING] != 0.0:
-            try_to_enter(agents, i, ids, radius, preferred, robots, entrance, out, key, now + dt)
+        if at_goal[i] == PORTAL:
+            _through(agents, i, x, y, out[flow[i]], now, dt)
+        elif agents[i, ON_TRIP] != 0.0:
+            _along(agents, i, x, y, at_goal[i], route, first, radius[i], now, dt)
+        if agents[i, WAITING] == PRESENT:
+            wrap(agents, i, torus, goals_wrap)
+        header[TRIPS] += agents[i, ARRIVALS] - arrivals
+    for i in in_turn:
+        if agents[i, WAITING] == AT_PORTAL:
+            f = flow[i]
+            try_to_re_enter(
+                agents, i, ids, radius, preferred[i], robots, entrance[f], out[f], keep_offset,
+                key, now + dt,
+            )  # fmt: skip
+        elif agents[i, WAITING] == NOT_YET and start_time[i] <= now + dt:
+            x, y = agents[i, X], agents[i, Y]
+            if is_free(agents, i, radius, robots, x, y):
+                on_trip = agents[i, ON_TRIP]
+                enter(agents, i, x, y, preferred[i], now + dt)
+                agents[i, ON_TRIP] = on_trip
     header[TICK] += 1.0
+
+
+@njit(cache=True, error_model="numpy")
+def _through(agents: Array, i: int, x: float, y: float, out: Array, now: float, dt: float) -> None:
+    """Agent i, which was at (x, y), leaves if it has entered its out-portal."""
+    fraction = entry_fraction(out, x, y, agents[i, X], agents[i, Y])
+    if fraction <= 1.0:
+        leave(agents, i, now + fraction * dt)
+
+
+@njit(cache=True, error_model="numpy")
+def _along(
+    agents: Array,
+    i: int,
+    x: float,
+    y: float,
+    at_goal: int,
+    route: Array,
+    first: Rows,
+    radius: float,
+    now: float,
+    dt: float,
+) -> None:
+    """Agent i, which was at (x, y), goes on to its next goal if it has reached this one."""
+    fraction = reach_fraction(
+        x, y, agents[i, X], agents[i, Y], agents[i, GOAL_X], agents[i, GOAL_Y], radius
+    )
+    if fraction <= 1.0:
+        when = max(now + fraction * dt, agents[i, TRIP_START])
+        end_trip(agents, i, when)
+        next_goal(agents, i, at_goal, route, first, radius, when)
 
 
 @njit(cache=True, error_model="numpy")

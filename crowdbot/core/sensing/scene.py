@@ -19,7 +19,7 @@ def _constant(values: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 
 class Scene:
-    """Walls, people as upright cylinders on the floor, and the robot; world frame, SI.
+    """Walls, pillars, people as upright cylinders, and the robot; world frame, SI.
 
     Built once. `update` keeps views, no copies: whoever owns the arrays may go on changing them
     in place, and the scene follows. The robot's own body is never hit.
@@ -28,6 +28,8 @@ class Scene:
         walls: (S, 4) segments x0, y0, x1, y1, m.
         wall_heights: (S, 2) bottom and top, m.
         people_radius, people_height: (M,) m.
+        pillars: (P, 3) x, y, radius of round obstacles that stand on the floor, m.
+        pillar_heights: (P,) m.
         robot: the robot's state, None before the first update or in a scene without one.
         people: (M, 4) x, y (m), vx, vy (m/s), a read-only view.
         present: (M,) bool, who is in the world, a read-only view.
@@ -39,12 +41,16 @@ class Scene:
         wall_heights: ArrayLike,
         people_radius: ArrayLike,
         people_height: ArrayLike,
+        pillars: ArrayLike = (),
+        pillar_heights: ArrayLike = (),
     ) -> None:
         self.walls = _constant(np.reshape(walls, (-1, 4)), (np.size(walls) // 4, 4))
         self.wall_heights = _constant(wall_heights, (len(self.walls), 2))
         count = np.size(people_radius)
         self.people_radius = _constant(people_radius, (count,))
         self.people_height = _constant(people_height, (count,))
+        self.pillars = _constant(np.reshape(pillars, (-1, 3)), (np.size(pillars) // 3, 3))
+        self.pillar_heights = _constant(pillar_heights, (len(self.pillars),))
         self.robot: RobotState | None = None
         self.people: Array = _constant(0.0, (count, 4))
         self.present: NDArray[np.bool_] = np.zeros(count, dtype=np.bool_)
@@ -77,7 +83,7 @@ class Scene:
     def cast(
         self, origins: Array, directions: Array, max_range: float
     ) -> tuple[Array, Array, NDArray[np.int64]]:
-        """Nearest hit of each ray on a wall or a person.
+        """Nearest hit of each ray on a wall, a pillar or a person.
 
         Fast for consecutive rays with equal origins. An origin inside a person's cylinder, or on
         its surface, hits that person at distance 0 with incidence 0.
@@ -89,9 +95,10 @@ class Scene:
 
         Returns:
             distance (R,) m, inf without a hit; incidence (R,) angle to the surface normal, rad, 0
-            without a hit; body (R,) int64, a person's index, -(2 + index) of a wall, -1 for none.
+            without a hit; body (R,) int64, a person's index, -(2 + index) of a wall, -1 for none;
+            pillars count on after the walls.
         """
-        return cast_rays(
+        hits = cast_rays(
             origins,
             directions,
             max_range,
@@ -101,4 +108,33 @@ class Scene:
             self.present,
             self.people_radius,
             self.people_height,
+        )
+        return hits if not len(self.pillars) else self._nearer(hits, origins, directions, max_range)
+
+    def _nearer(
+        self,
+        hits: tuple[Array, Array, NDArray[np.int64]],
+        origins: Array,
+        directions: Array,
+        max_range: float,
+    ) -> tuple[Array, Array, NDArray[np.int64]]:
+        """Hits on pillars where they are nearer: to rays they are people who stand."""
+        count = len(self.pillars)
+        distance, incidence, body = cast_rays(
+            origins,
+            directions,
+            max_range,
+            self.walls[:0],
+            self.wall_heights[:0],
+            np.column_stack([self.pillars[:, :2], np.zeros((count, 2))]),
+            np.ones(count, np.bool_),
+            np.ascontiguousarray(self.pillars[:, 2]),
+            self.pillar_heights,
+        )
+        nearer = distance < hits[0]
+        number = -(2 + len(self.walls) + body)
+        return (
+            np.where(nearer, distance, hits[0]),
+            np.where(nearer, incidence, hits[1]),
+            np.where(nearer, number, hits[2]),
         )

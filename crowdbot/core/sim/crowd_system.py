@@ -18,7 +18,7 @@ from crowdbot.core.ticks import TICK
 
 
 class CrowdSystem(LeafSystem):
-    """Input: robot state. Outputs: crowd state, contacts ended, generalised force on the plant."""
+    """Input: robot state. Outputs: crowd state, events, generalised force on the plant."""
 
     def __init__(self, engine: CrowdEngine, rig: RobotPlant, perceived_radius: float) -> None:
         super().__init__()
@@ -31,12 +31,12 @@ class CrowdSystem(LeafSystem):
         self._port = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         crowd = self.DeclareDiscreteState(engine.initial_state())
         force = self.DeclareDiscreteState(plant.num_velocities())
-        contacts = self.DeclareDiscreteState(1)
+        events = self.DeclareDiscreteState(1)
         self.DeclareStateOutputPort(ports.CROWD_STATE, crowd)
-        self.DeclareStateOutputPort(ports.CONTACTS, contacts)
+        self.DeclareStateOutputPort(ports.EVENTS, events)
         self.DeclareStateOutputPort(ports.ROBOT_FORCE, force)
         self._crowd, self._force = DiscreteStateIndex(crowd), DiscreteStateIndex(force)
-        self._contacts = DiscreteStateIndex(contacts)
+        self._events = DiscreteStateIndex(events)
         self.DeclarePeriodicUnrestrictedUpdateEvent(TICK, 0.0, self._update)
 
     def _update(self, context: Context, state: State) -> None:
@@ -49,4 +49,4 @@ class CrowdSystem(LeafSystem):
         fx, fy, i = header[s.ROBOT_FX], header[s.ROBOT_FY], self._start
         force = values.get_mutable_value(self._force)
         force[i : i + 5] = -self._lever * fy, self._lever * fx, 0.0, fx, fy
-        values.get_mutable_value(self._contacts)[0] = header[s.CONTACTS]
+        values.get_mutable_value(self._events)[0] = header[s.CONTACTS] + header[s.TRIPS]

@@ -75,7 +75,7 @@ def build_diagram(
     task = robot_task(robot, parts)
     builder = DiagramBuilder()
 
-    # Robot: multibody plant with floor and walls, and the one vector that stands for its state.
+    # Robot: multibody plant with floor and obstacles, and the one vector that stands for its state.
     rig = add_plant(builder, parts, model)
     state = builder.AddNamedSystem("robot_state", RobotStateSystem(rig))
     builder.Connect(rig.plant.get_state_output_port(rig.model), state.GetInputPort("plant_state"))
@@ -137,7 +137,7 @@ def build_diagram(
             builder.Connect(
                 crowd.GetOutputPort(ports.CROWD_STATE), block.GetInputPort(ports.CROWD_STATE)
             )
-        builder.Connect(crowd.GetOutputPort(ports.CONTACTS), logger.GetInputPort(ports.CONTACTS))
+        builder.Connect(crowd.GetOutputPort(ports.EVENTS), logger.GetInputPort(ports.EVENTS))
 
     return Blocks(
         diagram=builder.Build(),
@@ -154,4 +154,7 @@ def _scene(scenario: Scenario, parts: EnvironmentParts, engine: CrowdEngine | No
     count = 0 if engine is None else len(engine.agents)
     radius = np.zeros(0) if engine is None else engine.agents.radius
     height = scenario.crowd.body.height if scenario.crowd else 0.0
-    return Scene(parts.walls, parts.wall_heights, radius, np.full(count, height))
+    return Scene(
+        parts.walls, parts.wall_heights, radius, np.full(count, height),
+        parts.pillars, parts.pillar_heights[:, 1],
+    )  # fmt: skip

@@ -25,10 +25,10 @@ class MetricLogger(LeafSystem):
         self._previous = (0.0, 0.0)
         self.goal_time: float | None = None
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
-        self._crowd = self._contacts = None
+        self._crowd = self._events = None
         if crowd_size:
             self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size)
-            self._contacts = self.DeclareVectorInputPort(ports.CONTACTS, 1)
+            self._events = self.DeclareVectorInputPort(ports.EVENTS, 1)
         self.DeclarePeriodicPublishEvent(TICK, 0.0, self._publish)
 
     def _publish(self, context: Context) -> EventStatus | None:
@@ -41,16 +41,16 @@ class MetricLogger(LeafSystem):
         sampled = tick % self._ticks_per_sample == 0
         crowd = self._crowd_state(context, always=sampled)
         if crowd is not None:
-            self._log.book_contacts(crowd)
+            self._log.book(crowd)
         if sampled:
             self._log.sample(t, robot, crowd)
         return self._watch(t, robot)
 
     def _crowd_state(self, context: Context, *, always: bool) -> Array | None:
         """The crowd, where there is something to log: it is copied each time it is looked at."""
-        if self._crowd is None or self._contacts is None:
+        if self._crowd is None or self._events is None:
             return None
-        if not always and int(self._contacts.Eval(context)[0]) == self._log.contacts:
+        if not always and int(self._events.Eval(context)[0]) == self._log.events:
             return None
         crowd: Array = self._crowd.Eval(context)
         return crowd

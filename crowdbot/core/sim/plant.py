@@ -1,4 +1,4 @@
-"""The multibody plant: floor, walls and one robot with velocity-controlled wheels."""
+"""The multibody plant: floor, obstacles and one robot with velocity-controlled wheels."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pydrake.geometry import Box
+from pydrake.geometry import Box, Convex, Cylinder
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import (
@@ -50,6 +50,14 @@ def add_plant(builder: DiagramBuilder, parts: EnvironmentParts, robot: RobotMode
     for s in np.flatnonzero(parts.stops_robot):
         pose, box = wall_box(parts.walls[s], parts.wall_heights[s])
         plant.RegisterCollisionGeometry(world, pose, box, f"wall{s}", _WALL)
+    for b, outline in enumerate(parts.solids):
+        prism = solid_prism(outline, parts.solid_heights[b], f"solid{b}")
+        plant.RegisterCollisionGeometry(world, RigidTransform(), prism, f"solid{b}", _WALL)
+    for p, (x, y, radius) in enumerate(parts.pillars):
+        low, high = parts.pillar_heights[p]
+        pose = RigidTransform([x, y, 0.5 * (low + high)])
+        pillar = Cylinder(radius, high - low)
+        plant.RegisterCollisionGeometry(world, pose, pillar, f"pillar{p}", _WALL)
     for joint in (robot.drive.left_joint, robot.drive.right_joint):
         actuator = plant.GetJointActuatorByName(joint)
         actuator.set_controller_gains(PdControllerGains(p=0.0, d=_WHEEL_DAMPING))
@@ -71,6 +79,12 @@ def wall_box(
     centre = [0.5 * (x0 + x1) + behind_x, 0.5 * (y0 + y1) + behind_y, 0.5 * (low + high)]
     pose = RigidTransform(RollPitchYaw(0.0, 0.0, yaw), centre)
     return pose, Box(length, _WALL_THICKNESS, high - low)
+
+
+def solid_prism(outline: NDArray[np.float64], heights: NDArray[np.float64], name: str) -> Convex:
+    """The upright prism over a convex outline (K, 2), between two heights."""
+    corners = [(x, y, z) for x, y in outline for z in heights]
+    return Convex(points=np.array(corners).T, label=name)
 
 
 def place_robot(rig: RobotPlant, context: object, start: Pose) -> None:

@@ -6,8 +6,8 @@ from __future__ import annotations
 ROBOT_STATE, ROBOT_STATE_SIZE = "robot_state", 10
 #: The flat vector of `crowdbot.core.crowd.state`.
 CROWD_STATE = "crowd_state"
-#: Number of contacts with the robot that have ended.
-CONTACTS = "contacts"
+#: Number of trips, and of contacts with the robot, that have ended.
+EVENTS = "events"
 #: Generalised force on the plant's velocities, N m and N.
 ROBOT_FORCE = "robot_force"
 #: Latest readings of all sensors, in the order of the sensor bank.

@@ -26,6 +26,10 @@ class TtcaDcaSpec(CostFunctionSpec):
     sigma_dca: PositiveLength = Field(default=0.3, description="Spread in distance, m.")
     sigma_angle_goal: PositiveAngle = Field(default=2.0, description="Spread in heading, rad.")
     sigma_speed_goal: PositiveSpeed = Field(default=2.0, description="Spread in speed, m/s.")
+    walls: bool = Field(
+        default=False,
+        description="Whether the nearest point of each wall counts as a neighbour that stands.",
+    )
 
 
 TTCA_DCA = Component(

@@ -17,37 +17,92 @@ from numba import njit
 from crowdbot.core.crowd.cost import (
     BASE,
     D2,
+    DESCENDS,
     EXCESS,
     FASTEST,
     FROM_SURFACE,
     NVX,
     NVY,
+    NX,
+    NY,
+    PARITY,
     PREPARE,
+    RADIUS,
     RANGE,
     REACH,
     RX,
     RY,
     VX,
     VY,
+    WALL_D2,
     CompiledCost,
     Pointer,
     near_table,
+    wall_table,
     work_table,
 )
+from crowdbot.core.crowd.geometry import opposite_taken_for_parallel
 from crowdbot.plugins.crowd.ttca_dca import TtcaDcaSpec
-
-_INV_TTCA2, _INV_DCA2, _SIGMA_ANGLE, _SIGMA_SPEED = range(2, 6)  # entries of params
-_NEGLIGIBLE = 90.0  # exp(-45) of a cost of order one is below double precision
-_CLOSEST = 1e-6  # gaps and distances below this count as this, m
-_WEIGHT = 6  # column of work
+from crowdbot.plugins.crowd.ttca_dca_gradient_build import gradient
+from crowdbot.plugins.crowd.ttca_dca_params_build import (
+    CLOSEST,
+    INV_DCA2,
+    INV_TTCA2,
+    NEGLIGIBLE,
+    SIGMA_ANGLE,
+    SIGMA_SPEED,
+    TOTAL,
+    WALLS,
+    WEIGHT,
+)
 
 
 @njit(BASE, cache=True, error_model="numpy")
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     angle = abs(math.atan2(uy, ux)) if ux != 0.0 or uy != 0.0 else 0.0
-    slower = (math.hypot(ux, uy) - preferred) / params[_SIGMA_SPEED]
-    ahead = math.exp(-0.5 * (angle / params[_SIGMA_ANGLE]) ** 2)
+    slower = (math.sqrt(ux * ux + uy * uy) - preferred) / params[SIGMA_SPEED]
+    ahead = math.exp(-0.5 * (angle / params[SIGMA_ANGLE]) ** 2)
     return 1.0 - 0.5 * (ahead + math.exp(-0.5 * slower * slower))
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _add(
+    rx: float,
+    ry: float,
+    vx: float,
+    vy: float,
+    d2: float,
+    reach: float,
+    agent: Pointer,
+    params: Pointer,
+    work: Pointer,
+) -> None:
+    """Add a neighbour to the table, unless it is behind or changes no sum."""
+    ahead = rx * agent[VX] + ry * agent[VY] >= 0.0
+    if not ahead and agent[PARITY] != 0.0:
+        ahead = opposite_taken_for_parallel(rx, ry, agent[VX], agent[VY])
+    if ahead:
+        distance = max(math.sqrt(d2), CLOSEST)
+        gap = distance - reach
+        weight = 1.0 / max(gap * gap, CLOSEST * CLOSEST)
+        work[0, TOTAL] += weight
+        # The exponent is at least this for every candidate: the gap closes at most at `closing`.
+        closing = agent[FASTEST] + max(0.0, -(vx * rx + vy * ry) / distance)
+        a, b = params[INV_TTCA2], params[INV_DCA2]
+        nothing = gap > 0.0 and gap * gap * a * b >= NEGLIGIBLE * (a + b * closing * closing)
+        if agent[DESCENDS] != 0.0 or not nothing:
+            row = int(work[0, 0]) + 1
+            work[0, 0] = row
+            if agent[DESCENDS] == 0.0:
+                while row > 1 and work[row - 1, WEIGHT] < weight:
+                    for c in range(7):
+                        work[row, c] = work[row - 1, c]
+                    row -= 1
+            shrink = gap / distance
+            work[row, 0], work[row, 1] = rx, ry
+            work[row, 2], work[row, 3] = rx * shrink, ry * shrink
+            work[row, 4], work[row, 5] = vx, vy
+            work[row, WEIGHT] = weight
 
 
 @njit(PREPARE, cache=True, error_model="numpy")
@@ -60,38 +115,26 @@ def _prepare(
     params: Pointer,
     work: Pointer,
 ) -> int:
-    """Row 0: number of neighbours. Then d, q, v_j, k / sum(k), heaviest first."""
-    near, work = near_table(near), work_table(work)
-    total, count = 0.0, 0
+    """Row 0: number of neighbours, sum(k). Then d, q, v_j, k, heaviest first."""
+    near, walls, work = near_table(near), wall_table(walls), work_table(work)
+    work[0, 0], work[0, TOTAL] = 0.0, 0.0
     for j in range(near_count):
-        rx, ry, reach = near[j, RX], near[j, RY], near[j, REACH]
+        reach = near[j, REACH]
         limit = params[RANGE] + params[FROM_SURFACE] * reach
-        if near[j, D2] >= limit * limit or rx * agent[VX] + ry * agent[VY] < 0.0:
-            continue  # out of range, or behind
-        distance = max(math.sqrt(near[j, D2]), _CLOSEST)
-        gap = distance - reach
-        weight = 1.0 / max(gap * gap, _CLOSEST * _CLOSEST)
-        total += weight
-        # The exponent is at least this for every candidate: the gap closes at most at `closing`.
-        closing = agent[FASTEST] + max(0.0, -(near[j, NVX] * rx + near[j, NVY] * ry) / distance)
-        a, b = params[_INV_TTCA2], params[_INV_DCA2]
-        if gap > 0.0 and gap * gap * a * b >= _NEGLIGIBLE * (a + b * closing * closing):
-            continue
-        count += 1
-        row = count
-        while row > 1 and work[row - 1, _WEIGHT] < weight:
-            for c in range(7):
-                work[row, c] = work[row - 1, c]
-            row -= 1
-        shrink = gap / distance
-        work[row, 0], work[row, 1] = rx, ry
-        work[row, 2], work[row, 3] = rx * shrink, ry * shrink
-        work[row, 4], work[row, 5] = near[j, NVX], near[j, NVY]
-        work[row, _WEIGHT] = weight
-    for row in range(1, count + 1):
-        work[row, _WEIGHT] /= total
-    work[0, 0] = count
-    return count
+        if near[j, D2] < limit * limit:
+            _add(
+                near[j, RX], near[j, RY], near[j, NVX], near[j, NVY], near[j, D2], reach,
+                agent, params, work,
+            )  # fmt: skip
+    if params[WALLS] != 0.0:
+        limit = params[RANGE] + params[FROM_SURFACE] * agent[RADIUS]
+        for s in range(wall_count):
+            if walls[s, WALL_D2] < limit * limit:
+                _add(
+                    walls[s, NX], walls[s, NY], 0.0, 0.0, walls[s, WALL_D2], agent[RADIUS],
+                    agent, params, work,
+                )  # fmt: skip
+    return int(work[0, 0])
 
 
 @njit(EXCESS, cache=True, error_model="numpy")
@@ -99,7 +142,7 @@ def _excess(
     ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
 ) -> float:
     work = work_table(work)
-    cost = 0.0
+    cost, most = 0.0, budget * work[0, TOTAL]
     for j in range(1, int(work[0, 0]) + 1):
         dx, dy, qx, qy = work[j, 0], work[j, 1], work[j, 2], work[j, 3]
         wx, wy = work[j, 4] - ux, work[j, 5] - uy
@@ -109,12 +152,12 @@ def _excess(
         towards = -(qx * wx + qy * wy)
         t = towards / speed2 if towards > 0.0 and speed2 > 0.0 else 0.0
         cx, cy = qx + t * wx, qy + t * wy
-        exponent = t * t * params[_INV_TTCA2] + (cx * cx + cy * cy) * params[_INV_DCA2]
-        if exponent < _NEGLIGIBLE:
-            cost += work[j, _WEIGHT] * math.exp(-0.5 * exponent)
-            if cost > budget:
+        exponent = t * t * params[INV_TTCA2] + (cx * cx + cy * cy) * params[INV_DCA2]
+        if exponent < NEGLIGIBLE:
+            cost += work[j, WEIGHT] * math.exp(-0.5 * exponent)
+            if cost > most:
                 break
-    return cost
+    return float(cost / work[0, TOTAL])
 
 
 def build(spec: TtcaDcaSpec) -> CompiledCost:
@@ -126,11 +169,13 @@ def build(spec: TtcaDcaSpec) -> CompiledCost:
         1.0 / spec.sigma_dca**2,
         spec.sigma_angle_goal,
         spec.sigma_speed_goal,
+        float(spec.walls),
     ]
     return CompiledCost(
         base=_base,
         prepare=_prepare,
         excess=_excess,
+        gradient=gradient,
         params=np.array(params),
         weight=spec.weight,
     )

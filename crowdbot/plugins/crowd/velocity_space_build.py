@@ -1,4 +1,4 @@
-"""Velocity-space policy: choose a velocity by sampling, approach it within the relaxation time."""
+"""Velocity-space policy: minimise a mix of costs by the method that its spec names."""
 
 from __future__ import annotations
 
@@ -7,54 +7,116 @@ from collections.abc import Sequence
 
 from numba import njit
 
-from crowdbot.core.crowd.cost import Array, CompiledCost
+from crowdbot.core.crowd.candidates import Sampling
+from crowdbot.core.crowd.cost import Array, CompiledCost, NumpyCost
+from crowdbot.core.crowd.gradient import Descent
+from crowdbot.core.crowd.mix import Mix
+from crowdbot.core.crowd.optimum import Optimum
 from crowdbot.core.crowd.policy import Agents, CrowdView
-from crowdbot.core.crowd.sampling import Sampler, fan
+from crowdbot.core.crowd.sampling import Sampler
 from crowdbot.plugins.crowd.velocity_space import VelocitySpaceSpec
+
+_BASES = ("zero", "current_velocity")
+_DIRECTIONS = ("unit", "current_velocity", "preferred_velocity")
+_RADII = ("preferred_speed", "maximum_speed", "maximum_acceleration")
+
+
+def sampling_of(spec: VelocitySpaceSpec) -> Sampling:
+    """Which candidates a spec asks for."""
+    return Sampling(
+        speeds=spec.speeds,
+        angles=spec.angles,
+        opening=spec.angle,
+        include_base=spec.include_base,
+        base=_BASES.index(spec.base),
+        direction=_DIRECTIONS.index(spec.direction),
+        radius=_RADII.index(spec.radius),
+        random=spec.random_samples if spec.samples == "random" else 0,
+    )
 
 
 class VelocitySpace:
-    """A mix of cost functions, minimised over regular samples."""
+    """A mix of cost functions for one set of agents.
+
+    Args:
+        parity, weight: see `crowdbot.core.crowd.mix.Mix`.
+    """
 
     def __init__(
-        self, spec: VelocitySpaceSpec, costs: Sequence[CompiledCost], agents: Agents
+        self,
+        spec: VelocitySpaceSpec,
+        costs: Sequence[CompiledCost | NumpyCost],
+        agents: Agents,
+        *,
+        parity: bool = False,
+        weight: Array | None = None,
     ) -> None:
-        self._sampler = Sampler(fan(spec.speeds, spec.angles, spec.angle), costs, agents)
-        self._relaxation = spec.relaxation_time
         self.contact_stiffness = spec.contact_stiffness
+        self.mix = Mix(
+            costs, agents, relaxation_time=spec.relaxation_time, parity=parity, weight=weight
+        )
+        self.minimiser: Sampler | Optimum | Descent
+        if spec.method == "gradient":
+            self.minimiser = Descent(self.mix)
+        elif spec.method == "global":
+            self.minimiser = Optimum(self.mix)
+        else:
+            self.minimiser = Sampler(sampling_of(spec), self.mix)
 
     def accelerations(self, view: CrowdView) -> Array:
-        """Towards the chosen velocity, limited by each agent's largest acceleration."""
-        acceleration = self._sampler.choose(view)
+        """Towards the chosen velocity or down the gradient, within each agent's limit, m/s^2."""
+        if isinstance(self.minimiser, Descent):
+            return self._limited(self.minimiser.accelerations(view), view, descend=True)
+        return self._limited(self.minimiser.choose(view), view, descend=False)
+
+    def towards(self, velocities: Array, view: CrowdView) -> Array:
+        """Accelerations (N, 2) towards given velocities, m/s^2."""
+        return self._limited(velocities.copy(), view, descend=False)
+
+    def _limited(self, found: Array, view: CrowdView, *, descend: bool) -> Array:
+        agents = view.agents
         _accelerate(
-            acceleration, view.position, view.velocity, view.goal, view.agents.radius,
-            view.agents.max_acceleration, max(self._relaxation, view.dt), view.dt,
+            found, descend, view.position, view.velocity, view.goal, agents.radius,
+            agents.preferred_speed, agents.max_acceleration,
+            max(self.mix.relaxation_time, view.dt), view.dt,
         )  # fmt: skip
-        return acceleration
+        return found
 
 
 @njit(cache=True, error_model="numpy")
 def _accelerate(
-    chosen: Array,
+    found: Array,
+    descend: bool,
     position: Array,
     velocity: Array,
     goal: Array,
     radius: Array,
+    preferred: Array,
     limit: Array,
     relaxation: float,
     dt: float,
 ) -> None:
-    """Turn chosen velocities into accelerations, in place; who has arrived stops at once."""
-    for i in range(chosen.shape[0]):
+    """Turn what was found into accelerations, in place; who has arrived stops at once."""
+    for i in range(found.shape[0]):
         to_goal = math.hypot(goal[i, 0] - position[i, 0], goal[i, 1] - position[i, 1])
-        time = dt if to_goal <= radius[i] else relaxation
-        ax = (chosen[i, 0] - velocity[i, 0]) / time
-        ay = (chosen[i, 1] - velocity[i, 1]) / time
+        ax, ay = found[i, 0], found[i, 1]
+        if to_goal <= radius[i] or preferred[i] == 0.0:
+            ax, ay = -velocity[i, 0] / dt, -velocity[i, 1] / dt
+        elif not descend:
+            ax, ay = (ax - velocity[i, 0]) / relaxation, (ay - velocity[i, 1]) / relaxation
+        elif math.isinf(ax) or math.isinf(ay):  # away from what is forbidden, as fast as possible
+            ax = math.copysign(limit[i], ax) if math.isinf(ax) else 0.0
+            ay = math.copysign(limit[i], ay) if math.isinf(ay) else 0.0
         norm = math.hypot(ax, ay)
         scale = limit[i] / norm if norm > limit[i] else 1.0
-        chosen[i, 0], chosen[i, 1] = ax * scale, ay * scale
+        found[i, 0], found[i, 1] = ax * scale, ay * scale
 
 
-def build(spec: VelocitySpaceSpec, costs: Sequence[CompiledCost], agents: Agents) -> VelocitySpace:
+def build(
+    spec: VelocitySpaceSpec, costs: Sequence[CompiledCost | NumpyCost], agents: Agents
+) -> VelocitySpace:
     """The policy for one set of agents."""
     return VelocitySpace(spec, costs, agents)
+
+
+__all__ = ["VelocitySpace", "build", "sampling_of"]

@@ -1,0 +1,177 @@
+"""Branch and bound over one agent's candidates, and the plain loops beside it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd.calls import call_base, call_excess
+from crowdbot.core.crowd.candidates import CURRENT, direction_of, draw_candidates, radius_of
+from crowdbot.core.crowd.cost import FASTEST, MAX_SPEED, PREFERRED, PVX, PVY, VX, VY, Array
+from crowdbot.core.crowd.mix import Addresses, base_cost, cost_of
+
+Indices = NDArray[np.int64]
+#: The frame of candidates that are given in the world frame.
+AS_IT_IS = np.array([0.0, 0.0, 1.0, 0.0])
+
+
+@njit(cache=True, error_model="numpy")
+def frame_of(agent: Array, base: int, direction: int, radius: int, frame: Array) -> float:
+    """Where an agent's candidates are; sets the greatest speed asked for; returns the radius."""
+    scale = radius_of(agent, radius)
+    ex, ey = direction_of(agent, direction)
+    frame[0], frame[1] = (agent[VX], agent[VY]) if base == CURRENT else (0.0, 0.0)
+    frame[2], frame[3] = scale * ex, scale * ey
+    agent[FASTEST] = (1.0 + 1e-9) * (scale + math.hypot(frame[0], frame[1]))
+    return scale
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def in_world(frame: Array, candidates: Array, c: int) -> tuple[float, float]:
+    """A candidate of the unit fan in the world frame (or in that of the given frame), m/s."""
+    return (
+        frame[0] + candidates[c, 0] * frame[2] - candidates[c, 1] * frame[3],
+        frame[1] + candidates[c, 0] * frame[3] + candidates[c, 1] * frame[2],
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def lower_bounds(
+    frame: Array,
+    candidates: Array,
+    agent: Array,
+    bases: Addresses,
+    params_at: Addresses,
+    weights: Array,
+    bound: Array,
+) -> int:
+    """Lower bounds of all candidates; returns the candidate of the least."""
+    least, preferred, fastest = 0, agent[PREFERRED], agent[MAX_SPEED]
+    cosine, sine = agent[PVX] / preferred, agent[PVY] / preferred
+    turned = np.empty(4)  # the frame as seen from the preferred velocity
+    for k in (0, 2):
+        turned[k] = frame[k] * cosine + frame[k + 1] * sine
+        turned[k + 1] = frame[k + 1] * cosine - frame[k] * sine
+    for c in range(candidates.shape[0]):
+        ux, uy = in_world(turned, candidates, c)
+        total = 0.0
+        for k in range(bases.shape[0]):
+            if weights[k] != 0.0:
+                total += weights[k] * call_base(bases[k], ux, uy, preferred, fastest, params_at[k])
+        bound[c] = total
+        if total < bound[least]:
+            least = c
+    return least
+
+
+@njit(cache=True, error_model="numpy")
+def search(
+    frame: Array,
+    candidates: Array,
+    bound: Array,
+    index: Indices,
+    is_sorted: bool,
+    start: int,
+    agent: Array,
+    excesses: Addresses,
+    params_at: Addresses,
+    work_at: Addresses,
+    weights: Array,
+    active: Indices,
+) -> tuple[float, int]:
+    """Least cost, and the place of its candidate among the bounds; the first one of equals."""
+    agent_at = agent.ctypes.data
+    count = candidates.shape[0]
+    best, best_index, best_place = math.inf, count, start
+    for attempt in range(-1, count):
+        c = start if attempt < 0 else attempt
+        if attempt >= 0 and (bound[c] > best or c == start):
+            if is_sorted and bound[c] > best:
+                break
+            continue
+        q = index[c]
+        ux, uy = in_world(frame, candidates, q)
+        cost = bound[c]
+        for term in range(active.shape[0]):
+            k = active[term]
+            budget = (best - cost) / weights[k]
+            cost += weights[k] * call_excess(
+                excesses[k], ux, uy, budget, agent_at, work_at[k], params_at[k]
+            )
+            if cost > best:
+                break
+        if cost < best or (cost == best and q < best_index):
+            best, best_index, best_place = cost, q, c
+    return best, best_place
+
+
+@njit(cache=True, error_model="numpy")
+def try_in_order(
+    frame: Array,
+    candidates: Array,
+    drawn: bool,
+    half: float,
+    scale: float,
+    agent: Array,
+    bases: Addresses,
+    excesses: Addresses,
+    params_at: Addresses,
+    work_at: Addresses,
+    weights: Array,
+    active: Indices,
+) -> tuple[float, int]:
+    """As `search`, but everything is evaluated in the order of the candidates.
+
+    For functions that draw random numbers; candidates are drawn one by one, too.
+    """
+    best, place = math.inf, 0
+    for c in range(candidates.shape[0]):
+        if drawn:
+            draw_candidates(agent, half, scale, candidates[c : c + 1])
+        ux, uy = in_world(frame, candidates, c)
+        cost = base_cost(ux, uy, agent, bases, params_at, weights)
+        for term in range(active.shape[0]):
+            k = active[term]
+            cost += weights[k] * call_excess(
+                excesses[k], ux, uy, math.inf, agent.ctypes.data, work_at[k], params_at[k]
+            )
+        if cost < best:
+            best, place = cost, c
+    return best, place
+
+
+@njit(cache=True, error_model="numpy")
+def least_forbidden(
+    frame: Array,
+    candidates: Array,
+    agent: Array,
+    bases: Addresses,
+    excesses: Addresses,
+    params_at: Addresses,
+    work_at: Addresses,
+    weights: Array,
+    active: Indices,
+) -> int:
+    """The original's choice where every candidate is forbidden; -1 if it finds none.
+
+    There a forbidden candidate costs the largest single-precision number times the function's
+    weight, which is less than the worst cost for a weight below 1.
+    """
+    best, place = 1.0, -1
+    for c in range(candidates.shape[0]):
+        ux, uy = in_world(frame, candidates, c)
+        total = 0.0
+        for k in range(weights.shape[0]):
+            if weights[k] == 0.0:
+                continue
+            has_excess = False
+            for term in range(active.shape[0]):
+                has_excess = has_excess or active[term] == k
+            cost = cost_of(k, ux, uy, agent, bases, excesses, has_excess, params_at, work_at)
+            total += weights[k] if cost == math.inf else 0.0
+        if total < best:
+            best, place = total, c
+    return place

@@ -1,0 +1,82 @@
+"""CrowdWorld: where a crowd walks and how it takes robots."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd.agents import PORTAL, Agents
+from crowdbot.core.crowd.torus import Box
+
+Array = NDArray[np.float64]
+_COLUMNS = {"walls": 4, "pillars": 3, "entrance": 4, "out": 4}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CrowdWorld:
+    """Where a crowd walks and how it takes robots; by default an endless empty floor.
+
+    A single row stands for a table of one.
+
+    Attributes:
+        walls: (S, 4) segments that people avoid, m.
+        pillars: (P, 3) x, y and radius of round obstacles, m.
+        torus: (x0, x1, y0, y1) of a floor whose opposite borders are one, m; infinite where it
+            has no border.
+        entrance, out: (F, 4) boxes x0, x1, y0, y1 of each flow's portals, m.
+        exit_point: where people come out of the in-portal: at a random point, or opposite to
+            where they went into the out-portal, ``offset`` kept.
+        response: (3,) see `crowdbot.core.crowd.contact.keep_off`.
+        robot_visible: whether people see the robot's velocity.
+        stiffness, dissipation: contact with the robot, N/m and s/m.
+        goal_key: key of the counter-based draws of goals and entries.
+        decision_rate: Hz, a power of two up to 128.
+        parity: do as the original engine does on a torus: no images across corners, and goals
+            that do not wrap. For comparisons only.
+    """
+
+    walls: Array = field(default_factory=lambda: np.zeros((0, 4)))
+    pillars: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    torus: Box | None = None
+    entrance: Array = field(default_factory=lambda: np.zeros((0, 4)))
+    out: Array = field(default_factory=lambda: np.zeros((0, 4)))
+    exit_point: Literal["random", "offset"] = "random"
+    response: Array = field(default_factory=lambda: np.array([62.5, 125.0, 0.2]))
+    robot_visible: bool = True
+    stiffness: float = 30000.0
+    dissipation: float = 0.3
+    goal_key: int = 0
+    decision_rate: float = 16.0
+    parity: bool = False
+
+    def __post_init__(self) -> None:
+        for name, columns in _COLUMNS.items():
+            table = np.ascontiguousarray(getattr(self, name), np.float64)
+            if table.size % columns:
+                raise ValueError(f"{name} must have {columns} columns, not shape {table.shape}")
+            table = table.reshape(-1, columns)
+            if not np.all(np.isfinite(table)):
+                raise ValueError(f"{name} must be finite")
+            object.__setattr__(self, name, table)
+        if len(self.entrance) != len(self.out):
+            raise ValueError(f"{len(self.entrance)} entrances for {len(self.out)} exits")
+        if self.torus is not None and not (
+            self.torus[0] < self.torus[1] and self.torus[2] < self.torus[3]
+        ):
+            raise ValueError("torus must be (x0, x1, y0, y1) with x0 < x1 and y0 < y1")
+
+    def check(self, agents: Agents) -> None:
+        """Refuse agents that this world has no place for.
+
+        Raises:
+            ValueError: an agent walks through portals that do not exist.
+        """
+        flows = agents.flow[agents.at_goal == PORTAL]
+        if np.any((flows < 0) | (flows >= len(self.entrance))):
+            raise ValueError(
+                f"agents use flow {flows.max()}, but the world has {len(self.entrance)} pairs of "
+                "portals; give agents routes, or the world entrance and out"
+            )

@@ -1,0 +1,39 @@
+"""Replay: people walk as they were recorded, or are drawn along by the record."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from crowdbot.core.component import Component
+from crowdbot.dsl.base import CrowdPolicySpec
+from crowdbot.dsl.quantities import NonNegativeSteeringStiffness, PositiveDuration
+
+
+class ReplaySpec(CrowdPolicySpec):
+    """Agents follow the recorded person with their id.
+
+    Without cost functions they do so whatever is in their way. With cost functions they are
+    walkers of velocity_space, on the way to where the person was ``ahead`` later.
+    """
+
+    kind: Literal["replay"] = "replay"
+    file: str = Field(
+        description="CSV file with columns t (s), id, x, y (m); its path, absolute or from the "
+        "working directory."
+    )
+    ahead: PositiveDuration = Field(
+        default=1.0, description="With cost functions: how far ahead of now the goal is, s."
+    )
+    contact_stiffness: NonNegativeSteeringStiffness = Field(
+        default=0.0, description="Push between overlapping people and walls, 1/s^2."
+    )
+
+
+REPLAY = Component(
+    spec=ReplaySpec,
+    build="crowdbot.plugins.crowd.replay_build:build",
+    summary="recorded trajectories from a CSV file, as they were or reactive",
+    examples=({"file": "people.csv"},),
+)

@@ -1,0 +1,150 @@
+"""Whether our crowd does what the original did, one step at a time.
+
+Single precision decides ties and thresholds, and symmetric layouts are full of them. A sample (one
+agent in one step) that differs is *reachable* if a perturbed input makes our engine produce it,
+or if our cost of what the original chose is hardly above our minimum. Otherwise it is a miss.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.crowd.evaluate import Evaluator
+from crowdbot.core.crowd.gradient import Descent
+from crowdbot.core.crowd.sampling import Sampler
+from crowdbot.testing.crowd_oracle_case import Array, Case
+from crowdbot.testing.crowd_oracle_step import Mask, Stepper
+
+#: Velocities closer than this agree, m/s.
+CLOSE = 5e-4
+#: Largest change of a perturbed position (m) or velocity (m/s); how many are tried.
+PERTURBATION, PERTURBATIONS = 1e-5, 256
+#: How far above our minimum the cost of the original's choice may lie.
+RELATIVE, ABSOLUTE = 1e-3, 1e-6
+_SEED = 20201021
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """Counts of samples, and residuals |dv| of those that agree, m/s.
+
+    Attributes:
+        not_a_number: samples in which the original itself has NaN; not part of ``samples``.
+        first_misses: step and agent id of up to ten misses.
+    """
+
+    name: str
+    samples: int
+    outright: int
+    by_perturbation: int
+    by_cost: int
+    misses: int
+    not_a_number: int
+    median: float
+    p99: float
+    largest: float
+    first_misses: list[tuple[int, int]]
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return asdict(self)
+
+
+@dataclass(slots=True)
+class _Count:
+    samples: int = 0
+    by_perturbation: int = 0
+    by_cost: int = 0
+    not_a_number: int = 0
+
+
+def judge(case: Case) -> Verdict:
+    """Replay a case."""
+    stepper, count = Stepper(case), _Count()
+    agreed: list[Array] = [np.zeros(0)]
+    missed: list[tuple[int, int]] = []
+    for k in range(len(case.states) - 1):
+        residual, left = _judge_step(stepper, k, count)
+        agreed.append(residual)
+        missed += [(k, int(case.agents.id[i])) for i in np.flatnonzero(left)]
+    residuals = np.concatenate(agreed)
+    median, p99, largest = (
+        np.quantile(residuals, [0.5, 0.99, 1.0]).tolist() if len(residuals) else (0.0, 0.0, 0.0)
+    )
+    return Verdict(
+        name=case.name, samples=count.samples, outright=len(residuals),
+        by_perturbation=count.by_perturbation, by_cost=count.by_cost, misses=len(missed),
+        not_a_number=count.not_a_number, median=median, p99=p99, largest=largest,
+        first_misses=missed[:10],
+    )  # fmt: skip
+
+
+def _judge_step(stepper: Stepper, k: int, count: _Count) -> tuple[Array, Mask]:
+    """Residuals of the samples of step k that agree, and which are misses."""
+    case = stepper.case
+    before, after = case.states[k], case.states[k + 1]
+    known = case.present[k] & case.present[k + 1]
+    there = known & np.isfinite(before).all(axis=1) & np.isfinite(after).all(axis=1)
+    count.not_a_number += int(np.count_nonzero(known & ~there))
+    count.samples += int(np.count_nonzero(there))
+    theirs, random = after[:, 2:], stepper.random()
+    away = np.hypot(*(stepper.step(before) - theirs).T)
+    following = stepper.random()
+    left = there & ~(away < CLOSE)
+    residual = away[there & ~left]
+    cheap = left & by_cost_alone(stepper, before, theirs, random, left)
+    left &= ~cheap
+    found = left & by_perturbed_input(stepper, before, theirs, random, left)
+    count.by_cost += int(np.count_nonzero(cheap))
+    count.by_perturbation += int(np.count_nonzero(found))
+    stepper.restore(following)
+    return residual, left & ~found
+
+
+def by_perturbed_input(
+    stepper: Stepper, state: Array, theirs: Array, random: list[Array], who: Mask
+) -> Mask:
+    """Which samples our engine reproduces from an input changed by at most `PERTURBATION`."""
+    found, rng = np.zeros(len(state), np.bool_), np.random.default_rng(_SEED)
+    for attempt in range(PERTURBATIONS):
+        left = who & ~found
+        if not np.any(left):
+            break
+        size = PERTURBATION * (0.1 if attempt % 4 == 3 else 1.0)
+        stepper.restore(random)
+        ours = stepper.step(state + rng.uniform(-size, size, state.shape), left)
+        found |= left & (np.hypot(*(ours - theirs).T) < CLOSE)
+    return found
+
+
+def by_cost_alone(
+    stepper: Stepper, state: Array, theirs: Array, random: list[Array], who: Mask
+) -> Mask:
+    """Which samples are candidates of ours that cost hardly more than our minimum."""
+    found = np.zeros(len(state), np.bool_)
+    push = stepper.push(state) if np.any(who) else state[:, 2:]
+    for k, policy in enumerate(stepper.policies):
+        minimiser, mine = policy.minimiser, who & (stepper.case.agents.policy == k)
+        if isinstance(minimiser, Descent) or not np.any(mine):
+            continue
+        view = stepper.view(state, k, mine)
+        stepper.restore(random)
+        if isinstance(minimiser, Sampler):
+            velocities = minimiser.candidates(view)
+        elif minimiser.is_closed:
+            best, time = minimiser.choose(view), max(policy.mix.relaxation_time, view.dt)
+            chosen = state[:, 2:] + (theirs - push - state[:, 2:]) * (time / view.dt)
+            velocities = np.stack([best, np.where(np.isfinite(chosen), chosen, 0.0)], axis=1)
+        else:
+            velocities = minimiser.search.candidates(view)
+        total = Evaluator(policy.mix).total(view, velocities)
+        least = np.min(total, axis=1, keepdims=True)
+        with np.errstate(invalid="ignore"):
+            cheap = total <= least + np.maximum(RELATIVE * np.abs(least), ABSOLUTE)
+        for s in np.flatnonzero(np.any(cheap[mine], axis=0)):
+            reached = stepper.move(state, policy.towards(velocities[:, s], view))
+            found |= mine & cheap[:, s] & (np.hypot(*(reached - theirs).T) < CLOSE)
+    return found

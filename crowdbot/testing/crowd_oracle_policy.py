@@ -1,0 +1,105 @@
+"""Policies of the original crowd engine in our words.
+
+Names, attributes and defaults are those of its XML files.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from crowdbot.dsl.base import CostFunctionSpec, Range
+from crowdbot.plugins.crowd.foe_avoidance import FoeAvoidanceSpec
+from crowdbot.plugins.crowd.goal_reaching_force import GoalReachingForceSpec
+from crowdbot.plugins.crowd.karamouzas import KaramouzasSpec
+from crowdbot.plugins.crowd.moussaid import MoussaidSpec
+from crowdbot.plugins.crowd.orca import OrcaSpec
+from crowdbot.plugins.crowd.paris import ParisSpec
+from crowdbot.plugins.crowd.pledestrians import PledestriansSpec
+from crowdbot.plugins.crowd.power_law import PowerLawSpec
+from crowdbot.plugins.crowd.random_function import RandomFunctionSpec
+from crowdbot.plugins.crowd.rvo import RvoSpec
+from crowdbot.plugins.crowd.social_forces_avoidance import SocialForcesAvoidanceSpec
+from crowdbot.plugins.crowd.ttca_dca import TtcaDcaSpec
+from crowdbot.plugins.crowd.van_toll import VanTollSpec
+from crowdbot.plugins.crowd.velocity_space import VelocitySpaceSpec
+
+#: Cost functions: our spec, and our name of each attribute. A later attribute replaces an
+#: earlier one with the same name of ours: U0 of the social forces overwrites V0.
+COSTS: dict[str, tuple[type[CostFunctionSpec], dict[str, str]]] = {
+    "TtcaDca": (
+        TtcaDcaSpec,
+        {
+            "sigmaTtca": "sigma_ttca",
+            "sigmaDca": "sigma_dca",
+            "sigmaAngle_goal": "sigma_angle_goal",
+            "sigmaSpeed_goal": "sigma_speed_goal",
+        },
+    ),
+    "RVO": (RvoSpec, {"w": "w"}),
+    "ORCA": (OrcaSpec, {"timeHorizon": "time_horizon"}),
+    "FOEAvoidance": (FoeAvoidanceSpec, {}),
+    "GoalReachingForce": (GoalReachingForceSpec, {}),
+    "Karamouzas": (
+        KaramouzasSpec,
+        {name: name for name in ("alpha", "beta", "gamma", "delta", "t_max")},
+    ),
+    "Moussaid": (MoussaidSpec, {"d_max": "d_max"}),
+    "Paris": (ParisSpec, {name: name for name in ("w_a", "w_b", "t_max")}),
+    "PLEdestrians": (PledestriansSpec, {name: name for name in ("w_a", "w_b", "t_min", "t_max")}),
+    "PowerLaw": (PowerLawSpec, {"k": "k", "tau0": "tau0"}),
+    "RandomFunction": (RandomFunctionSpec, {}),
+    "SocialForcesAvoidance": (
+        SocialForcesAvoidanceSpec,
+        {"dt": "dt", "V0": "v0", "sigma": "sigma", "R": "r", "U0": "v0"},
+    ),
+    "VanToll": (VanTollSpec, {"max_distance": "max_distance"}),
+}
+
+
+def cost_spec(given: Mapping[str, str]) -> CostFunctionSpec:
+    """The spec of one ``costfunction`` element.
+
+    Raises:
+        ValueError: its name is unknown, or one of its numbers is none.
+    """
+    name = given.get("name", "")
+    if name not in COSTS:
+        raise ValueError(f"cost function {name!r}: known are {', '.join(COSTS)}")
+    kind, names = COSTS[name]
+    fields: dict[str, Any] = {
+        "weight": float(given.get("coeff", 1.0)),
+        "range": Range(value=float(given.get("range", 5.0)), measure="centre"),
+    }
+    for theirs, ours in names.items():
+        if theirs in given:
+            fields[ours] = float(given[theirs])
+    return kind(**fields)
+
+
+def policy_spec(given: Mapping[str, str]) -> VelocitySpaceSpec:
+    """The spec of one ``Policy`` element.
+
+    Raises:
+        ValueError: an option is unknown, or one of its numbers is none.
+    """
+
+    def option(name: str, default: str) -> Any:
+        return given.get(name, default).strip().lower().replace(" ", "_")
+
+    degrees = float(given.get("SamplingAngle", 180.0))
+    return VelocitySpaceSpec(
+        method=option("OptimizationMethod", "gradient"),
+        relaxation_time=float(given.get("RelaxationTime", 0.0)),
+        contact_stiffness=float(given.get("ContactForceScale", 62.5)),
+        samples=option("SamplingType", "regular"),
+        base=option("SamplingBase", "zero"),
+        direction=option("SamplingBaseDirection", "current velocity"),
+        radius=option("SamplingRadius", "preferred speed"),
+        angle=math.radians(degrees),
+        speeds=int(given.get("SpeedSamples", 4)),
+        angles=int(given.get("AngleSamples", 11)),
+        random_samples=int(given.get("RandomSamples", 100)),
+        include_base=option("IncludeBaseAsSample", "false") in ("true", "1"),
+    )
