@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from crowdbot.api import evaluate, expand, load, score, simulate
+    from crowdbot.core.commands import Commands
     from crowdbot.core.evaluate import Scores
+    from crowdbot.core.questionnaires import Questionnaires
     from crowdbot.core.score import Score
     from crowdbot.core.sim.request import Run
     from crowdbot.core.trajectory import Trajectories
@@ -19,7 +21,9 @@ if TYPE_CHECKING:
     from crowdbot.errors import CrowdbotError
 
 _HOMES = {
+    "Commands": "crowdbot.core.commands",
     "CrowdbotError": "crowdbot.errors",
+    "Questionnaires": "crowdbot.core.questionnaires",
     "Run": "crowdbot.core.sim.request",
     "Scenario": "crowdbot.dsl.scenario",
     "Score": "crowdbot.core.score",
@@ -34,7 +38,9 @@ _HOMES = {
 }
 
 __all__ = [
+    "Commands",
     "CrowdbotError",
+    "Questionnaires",
     "Run",
     "Scenario",
     "Score",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +13,9 @@ from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.scenario import Scenario
 
 if TYPE_CHECKING:
+    from crowdbot.core.commands import Commands
     from crowdbot.core.evaluate import MetricParameters, Scores
+    from crowdbot.core.questionnaires import Questionnaires
     from crowdbot.core.sim.request import Run
     from crowdbot.core.sim.runner import Progress
     from crowdbot.core.trajectory import Trajectories
@@ -77,15 +79,17 @@ def evaluate(run: Run, metrics: str | Sequence[str] = "*") -> Scores:
 
 
 def score(
-    crowded: Trajectories,
+    crowded: Trajectories | None = None,
     robot_alone: Trajectories | None = None,
     crowd_alone: Trajectories | None = None,
-    *,
+    commands: Commands | None = None,
+    commands_baseline: Commands | None = None,
+    questionnaires: Questionnaires | Mapping[str, Any] | None = None,
     metrics: str | Sequence[str] = "*",
     variants: str | Sequence[str] = "all",
     parameters: MetricParameters | None = None,
 ) -> Scores:
-    """Score trajectories; see `crowdbot.core.evaluate.score`."""
+    """Score trajectories, commands and answers; see `crowdbot.core.evaluate.score`."""
     from crowdbot.core.evaluate import score as score_it
 
     return score_it(
@@ -93,7 +97,10 @@ def score(
         crowded,
         robot_alone,
         crowd_alone,
-        metrics=metrics,
-        variants=variants,
-        parameters=parameters,
+        commands,
+        commands_baseline,
+        questionnaires,
+        metrics,
+        variants,
+        parameters,
     )

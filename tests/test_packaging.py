@@ -1,4 +1,4 @@
-"""A built wheel holds the suites and the assets of the replay page."""
+"""A built wheel holds the suites, the cards of metrics and the assets of the replay page."""
 
 from __future__ import annotations
 
@@ -18,5 +18,7 @@ def test_the_wheel_is_complete(tmp_path: Path) -> None:
     for source in (ROOT / "crowdbot").rglob("*"):
         if source.is_file() and "__pycache__" not in source.parts:
             assert source.relative_to(ROOT).as_posix() in names
+    for card in (ROOT / "docs/reference/metrics").glob("*.md"):  # linked into the package
+        assert f"crowdbot/plugins/metrics/cards/{card.name}" in names
     for suite in (ROOT / "scenario_specs").rglob("*.yaml"):
         assert f"crowdbot/{suite.relative_to(ROOT).as_posix()}" in names

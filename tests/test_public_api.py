@@ -10,7 +10,9 @@ import pytest
 import crowdbot
 
 NAMES = [
+    "Commands",
     "CrowdbotError",
+    "Questionnaires",
     "Run",
     "Scenario",
     "Score",

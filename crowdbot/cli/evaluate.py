@@ -2,184 +2,196 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass
+import sys
+from collections.abc import Sequence
+from fnmatch import fnmatch
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.core.run_directory import RECORD, RECORDING
-from crowdbot.errors import InputError
+from crowdbot.errors import UnknownNameError, UsageError
 
 if TYPE_CHECKING:
-    from crowdbot.core.evaluate import Scores
-    from crowdbot.core.score import Score
-    from crowdbot.core.trajectory import Trajectories
+    from crowdbot.core.recording.rescore import Request, Rescored
+    from crowdbot.core.registry import Registry
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Recorded:
-    """A recording to score, and what is known about it."""
-
-    path: Path
-    recording: Path
-    robot_alone: Path | None = None
-    crowd_alone: Path | None = None
-    scenario: str = ""
-    planner: str = ""
-    seed: int | None = None
+_Runs = Annotated[
+    list[Path] | None,
+    typer.Argument(
+        metavar="RUN_DIR|FILE.mcap...",
+        help="Recordings, run directories, or folders with run directories below them.",
+    ),
+]
+_Alone = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Recording of the same robot without people.")
+]
+_Crowd = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Recording of the same people without robot.")
+]
+_Metrics = Annotated[
+    str, typer.Option(metavar="GLOB", help="Which metrics; experimental ones by their names.")
+]
+_Variant = Annotated[str, typer.Option(metavar="NAME|all", help="Which variants.")]
+_Experimental = Annotated[
+    bool, typer.Option("--experimental", help="Score experimental metrics, too.")
+]
+_Robot = Annotated[
+    str | None, typer.Option(metavar="NAME", help="Which of several robots: topics below /NAME.")
+]
+_UserTopic = Annotated[
+    str | None, typer.Option(metavar="TOPIC", help="Twist or TwistStamped: what the user wants.")
+]
+_CommandTopic = Annotated[
+    str, typer.Option(metavar="TOPIC", help="The same for the final command.")
+]
+_Commands = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="CSV t,v_user,w_user,v_sc,w_sc, or a recording."),
+]
+_Baseline = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Commands of the user driving unassisted.")
+]
+_VMax = Annotated[float | None, typer.Option(metavar="M_PER_S", help="Largest commanded speed.")]
+_WMax = Annotated[
+    float | None, typer.Option(metavar="RAD_PER_S", help="Largest commanded yaw rate.")
+]
+_Answers = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="CSV questionnaire,item,value: NASA-TLX, USE.")
+]
+_Jobs = Annotated[int, typer.Option(metavar="N", min=0, help="Processes; 0: one for each core.")]
+_Out = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Write all scores to FILE.csv or FILE.json.")
+]
+_Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 
 
 def evaluate(
-    runs: Annotated[
-        list[Path],
-        typer.Argument(metavar="RUN_DIR|FILE.mcap...", help="Run directories or recordings."),
-    ],
-    robot_alone: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Recording of the same robot without people."),
-    ] = None,
-    crowd_alone: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Recording of the same people without robot."),
-    ] = None,
-    metrics: Annotated[str, typer.Option(metavar="GLOB", help="Which metrics.")] = "*",
-    variant: Annotated[str, typer.Option(metavar="NAME|all", help="Which variants.")] = "all",
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    runs: _Runs = None,
+    robot_alone: _Alone = None,
+    crowd_alone: _Crowd = None,
+    metrics: _Metrics = "*",
+    variant: _Variant = "all",
+    experimental: _Experimental = False,
+    robot: _Robot = None,
+    user_topic: _UserTopic = None,
+    command_topic: _CommandTopic = "/cmd_vel",
+    commands: _Commands = None,
+    commands_baseline: _Baseline = None,
+    v_max: _VMax = None,
+    w_max: _WMax = None,
+    questionnaires: _Answers = None,
+    jobs: _Jobs = 1,
+    out: _Out = None,
+    as_json: _Json = False,
 ) -> None:
-    """Score recorded runs. Nothing is simulated or written.
+    """Score recorded runs. Nothing is simulated; run directories stay as they are.
 
     Example: crowdbot evaluate runs/challenge-2020/counter-d0500-fast-c20-r05/dwa/seed-0
     """
-    from crowdbot.core.evaluate import score
+    from crowdbot.core.recording.rescore import Request, available_cores, rescore
+    from crowdbot.core.recording.source import expand_paths
     from crowdbot.core.registry import discover
 
+    paths: list[Path | None] = [*expand_paths(runs or [])] or [None]
+    _check_usage(len(paths), paths[0], out, (commands, questionnaires), user_topic)
     registry = discover()
-    results = []
-    for path in runs:
-        recorded = find_recorded(path, robot_alone, crowd_alone)
-        scores = score(
-            registry,
-            _read(recorded.recording),
-            _read_reference(recorded.robot_alone),
-            _read_reference(recorded.crowd_alone),
-            metrics=metrics,
+    chosen = _chosen(registry, metrics, variant, experimental)
+    requests = [
+        Request(
+            path=path,
+            robot_alone=robot_alone,
+            crowd_alone=crowd_alone,
+            robot=robot,
+            topics=None if user_topic is None else (user_topic, command_topic),
+            commands=commands,
+            commands_baseline=commands_baseline,
+            limits=(v_max, w_max),
+            questionnaires=questionnaires,
+            metrics=chosen,
             variants=variant,
         )
-        results.append((recorded, scores))
-    if as_json:
-        typer.echo(json.dumps([_document(*r) for r in results], indent=2, allow_nan=False))
+        for path in paths
+    ]
+    if len(requests) == 1:
+        results = [rescore(requests[0], registry)]
     else:
-        for result in results:
-            _print(*result)
+        results = _each(requests, registry, jobs or available_cores())
+    _tell(results, out, as_json)
 
 
-def find_recorded(
-    path: Path, robot_alone: Path | None = None, crowd_alone: Path | None = None
-) -> Recorded:
-    """Where the recording of a run and its references are; given references win.
-
-    Raises:
-        InputError: there is no such run or file, or run.json is no record of a run.
-    """
-    if path.is_dir():
-        found = _in_directory(path)
-    elif path.is_file():
-        found = Recorded(path=path, recording=path)
-    else:
-        raise InputError(f"{path}: no such run directory or recording")
-    found = dataclasses.replace(
-        found,
-        robot_alone=robot_alone or found.robot_alone,
-        crowd_alone=crowd_alone or found.crowd_alone,
-    )
-    for what in ("recording", "robot_alone", "crowd_alone"):
-        file = getattr(found, what)
-        if file is not None and not file.is_file():
-            raise InputError(f"{path}: {what.replace('_', ' ')} not found: {file}")
-    return found
+def _check_usage(
+    count: int,
+    first: Path | None,
+    out: Path | None,
+    files: Sequence[Path | None],
+    user_topic: str | None,
+) -> None:
+    if first is None and not any(files):
+        raise UsageError("nothing to score: name a run directory or a recording")
+    if first is None and user_topic is not None and files[0] is None:
+        raise UsageError("--user-topic is a topic of a recording; name one")
+    if count > 1 and any(files):
+        raise UsageError("--commands and --questionnaires belong to one run; name only one")
+    if out is not None and out.suffix.lower() not in (".csv", ".json"):
+        raise UsageError(f"--out {out}: the name must end with .csv or .json")
 
 
-def _in_directory(folder: Path) -> Recorded:
-    record = _record(folder)
-    references = record.get("references") or {}
-    seed = record.get("seed")
-    if not isinstance(references, Mapping) or not isinstance(seed, int | None):
-        raise InputError(f"{folder / RECORD}: 'references' or 'seed' is malformed")
-    return Recorded(
-        path=folder,
-        recording=folder / RECORDING,
-        robot_alone=_beside(folder, references.get("robot_alone")),
-        crowd_alone=_beside(folder, references.get("crowd_alone")),
-        scenario=str(record.get("scenario") or ""),
-        planner=_name(record.get("planner")),
-        seed=seed,
-    )
+def _chosen(registry: Registry, metrics: str, variant: str, experimental: bool) -> tuple[str, ...]:
+    """Patterns of the metrics; wrong names are found before the first run is read."""
+    from crowdbot.core.evaluate import metric_specs
 
-
-def _record(folder: Path) -> Mapping[str, Any]:
-    """run.json; an interrupted run may have none."""
-    file = folder / RECORD
-    if not file.is_file():
-        if folder.name.endswith(".partial"):
-            return {}
-        raise InputError(f"{folder}: no run directory: {RECORD} is missing")
-    try:
-        record = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise InputError(f"{file}: cannot be read: {error}") from error
-    if not isinstance(record, Mapping):
-        raise InputError(f"{file}: not a record of a run")
-    return record
-
-
-def _beside(folder: Path, reference: object) -> Path | None:
-    return None if reference is None else folder / str(reference)
-
-
-def _name(planner: object) -> str:
-    """A planner is recorded by name, or as its document and name."""
-    if isinstance(planner, Mapping):
-        planner = planner.get("name") or planner.get("kind")
-    return str(planner or "")
-
-
-def _read(path: Path) -> Trajectories:
-    from crowdbot.core.recording import read_trajectories
-
-    return read_trajectories(path)
-
-
-def _read_reference(path: Path | None) -> Trajectories | None:
-    return None if path is None else _read(path)
-
-
-def _document(recorded: Recorded, scores: Scores) -> dict[str, Any]:
-    return {
-        "run": str(recorded.path),
-        "scenario": recorded.scenario,
-        "planner": recorded.planner,
-        "seed": recorded.seed,
-        "scores": [_fields(s) for s in scores],
+    known = registry.components("metric")
+    patterns = [metrics]
+    if experimental:
+        patterns += [k for k, c in known.items() if c.experimental and fnmatch(k, metrics)]
+    specs = metric_specs(registry, patterns, {})
+    variants = {
+        v
+        for spec in specs
+        for v in getattr(getattr(known[spec.kind], "label", None), "variants", (variant,))
     }
+    if variant not in ("all", *variants):
+        raise UnknownNameError("variant", variant, variants)
+    return tuple(patterns)
 
 
-def _fields(score: Score) -> dict[str, Any]:
-    values = {f.name: getattr(score, f.name) for f in dataclasses.fields(score)}
-    return {**values, "extras": dict(score.extras)}
+def _each(requests: list[Request], registry: Registry, jobs: int) -> list[Rescored]:
+    """All runs, with progress, then what went wrong."""
+    from crowdbot.cli._evaluate_output import show_progress
+    from crowdbot.core.recording.rescore import rescore_all
+
+    results: list[Rescored] = []
+    failed = 0
+    with show_progress(len(requests)) as advance:
+        for result in rescore_all(requests, registry, jobs):
+            results.append(result)
+            failed += bool(result.error)
+            advance(failed)
+    for result in results:
+        if result.error:
+            print(f"error: {result.error}", file=sys.stderr)
+    return results
 
 
-def _print(recorded: Recorded, scores: Scores) -> None:
-    from rich.console import Console
-    from rich.text import Text
+def _tell(results: list[Rescored], out: Path | None, as_json: bool) -> None:
+    from crowdbot.cli._evaluate_output import as_document, print_table, write_file
 
-    from crowdbot.core.scores_table import scores_table
-
-    seed = "" if recorded.seed is None else f"seed {recorded.seed}"
-    title = " ".join(filter(None, (recorded.scenario, recorded.planner, seed)))
-    console = Console(highlight=False)
-    console.print(Text(title or str(recorded.path), style="bold"), soft_wrap=True)
-    console.print(scores_table(scores))
+    if out is not None:
+        write_file(out, results)
+    if as_json:
+        typer.echo(json.dumps([as_document(r) for r in results], indent=2, allow_nan=False))
+    elif out is None:
+        for result in results:
+            if not result.error:
+                print_table(result)
+    failed = sum(bool(r.error) for r in results)
+    if len(results) > 1:
+        written = f", written to {out}" if out is not None else ""
+        print(
+            f"scored {len(results) - failed} of {len(results)} runs, {failed} failed{written}",
+            file=sys.stderr,
+        )
+    if failed:
+        raise typer.Exit(max(r.exit_code for r in results))

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import importlib
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from importlib.resources import files
+from importlib.resources.abc import Traversable
 from typing import Any, Generic, TypeVar
 
 from crowdbot.dsl.base import ComponentSpec
@@ -23,6 +26,11 @@ class Component(Generic[S_co]):
         summary: one line, shown by ``crowdbot plugins``.
         spec_version: raised when the meaning of a field changes.
         examples: valid documents without ``kind``, fed to docs and conformance checks.
+        experimental: whether its meaning may still change; such metrics are scored on request.
+        successor: what replaced this kind, which is retired: naming it is an error that says so.
+        card: what a metric's numbers mean; Markdown, or ``"package:folder/name.md"``, a file of
+            a package. Default: ``cards/NAME.md`` beside the spec's module, where NAME is the kind
+            without the plugin's name. A metric without a card is refused.
     """
 
     spec: type[S_co]
@@ -30,6 +38,9 @@ class Component(Generic[S_co]):
     summary: str
     spec_version: int = 1
     examples: tuple[Mapping[str, Any], ...] = ({},)
+    experimental: bool = False
+    successor: str = ""
+    card: str = ""
 
     @property
     def kind(self) -> str:
@@ -54,3 +65,39 @@ class Component(Generic[S_co]):
         except (ImportError, AttributeError) as error:
             raise PluginError(f"{self.kind}: build '{self.build}' not found: {error}") from error
         return function  # type: ignore[no-any-return]
+
+    @property
+    def card_place(self) -> str:
+        """Where the card is: ``package:path``; empty where it is the Markdown itself."""
+        if self.card:
+            return "" if any(c.isspace() for c in self.card) else self.card
+        package = getattr(sys.modules.get(self.spec.__module__), "__package__", None)
+        return f"{package}:cards/{self.kind.rpartition('.')[2]}.md" if package else ""
+
+    def has_card(self) -> bool:
+        """Whether there is a card; costs one look at the file system."""
+        if not self.card_place:
+            return bool(self.card)
+        try:
+            return self._card_file().is_file()
+        except (ImportError, TypeError):
+            return False
+
+    def read_card(self) -> str:
+        """The card as Markdown.
+
+        Raises:
+            PluginError: there is none, or it cannot be read.
+        """
+        if not self.has_card():
+            raise PluginError(
+                f"{self.kind}: no card{f' {self.card_place}' * bool(self.card_place)}"
+            )
+        try:
+            return self._card_file().read_text(encoding="utf-8") if self.card_place else self.card
+        except (OSError, UnicodeDecodeError) as error:
+            raise PluginError(f"{self.kind}: the card cannot be read: {error}") from error
+
+    def _card_file(self) -> Traversable:
+        package, _, path = self.card_place.partition(":")
+        return files(package).joinpath(path)

@@ -1,6 +1,7 @@
-"""The robot and each person as two discs that move: time to contact, and contact events.
+"""The robot and each person as two bodies that move: gaps, time to contact, contact events.
 
-N samples, M people; world frame, SI units. NaN stands for "not there" or "not known".
+People are discs; the robot is a disc, or has a footprint. N samples, M people; world frame, SI
+units. NaN stands for "not there" or "not known". What is computed for a run is computed once.
 """
 
 from __future__ import annotations
@@ -10,12 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.footprint import Footprint, footprint_of, into_frame
 from crowdbot.core.preprocess import (
     Mask,
     agent_velocities,
+    finite,
     robot_velocity,
     valid_agent_steps,
     valid_robot_steps,
+    wrap,
 )
 from crowdbot.core.trajectory import AgentTracks, Array, RobotTrack, Trajectories
 
@@ -27,20 +31,23 @@ class Encounter:
     Attributes:
         t: (N,) sample times, s.
         px, py: (N, M) position of each person minus the robot's, m.
-        reach: (M,) sum of both radii, m.
+        reach: (M,) sum of both radii, m; the person's alone beside a footprint.
+        distance: (N, M) distance between centres, m.
+        gap: (N, M) distance between surfaces, m; negative in contact.
         valid: (N-1, M) steps on which both bodies moved continuously.
+        footprint: outline of a robot that is no disc.
+        theta: (N,) heading of the robot, rad.
     """
 
     t: Array
     px: Array
     py: Array
     reach: Array
+    distance: Array
+    gap: Array
     valid: Mask
-
-    @property
-    def distance(self) -> Array:
-        """Distance between centres (N, M), m."""
-        return np.hypot(self.px, self.py)
+    footprint: Footprint | None
+    theta: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,11 +59,10 @@ class Contacts:
     sample: NDArray[np.int64]
 
 
-def disc_problem(run: Trajectories) -> str:
-    """Why the robot of a run is no disc, as a reason of a score; empty when it is one."""
-    if run.robot is None:
-        return "invalid_no_robot"
-    return "" if run.robot_footprint is None else "invalid_footprint"
+def robot_of(run: Trajectories) -> RobotTrack:
+    """The robot of a run that is known to have one."""
+    assert run.robot is not None
+    return run.robot
 
 
 def people(run: Trajectories) -> AgentTracks:
@@ -73,25 +79,88 @@ def people(run: Trajectories) -> AgentTracks:
     )
 
 
-def encounter(t: Array, robot: RobotTrack, agents: AgentTracks, jump_speed: float) -> Encounter:
+def encounter(run: Trajectories, jump_speed: float) -> Encounter:
     """Relative positions of all people; ``jump_speed`` (m/s) tells teleports."""
-    valid = valid_agent_steps(t, agents, jump_speed)
-    return Encounter(
-        t=t,
-        px=_finite(agents.x) - _finite(robot.x)[:, None],
-        py=_finite(agents.y) - _finite(robot.y)[:, None],
-        reach=agents.radius + robot.radius,
-        valid=valid & valid_robot_steps(t, robot, jump_speed)[:, None],
+    return run.derived(("encounter", jump_speed), lambda: _encounter(run, jump_speed))
+
+
+def robot_vector(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
+    """World velocity of the robot (N,), (N,), m/s."""
+    return run.derived(
+        ("robot_vector", jump_speed), lambda: robot_velocity(run.t, robot_of(run), jump_speed)
     )
 
 
-def relative_velocity(
-    t: Array, robot: RobotTrack, agents: AgentTracks, jump_speed: float
-) -> tuple[Array, Array]:
+def people_vectors(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
+    """World velocities of people (N, M), (N, M), m/s; NaN where absent or unknown."""
+    return run.derived(
+        ("people_vectors", jump_speed), lambda: agent_velocities(run.t, people(run), jump_speed)
+    )
+
+
+def people_speeds(run: Trajectories, jump_speed: float) -> Array:
+    """Speeds of people (N, M), m/s; NaN where absent or unknown."""
+    return run.derived(
+        ("people_speeds", jump_speed), lambda: np.hypot(*people_vectors(run, jump_speed))
+    )
+
+
+def relative_velocity(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
     """Velocity of each person minus the robot's (N, M), (N, M), m/s; NaN where unknown."""
-    rx, ry = robot_velocity(t, robot, jump_speed)
-    ax, ay = agent_velocities(t, agents, jump_speed)
+    rx, ry = robot_vector(run, jump_speed)
+    ax, ay = people_vectors(run, jump_speed)
     return ax - rx[:, None], ay - ry[:, None]
+
+
+def approach(
+    run: Trajectories, jump_speed: float, contact_tol: float, rel_speed_tol: float
+) -> tuple[Array, Array]:
+    """Time to contact (s) and relative speed (m/s) of each person (N, M), (N, M)."""
+
+    def compute() -> tuple[Array, Array]:
+        velocity = relative_velocity(run, jump_speed)
+        pair = encounter(run, jump_speed)
+        tau = time_to_contact(pair, velocity, contact_tol=contact_tol, rel_speed_tol=rel_speed_tol)
+        return tau, np.hypot(*velocity)
+
+    return run.derived(("approach", jump_speed, contact_tol, rel_speed_tol), compute)
+
+
+def onsets(
+    run: Trajectories, jump_speed: float, contact_tol: float, release_gap: float
+) -> Contacts:
+    """`contact_onsets` of a run."""
+    return run.derived(
+        ("onsets", jump_speed, contact_tol, release_gap),
+        lambda: contact_onsets(
+            encounter(run, jump_speed), contact_tol=contact_tol, release_gap=release_gap
+        ),
+    )
+
+
+def _encounter(run: Trajectories, jump_speed: float) -> Encounter:
+    robot, agents = robot_of(run), people(run)
+    px = finite(agents.x) - finite(robot.x)[:, None]
+    py = finite(agents.y) - finite(robot.y)[:, None]
+    distance, footprint, theta = np.hypot(px, py), footprint_of(run), finite(robot.theta)
+    if footprint is None:
+        reach = agents.radius + robot.radius
+        gap = distance - reach
+    else:
+        reach = agents.radius
+        gap = footprint.gap(*into_frame(theta, px, py)) - reach
+    valid = valid_agent_steps(run.t, agents, jump_speed)
+    return Encounter(
+        t=run.t,
+        px=px,
+        py=py,
+        reach=reach,
+        distance=distance,
+        gap=gap,
+        valid=valid & valid_robot_steps(run.t, robot, jump_speed)[:, None],
+        footprint=footprint,
+        theta=theta,
+    )
 
 
 def time_to_contact(
@@ -110,19 +179,25 @@ def time_to_contact(
     """
     px, py = pair.px, pair.py
     vx, vy = velocity
-    distance, speed = pair.distance, np.hypot(vx, vy)
-    approach = -(px * vx + py * vy)
-    miss = np.abs(px * vy - py * vx)
-    hits = (speed > rel_speed_tol) & (approach > 0) & (miss <= (pair.reach + contact_tol) * speed)
-    root = np.sqrt(np.maximum((pair.reach * speed) ** 2 - miss**2, 0.0))
-    gap = (distance - pair.reach) * (distance + pair.reach)
-    tau = np.divide(gap, approach + root, out=np.full(px.shape, np.inf), where=hits)
-    return np.where(distance <= pair.reach + contact_tol, 0.0, tau)
+    speed = np.hypot(vx, vy)
+    moves = speed > rel_speed_tol
+    if pair.footprint is not None:
+        at, along = into_frame(pair.theta, px, py), into_frame(pair.theta, vx, vy)
+        tau = pair.footprint.first_touch(*at, *along, pair.reach + contact_tol)
+        tau = np.where(moves, tau, np.inf)
+    else:
+        nearing = -(px * vx + py * vy)
+        miss = np.abs(px * vy - py * vx)
+        hits = moves & (nearing > 0) & (miss <= (pair.reach + contact_tol) * speed)
+        root = np.sqrt(np.maximum((pair.reach * speed) ** 2 - miss**2, 0.0))
+        gap = pair.gap * (pair.distance + pair.reach)
+        tau = np.divide(gap, nearing + root, out=np.full(px.shape, np.inf), where=hits)
+    return np.where(touching(pair, contact_tol), 0.0, tau)
 
 
 def touching(pair: Encounter, contact_tol: float) -> Mask:
     """Samples (N, M) at which the surfaces touch or overlap."""
-    return pair.distance <= pair.reach + contact_tol
+    return pair.gap <= contact_tol
 
 
 def contact_runs(pair: Encounter, contact_tol: float) -> int:
@@ -138,31 +213,59 @@ def contact_onsets(pair: Encounter, *, contact_tol: float, release_gap: float) -
     it ends when the gap at a sample exceeds ``release_gap`` (m), or when a body disappears or is
     teleported.
     """
-    touch = touching(pair, contact_tol)
-    fraction = _first_touch(pair, contact_tol)
-    swept = pair.valid & np.isfinite(fraction)
+    return contact_events(
+        pair.t,
+        pair.gap,
+        _first_touch(pair, contact_tol),
+        pair.valid,
+        contact_tol=contact_tol,
+        release_gap=release_gap,
+    )
+
+
+def contact_events(
+    t: Array,
+    gap: Array,
+    fraction: Array,
+    valid: Mask,
+    *,
+    contact_tol: float,
+    release_gap: float,
+) -> Contacts:
+    """`contact_onsets` of any M bodies with the robot.
+
+    Args:
+        t: (N,) times, s.
+        gap: (N, M) between the surfaces, m; NaN where absent.
+        fraction: (N-1, M) of each step at which the surfaces first touch, NaN where they do not.
+        valid: (N-1, M) steps on which both bodies moved continuously.
+        contact_tol: surfaces this close touch, m.
+        release_gap: a contact ends when the surfaces are farther apart, m.
+    """
+    touch = gap <= contact_tol
+    swept = valid & np.isfinite(fraction)
     appears = np.ones(touch.shape, dtype=bool)
-    appears[1:] = ~pair.valid
-    free = ~_held(pair, touch, swept, appears, release_gap + contact_tol)
+    appears[1:] = ~valid
+    apart = ~(gap <= release_gap + contact_tol)  # absent people, too
+    free = ~_held(touch, swept, appears, apart)
     k_first, a_first = np.nonzero(appears & touch)
     k_swept, a_swept = np.nonzero(swept & free[:-1])
-    start, step = pair.t[k_swept], np.diff(pair.t)[k_swept]
-    time = np.concatenate([pair.t[k_first], start + fraction[k_swept, a_swept] * step])
+    start, step = t[k_swept], np.diff(t)[k_swept]
+    time = np.concatenate([t[k_first], start + fraction[k_swept, a_swept] * step])
     agent, sample = np.concatenate([a_first, a_swept]), np.concatenate([k_first, k_swept])
     order = np.lexsort((agent, time))
     return Contacts(time=time[order], agent=agent[order], sample=sample[order])
 
 
-def _held(pair: Encounter, touch: Mask, swept: Mask, appears: Mask, release: float) -> Mask:
+def _held(touch: Mask, swept: Mask, appears: Mask, apart: Mask) -> Mask:
     """Whether each pair is in contact after each sample (N, M).
 
     Every sample either decides this anew or leaves it as it was after the last one that did.
     """
-    apart = ~(pair.distance - pair.reach <= release)  # absent people, too
     begins = appears & touch
     begins[1:] |= swept & ~apart[1:]
     decides = begins | apart | appears
-    rows = np.arange(len(pair.t))[:, None]
+    rows = np.arange(len(touch))[:, None]
     last = np.maximum.accumulate(np.where(decides, rows, 0), axis=0)
     return np.take_along_axis(begins, last, axis=0)
 
@@ -170,21 +273,31 @@ def _held(pair: Encounter, touch: Mask, swept: Mask, appears: Mask, release: flo
 def _first_touch(pair: Encounter, contact_tol: float) -> Array:
     """Fraction of each step (N-1, M) at which the surfaces first touch; NaN where they do not.
 
-    The distance along a step is convex, so its smallest value decides.
+    A footprint slides along the step with its middle heading, and turns at both ends.
     """
+    if pair.footprint is None:
+        return _discs_touch(pair, contact_tol)
+    theta = pair.theta[:-1] + wrap(np.diff(pair.theta)) / 2.0
+    x, y = into_frame(theta, pair.px[:-1], pair.py[:-1])
+    dx, dy = into_frame(theta, np.diff(pair.px, axis=0), np.diff(pair.py, axis=0))
+    reach = pair.reach + contact_tol
+    first = pair.footprint.first_touch(x, y, dx, dy, reach)
+    touch = touching(pair, contact_tol)
+    at_start = touch[:-1] | (pair.footprint.gap(x, y) <= reach)
+    first = np.where(at_start, 0.0, np.where(touch[1:], np.minimum(first, 1.0), first))
+    return np.where(first <= 1.0, first, np.nan)
+
+
+def _discs_touch(pair: Encounter, contact_tol: float) -> Array:
+    """The distance along a step is convex, so its smallest value decides."""
     px, py = pair.px[:-1], pair.py[:-1]
     dx, dy = np.diff(pair.px, axis=0), np.diff(pair.py, axis=0)
-    square, approach = dx**2 + dy**2, -(px * dx + py * dy)
+    square, nearing = dx**2 + dy**2, -(px * dx + py * dy)
     moves = square > 0
-    nearest = np.clip(np.divide(approach, square, out=np.zeros(px.shape), where=moves), 0.0, 1.0)
+    nearest = np.clip(np.divide(nearing, square, out=np.zeros(px.shape), where=moves), 0.0, 1.0)
     closest = np.hypot(px + nearest * dx, py + nearest * dy)
     root = np.sqrt(np.maximum(square * pair.reach**2 - (px * dy - py * dx) ** 2, 0.0))
-    start = np.hypot(px, py)
-    gap = (start - pair.reach) * (start + pair.reach)
-    onset = np.divide(gap, approach + root, out=np.zeros(px.shape), where=approach + root > 0)
+    gap = pair.gap[:-1] * (pair.distance[:-1] + pair.reach)
+    onset = np.divide(gap, nearing + root, out=np.zeros(px.shape), where=nearing + root > 0)
     # the root of a touch within the tolerance may lie beside the step
     return np.where(closest <= pair.reach + contact_tol, np.clip(onset, 0.0, nearest), np.nan)
-
-
-def _finite(values: Array) -> Array:
-    return np.where(np.isfinite(values), values, np.nan)

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import fnmatch
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, overload
 
+import numpy as np
 from pydantic import ValidationError
 
+from crowdbot.core.commands import Commands
 from crowdbot.core.component import Component
 from crowdbot.core.interfaces import References
 from crowdbot.core.preprocess import cropped
+from crowdbot.core.questionnaires import Questionnaires
 from crowdbot.core.registry import Registry
 from crowdbot.core.score import Score
 from crowdbot.core.trajectory import Trajectories
@@ -61,10 +64,12 @@ class Scores(Sequence[Score]):
 
 def score(
     registry: Registry,
-    crowded: Trajectories,
+    crowded: Trajectories | None,
     robot_alone: Trajectories | None = None,
     crowd_alone: Trajectories | None = None,
-    *,
+    commands: Commands | None = None,
+    commands_baseline: Commands | None = None,
+    questionnaires: Questionnaires | Mapping[str, Any] | None = None,
     metrics: str | Sequence[str] = "*",
     variants: str | Sequence[str] = "all",
     parameters: MetricParameters | None = None,
@@ -73,24 +78,41 @@ def score(
 
     Args:
         registry: where metrics come from.
-        crowded: the run.
+        crowded: the run; None where only commands or answers are known. Then metrics that need a
+            run are undefined: there is no robot in it, and nobody else.
         robot_alone: the same robot without people, where known.
         crowd_alone: the same people without robot, where known.
-        metrics: one or several globs over metric names; each must match.
+        commands: the user's and the final commands.
+        commands_baseline: commands of a drive of the same user without shared control.
+        questionnaires: answers; see `Questionnaires.from_mapping`.
+        metrics: one or several globs over metric names; each must match. Experimental metrics are
+            scored only where a glob matches no stable one, as their own names do.
         variants: ``all``, or the names of the variants to keep.
         parameters: metric -> field -> value; what is left out keeps its default.
 
     Raises:
         UnknownNameError: no metric or variant answers to a name.
-        InputError: a parameter does not fit, or an arrival time lies outside its run.
+        InputError: there is nothing to score, a metric is retired, a parameter does not fit, or an
+            arrival time lies outside its run.
         PluginError: a metric failed.
     """
-    refs = References(robot_alone=robot_alone, crowd_alone=crowd_alone)
-    for run in (crowded, robot_alone, crowd_alone):
-        if run is not None:
-            cropped(run)  # refuses an impossible arrival before a metric is blamed for it
+    if crowded is None and commands is None and questionnaires is None:
+        raise InputError("nothing to score: no run, no commands, no questionnaires")
+    if questionnaires is not None and not isinstance(questionnaires, Questionnaires):
+        questionnaires = Questionnaires.from_mapping(questionnaires)
+    refs = References(
+        robot_alone=robot_alone,
+        crowd_alone=crowd_alone,
+        commands=commands,
+        commands_baseline=commands_baseline,
+        questionnaires=questionnaires,
+    )
+    run = Trajectories(t=np.zeros(1)) if crowded is None else crowded
+    for given in (run, robot_alone, crowd_alone):
+        if given is not None:
+            cropped(given)  # refuses an impossible arrival before a metric is blamed for it
     specs = metric_specs(registry, metrics, parameters or {})
-    scores = [s for spec in specs for s in _scores_of(registry, spec, crowded, refs)]
+    scores = [s for spec in specs for s in _scores_of(registry, spec, run, refs)]
     return Scores(tuple(_of_variants(scores, variants)))
 
 
@@ -101,19 +123,27 @@ def metric_specs(
 
     Raises:
         UnknownNameError: a glob, or a metric with parameters, matches nothing installed.
-        InputError: a parameter does not fit.
+        InputError: a parameter does not fit, or a metric that is named is retired.
     """
     known = registry.components("metric")
     for kind in parameters:
         registry.find("metric", kind)
     chosen: set[str] = set()
     for glob in [metrics] if isinstance(metrics, str) else metrics:
-        matching = fnmatch.filter(known, glob)
-        if not matching:
-            raise UnknownNameError("metric", glob, known)
-        chosen.update(matching)
+        chosen.update(_matching(known, glob))
     specs = {kind: _spec(known[kind], parameters.get(kind, {})) for kind in known}
     return [specs[kind] for kind in known if kind in chosen]
+
+
+def _matching(known: Mapping[str, Component[MetricSpec]], glob: str) -> list[str]:
+    """Stable metrics that match; if there are none, experimental ones."""
+    if glob in known and known[glob].successor:
+        raise InputError(f"metric '{glob}' is retired; use '{known[glob].successor}'")
+    matching = [kind for kind in fnmatch.filter(known, glob) if not known[kind].successor]
+    stable = [kind for kind in matching if not known[kind].experimental]
+    if not matching:
+        raise UnknownNameError("metric", glob, known)
+    return stable or matching
 
 
 def _spec(component: Component[MetricSpec], fields: Mapping[str, Any]) -> MetricSpec:
@@ -136,6 +166,7 @@ def _scores_of(
 ) -> list[Score]:
     """Ask one metric; whatever it does wrong is its plugin's failure."""
     try:
+        parameters = spec.model_dump(exclude={"kind"})
         scores = list(registry.build(spec).score(run, refs))
     except PluginError as error:
         raise _failure(registry, spec, str(error)) from error
@@ -147,7 +178,7 @@ def _scores_of(
     names = [s.variant for s in scores]
     if len(set(names)) != len(names):
         raise _failure(registry, spec, f"returned a variant twice: {', '.join(names)}")
-    return scores
+    return [replace(s, parameters=parameters) for s in scores]
 
 
 def _failure(registry: Registry, spec: MetricSpec, what: str) -> PluginError:

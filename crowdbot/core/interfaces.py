@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    from crowdbot.core.commands import Commands
+    from crowdbot.core.questionnaires import Questionnaires
     from crowdbot.core.score import Score
     from crowdbot.core.sensing.scene import Scene
     from crowdbot.core.trajectory import Trajectories
@@ -248,10 +250,21 @@ class Planner(Protocol):
 # --------------------------------------------------------------------- metric
 @dataclass(frozen=True, slots=True, kw_only=True)
 class References:
-    """Calibration runs; either may be missing."""
+    """What a run is compared with, and what else was recorded of it; all may be missing.
+
+    Attributes:
+        robot_alone: the same robot without people.
+        crowd_alone: the same people without robot.
+        commands: the user's and the final commands of this run.
+        commands_baseline: of a drive of the same user without shared control.
+        questionnaires: what the user answered after this run.
+    """
 
     robot_alone: Trajectories | None = None
     crowd_alone: Trajectories | None = None
+    commands: Commands | None = None
+    commands_baseline: Commands | None = None
+    questionnaires: Questionnaires | None = None
 
 
 class Metric(Protocol):

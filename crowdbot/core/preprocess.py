@@ -53,7 +53,15 @@ def windowed(run: Trajectories, end: float) -> Trajectories:
     unfinished at ``end``, contacts end there. Step times and signals, which need not lie on the
     grid of samples, stay whole.
     """
+    return run.derived(("windowed", end), lambda: _windowed(run, end))
+
+
+def _windowed(run: Trajectories, end: float) -> Trajectories:
     last = end + TIME_TOLERANCE
+    if run.t[-1] <= last and not any(
+        table is not None and np.any(table.t1 > last) for table in (run.trips, run.contacts)
+    ):
+        return run
     keep = int(np.searchsorted(run.t, last, side="right"))
     return replace(
         run,
@@ -113,13 +121,52 @@ def path_length(t: Array, robot: RobotTrack, jump_speed: float) -> float:
     return float(np.hypot(_steps(robot.x), _steps(robot.y))[valid].sum())
 
 
+def turns(t: Array, robot: RobotTrack, jump_speed: float) -> Array:
+    """Change of the robot's heading on each step (N-1,), rad; NaN where a step is not valid."""
+    valid = valid_robot_steps(t, robot, jump_speed)
+    return np.where(valid, wrap(_steps(finite(robot.theta))), np.nan)
+
+
+def finite(values: Array) -> Array:
+    """NaN for what is infinite: both are unknown."""
+    return np.where(np.isfinite(values), values, np.nan)
+
+
+def wrap(angle: Array) -> Array:
+    """The same angles in (-pi, pi], rad."""
+    wrapped: Array = np.pi - np.mod(np.pi - angle, 2.0 * np.pi)
+    return wrapped
+
+
 # ----------------------------------------------------------------- velocities
 def robot_velocity(t: Array, robot: RobotTrack, jump_speed: float) -> tuple[Array, Array]:
     """World velocity (N,), (N,) of the robot, m/s; derived where not recorded, NaN if neither."""
     valid = valid_robot_steps(t, robot, jump_speed)
+    if robot.vx is not None and robot.vy is not None:
+        return _completed(t, (robot.x, robot.y), (robot.vx, robot.vy), valid)
     theta = np.where(np.isfinite(robot.theta) & np.isfinite(robot.v), robot.theta, np.nan)
     recorded = (robot.v * np.cos(theta), robot.v * np.sin(theta))
     return _completed(t, (robot.x, robot.y), recorded, valid)
+
+
+def forward_speed(t: Array, robot: RobotTrack, jump_speed: float) -> Array:
+    """Signed forward speed of the robot (N,), m/s; derived where not recorded."""
+    if np.all(np.isfinite(robot.v)):
+        return robot.v
+    vx, vy = robot_velocity(t, robot, jump_speed)
+    theta = finite(robot.theta)
+    derived = vx * np.cos(theta) + vy * np.sin(theta)
+    return np.where(np.isfinite(robot.v), robot.v, derived)
+
+
+def yaw_rate(t: Array, robot: RobotTrack, jump_speed: float) -> Array:
+    """Yaw rate of the robot (N,), rad/s; derived where not recorded."""
+    if np.all(np.isfinite(robot.w)):
+        return robot.w
+    turn = turns(t, robot, jump_speed)
+    known = np.isfinite(turn)
+    heading = np.concatenate([[0.0], np.where(known, turn, 0.0).cumsum()])
+    return np.where(np.isfinite(robot.w), robot.w, _secant(t, heading, known))
 
 
 def agent_velocities(t: Array, agents: AgentTracks, jump_speed: float) -> tuple[Array, Array]:
@@ -180,8 +227,9 @@ def _steps(p: Array) -> Array:
 
 
 def _first_robot_samples(robot: RobotTrack, keep: int) -> RobotTrack:
-    rows = {name: getattr(robot, name)[:keep] for name in ("x", "y", "theta", "v", "w")}
-    return replace(robot, **rows)
+    names = ("x", "y", "theta", "v", "w", "vx", "vy")
+    rows = {name: getattr(robot, name) for name in names}
+    return replace(robot, **{n: row[:keep] for n, row in rows.items() if row is not None})
 
 
 def _first_agent_samples(agents: AgentTracks, keep: int) -> AgentTracks:

@@ -256,6 +256,9 @@ def _check_component(plugin: str, hook: str, component: Component[Any]) -> None:
         raise PluginError(f"{hook} returned {component.kind}, a {component.category}")
     if plugin != "builtin" and not component.kind.startswith(f"{plugin}."):
         raise PluginError(f"kind '{component.kind}' must start with '{plugin}.'")
+    if component.category == "metric" and not component.has_card():
+        place = component.card_place or "the component's 'card'"
+        raise PluginError(f"metric '{component.kind}' has no card; it is looked for in {place}")
 
 
 def _name_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:

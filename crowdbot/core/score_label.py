@@ -1,25 +1,38 @@
-"""ScoreLabel: what all scores of one metric share; fills in the rest."""
+"""ScoreLabel: what all scores of one metric share; MetricComponent: a metric's words."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, SupportsFloat
 
+from crowdbot.core.component import Component, S_co
+from crowdbot.core.laws import Laws
 from crowdbot.core.score import Better, Score
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScoreLabel:
-    """Name, symbol, category, unit and good direction of a metric (or of one variant)."""
+    """Name, symbol, category, unit and good direction of a metric and its variants.
+
+    Attributes:
+        variants: names of all variants, in the order in which they are scored.
+        units: variant -> unit, where it differs from ``unit``.
+        betters: variant -> direction, where it differs from ``better``.
+    """
 
     metric: str
     symbol: str
     category: str
     unit: str
     better: Better
+    variants: tuple[str, ...] = ("corrected",)
+    units: Mapping[str, str] = field(default_factory=dict)
+    betters: Mapping[str, Better] = field(default_factory=dict)
 
-    def ok(self, variant: str, value: float, extras: Mapping[str, float] | None = None) -> Score:
+    def ok(
+        self, variant: str, value: SupportsFloat, extras: Mapping[str, float] | None = None
+    ) -> Score:
         """A score with a value."""
         return Score(**self._head(variant), value=float(value), extras=extras or {})
 
@@ -27,12 +40,26 @@ class ScoreLabel:
         """A score that does not exist, and why."""
         return Score(**self._head(variant), status="undefined", reason=reason)
 
+    def all_undefined(self, reason: str, variants: Iterable[str] | None = None) -> list[Score]:
+        """All variants, or some, that do not exist for the same reason."""
+        return [self.undefined(v, reason) for v in variants or self.variants]
+
     def censored(
-        self, variant: str, reason: str, lower: float | None = None, upper: float | None = None
+        self,
+        variant: str,
+        reason: str,
+        lower: float | None = None,
+        upper: float | None = None,
+        extras: Mapping[str, float] | None = None,
     ) -> Score:
         """A score that exists but was not seen to its end, with the bounds that are known."""
         return Score(
-            **self._head(variant), status="censored", reason=reason, lower=lower, upper=upper
+            **self._head(variant),
+            status="censored",
+            reason=reason,
+            lower=lower,
+            upper=upper,
+            extras=extras or {},
         )
 
     def ratio(
@@ -53,7 +80,19 @@ class ScoreLabel:
             "metric": self.metric,
             "symbol": self.symbol,
             "category": self.category,
-            "unit": self.unit,
-            "better": self.better,
+            "unit": self.units.get(variant, self.unit),
+            "better": self.betters.get(variant, self.better),
             "variant": variant,
         }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MetricComponent(Component[S_co]):
+    """A metric: its spec, its deeds, the label that all its scores carry, and its laws.
+
+    Attributes:
+        laws: variant -> what it promises; a variant that is not listed keeps to the defaults.
+    """
+
+    label: ScoreLabel
+    laws: Mapping[str, Laws] = field(default_factory=dict)

@@ -58,12 +58,20 @@ def write_scores_csv(
     Raises:
         InputError: it cannot be written there.
     """
-    path = Path(path)
-    rows = [(scenario, planner, str(seed), *_cells(s)) for s in scores]
+    rows = [(scenario, planner, str(seed), *cells_of(s)) for s in scores]
+    write_table(Path(path), [COLUMNS, *rows])
+
+
+def write_table(path: Path, rows: Iterable[Sequence[str]]) -> None:
+    """Write rows of text, RFC 4180, UTF-8; the file appears under its name only when complete.
+
+    Raises:
+        InputError: it cannot be written there.
+    """
     aside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
         with aside.open("w", encoding="utf-8", newline="") as file:
-            csv.writer(file).writerows([COLUMNS, *rows])
+            csv.writer(file).writerows(rows)
         aside.replace(path)
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from error
@@ -90,7 +98,8 @@ def read_scores_csv(path: str | os.PathLike[str]) -> list[ScoreRow]:
         raise InputError(f"{path}: not a table of scores: {error}") from error
 
 
-def _cells(score: Score) -> list[str]:
+def cells_of(score: Score) -> list[str]:
+    """What stands in the columns from ``category`` on."""
     cells = {name: str(getattr(score, name)) for name in _TEXTS}
     for name in _NUMBERS:
         number = getattr(score, name)

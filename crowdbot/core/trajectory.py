@@ -5,10 +5,10 @@ Layout of the metric specification, section 1. Arrays are float64, read-only, sh
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.errors import InputError
 
 Array = NDArray[np.float64]
+_Derived = TypeVar("_Derived")
 
 
 def _frozen(values: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
@@ -26,7 +27,11 @@ def _frozen(values: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotTrack:
-    """One robot: x, y, theta, v, w are (N,); m, rad, m/s signed forward, rad/s."""
+    """One robot: x, y, theta, v, w are (N,); m, rad, m/s signed forward, rad/s.
+
+    ``vx``, ``vy`` (N,) are the world velocity (m/s) of a robot that also moves sideways; without
+    them it is ``v`` along ``theta``.
+    """
 
     x: Array
     y: Array
@@ -38,6 +43,8 @@ class RobotTrack:
     goal_time: float | None
     goal: tuple[float, float] | None
     goal_radius: float
+    vx: Array | None = None
+    vy: Array | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,7 +88,18 @@ class ContactEvents:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trajectories:
-    """One run. ``robot`` or ``agents`` is None in the calibration runs."""
+    """One run. ``robot`` or ``agents`` is None in the calibration runs.
+
+    Attributes:
+        t: (N,) sample times, s.
+        goal_zone: (K, 2) polygon, m.
+        walls: (S, 4) segments x0, y0, x1, y1, m.
+        planner_step_time: (P,) seconds per planner step.
+        robot_footprint: outline of the robot in its own frame (x forward), m: the (K, 2) corners
+            of a polygon in either sense, K >= 3; or the (2, 2) ends of the axis of a capsule,
+            whose radius is ``robot.radius``. None: a disc of ``robot.radius``.
+        signals: name -> (P, 2) time (s) and value.
+    """
 
     t: Array
     robot: RobotTrack | None = None
@@ -93,6 +111,31 @@ class Trajectories:
     planner_step_time: Array | None = None
     robot_footprint: Array | None = None
     signals: Mapping[str, Array] = field(default_factory=dict)
+    _derived: dict[Hashable, Any] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+
+    def derived(self, key: Hashable, compute: Callable[[], _Derived]) -> _Derived:
+        """What ``compute`` makes of this run; computed once, for all metrics that ask.
+
+        A run never changes, and what was derived from it is forgotten with it.
+        """
+        if key not in self._derived:
+            self._derived[key] = compute()
+        return cast(_Derived, self._derived[key])
+
+    @classmethod
+    def from_csv(
+        cls,
+        robot: Path | str | None = None,
+        agents: Path | str | None = None,
+        trips: Path | str | None = None,
+        **more: Any,
+    ) -> Trajectories:
+        """Read tables; see `crowdbot.core.trajectory_csv.read_csv`."""
+        from crowdbot.core.trajectory_csv import read_csv
+
+        return read_csv(robot, agents, trips, **more)
 
     @classmethod
     def from_mcap(cls, path: Path | str) -> Trajectories:
@@ -111,6 +154,8 @@ class Trajectories:
         robot_theta: ArrayLike | None = None,
         robot_v: ArrayLike | None = None,
         robot_w: ArrayLike | None = None,
+        robot_vx: ArrayLike | None = None,
+        robot_vy: ArrayLike | None = None,
         robot_radius: float | None = None,
         robot_mass: float | None = None,
         robot_goal_time: float | None = None,
@@ -136,6 +181,10 @@ class Trajectories:
         signals: Mapping[str, ArrayLike] | None = None,
     ) -> Trajectories:
         """Build from plain arrays; ``robot_*`` or ``agent_*`` may be left out.
+
+        An omnidirectional robot gives ``robot_vx`` and ``robot_vy`` (world frame, m/s), and may
+        leave out ``robot_v``. ``robot_footprint`` is a polygon (K, 2), or the (2, 2) ends of a
+        capsule of radius ``robot_radius``, in the robot's frame.
 
         Raises:
             InputError: a shape does not fit, time does not increase, a part is missing.
@@ -164,16 +213,31 @@ def _need(given: Mapping[str, Any], *names: str) -> None:
 
 
 def _robot(given: Mapping[str, Any]) -> RobotTrack:
-    _need(given, "robot_y", "robot_theta", "robot_v", "robot_w", "robot_radius", "robot_mass")
+    _need(given, "robot_y", "robot_theta", "robot_w", "robot_radius", "robot_mass")
     goal_time, goal = given["robot_goal_time"], given["robot_goal"]
+    rows = {k: _frozen(given[f"robot_{k}"]) for k in ("x", "y", "theta", "w")}
+    if given["robot_vx"] is None and given["robot_vy"] is None:
+        _need(given, "robot_v")
+    else:
+        _need(given, "robot_vx", "robot_vy")
+        rows |= {k: _frozen(given[f"robot_{k}"]) for k in ("vx", "vy")}
     return RobotTrack(
-        **{k: _frozen(given[f"robot_{k}"]) for k in ("x", "y", "theta", "v", "w")},
+        **rows,
+        v=_forward(rows) if given["robot_v"] is None else _frozen(given["robot_v"]),
         radius=float(given["robot_radius"]),
         mass=float(given["robot_mass"]),
         goal_time=None if goal_time is None else float(goal_time),
         goal=None if goal is None else (float(goal[0]), float(goal[1])),
         goal_radius=float(given["robot_goal_radius"]),
     )
+
+
+def _forward(rows: Mapping[str, Array]) -> Array:
+    """Forward speed of a robot that gave its world velocity, m/s."""
+    try:
+        return _frozen(rows["vx"] * np.cos(rows["theta"]) + rows["vy"] * np.sin(rows["theta"]))
+    except ValueError as error:
+        raise InputError(f"trajectories: robot_vx, robot_vy, robot_theta: {error}") from error
 
 
 def _agents(given: Mapping[str, Any]) -> AgentTracks:
@@ -221,10 +285,18 @@ def _check(run: Trajectories) -> None:
     if np.any(np.diff(run.t) <= 0):
         raise InputError("trajectories: t must strictly increase")
     if run.robot is not None:
-        for name in ("x", "y", "theta", "v", "w"):
-            _shape(f"robot_{name}", getattr(run.robot, name), (n,))
+        for name in ("x", "y", "theta", "v", "w", "vx", "vy"):
+            if getattr(run.robot, name) is not None:
+                _shape(f"robot_{name}", getattr(run.robot, name), (n,))
+        _measure("robot_radius", run.robot.radius)
+        _measure("robot_mass", run.robot.mass)
     if run.agents is not None:
-        m = len(run.agents.id)
+        m = run.agents.x.shape[1] if run.agents.x.ndim == 2 else 0
+        _shape("agent_id", run.agents.id, (m,))
+        if len(np.unique(run.agents.id)) < m:
+            raise InputError("trajectories: agent_id holds a number twice")
+        _measure("agent_radius", run.agents.radius)
+        _measure("agent_mass", run.agents.mass)
         for name in ("x", "y", "vx", "vy"):
             _shape(f"agent_{name}", getattr(run.agents, name), (n, m))
         if run.agents.jump is not None:
@@ -234,6 +306,26 @@ def _check(run: Trajectories) -> None:
             k = table.agent.shape
             for column in fields(table):
                 _shape(column.name, getattr(table, column.name), k)
+    if run.walls is not None and run.walls.size:
+        _shape("walls", run.walls, (len(run.walls), 4))
+    for name, least in (("goal_zone", 3), ("robot_footprint", 2)):
+        outline = getattr(run, name)
+        if outline is not None:
+            _outline(name, outline, least)
+
+
+def _outline(name: str, corners: Array, least: int) -> None:
+    if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < least:
+        raise InputError(
+            f"trajectories: {name} has shape {corners.shape}, expected (K, 2), K >= {least}"
+        )
+    if not np.all(np.isfinite(corners)):
+        raise InputError(f"trajectories: {name} has a corner that is not finite")
+
+
+def _measure(name: str, values: float | Array) -> None:
+    if not (np.all(np.isfinite(values)) and np.all(np.asarray(values) >= 0)):
+        raise InputError(f"trajectories: {name} must be finite and not negative")
 
 
 def _shape(name: str, array: NDArray[Any], shape: tuple[int, ...]) -> None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crowdbot.core.commands import Commands
 from crowdbot.core.evaluate import score
 from crowdbot.core.registry import Plugin, Registry, assemble
 from crowdbot.core.score import Score
@@ -94,18 +95,72 @@ def scene(
     return Trajectories.from_arrays(t=t, **given, **more)
 
 
+def driven(
+    t: ArrayLike,
+    *,
+    v: ArrayLike = 0.0,
+    w: ArrayLike = 0.0,
+    goal_time: float | None = None,
+    **more: Any,
+) -> Trajectories:
+    """A lone robot along its heading, with these speeds (m/s, rad/s)."""
+    t = np.asarray(t, dtype=np.float64)
+    speed, rate = (np.broadcast_to(np.asarray(a, dtype=np.float64), t.shape) for a in (v, w))
+
+    def integral(values: Array) -> Array:
+        steps = np.diff(t) * (values[1:] + values[:-1]) / 2
+        return np.concatenate([[0.0], np.cumsum(steps)])
+
+    theta = integral(rate)
+    given = {
+        "robot_x": integral(speed * np.cos(theta)),
+        "robot_y": integral(speed * np.sin(theta)),
+        "robot_theta": theta,
+        "robot_radius": ROBOT_RADIUS,
+        "robot_mass": 6.3,
+        "robot_goal_time": goal_time,
+    }
+    return Trajectories.from_arrays(t=t, robot_v=speed, robot_w=rate, **{**given, **more})
+
+
+def trips(*rows: tuple[int, float, float, bool]) -> dict[str, Any]:
+    """Agent, start, end, reached."""
+    agent, t0, t1, reached = zip(*rows, strict=True)
+    return {"trip_agent": agent, "trip_t0": t0, "trip_t1": t1, "trip_reached": reached}
+
+
 def scores_of(
     metric: str,
-    run: Trajectories,
+    run: Trajectories | None,
     robot_alone: Trajectories | None = None,
     crowd_alone: Trajectories | None = None,
+    *,
+    commands: Commands | None = None,
+    commands_baseline: Commands | None = None,
+    questionnaires: Mapping[str, Any] | None = None,
     **fields: Any,
 ) -> dict[str, Score]:
     """Variant -> score."""
     found = score(
-        REGISTRY, run, robot_alone, crowd_alone, metrics=metric, parameters={metric: fields}
+        REGISTRY,
+        run,
+        robot_alone,
+        crowd_alone,
+        commands,
+        commands_baseline,
+        questionnaires,
+        metrics=metric,
+        parameters={metric: fields},
     )
     return {s.variant: s for s in found}
+
+
+def values(found: dict[str, Score]) -> dict[str, float | None]:
+    return {name: s.value for name, s in found.items()}
+
+
+def why(found: dict[str, Score]) -> set[tuple[str, str]]:
+    return {(s.status, s.reason) for s in found.values()}
 
 
 def value_of(found: dict[str, Score], variant: str = "corrected") -> float:

@@ -1,96 +1,108 @@
-"""Every registered metric has a card that says what its scores say."""
+"""Every metric has a card; what the card says is checked by the conformance kit."""
 
 from __future__ import annotations
 
-import re
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from crowdbot.core.evaluate import score
+from crowdbot.core.component import Component
 from crowdbot.core.registry import discover
-
-from .scenes import REGISTRY, grid, line, scene, scores_of
+from crowdbot.dsl.base import MetricSpec
+from crowdbot.errors import PluginError
 
 CARDS = Path(__file__).parents[2] / "docs/reference/metrics"
-KINDS = sorted(REGISTRY.components("metric"))
-T = grid(2)
-RUN = scene(T, line(T, (0, 0), (1, 0)), [line(T, (5, 0), (-1, 0))], goal_time=2.0)
+KINDS = sorted(discover(allow=(), entry_points=False).components("metric"))
+
+PLUGIN = """
+from typing import Literal
+from crowdbot.core.score_label import MetricComponent, ScoreLabel
+from crowdbot.dsl.base import MetricSpec
+from crowdbot.hookspecs import hookimpl
+
+class HeightSpec(MetricSpec):
+    '''Height.'''
+
+    kind: Literal["acme_cards.height"] = "acme_cards.height"
+
+LABEL = ScoreLabel(metric="acme_cards.height", symbol="h", category="x", unit="m", better="none")
+
+@hookimpl
+def crowdbot_metrics():
+    return [MetricComponent(
+        spec=HeightSpec, build="acme_cards:build", summary="height", label=LABEL{card}
+    )]
+"""
 
 
-def card(kind: str) -> str:
-    return (CARDS / f"{kind}.md").read_text(encoding="utf-8")
+@pytest.fixture(autouse=True)
+def _forget() -> Iterator[None]:
+    yield
+    sys.modules.pop("acme_cards", None)
 
 
-def cells(kind: str) -> dict[str, str]:
-    """The table at the head of a card."""
-    rows = re.findall(r"^\| ([\w ]+?) \| (.+?) \|$", card(kind).split("\n## ")[0], re.MULTILINE)
-    return dict(rows)
+def acme(folder: Path, card: str = "", *, package: bool = True) -> Path:
+    path = folder / "acme_cards"
+    if package:
+        path.mkdir()
+        file = path / "__init__.py"
+    else:
+        path = file = folder / "acme_cards.py"
+    file.write_text(PLUGIN.format(card=card), encoding="utf-8")
+    return path
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_card_says_what_the_scores_say(kind: str) -> None:
-    found = score(REGISTRY, RUN, RUN, RUN, metrics=kind)
-    head = cells(kind)
-    assert card(kind).startswith(f"# {kind}\n")
-    for s in found:
-        assert head["symbol"] == s.symbol
-        assert head["unit"] == s.unit
-        assert head["category"] == s.category
-        assert re.search(rf"\b{s.better}\b", head["better"])
-        assert f"`{s.variant}`" in card(kind)
-        for extra in s.extras:
-            assert f"`{extra}`" in card(kind)
-    assert {"range", "needs"} <= set(head)
+def found(path: Path) -> Component[MetricSpec]:
+    registry = discover(extra=[path], allow=(), entry_points=False)
+    errors = [p.error for p in registry.plugins if p.error]
+    if errors:
+        raise PluginError(errors[0])
+    return registry.find("metric", "acme_cards.height")
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_card_has_all_its_sections(kind: str) -> None:
-    sections = re.findall(r"^## (.+)$", card(kind), re.MULTILINE)
-    assert sections == [
-        "Formula",
-        "Variants",
-        "Failure modes",
-        "What the literal form gets wrong",
-        "Worked example",
-        "Source",
-    ]
+def test_every_metric_has_a_page_and_every_page_a_metric() -> None:
+    pages = {p.stem for p in CARDS.glob("*.md")} - {"errata"}
+    assert pages == set(KINDS)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_card_names_every_parameter(kind: str) -> None:
-    fields = set(REGISTRY.find("metric", kind).spec.model_fields) - {"kind"}
-    assert {f for f in fields if f"`{f}`" not in card(kind)} == set()
+def test_the_package_holds_the_pages() -> None:
+    registry = discover(allow=(), entry_points=False)
+    for kind in KINDS:
+        page = (CARDS / f"{kind}.md").read_text(encoding="utf-8")
+        assert registry.find("metric", kind).read_card() == page
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_card_names_the_reasons_that_occur(kind: str) -> None:
-    lone = scene([0.0])
-    still = scene(T, line(T, (0, 0), (1, 0)), robot_footprint=[[0, 0], [1, 0], [0, 1]])
-    for crowded, alone in ((lone, None), (RUN, lone), (still, still), (RUN, still)):
-        for s in scores_of(kind, crowded, alone, alone).values():
-            assert not s.reason or f"`{s.reason}`" in card(kind)
+def test_a_metric_without_a_card_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(PluginError, match=r"has no card; .*acme_cards:cards/height\.md"):
+        found(acme(tmp_path))
 
 
-def test_there_are_no_other_cards() -> None:
-    assert sorted(p.stem for p in CARDS.glob("*.md") if p.stem != "index") == KINDS
+def test_a_card_lies_beside_the_words(tmp_path: Path) -> None:
+    path = acme(tmp_path)
+    (path / "cards").mkdir()
+    (path / "cards/height.md").write_text("# acme_cards.height\n", encoding="utf-8")
+    assert found(path).read_card() == "# acme_cards.height\n"
 
 
-def test_the_metrics_are_the_plugins() -> None:
-    installed = discover(allow=(), entry_points=False).components("metric")
-    assert sorted(installed) == KINDS
+def test_a_card_may_be_elsewhere_or_text(tmp_path: Path) -> None:
+    path = acme(tmp_path, card=', card="acme_cards:docs.md"')
+    (path / "docs.md").write_bytes(b"\xff\xfe")
+    with pytest.raises(PluginError, match="cannot be read"):
+        found(path).read_card()
+    sys.modules.pop("acme_cards")
+    (tmp_path / "file").mkdir()
+    single = acme(tmp_path / "file", card=', card="# acme_cards.height\\n"', package=False)
+    assert found(single).read_card() == "# acme_cards.height\n"
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_defaults_are_the_specifications(kind: str) -> None:
-    expected = {
-        "zero_tol": 1e-9,
-        "jump_speed": 10.0,
-        "risk_horizon": 5.0,
-        "contact_tol": 1e-9,
-        "rel_speed_tol": 1e-6,
-        "release_gap": 0.05,
-    }
-    component = REGISTRY.find("metric", kind)
-    fields = component.spec.model_validate({"kind": kind}).model_dump(exclude={"kind"})
-    assert fields == {name: expected[name] for name in fields}
+@pytest.mark.parametrize("card", ["acme_cards:none.md", "no_such_package:x.md", "nonsense"])
+def test_a_card_that_is_not_there(card: str, tmp_path: Path) -> None:
+    with pytest.raises(PluginError, match="has no card"):
+        found(acme(tmp_path, card=f', card="{card}"'))
+
+
+def test_a_file_without_package_needs_a_card_as_text(tmp_path: Path) -> None:
+    with pytest.raises(PluginError, match="has no card"):
+        found(acme(tmp_path, package=False))

@@ -181,7 +181,7 @@ def test_onsets_name_the_person_and_the_sample_before() -> None:
     run = scene(T, STILL, agents)
     assert run.robot is not None
     assert run.agents is not None
-    pair = encounter(run.t, run.robot, run.agents, 10.0)
+    pair = encounter(run, 10.0)
     onsets = contact_onsets(pair, contact_tol=1e-9, release_gap=0.05)
     assert onsets.agent.tolist() == [2, 1, 0]
     assert onsets.time == pytest.approx([0, 5 - REACH, 8 - REACH])
@@ -203,6 +203,3 @@ def test_one_sample() -> None:
 def test_reasons() -> None:
     found = scores_of("collision_count", scene(T, None, [STILL]))
     assert {(s.status, s.reason) for s in found.values()} == {("undefined", "invalid_no_robot")}
-    footprint = [[-0.2, -0.2], [0.2, -0.2], [0.0, 0.2]]
-    found = scores_of("collision_count", scene(T, STILL, [STILL], robot_footprint=footprint))
-    assert {(s.status, s.reason) for s in found.values()} == {("undefined", "invalid_footprint")}

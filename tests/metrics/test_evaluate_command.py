@@ -11,6 +11,7 @@ import pytest
 
 from crowdbot.cli import main
 from crowdbot.core.evaluate import score
+from crowdbot.core.interfaces import RobotLimits
 from crowdbot.core.recording import (
     AgentsHeader,
     RecordingHeader,
@@ -24,6 +25,7 @@ from .scenes import REGISTRY, grid, line, scene
 Captured = pytest.CaptureFixture[str]
 
 T = grid(10)
+LIMITS = RobotLimits(v_min=-0.5, v_max=1.0, w_max=2.0, a_max=1.0, alpha_max=2.0)
 DRIVER, WALKER = line(T, (0, 0), (1, 0)), line(T, (10, 0), (-1, 0))
 CROWDED = scene(T, DRIVER, [WALKER], goal_time=8.0)
 ROBOT_ALONE = scene(T, DRIVER, goal_time=6.0)
@@ -35,7 +37,9 @@ def record(path: Path, run: Trajectories, *, complete: bool = True) -> Path:
     robot, agents = run.robot, run.agents
     header = RecordingHeader(
         scenario="test",
-        robot=None if robot is None else RobotHeader(radius=robot.radius, mass=robot.mass),
+        robot=None
+        if robot is None
+        else RobotHeader(radius=robot.radius, mass=robot.mass, limits=LIMITS),
         agents=None
         if agents is None
         else AgentsHeader(id=agents.id, radius=agents.radius, mass=agents.mass),
@@ -94,8 +98,14 @@ def failure(capsys: Captured, *argv: object, code: int = 1) -> str:
 def test_a_run_directory_scores_bit_by_bit_as_its_arrays(folder: Path, capsys: Captured) -> None:
     (run,) = evaluated(capsys, folder)
     assert (run["scenario"], run["planner"], run["seed"]) == ("s", "dwa", 3)
-    expected = score(REGISTRY, CROWDED, ROBOT_ALONE, CROWD_ALONE)
-    assert len(expected) == 11
+    beside = folder.parents[2] / "references"
+    expected = score(
+        REGISTRY,
+        Trajectories.from_mcap(folder / "run.mcap"),
+        Trajectories.from_mcap(beside / "robot_alone/run.mcap"),
+        Trajectories.from_mcap(beside / "crowd_alone/run.mcap"),
+    )
+    assert len(expected) > 60
     found = {(s["metric"], s["variant"]): s for s in run["scores"]}
     for one in expected:
         again = found[one.metric, one.variant]
@@ -117,17 +127,17 @@ def test_the_table(folder: Path, capsys: Captured) -> None:
 
 def test_recordings_and_given_references(folder: Path, capsys: Captured) -> None:
     recording = folder / "run.mcap"
-    (plain,) = evaluated(capsys, recording, "--metrics", "effect*", "--variant", "literal")
+    (plain,) = evaluated(capsys, recording, "--metrics", "effect_on_v*", "--variant", "literal")
     assert [s["reason"] for s in plain["scores"]] == ["no_reference"]
     assert (plain["run"], plain["seed"]) == (str(recording), None)
     alone = folder.parents[2] / "references/crowd_alone/run.mcap"
-    (again,) = evaluated(capsys, recording, "--crowd-alone", alone, "--metrics", "effect*")
+    (again,) = evaluated(capsys, recording, "--crowd-alone", alone, "--metrics", "effect_on_v*")
     assert [s["value"] for s in again["scores"]] == pytest.approx([1.3, 1.3])
 
 
 def test_given_references_win(folder: Path, tmp_path: Path, capsys: Captured) -> None:
     other = record(tmp_path / "other.mcap", scene(T, DRIVER, goal_time=4.0))
-    (run,) = evaluated(capsys, folder, "--robot-alone", other, "--metrics", "*time_to_goal")
+    (run,) = evaluated(capsys, folder, "--robot-alone", other, "--metrics", "relative_time*")
     assert {s["value"] for s in run["scores"]} == {0.5}
 
 
@@ -155,7 +165,8 @@ def test_nothing_is_written(folder: Path, capsys: Captured) -> None:
 
 def test_what_is_not_there(folder: Path, tmp_path: Path, capsys: Captured) -> None:
     assert "no such run directory" in failure(capsys, tmp_path / "none")
-    assert "run.json is missing" in failure(capsys, tmp_path)
+    (tmp_path / "empty").mkdir()
+    assert "run.json is missing" in failure(capsys, tmp_path / "empty")
     recording = folder / "run.mcap"
     assert "robot alone not found" in failure(capsys, recording, "--robot-alone", "none.mcap")
     (folder.parents[2] / "references/crowd_alone/run.mcap").unlink()

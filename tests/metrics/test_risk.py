@@ -235,9 +235,6 @@ def test_no_people_no_risk() -> None:
 def test_reasons() -> None:
     found = scores_of("risk", scene(T, None, [line(T, (0, 0), (1, 0))]))
     assert {(s.status, s.reason) for s in found.values()} == {("undefined", "invalid_no_robot")}
-    square = [[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]]
-    found = scores_of("risk", scene(T, line(T, (0, 0), (1, 0)), robot_footprint=square))
-    assert {(s.status, s.reason) for s in found.values()} == {("undefined", "invalid_footprint")}
     t = np.zeros(1)
     found = scores_of("risk", scene(t, line(t, (0, 0), (1, 0)), [line(t, (2, 0), (0, 0))]))
     assert value_of(found, "literal") == pytest.approx(2 - REACH)

@@ -1,8 +1,10 @@
 """Recordings: MCAP files with ROS 2 messages, and the raw float64 state beside them."""
 
+from crowdbot.core.recording.commands import read_commands
 from crowdbot.core.recording.header import AgentsHeader, RecordingHeader, RobotHeader
 from crowdbot.core.recording.reader import (
     RecordingInfo,
+    holds_run,
     read_scans,
     read_trajectories,
     recording_info,
@@ -15,6 +17,8 @@ __all__ = [
     "RecordingInfo",
     "RecordingWriter",
     "RobotHeader",
+    "holds_run",
+    "read_commands",
     "read_scans",
     "read_trajectories",
     "recording_info",

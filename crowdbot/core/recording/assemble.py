@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -20,17 +21,16 @@ _CONTACT = ("t0", "t1", "agent", "impulse", "peak_force", "relative_speed")
 class Collected:
     """Messages of the scoring topics, in the order they came."""
 
-    TOPICS: ClassVar[frozenset[str]] = frozenset(
-        (
-            Topic.HEADER,
-            Topic.STATE,
-            Topic.TRIP,
-            Topic.CONTACTS,
-            Topic.SIGNAL,
-            Topic.PLANNER_TIME,
-            Topic.END,
-        )
-    )
+    #: Topic -> message type.
+    TOPICS: ClassVar[Mapping[str, str]] = {
+        Topic.HEADER: "crowdbot_msgs/msg/RunHeader",
+        Topic.STATE: "crowdbot_msgs/msg/RunState",
+        Topic.TRIP: "crowdbot_msgs/msg/Trip",
+        Topic.CONTACTS: "crowdbot_msgs/msg/Contact",
+        Topic.SIGNAL: "crowdbot_msgs/msg/Signal",
+        Topic.PLANNER_TIME: "crowdbot_msgs/msg/Signal",
+        Topic.END: "crowdbot_msgs/msg/RunEnd",
+    }
 
     def __init__(self) -> None:
         self._by_topic: dict[str, list[Any]] = {t: [] for t in self.TOPICS}
@@ -47,21 +47,24 @@ class Collected:
         """
         if not self._by_topic[Topic.HEADER]:
             raise InputError(f"{path}: no recording of crowdbot: {Topic.HEADER} is missing")
-        header = RecordingHeader.from_message(self._by_topic[Topic.HEADER][0])
-        states = self._by_topic[Topic.STATE]
-        if not states:
+        if not self._by_topic[Topic.STATE]:
             raise InputError(f"{path}: the recording holds no sample")
-        parts: dict[str, Any] = {
-            "t": [s.t for s in states],
+        header = RecordingHeader.from_message(self._by_topic[Topic.HEADER][0])
+        try:
+            return Trajectories.from_arrays(
+                **self._shared(header), **self._robot(header), **self._agents(header)
+            )
+        except (InputError, ValueError) as error:
+            raise InputError(f"{path}: damaged: {error}") from error
+
+    def _shared(self, header: RecordingHeader) -> dict[str, Any]:
+        return {
+            "t": [s.t for s in self._by_topic[Topic.STATE]],
             "goal_zone": header.goal_zone,
             "walls": header.walls,
             "planner_step_time": [s.value for s in self._by_topic[Topic.PLANNER_TIME]] or None,
             "signals": self._signals(),
         }
-        try:
-            return Trajectories.from_arrays(**parts, **self._robot(header), **self._agents(header))
-        except (InputError, ValueError) as error:
-            raise InputError(f"{path}: damaged: {error}") from error
 
     def _robot(self, header: RecordingHeader) -> dict[str, Any]:
         robot = header.robot

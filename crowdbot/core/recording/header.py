@@ -85,21 +85,25 @@ class RecordingHeader:
         """Inverse of `to_message`.
 
         Raises:
-            InputError: the message was written by another version of crowdbot.
+            InputError: the message was written by another version of crowdbot, or contradicts
+                itself.
         """
         if message.version != VERSION:
             raise InputError(
                 f"the recording has format {message.version}; this crowdbot reads format {VERSION}"
             )
-        return cls(
-            scenario=message.scenario,
-            hashes=dict(zip(message.hash_names, message.hashes, strict=True)),
-            robot=_robot(message.robot[0]) if message.robot else None,
-            agents=_agents(message.agents[0]) if message.agents else None,
-            sensors={s.name: _sensor(s) for s in message.sensors},
-            walls=ros.from_table(message.walls),
-            goal_zone=ros.from_table(message.goal_zone),
-        )
+        try:
+            return cls(
+                scenario=message.scenario,
+                hashes=dict(zip(message.hash_names, message.hashes, strict=True)),
+                robot=_robot(message.robot[0]) if message.robot else None,
+                agents=_agents(message.agents[0]) if message.agents else None,
+                sensors={s.name: _sensor(s) for s in message.sensors},
+                walls=ros.from_table(message.walls),
+                goal_zone=ros.from_table(message.goal_zone),
+            )
+        except (ValueError, IndexError) as error:  # tables and lists of the wrong length
+            raise InputError(f"the recording's header contradicts itself: {error}") from error
 
 
 def _robot_message(robot: RobotHeader) -> Any:

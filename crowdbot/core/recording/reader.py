@@ -41,22 +41,72 @@ class RecordingInfo:
     topics: dict[str, tuple[str, int]]
 
 
-def read_trajectories(path: Path) -> Trajectories:
+def read_trajectories(path: Path, robot: str | None = None) -> Trajectories:
     """The arrays that were written, bit by bit; of an interrupted run as far as it came.
 
     ``trips`` is a table, perhaps empty, where there were people; ``contacts`` where there was a
     robot. ``signals[name]`` is (K, 2): time and value. ``planner_step_time`` is None unless some
     was recorded.
 
+    Args:
+        path: a recording.
+        robot: whose topics, where each robot has its own below ``/NAME``; needed only where
+            there are several.
+
     Raises:
         InputError: no recording of crowdbot, damaged, or without a single sample.
+        UnknownNameError: there is no such robot.
     """
     collected = Collected()
-    records = Records(path)
-    for record in records:
-        if record.topic in Collected.TOPICS:
-            collected.add(record.topic, _decode(path, record))
+    for topic, record in _of_robot(path, robot):
+        _check_type(path, record, Collected.TOPICS[topic])
+        collected.add(topic, _decode(path, record))
     return collected.trajectories(path)
+
+
+def holds_run(path: Path) -> bool:
+    """Whether a file has a header of crowdbot, for one robot or another.
+
+    Raises:
+        InputError: no MCAP file, or damaged.
+    """
+    return any(
+        record.topic.endswith(Topic.HEADER) and record.msgtype == Collected.TOPICS[Topic.HEADER]
+        for record in Records(path)
+    )
+
+
+def _of_robot(path: Path, robot: str | None) -> list[tuple[str, Record]]:
+    """Scoring topic and message of one robot; of other topics only the names are looked at."""
+    by_prefix: dict[str, list[tuple[str, Record]]] = {}
+    for record in Records(path):
+        for topic in Collected.TOPICS:
+            if record.topic.endswith(topic):
+                prefix = record.topic.removesuffix(topic)
+                by_prefix.setdefault(prefix, []).append((topic, record))
+    robots = {
+        prefix.removeprefix("/"): messages
+        for prefix, messages in by_prefix.items()
+        if any(topic == Topic.HEADER for topic, _ in messages)
+    }
+    if robot is not None:
+        if robot.strip("/") not in robots:
+            raise UnknownNameError("robot", robot, filter(None, robots))
+        return robots[robot.strip("/")]
+    if len(robots) > 1 and "" not in robots:
+        raise InputError(
+            f"{path}: the recording holds several robots: {', '.join(sorted(robots))}; name one"
+        )
+    return robots.get("") or next(iter(robots.values()), [])
+
+
+def _check_type(path: Path, record: Record, expected: str) -> None:
+    if (record.msgtype, record.encoding) != (expected, "cdr"):
+        found = record.msgtype or "a message without schema"
+        raise InputError(
+            f"{path}: {record.topic} holds {found} ({record.encoding or 'no encoding'}), "
+            f"not {expected} (cdr)"
+        )
 
 
 def read_scans(

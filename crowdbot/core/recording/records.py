@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
+import lz4.frame  # type: ignore[import-untyped]
 import zstandard
 from mcap.exceptions import EndOfFile, InvalidMagic, McapError
 from mcap.records import Channel, Chunk, DataEnd, Footer, McapRecord, Message, Schema
@@ -24,7 +25,15 @@ from crowdbot.errors import InputError
 MAX_CHUNK = 64 * 2**20
 MAX_RECORD = 2 * MAX_CHUNK
 MAX_TOTAL = 4 * 2**30
-_BROKEN = (McapError, CRCValidationError, zstandard.ZstdError, struct.error, ValueError, KeyError)
+_BROKEN = (
+    McapError,
+    CRCValidationError,
+    zstandard.ZstdError,
+    struct.error,
+    ValueError,
+    KeyError,
+    RuntimeError,  # lz4's
+)
 
 
 class Record(NamedTuple):
@@ -32,6 +41,7 @@ class Record(NamedTuple):
 
     topic: str
     msgtype: str
+    encoding: str
     ns: int
     data: bytes
 
@@ -87,7 +97,7 @@ class Records:
         self._total += chunk.uncompressed_size
         if chunk.uncompressed_size > MAX_CHUNK or self._total > MAX_TOTAL:
             raise InputError(f"{self._path}: refused: unpacks to more than a recording may")
-        if chunk.compression not in ("", "zstd"):
+        if chunk.compression not in ("", "zstd", "lz4"):
             raise InputError(f"{self._path}: compression '{chunk.compression}' is not supported")
         try:
             plain = _decompress(chunk)
@@ -102,11 +112,19 @@ class Records:
             elif isinstance(record, Channel):
                 self._channels[record.id] = record
             elif isinstance(record, Message):
-                channel = self._channels.get(record.channel_id)
-                schema = self._schemas.get(channel.schema_id) if channel else None
-                if channel is None or schema is None:
-                    raise InputError(f"{self._path}: damaged: a message belongs to no topic")
-                yield Record(channel.topic, schema.name, record.log_time, record.data)
+                yield self._message(record)
+
+    def _message(self, message: Message) -> Record:
+        channel = self._channels.get(message.channel_id)
+        if channel is None or (channel.schema_id and channel.schema_id not in self._schemas):
+            raise InputError(f"{self._path}: damaged: a message belongs to no topic")
+        return Record(
+            topic=channel.topic,
+            msgtype=self._schemas[channel.schema_id].name if channel.schema_id else "",
+            encoding=channel.message_encoding,
+            ns=message.log_time,
+            data=message.data,
+        )
 
 
 def _mapped(fileno: int) -> mmap.mmap:
@@ -121,8 +139,13 @@ def _decompress(chunk: Chunk) -> bytes:
     """Never more than the chunk admits to: the frame's own idea of its size may be a bomb."""
     if chunk.compression == "":
         return chunk.data
-    with zstandard.ZstdDecompressor().stream_reader(chunk.data) as reader:
-        data = reader.read(chunk.uncompressed_size + 1)
+    most = chunk.uncompressed_size + 1
+    data: bytes
+    if chunk.compression == "lz4":
+        data = lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=most)
+    else:
+        with zstandard.ZstdDecompressor().stream_reader(chunk.data) as reader:
+            data = reader.read(most)
     if len(data) != chunk.uncompressed_size:
         raise ValueError("size differs from the one announced")
     return data

@@ -88,4 +88,5 @@ class Request:
 
 def read_references(paths: Mapping[str, Path]) -> References:
     """The recordings of the calibration runs, by name."""
-    return References(**{name: read_trajectories(path) for name, path in paths.items()})
+    runs: dict[str, Any] = {name: read_trajectories(path) for name, path in paths.items()}
+    return References(**runs)

@@ -1,15 +1,39 @@
-"""Metrics of the CrowdBot challenge (D7.3, sections 1.2 and 2.2)."""
+"""Metrics of the CrowdBot challenge (D7.3, sections 1.2 and 2.2), and the field's."""
 
-from crowdbot.plugins.metrics.collision_count import COLLISION_COUNT
-from crowdbot.plugins.metrics.effect_on_velocity import EFFECT_ON_VELOCITY
-from crowdbot.plugins.metrics.relative_path_length import RELATIVE_PATH_LENGTH
-from crowdbot.plugins.metrics.relative_time_to_goal import RELATIVE_TIME_TO_GOAL
-from crowdbot.plugins.metrics.risk import RISK
+from crowdbot.plugins.metrics import (
+    clearance,
+    collision,
+    contact,
+    crowd_effect,
+    motion,
+    overtaking,
+    path_efficiency,
+    planner_time,
+    proximity,
+    questionnaire,
+    reference_path,
+    risk,
+    shared_control,
+    similarity,
+    task,
+    walls,
+)
 
 COMPONENTS = (
-    RELATIVE_TIME_TO_GOAL,
-    RELATIVE_PATH_LENGTH,
-    EFFECT_ON_VELOCITY,
-    RISK,
-    COLLISION_COUNT,
+    *path_efficiency.COMPONENTS,
+    *crowd_effect.COMPONENTS,
+    *risk.COMPONENTS,
+    *collision.COMPONENTS,
+    *similarity.COMPONENTS,
+    *overtaking.COMPONENTS,
+    *proximity.COMPONENTS,
+    *clearance.COMPONENTS,
+    *shared_control.COMPONENTS,
+    *questionnaire.COMPONENTS,
+    *task.COMPONENTS,
+    *motion.COMPONENTS,
+    *reference_path.COMPONENTS,
+    *contact.COMPONENTS,
+    *walls.COMPONENTS,
+    *planner_time.COMPONENTS,
 )

@@ -1,29 +1,33 @@
-"""Risk, computed."""
+"""How near in time the next collision is, computed."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.encounter import (
-    disc_problem,
-    encounter,
-    people,
-    relative_velocity,
-    time_to_contact,
-)
+from crowdbot.core.encounter import approach
 from crowdbot.core.interfaces import References
 from crowdbot.core.preprocess import cropped, duration, time_weights
 from crowdbot.core.score import Score
 from crowdbot.core.score_label import ScoreLabel
 from crowdbot.core.trajectory import Array, Trajectories
-from crowdbot.plugins.metrics.risk import RiskSpec
+from crowdbot.plugins.metrics.risk import (
+    EXPECTED_SEVERITY,
+    INTEGRATED_TIME_TO_COLLISION,
+    MIN_TIME_TO_COLLISION,
+    RISK,
+    TIME_EXPOSED,
+    ExpectedSeveritySpec,
+    IntegratedTimeToCollisionSpec,
+    MinTimeToCollisionSpec,
+    RiskSpec,
+    TimeExposedSpec,
+)
 
-LABEL = ScoreLabel(metric="risk", symbol="R", category="collision", unit="s", better="lower")
-#: Not monotone: an imminent crash adds less than a remote one.
-LITERAL = replace(LABEL, better="none")
+#: Times to contact this close are the same, s.
+TIE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,43 +39,126 @@ class Risk:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal``, ``corrected`` (with its ``mean`` over time) and ``exposed_time``."""
         del refs
-        if problem := disc_problem(run):
-            return [
-                LITERAL.undefined("literal", problem),
-                LABEL.undefined("corrected", problem),
-                LABEL.undefined("exposed_time", problem),
-            ]
+        label = RISK.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
         run = cropped(run)
-        tau = self._time_to_first_contact(run)
-        literal = LITERAL.ok("literal", tau[np.isfinite(tau)].sum())
-        return [literal, *self._over_time(run.t, tau)]
-
-    def _over_time(self, t: Array, tau: Array) -> list[Score]:
-        span = duration(t)
-        if span <= 0:
-            return [LABEL.undefined(v, "too_few_samples") for v in ("corrected", "exposed_time")]
-        weights, horizon = time_weights(t), self.spec.risk_horizon
+        tau = first_contact(run, self.spec)
+        literal = label.ok("literal", tau[np.isfinite(tau)].sum())
+        if (span := duration(run.t)) <= 0:
+            return [literal, *label.all_undefined("too_few_samples", label.variants[1:])]
+        weights, horizon = time_weights(run.t), self.spec.risk_horizon
         imminence = float(weights @ np.maximum(0.0, 1.0 - tau / horizon))
-        exposed = float(weights @ (tau < horizon))
         return [
-            LABEL.ok("corrected", imminence, {"mean": imminence / span}),
-            LABEL.ok("exposed_time", exposed),
+            literal,
+            label.ok("corrected", imminence, {"mean": imminence / span}),
+            label.ok("exposed_time", weights @ (tau < horizon)),
         ]
 
-    def _time_to_first_contact(self, run: Trajectories) -> Array:
-        """Least time to contact with anybody (N,), s; inf where there is none to come."""
-        assert run.robot is not None
-        bodies = run.t, run.robot, people(run), self.spec.jump_speed
-        tau = time_to_contact(
-            encounter(*bodies),
-            relative_velocity(*bodies),
-            contact_tol=self.spec.contact_tol,
-            rel_speed_tol=self.spec.rel_speed_tol,
+
+@dataclass(frozen=True, slots=True)
+class ExpectedSeverity:
+    """Needs no reference run."""
+
+    spec: ExpectedSeveritySpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """The speed is the one of whom the robot would touch first; of several, the fastest."""
+        del refs
+        label = EXPECTED_SEVERITY.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        tau, square = self._first_and_speed(run)
+        ahead = np.isfinite(tau)
+        literal = label.ok("literal", square[ahead] @ tau[ahead])
+        if (span := duration(run.t)) <= 0:
+            return [literal, label.undefined("corrected", "too_few_samples")]
+        imminence = np.maximum(0.0, 1.0 - tau / self.spec.risk_horizon)
+        total = float(time_weights(run.t) @ (square * imminence))
+        return [literal, label.ok("corrected", total, {"mean": total / span})]
+
+    def _first_and_speed(self, run: Trajectories) -> tuple[Array, Array]:
+        """Least time to contact (N,), s, and the squared relative speed there, m²/s²."""
+        tau, speed = approach(
+            run, self.spec.jump_speed, self.spec.contact_tol, self.spec.rel_speed_tol
         )
-        first: Array = tau.min(axis=1, initial=np.inf)
-        return first
+        first = tau.min(axis=1, initial=np.inf)
+        is_first = np.isfinite(tau) & (tau <= first[:, None] + TIE) & np.isfinite(speed)
+        return first, np.where(is_first, speed, 0.0).max(axis=1, initial=0.0) ** 2
 
 
-def build(spec: RiskSpec) -> Risk:
-    """The metric of a spec."""
-    return Risk(spec)
+@dataclass(frozen=True, slots=True)
+class TimeExposed:
+    """What ``risk`` calls ``exposed_time``."""
+
+    spec: TimeExposedSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Time with somebody nearer than the horizon."""
+        del refs
+        return _over_time(TIME_EXPOSED.label, run, self.spec, exposed=True)
+
+
+@dataclass(frozen=True, slots=True)
+class IntegratedTimeToCollision:
+    """``risk`` times its horizon."""
+
+    spec: IntegratedTimeToCollisionSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Integral of horizon minus time to contact, where positive."""
+        del refs
+        return _over_time(INTEGRATED_TIME_TO_COLLISION.label, run, self.spec, exposed=False)
+
+
+@dataclass(frozen=True, slots=True)
+class MinTimeToCollision:
+    """Needs no reference run."""
+
+    spec: MinTimeToCollisionSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """0 once there was contact; undefined where no collision was ever ahead."""
+        del refs
+        label = MIN_TIME_TO_COLLISION.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        least = float(first_contact(cropped(run), self.spec).min())
+        if not np.isfinite(least):
+            return label.all_undefined("no_neighbours")
+        return [label.ok("corrected", least)]
+
+
+_Spec = (
+    RiskSpec
+    | ExpectedSeveritySpec
+    | TimeExposedSpec
+    | IntegratedTimeToCollisionSpec
+    | MinTimeToCollisionSpec
+)
+
+
+def first_contact(run: Trajectories, spec: _Spec) -> Array:
+    """Least time to contact with anybody (N,), s; inf where there is none to come."""
+    tau, _ = approach(run, spec.jump_speed, spec.contact_tol, spec.rel_speed_tol)
+    first: Array = tau.min(axis=1, initial=np.inf)
+    return first
+
+
+def _over_time(
+    label: ScoreLabel,
+    run: Trajectories,
+    spec: TimeExposedSpec | IntegratedTimeToCollisionSpec,
+    *,
+    exposed: bool,
+) -> list[Score]:
+    if run.robot is None:
+        return label.all_undefined("invalid_no_robot")
+    run = cropped(run)
+    if duration(run.t) <= 0:
+        return label.all_undefined("too_few_samples")
+    tau = first_contact(run, spec)
+    short = np.maximum(0.0, spec.risk_horizon - tau)
+    values = (tau < spec.risk_horizon) if exposed else short
+    return [label.ok("corrected", time_weights(run.t) @ values)]

@@ -25,5 +25,6 @@ crowded = crowdbot.Trajectories.from_arrays(
     agent_radius=0.33,
     agent_mass=75.0,
 )
-for score in crowdbot.score(crowded, robot_alone=alone, variants="corrected"):
+wanted = ["relative_*", "effect_on_velocity", "risk", "min_clearance"]
+for score in crowdbot.score(crowded, alone, metrics=wanted, variants="corrected"):
     print(score.metric, score.value, score.unit, score.status, score.reason)

@@ -1,0 +1,135 @@
+"""What ``crowdbot evaluate`` writes: tables, JSON, files, and how far it has come."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import logging
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from crowdbot.errors import InputError
+
+if TYPE_CHECKING:
+    from crowdbot.core.recording.rescore import Rescored
+    from crowdbot.core.score import Score
+
+_LINE_EVERY = 5.0  # s
+
+
+def as_document(result: Rescored) -> dict[str, Any]:
+    """One run as plain data."""
+    source = result.source
+    return {
+        "run": str(source.path),
+        "scenario": source.scenario,
+        "planner": source.planner,
+        "seed": source.seed,
+        "error": result.error,
+        "scores": [_fields(s) for s in result.scores],
+    }
+
+
+def print_table(result: Rescored) -> None:
+    """One run for people."""
+    from rich.console import Console
+    from rich.text import Text
+
+    from crowdbot.core.scores_table import scores_table
+
+    source = result.source
+    seed = "" if source.seed is None else f"seed {source.seed}"
+    title = " ".join(filter(None, (source.scenario, source.planner, seed)))
+    console = Console(highlight=False)
+    console.print(Text(title or str(source.path), style="bold"), soft_wrap=True)
+    console.print(scores_table(result.scores))
+
+
+def write_file(path: Path, results: Sequence[Rescored]) -> None:
+    """All runs in one table (``.csv``, the columns of scores.csv and ``run``) or ``.json``.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    from crowdbot.core.scores_table import COLUMNS, cells_of, write_table
+
+    if path.suffix.lower() == ".json":
+        _write_json(path, [as_document(r) for r in results])
+        return
+    rows = [
+        (s.scenario, s.label, "" if s.seed is None else str(s.seed), *cells_of(one), str(s.path))
+        for s, scores in ((r.source, r.scores) for r in results)
+        for one in scores
+    ]
+    write_table(path, [(*COLUMNS, "run"), *rows])
+
+
+@contextmanager
+def show_progress(total: int) -> Iterator[Callable[[int], None]]:
+    """Yield what is called after each run with the number of failures so far, on stderr.
+
+    A bar on a terminal, a line now and then elsewhere, nothing for a single run.
+    """
+    if total < 2 or logging.getLogger("crowdbot").level > logging.INFO:
+        yield _silent
+    elif sys.stderr.isatty():
+        with _bar(total) as advance:
+            yield advance
+    else:
+        yield _Lines(total)
+
+
+@contextmanager
+def _bar(total: int) -> Iterator[Callable[[int], None]]:
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+    from rich.progress import TimeRemainingColumn as Remaining
+
+    columns = (
+        TextColumn("evaluated"),
+        BarColumn(bar_width=24),
+        MofNCompleteColumn(),
+        Remaining(),
+        TextColumn("{task.fields[state]}"),
+    )
+    with Progress(*columns, console=Console(stderr=True)) as progress:
+        task = progress.add_task("evaluated", total=total, state="")
+        yield lambda failed: progress.update(
+            task, advance=1, state=f"{failed} failed" if failed else ""
+        )
+
+
+def _silent(failed: int) -> None:
+    del failed
+
+
+class _Lines:
+    def __init__(self, total: int) -> None:
+        self._total, self._done, self._next = total, 0, time.monotonic() + _LINE_EVERY
+
+    def __call__(self, failed: int) -> None:
+        self._done += 1
+        if time.monotonic() >= self._next and self._done < self._total:
+            self._next = time.monotonic() + _LINE_EVERY
+            print(f"evaluated {self._done} of {self._total} runs, {failed} failed", file=sys.stderr)
+
+
+def _fields(score: Score) -> dict[str, Any]:
+    values = {f.name: getattr(score, f.name) for f in dataclasses.fields(score)}
+    return {**values, "extras": dict(score.extras), "parameters": dict(score.parameters)}
+
+
+def _write_json(path: Path, document: Any) -> None:
+    aside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        aside.write_text(json.dumps(document, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        aside.replace(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+    finally:
+        aside.unlink(missing_ok=True)

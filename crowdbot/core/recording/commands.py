@@ -1,0 +1,118 @@
+"""Reads what a user and shared control commanded from the topics of a recording."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from crowdbot.core.commands import Commands
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.records import Record, Records
+from crowdbot.core.recording.topics import Topic
+from crowdbot.core.trajectory import Array
+from crowdbot.errors import InputError, UnknownNameError
+
+_TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+_HEADER = "crowdbot_msgs/msg/RunHeader"
+
+
+def read_commands(
+    path: Path,
+    user_topic: str,
+    command_topic: str,
+    *,
+    v_max: float | None = None,
+    w_max: float | None = None,
+) -> Commands:
+    """The commands on two topics of Twist or TwistStamped, by the time they were logged.
+
+    Each command holds until the next one of its topic; the record begins when both topics have
+    spoken, and the last command holds until the end of the file.
+
+    Args:
+        path: a recording.
+        user_topic: what the user wanted.
+        command_topic: what shared control made of it.
+        v_max: largest speed, m/s; default: that of the robot in a recording of crowdbot.
+        w_max: largest yaw rate, rad/s; likewise.
+
+    Raises:
+        InputError: no MCAP file, a topic holds something else or nothing, or no limits are known.
+        UnknownNameError: there is no such topic.
+    """
+    said: dict[str, list[tuple[int, float, float]]] = {user_topic: [], command_topic: []}
+    topics: set[str] = set()
+    limits: tuple[float, float] | None = None
+    end = 0
+    for record in Records(path):
+        topics.add(record.topic)
+        end = max(end, record.ns)
+        if record.topic in said:
+            said[record.topic].append(_twist(path, record))
+        elif record.topic.endswith(Topic.HEADER) and record.msgtype == _HEADER:
+            limits = limits or _limits(record)
+    for topic, rows in said.items():
+        if not rows:
+            raise UnknownNameError(f"topic of {path}", topic, topics)
+    if v_max is None or w_max is None:
+        if limits is None:
+            raise InputError(
+                f"{path}: the robot's limits are not recorded; v_max, w_max are needed"
+            )
+        v_max, w_max = limits[0] if v_max is None else v_max, limits[1] if w_max is None else w_max
+    t, user, final, t_end = _merged(said[user_topic], said[command_topic], end)
+    try:
+        return Commands.from_arrays(
+            t=t,
+            v_user=user[:, 0],
+            w_user=user[:, 1],
+            v_sc=final[:, 0],
+            w_sc=final[:, 1],
+            v_max=v_max,
+            w_max=w_max,
+            t_end=t_end,
+        )
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+
+
+def _twist(path: Path, record: Record) -> tuple[int, float, float]:
+    if record.msgtype not in _TWISTS or record.encoding != "cdr":
+        found = record.msgtype or "a message without schema"
+        raise InputError(f"{path}: {record.topic} holds {found}, not {' or '.join(_TWISTS)} (cdr)")
+    try:
+        message = ros.from_cdr(record.data, record.msgtype)
+    except Exception as error:  # the decoder is generated code; anything may surface
+        raise InputError(f"{path}: {record.topic}: a message that cannot be decoded") from error
+    twist = message.twist if record.msgtype.endswith("Stamped") else message
+    return record.ns, float(twist.linear.x), float(twist.angular.z)
+
+
+def _limits(record: Record) -> tuple[float, float] | None:
+    try:
+        header = RecordingHeader.from_message(ros.from_cdr(record.data, record.msgtype))
+    except Exception:  # read_trajectories says what is wrong with it
+        return None
+    if header.robot is None or header.robot.limits is None:
+        return None
+    return header.robot.limits.v_max, header.robot.limits.w_max
+
+
+def _merged(
+    user: list[tuple[int, float, float]], final: list[tuple[int, float, float]], end: int
+) -> tuple[Array, Array, Array, float]:
+    """Times (N,), s from the first; user's and final v and w (N, 2); end, s."""
+    # a dict keeps the last of several commands of one instant
+    series = [
+        {ns: (v, w) for ns, v, w in sorted(rows, key=lambda r: r[0])} for rows in (user, final)
+    ]
+    start = max(min(rows) for rows in series)
+    times = np.array(sorted({start, *(ns for rows in series for ns in rows if ns > start)}))
+    held = []
+    for rows in series:
+        known = np.array(list(rows))
+        values = np.array(list(rows.values()), np.float64)
+        held.append(values[np.searchsorted(known, times, side="right") - 1])
+    return (times - start) / 1e9, held[0], held[1], (max(end, int(times[-1])) - start) / 1e9

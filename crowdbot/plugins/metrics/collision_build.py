@@ -1,0 +1,153 @@
+"""Contacts of the robot with people, computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from crowdbot.core.encounter import (
+    Contacts,
+    contact_runs,
+    encounter,
+    onsets,
+    people,
+    people_speeds,
+    relative_velocity,
+    robot_of,
+    robot_vector,
+    touching,
+)
+from crowdbot.core.interfaces import References
+from crowdbot.core.preprocess import cropped, duration, path_length
+from crowdbot.core.score import Score
+from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.plugins.metrics.collision import (
+    COLLISION_COUNT,
+    COLLISION_RATE,
+    COLLISION_SEVERITY,
+    COLLISIONS_AT_FAULT,
+    CollisionCountSpec,
+    CollisionRateSpec,
+    CollisionsAtFaultSpec,
+    CollisionSeveritySpec,
+)
+from crowdbot.plugins.metrics.task import SuccessNoCollisionSpec
+
+#: Slack of the rule whose fault a contact is, m/s and m²/s: rounding decides nothing.
+TOLERANCE = 1e-9
+
+_Spec = (
+    CollisionCountSpec
+    | CollisionSeveritySpec
+    | CollisionRateSpec
+    | CollisionsAtFaultSpec
+    | SuccessNoCollisionSpec
+)
+
+
+@dataclass(frozen=True, slots=True)
+class CollisionCount:
+    """Needs no reference run."""
+
+    spec: CollisionCountSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """``literal``: runs of samples in contact; ``corrected``: contacts of the motion."""
+        del refs
+        label = COLLISION_COUNT.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        found = events(run, self.spec)
+        first = {"first_time": float(found.time[0])} if len(found.time) else {}
+        pair = encounter(run, self.spec.jump_speed)
+        return [
+            label.ok("literal", contact_runs(pair, self.spec.contact_tol)),
+            label.ok("corrected", len(found.time), first),
+        ]
+
+
+@dataclass(frozen=True, slots=True)
+class CollisionSeverity:
+    """Needs no reference run. Contacts at an unknown relative speed add nothing."""
+
+    spec: CollisionSeveritySpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """``literal``: each sample in contact; the others: each contact, just before it."""
+        del refs
+        label = COLLISION_SEVERITY.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        vx, vy = relative_velocity(run, self.spec.jump_speed)
+        square = vx**2 + vy**2
+        square = np.where(np.isfinite(square), square, 0.0)
+        found = events(run, self.spec)
+        at_onset, who = square[found.sample, found.agent], found.agent
+        half_sum, reduced = self._masses(run)
+        touch = touching(encounter(run, self.spec.jump_speed), self.spec.contact_tol)
+        return [
+            label.ok("literal", (np.where(touch, square, 0.0) @ half_sum).sum()),
+            label.ok("per_event", half_sum[who] @ at_onset),
+            label.ok("corrected", 0.5 * reduced[who] @ at_onset),
+            label.ok("impulse", reduced[who] @ np.sqrt(at_onset)),
+        ]
+
+    def _masses(self, run: Trajectories) -> tuple[Array, Array]:
+        """Mean and reduced mass of the robot with each person (M,), (M,), kg."""
+        one, other = robot_of(run).mass, people(run).mass
+        total = one + other
+        reduced = np.divide(one * other, total, out=np.zeros(len(other)), where=total > 0)
+        return total / 2.0, reduced
+
+
+@dataclass(frozen=True, slots=True)
+class CollisionRate:
+    """Needs no reference run."""
+
+    spec: CollisionRateSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Contacts of the motion per second, and per metre that the robot drove."""
+        del refs
+        label = COLLISION_RATE.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        count = len(events(run, self.spec).time)
+        length = path_length(run.t, robot_of(run), self.spec.jump_speed)
+        return [
+            label.ratio("per_time", count, duration(run.t), self.spec.zero_tol),
+            label.ratio("per_length", count, length, self.spec.zero_tol),
+        ]
+
+
+@dataclass(frozen=True, slots=True)
+class CollisionsAtFault:
+    """Needs no reference run."""
+
+    spec: CollisionsAtFaultSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """The robot's fault: it is faster, and the person is before it; else the person's."""
+        del refs
+        label = COLLISIONS_AT_FAULT.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        found = events(run, self.spec)
+        pair = encounter(run, self.spec.jump_speed)
+        rx, ry = robot_vector(run, self.spec.jump_speed)
+        k, i = found.sample, found.agent
+        lead = np.hypot(rx, ry)[k] - people_speeds(run, self.spec.jump_speed)[k, i]
+        before = pair.px[k, i] * rx[k] + pair.py[k, i] * ry[k] > TOLERANCE
+        robot = int(((lead > TOLERANCE) & before).sum())
+        return [label.ok("robot", robot), label.ok("person", len(k) - robot)]
+
+
+def events(run: Trajectories, spec: _Spec) -> Contacts:
+    """Contacts of the motion of a cropped run."""
+    return onsets(run, spec.jump_speed, spec.contact_tol, spec.release_gap)

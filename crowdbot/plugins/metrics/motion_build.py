@@ -1,0 +1,210 @@
+"""How the robot moves, whoever is around, computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from crowdbot.core.encounter import robot_of, robot_vector
+from crowdbot.core.interfaces import References
+from crowdbot.core.preprocess import (
+    cropped,
+    duration,
+    forward_speed,
+    path_length,
+    time_weights,
+    turns,
+    wrap,
+    yaw_rate,
+)
+from crowdbot.core.score import Score
+from crowdbot.core.score_label import ScoreLabel
+from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.plugins.metrics.motion import (
+    ACCELERATION,
+    CUMULATIVE_HEADING_CHANGE,
+    DIMENSIONLESS_JERK,
+    JERK,
+    PATH_IRREGULARITY,
+    SPEED,
+    STALLED_TIME,
+    TIME_NOT_MOVING,
+    AccelerationSpec,
+    CumulativeHeadingChangeSpec,
+    DimensionlessJerkSpec,
+    JerkSpec,
+    PathIrregularitySpec,
+    SpeedSpec,
+    StalledTimeSpec,
+    TimeNotMovingSpec,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class TimeNotMoving:
+    """Needs no reference run."""
+
+    spec: TimeNotMovingSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Neither driving nor turning."""
+        del refs
+        label = TIME_NOT_MOVING.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        speed = np.hypot(*robot_vector(run, self.spec.jump_speed))
+        turning = np.abs(yaw_rate(run.t, robot_of(run), self.spec.jump_speed))
+        still = (speed < self.spec.still_speed) & (turning < self.spec.still_turn)
+        return [label.ok("corrected", time_weights(run.t) @ still)]
+
+
+@dataclass(frozen=True, slots=True)
+class StalledTime:
+    """Needs no reference run."""
+
+    spec: StalledTimeSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Hardly driving, turning or not."""
+        del refs
+        label = STALLED_TIME.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        speed = np.hypot(*robot_vector(run, self.spec.jump_speed))
+        return [label.ok("corrected", time_weights(run.t) @ (speed < self.spec.stall_speed))]
+
+
+@dataclass(frozen=True, slots=True)
+class CumulativeHeadingChange:
+    """Needs no reference run."""
+
+    spec: CumulativeHeadingChangeSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Over the valid steps."""
+        del refs
+        label = CUMULATIVE_HEADING_CHANGE.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        return [label.ok("corrected", _all_turning(cropped(run), self.spec.jump_speed))]
+
+
+@dataclass(frozen=True, slots=True)
+class PathIrregularity:
+    """Needs no reference run."""
+
+    spec: PathIrregularitySpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Needed is the turn from the first heading to the last."""
+        del refs
+        label, jump = PATH_IRREGULARITY.label, self.spec.jump_speed
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        robot = robot_of(run)
+        theta = robot.theta[np.isfinite(robot.theta)]
+        needed = float(np.abs(wrap(theta[-1:] - theta[:1])).sum())
+        extra = max(0.0, _all_turning(run, jump) - needed)
+        length = path_length(run.t, robot, jump)
+        return [label.ratio("corrected", extra, length, self.spec.zero_tol)]
+
+
+@dataclass(frozen=True, slots=True)
+class Speed:
+    """Needs no reference run."""
+
+    spec: SpeedSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Of the velocity vector; ``avg`` is over time."""
+        del refs
+        if run.robot is None:
+            return SPEED.label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        speed = np.hypot(*robot_vector(run, self.spec.jump_speed))
+        return _spread(SPEED.label, speed, time_weights(run.t))
+
+
+@dataclass(frozen=True, slots=True)
+class Acceleration:
+    """Needs no reference run."""
+
+    spec: AccelerationSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Of the forward speed, step by step."""
+        del refs
+        if run.robot is None:
+            return ACCELERATION.label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        dt = np.diff(run.t)
+        v = forward_speed(run.t, robot_of(run), self.spec.jump_speed)
+        return _spread(ACCELERATION.label, np.abs(np.diff(v) / dt), dt)
+
+
+@dataclass(frozen=True, slots=True)
+class Jerk:
+    """Needs no reference run."""
+
+    spec: JerkSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Change of acceleration between neighbouring steps."""
+        del refs
+        if run.robot is None:
+            return JERK.label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        return _spread(JERK.label, *_jerk(run, self.spec.jump_speed))
+
+
+@dataclass(frozen=True, slots=True)
+class DimensionlessJerk:
+    """Needs no reference run. Balasubramanian et al. 2015, without logarithm and sign."""
+
+    spec: DimensionlessJerkSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """T³/v_peak² times the integral of the squared jerk."""
+        del refs
+        label = DIMENSIONLESS_JERK.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        jerk, dt = _jerk(run, self.spec.jump_speed)
+        if not np.isfinite(jerk).any():
+            return label.all_undefined("too_few_samples")
+        v = forward_speed(run.t, robot_of(run), self.spec.jump_speed)
+        peak = float(np.nanmax(np.abs(v)))
+        total = float(np.where(np.isfinite(jerk), jerk, 0.0) ** 2 @ dt)
+        scale = duration(run.t) ** 3
+        return [label.ratio("corrected", total * scale, peak**2, self.spec.zero_tol**2)]
+
+
+def _all_turning(run: Trajectories, jump_speed: float) -> float:
+    turn = np.abs(turns(run.t, robot_of(run), jump_speed))
+    return float(turn[np.isfinite(turn)].sum())
+
+
+def _jerk(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
+    """Magnitude of the jerk (N-2,), m/s³, and the time from one step's middle to the next, s."""
+    dt = np.diff(run.t)
+    v = forward_speed(run.t, robot_of(run), jump_speed)
+    middle = (dt[1:] + dt[:-1]) / 2.0
+    return np.abs(np.diff(np.diff(v) / dt)) / middle, middle
+
+
+def _spread(label: ScoreLabel, values: Array, weights: Array) -> list[Score]:
+    """``min``, ``avg`` and ``max`` of what is known."""
+    known = np.isfinite(values)
+    values, weights = values[known], weights[known]
+    if not len(values):
+        return label.all_undefined("too_few_samples")
+    least, most = label.ok("min", values.min()), label.ok("max", values.max())
+    if weights.sum() <= 0:
+        return [least, label.undefined("avg", "too_few_samples"), most]
+    return [least, label.ok("avg", weights @ values / weights.sum()), most]

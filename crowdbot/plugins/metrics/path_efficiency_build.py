@@ -1,0 +1,187 @@
+"""What the crowd costs the robot, computed: alone over crowded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from crowdbot.core.encounter import robot_of
+from crowdbot.core.interfaces import References
+from crowdbot.core.preprocess import (
+    cropped,
+    finite,
+    forward_speed,
+    path_length,
+    travel_time,
+    turns,
+    valid_robot_steps,
+    yaw_rate,
+)
+from crowdbot.core.score import Score
+from crowdbot.core.score_label import ScoreLabel
+from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.plugins.metrics.path_efficiency import (
+    RELATIVE_JERK,
+    RELATIVE_PATH_LENGTH,
+    RELATIVE_TIME_TO_GOAL,
+    RelativeJerkSpec,
+    RelativePathLengthSpec,
+    RelativeTimeToGoalSpec,
+)
+
+#: Slack of the comparison of sampling rates, so that rounding decides nothing.
+RATE_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class RelativeTimeToGoal:
+    """Needs ``robot_alone``."""
+
+    spec: RelativeTimeToGoalSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """``literal`` and ``corrected``."""
+        return _alone_over_crowded(RELATIVE_TIME_TO_GOAL.label, self._time, run, refs, self.spec)
+
+    def _time(self, run: Trajectories) -> float:
+        return travel_time(run, robot_of(run))
+
+
+@dataclass(frozen=True, slots=True)
+class RelativePathLength:
+    """Needs ``robot_alone``."""
+
+    spec: RelativePathLengthSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """``literal`` and ``corrected``."""
+        return _alone_over_crowded(RELATIVE_PATH_LENGTH.label, self._length, run, refs, self.spec)
+
+    def _length(self, run: Trajectories) -> float:
+        return path_length(run.t, robot_of(run), self.spec.jump_speed)
+
+
+@dataclass(frozen=True, slots=True)
+class RelativeJerk:
+    """Needs ``robot_alone``, sampled as often as the run."""
+
+    spec: RelativeJerkSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """``literal`` telescopes and has a sign; the others are total variations."""
+        label = RELATIVE_JERK.label
+        if reason := obstacle(run, refs):
+            return label.all_undefined(reason)
+        assert refs.robot_alone is not None
+        alone, run = cropped(refs.robot_alone), cropped(run)
+        if min(len(alone.t), len(run.t)) < 3:
+            return label.all_undefined("too_few_samples")
+        j_alone, j_run = self._jerk(alone), self._jerk(run)
+        scores = [self._literal(j_alone["literal"], j_run["literal"], run)]
+        others = label.variants[1:]
+        if self._mismatch(alone.t, run.t):
+            return scores + label.all_undefined("sampling_mismatch", others)
+        return scores + [
+            _grows(label, v, j_alone[v], j_run[v], run, self.spec.jerk_zero_tol) for v in others
+        ]
+
+    def _literal(self, alone: float, crowded: float, run: Trajectories) -> Score:
+        label = RELATIVE_JERK.label
+        if robot_of(run).goal_time is None:
+            return label.undefined("literal", "goal_not_reached")
+        if abs(crowded) <= self.spec.jerk_zero_tol:
+            return label.undefined("literal", "zero_denominator")
+        return label.ok("literal", alone / crowded, {"alone": alone, "crowded": crowded})
+
+    def _mismatch(self, a: Array, b: Array) -> bool:
+        """Whether the median time steps differ by more than the tolerance of the larger."""
+        one, two = float(np.median(np.diff(a))), float(np.median(np.diff(b)))
+        return abs(one - two) > (self.spec.sampling_tol + RATE_TOLERANCE) * max(one, two)
+
+    def _jerk(self, run: Trajectories) -> Mapping[str, float]:
+        """One number a variant; a is the tangential acceleration of each step, alpha = dw/dt."""
+        t, robot, dt = run.t, robot_of(run), np.diff(run.t)
+        v = forward_speed(t, robot, self.spec.jump_speed)
+        w = yaw_rate(t, robot, self.spec.jump_speed)
+        a, alpha = np.diff(v) / dt, np.diff(w) / dt
+        linear, angular = _variation(a), _variation(w)
+        return {
+            "literal": _change(a) + _change(w),
+            "corrected": linear + self.spec.jerk_weight * angular,
+            "linear": linear,
+            "angular": angular,
+            "norm": _sum(np.hypot(np.diff(a), np.diff(alpha))),
+            "legacy": self._second_differences(run),
+        }
+
+    def _second_differences(self, run: Trajectories) -> float:
+        """Of x, y and heading, over pairs of valid steps; no dt."""
+        robot = robot_of(run)
+        valid = valid_robot_steps(run.t, robot, self.spec.jump_speed)
+        turn = turns(run.t, robot, self.spec.jump_speed)
+        steps = [np.where(valid, np.diff(finite(p)), np.nan) for p in (robot.x, robot.y)]
+        return sum(_sum(np.abs(np.diff(s))) for s in (*steps, turn))
+
+
+def obstacle(run: Trajectories, refs: References) -> str:
+    """Why nothing can be said about alone over crowded; empty when nothing is in the way."""
+    if run.robot is None:
+        return "invalid_no_robot"
+    if refs.robot_alone is None or refs.robot_alone.robot is None:
+        return "no_reference"
+    if refs.robot_alone.robot.goal_time is None:
+        return "reference_goal_not_reached"
+    return ""
+
+
+def _alone_over_crowded(
+    label: ScoreLabel,
+    measure: Callable[[Trajectories], float],
+    run: Trajectories,
+    refs: References,
+    spec: RelativeTimeToGoalSpec | RelativePathLengthSpec,
+) -> list[Score]:
+    """Scores ``literal`` and ``corrected``; they differ in a run that never arrived."""
+    if reason := obstacle(run, refs):
+        return label.all_undefined(reason)
+    assert refs.robot_alone is not None
+    run = cropped(run)
+    alone, crowded = measure(cropped(refs.robot_alone)), measure(run)
+    corrected = _grows(label, "corrected", alone, crowded, run, spec.zero_tol)
+    if robot_of(run).goal_time is None:
+        return [label.undefined("literal", "goal_not_reached"), corrected]
+    both = {"alone": alone, "crowded": crowded}
+    return [label.ratio("literal", alone, crowded, spec.zero_tol, both), corrected]
+
+
+def _grows(
+    label: ScoreLabel,
+    variant: str,
+    alone: float,
+    crowded: float,
+    run: Trajectories,
+    zero_tol: float,
+) -> Score:
+    """Alone over crowded; known from above without arrival, as the quantity only grows."""
+    both = {"alone": alone, "crowded": crowded}
+    if robot_of(run).goal_time is not None:
+        return label.ratio(variant, alone, crowded, zero_tol, both)
+    upper = alone / crowded if crowded > zero_tol else None
+    return label.censored(variant, "goal_not_reached", upper=upper, extras=both)
+
+
+def _sum(values: Array) -> float:
+    """Of what is known."""
+    return float(values[np.isfinite(values)].sum())
+
+
+def _variation(values: Array) -> float:
+    return _sum(np.abs(np.diff(values)))
+
+
+def _change(values: Array) -> float:
+    """Last known value minus the first."""
+    known = values[np.isfinite(values)]
+    return float(known[-1] - known[0]) if len(known) else 0.0

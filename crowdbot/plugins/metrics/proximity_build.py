@@ -1,0 +1,146 @@
+"""How near the robot comes to people, computed; distances are between centres."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from crowdbot.core.encounter import encounter
+from crowdbot.core.interfaces import References
+from crowdbot.core.preprocess import Mask, cropped, duration, time_weights
+from crowdbot.core.score import Score
+from crowdbot.core.score_label import ScoreLabel
+from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.core.trips import DISTANCE_TOLERANCE
+from crowdbot.plugins.metrics.proximity import (
+    LOCAL_DENSITY,
+    NEIGHBOUR_COUNT,
+    NORMALIZED_PROXIMITY,
+    PROXIMITY,
+    LocalDensitySpec,
+    NeighbourCountSpec,
+    NormalizedProximitySpec,
+    ProximitySpec,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Proximity:
+    """Needs no reference run. Samples with nobody present add nothing."""
+
+    spec: ProximitySpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """``literal``: sum over samples; ``corrected``: mean over time, with a floor."""
+        del refs
+        label = PROXIMITY.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        distance = encounter(run, np.inf).distance
+        nearest = np.where(np.isfinite(distance), distance, np.inf).min(axis=1, initial=np.inf)
+        shortest = float(nearest.min())
+        if not np.isfinite(shortest):
+            return label.all_undefined("no_agents")
+        return [self._literal(nearest), self._corrected(run.t, nearest, shortest)]
+
+    def _literal(self, nearest: Array) -> Score:
+        if nearest.min() <= self.spec.length_tol:
+            return PROXIMITY.label.undefined("literal", "zero_distance")
+        return PROXIMITY.label.ok("literal", (1.0 / nearest).sum())
+
+    def _corrected(self, t: Array, nearest: Array, shortest: float) -> Score:
+        label = PROXIMITY.label
+        if (span := duration(t)) <= 0:
+            return label.undefined("corrected", "too_few_samples")
+        mean = (
+            float(time_weights(t) @ (1.0 / np.maximum(nearest, self.spec.proximity_floor))) / span
+        )
+        extras = {"shortest_distance": shortest}
+        if mean > 0:
+            extras["harmonic_mean_distance"] = 1.0 / mean
+        return label.ok("corrected", mean, extras)
+
+
+@dataclass(frozen=True, slots=True)
+class NormalizedProximity:
+    """Needs no reference run."""
+
+    spec: NormalizedProximitySpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """``literal``, ``corrected``: spread over mean; ``barycentre``: what the text says."""
+        del refs
+        label = NORMALIZED_PROXIMITY.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        pair = encounter(run, np.inf)
+        near = pair.distance <= self.spec.neighbour_radius + DISTANCE_TOLERANCE
+        count = near.sum(axis=1)
+        if not count.any():
+            return label.all_undefined("no_neighbours")
+        share = np.maximum(count, 1)
+        mean = np.where(near, pair.distance, 0.0).sum(axis=1) / share
+        off = np.where(near, pair.distance - mean[:, None], 0.0)
+        spread = np.sqrt((off**2).sum(axis=1) / share)
+        centre = np.hypot(*(np.where(near, p, 0.0).sum(axis=1) / share for p in (pair.px, pair.py)))
+        some, several = (count >= n for n in (1, 2))
+        ones, weights = np.ones(len(run.t)), time_weights(run.t)
+        return [
+            self._mean("literal", spread, mean, some, ones),
+            self._mean("corrected", spread, mean, several, weights),
+            self._mean("barycentre", centre, mean, some, weights),
+        ]
+
+    def _mean(self, variant: str, above: Array, below: Array, rows: Mask, weights: Array) -> Score:
+        """Weighted mean of ratios over the samples that have one."""
+        label = NORMALIZED_PROXIMITY.label
+        if not rows.any():
+            return label.undefined(variant, "fewer_than_two_neighbours")
+        usable = rows & (below > self.spec.length_tol)
+        if not usable.any():
+            return label.undefined(variant, "zero_distance")
+        total = float(weights[usable].sum())
+        if total <= 0:
+            return label.undefined(variant, "too_few_samples")
+        mean = float(weights[usable] @ (above[usable] / below[usable])) / total
+        return label.ok(variant, mean, {"coverage": total / float(weights.sum())})
+
+
+@dataclass(frozen=True, slots=True)
+class NeighbourCount:
+    """Needs no reference run."""
+
+    spec: NeighbourCountSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Mean over time."""
+        del refs
+        return [_crowding(NEIGHBOUR_COUNT.label, run, self.spec.neighbour_radius, 1.0)]
+
+
+@dataclass(frozen=True, slots=True)
+class LocalDensity:
+    """Needs no reference run."""
+
+    spec: LocalDensitySpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Mean over time of the neighbours per area of their circle."""
+        del refs
+        radius = self.spec.neighbour_radius
+        return [_crowding(LOCAL_DENSITY.label, run, radius, math.pi * radius**2)]
+
+
+def _crowding(label: ScoreLabel, run: Trajectories, radius: float, area: float) -> Score:
+    if run.robot is None:
+        return label.undefined("corrected", "invalid_no_robot")
+    run = cropped(run)
+    if (span := duration(run.t)) <= 0:
+        return label.undefined("corrected", "too_few_samples")
+    count = (encounter(run, np.inf).distance <= radius + DISTANCE_TOLERANCE).sum(axis=1)
+    return label.ok("corrected", time_weights(run.t) @ count / span / area)

@@ -1,0 +1,162 @@
+"""How user and shared control get along, computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from crowdbot.core.commands import Commands
+from crowdbot.core.interfaces import References
+from crowdbot.core.preprocess import wrap
+from crowdbot.core.score import Score
+from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.plugins.metrics.shared_control import (
+    AGREEMENT,
+    FLUENCY,
+    USER_INPUT_ENTROPY,
+    AgreementSpec,
+    FluencySpec,
+    UserInputEntropySpec,
+)
+
+#: Edges of the bins of prediction errors, in units of alpha (Nakayama et al. 1999).
+EDGES = (0.5, 1.0, 2.5, 5.0)
+#: Percentile of the absolute baseline errors that is alpha.
+PERCENTILE = 90.0
+#: Slack of the bin edges, rad, and of the command times, s.
+TOLERANCE = 1e-9
+#: Commands whose times are this regular need no resampling, s.
+REGULAR = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Agreement:
+    """Needs commands. Each counts for as long as it holds; standing still has no direction."""
+
+    spec: AgreementSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """``literal``: angles of arctan(v/w); ``corrected``: full angles of scaled commands."""
+        del run
+        label, c = AGREEMENT.label, refs.commands
+        if c is None:
+            return label.all_undefined("no_command")
+        moves = [
+            (np.abs(v) > self.spec.zero_tol) | (np.abs(w) > self.spec.zero_tol)
+            for v, w in ((c.v_user, c.w_user), (c.v_sc, c.w_sc))
+        ]
+        used = np.where(moves[0] & moves[1], c.durations, 0.0)
+        if used.sum() <= 0:
+            return label.all_undefined("no_command")
+        extras = {"coverage": float(used.sum() / c.durations.sum())}
+        literal = self._principal(c.v_user, c.w_user) - self._principal(c.v_sc, c.w_sc)
+        corrected = wrap(direction(c, c.v_user, c.w_user) - direction(c, c.v_sc, c.w_sc))
+        return [
+            label.ok(variant, used @ (1.0 - np.abs(off) / np.pi) / used.sum(), extras)
+            for variant, off in (("literal", literal), ("corrected", corrected))
+        ]
+
+    def _principal(self, v: Array, w: Array) -> Array:
+        """arctan(v/w) in [-pi/2, pi/2], rad; opposite commands have the same angle."""
+        turns = np.abs(w) > self.spec.zero_tol
+        return np.where(turns, np.arctan(v / np.where(turns, w, 1.0)), np.sign(v) * (np.pi / 2.0))
+
+
+@dataclass(frozen=True, slots=True)
+class UserInputEntropy:
+    """Steering entropy of the user's direction; needs commands, better with a baseline.
+
+    Without a baseline alpha is the drive's own (``self_calibrated`` = 1), and users cannot be
+    compared.
+    """
+
+    spec: UserInputEntropySpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """The seed gives no formula, so there is no ``literal`` value."""
+        del run
+        label = USER_INPUT_ENTROPY.label
+        literal = label.undefined("literal", "no_formula_in_seed")
+        if refs.commands is None:
+            return [literal, label.undefined("corrected", "no_command")]
+        baseline = refs.commands_baseline
+        drives = (refs.commands, refs.commands if baseline is None else baseline)
+        errors = [self._errors(c) for c in drives]
+        if errors[0] is None or errors[1] is None:
+            return [literal, label.undefined("corrected", "too_few_samples")]
+        alpha = float(np.percentile(np.abs(errors[1]), PERCENTILE))
+        extras = {"alpha": alpha, "self_calibrated": float(baseline is None)}
+        if alpha > self.spec.zero_tol:
+            return [literal, label.ok("corrected", entropy(errors[0], alpha), extras)]
+        if np.all(np.abs(errors[0]) <= self.spec.zero_tol):
+            return [literal, label.ok("corrected", 0.0, extras)]
+        return [literal, label.undefined("corrected", "zero_alpha")]
+
+    def _errors(self, c: Commands) -> Array | None:
+        """What a Taylor series of second order fails to predict, rad; None of too few angles."""
+        theta = self._angles(c)
+        if len(theta) < 4:
+            return None
+        first = np.diff(theta)
+        expected = theta[2:-1] + first[1:-1] + 0.5 * np.diff(first)[:-1]
+        errors: Array = theta[3:] - expected
+        return errors
+
+    def _angles(self, c: Commands) -> Array:
+        """Direction of the user's command at each period, unwrapped, rad; zero holds the last."""
+        moves = (np.abs(c.v_user) > self.spec.zero_tol) | (np.abs(c.w_user) > self.spec.zero_tol)
+        if not moves.any():
+            return np.empty(0)
+        start = int(np.argmax(moves))
+        held = np.maximum.accumulate(np.where(moves, np.arange(len(moves)), 0))[start:]
+        theta: Array = np.unwrap(direction(c, c.v_user, c.w_user)[held])
+        t = c.t[start:]
+        if np.all(np.abs(np.diff(t) - self.spec.sample_period) <= REGULAR):
+            return theta
+        count = int(np.floor((t[-1] - t[0] + REGULAR) / self.spec.sample_period)) + 1
+        grid = t[0] + self.spec.sample_period * np.arange(count)
+        held = np.searchsorted(t, grid + TOLERANCE, side="right") - 1
+        return np.asarray(theta[held], dtype=np.float64)
+
+
+@dataclass(frozen=True, slots=True)
+class Fluency:
+    """Needs commands; compare only at one command rate, except ``variation_rate``."""
+
+    spec: FluencySpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """``literal``: raw differences; ``corrected``: the worse of both scaled channels."""
+        del run
+        label, c = FLUENCY.label, refs.commands
+        if c is None:
+            return label.all_undefined("no_command")
+        if len(c.t) < 2:
+            return label.all_undefined("too_few_samples")
+        dv, dw = np.diff(c.v_user), np.diff(c.w_user)
+        channels = {
+            "linear": float((1.0 - np.abs(dv) / c.v_max).mean()),
+            "angular": float((1.0 - np.abs(dw) / c.w_max).mean()),
+        }
+        change = float(np.hypot(dv / c.v_max, dw / c.w_max).sum())
+        return [
+            label.ok("literal", (1.0 - np.hypot(dv, dw)).mean()),
+            label.ok("corrected", min(channels.values()), channels),
+            label.ok("variation_rate", change / (c.t_end - float(c.t[0]))),
+        ]
+
+
+def direction(c: Commands, v: Array, w: Array) -> Array:
+    """Angle of commands scaled by what can be commanded, rad; forward is pi/2."""
+    angle: Array = np.arctan2(v / c.v_max, w / c.w_max)
+    return angle
+
+
+def entropy(errors: Array, alpha: float) -> float:
+    """Of nine bins by size and sign, to the base 9: 0 is predictable, 1 is not."""
+    size = np.searchsorted(np.array(EDGES) * alpha - TOLERANCE, np.abs(errors), side="right")
+    counts = np.bincount((np.sign(errors) * size).astype(np.int64) + len(EDGES))
+    share = counts[counts > 0] / len(errors)
+    return max(0.0, float(-(share @ np.log(share)) / np.log(2 * len(EDGES) + 1)))

@@ -1,0 +1,244 @@
+"""How much the robot moves like the people around it, computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from crowdbot.core.encounter import (
+    encounter,
+    people,
+    people_speeds,
+    people_vectors,
+    robot_of,
+    robot_vector,
+)
+from crowdbot.core.interfaces import References
+from crowdbot.core.preprocess import (
+    cropped,
+    path_length,
+    time_weights,
+    travel_time,
+    turns,
+    valid_agent_steps,
+    valid_robot_steps,
+    wrap,
+)
+from crowdbot.core.score import Score
+from crowdbot.core.score_label import ScoreLabel
+from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.core.trips import DISTANCE_TOLERANCE, displacement, durations, walked
+from crowdbot.plugins.metrics.similarity import (
+    HEADING_SIMILARITY,
+    NEIGHBOUR_VELOCITY_SIMILARITY,
+    PATH_LENGTH_SIMILARITY,
+    TIME_TO_GOAL_SIMILARITY,
+    VELOCITY_SIMILARITY,
+    HeadingSimilaritySpec,
+    NeighbourVelocitySimilaritySpec,
+    PathLengthSimilaritySpec,
+    TimeToGoalSimilaritySpec,
+    VelocitySimilaritySpec,
+)
+
+#: Slack of the rule which bodies have a heading, m/s.
+SPEED_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class TimeToGoalSimilarity:
+    """Needs trips, and no reference run."""
+
+    spec: TimeToGoalSimilaritySpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """``literal``: times; ``corrected``: times per straight distance."""
+        del refs
+        label = TIME_TO_GOAL_SIMILARITY.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        trips = durations(run)
+        if not len(trips):
+            return label.all_undefined("no_trips")
+        time, zero_tol = travel_time(run, robot_of(run)), self.spec.zero_tol
+        _, straight = walked(run, self.spec.jump_speed)
+        return [
+            _against_mean(label, run, time, trips.seconds, zero_tol),
+            _per_distance(label, run, (time, float(trips.seconds.sum())), straight, self.spec),
+        ]
+
+
+@dataclass(frozen=True, slots=True)
+class PathLengthSimilarity:
+    """Needs trips, and no reference run."""
+
+    spec: PathLengthSimilaritySpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """``literal``: lengths; ``corrected``: lengths per straight distance."""
+        del refs
+        label, jump = PATH_LENGTH_SIMILARITY.label, self.spec.jump_speed
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        if not len(durations(run)):
+            return label.all_undefined("no_trips")
+        length, zero_tol = path_length(run.t, robot_of(run), jump), self.spec.zero_tol
+        lengths, straight = walked(run, jump)
+        return [
+            _against_mean(label, run, length, lengths, zero_tol),
+            _per_distance(label, run, (length, float(lengths.sum())), straight, self.spec),
+        ]
+
+
+@dataclass(frozen=True, slots=True)
+class HeadingSimilarity:
+    """Needs no reference run."""
+
+    spec: HeadingSimilaritySpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """``literal``: mean ratio of signed rates; ``corrected``: ratio of mean absolute rates."""
+        del refs
+        label = HEADING_SIMILARITY.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        if len(run.t) < 2:
+            return label.all_undefined("too_few_samples")
+        dt = np.diff(run.t)
+        robot = turns(run.t, robot_of(run), self.spec.jump_speed) / dt
+        rates = self._rates(run)
+        known = np.isfinite(rates)
+        count = known.sum(axis=1)
+        some = (count > 0) & np.isfinite(robot)
+        if not some.any():
+            return label.all_undefined("no_heading" if people(run).x.size else "no_agents")
+        rates, count = np.where(known, rates, 0.0)[some], count[some]
+        signed, absolute = rates.sum(axis=1) / count, np.abs(rates).sum(axis=1) / count
+        robot, dt = robot[some], dt[some]
+        literal = mean_ratio(label, robot, signed, len(run.t) - 1, self.spec.zero_tol)
+        means = float(dt @ np.abs(robot)), float(dt @ absolute)
+        return [literal, label.ratio("corrected", *means, self.spec.zero_tol)]
+
+    def _rates(self, run: Trajectories) -> Array:
+        """Turning rates of people (N-1, M), rad/s; NaN for who does not walk at both ends."""
+        jump = self.spec.jump_speed
+        vx, vy = people_vectors(run, jump)
+        walks = people_speeds(run, jump) > self.spec.heading_min_speed + SPEED_TOLERANCE
+        valid = valid_agent_steps(run.t, people(run), jump) & walks[1:] & walks[:-1]
+        turn = wrap(np.diff(np.arctan2(vy, vx), axis=0))
+        return np.where(valid, turn, np.nan) / np.diff(run.t)[:, None]
+
+
+@dataclass(frozen=True, slots=True)
+class VelocitySimilarity:
+    """Needs no reference run."""
+
+    spec: VelocitySimilaritySpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Speed of the robot against the mean speed of all people."""
+        del refs
+        label = VELOCITY_SIMILARITY.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        speeds = people_speeds(run, self.spec.jump_speed)
+        return _speed_scores(label, run, speeds, self.spec, "no_agents")
+
+
+@dataclass(frozen=True, slots=True)
+class NeighbourVelocitySimilarity:
+    """Needs no reference run."""
+
+    spec: NeighbourVelocitySimilaritySpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Speed of the robot against the mean speed of people near it."""
+        del refs
+        label = NEIGHBOUR_VELOCITY_SIMILARITY.label
+        if run.robot is None:
+            return label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        speeds, distance = (
+            people_speeds(run, self.spec.jump_speed),
+            encounter(run, self.spec.jump_speed).distance,
+        )
+        near = distance <= self.spec.neighbour_radius + DISTANCE_TOLERANCE
+        nobody = "no_neighbours" if np.isfinite(speeds).any() else "no_agents"
+        return _speed_scores(label, run, np.where(near, speeds, np.nan), self.spec, nobody)
+
+
+# ------------------------------------------------------------------- trip ratios
+def _against_mean(
+    label: ScoreLabel, run: Trajectories, robot: float, each: Array, zero_tol: float
+) -> Score:
+    """The robot against the mean of completed trips; known from below without arrival."""
+    assert run.trips is not None
+    if not run.trips.reached.any():
+        return label.undefined("literal", "no_completed_trips")
+    mean = float(each[run.trips.reached].mean())
+    both = {"robot": robot, "agents": mean}
+    ratio = label.ratio("literal", robot, mean, zero_tol, both)
+    if robot_of(run).goal_time is not None or ratio.value is None:
+        return ratio
+    return label.censored("literal", "goal_not_reached", lower=ratio.value, extras=both)
+
+
+def _per_distance(
+    label: ScoreLabel,
+    run: Trajectories,
+    amounts: tuple[float, float],
+    straight: Array,
+    spec: TimeToGoalSimilaritySpec | PathLengthSimilaritySpec,
+) -> Score:
+    """Amounts of robot and of all people, each per straight distance."""
+    robot = robot_of(run)
+    valid = valid_robot_steps(run.t, robot, spec.jump_speed)
+    own, others = displacement(run.t, robot.x, robot.y, valid), float(straight.sum())
+    if min(own, others) <= spec.zero_tol:
+        return label.undefined("corrected", "zero_denominator")
+    both = {"robot": amounts[0] / own, "agents": amounts[1] / others}
+    return label.ratio("corrected", both["robot"], both["agents"], spec.zero_tol, both)
+
+
+# ------------------------------------------------------------------ rates, speeds
+def mean_ratio(
+    label: ScoreLabel, above: Array, below: Array, samples: int, zero_tol: float
+) -> Score:
+    """``literal``: unweighted mean of the ratios that exist, and the share of those."""
+    usable = np.abs(below) > zero_tol
+    if not usable.any():
+        return label.undefined("literal", "zero_denominator")
+    mean = float((above[usable] / below[usable]).mean())
+    return label.ok("literal", mean, {"coverage": float(usable.sum()) / samples})
+
+
+def _speed_scores(
+    label: ScoreLabel,
+    run: Trajectories,
+    speeds: Array,
+    spec: VelocitySimilaritySpec | NeighbourVelocitySimilaritySpec,
+    nobody: str,
+) -> list[Score]:
+    """Mean of ratios, and ratio of means, over the samples at which somebody moves."""
+    known = np.isfinite(speeds)
+    count = known.sum(axis=1)
+    robot = np.hypot(*robot_vector(run, spec.jump_speed))
+    some = (count > 0) & np.isfinite(robot)
+    if not some.any():
+        return label.all_undefined(nobody)
+    mean = np.where(known, speeds, 0.0)[some].sum(axis=1) / count[some]
+    robot, weights = robot[some], time_weights(run.t)[some]
+    literal = mean_ratio(label, robot, mean, len(run.t), spec.zero_tol)
+    moving = mean > spec.zero_tol
+    span = float(weights[moving].sum())
+    if moving.any() and span <= 0:
+        return [literal, label.undefined("corrected", "too_few_samples")]
+    means = float(weights[moving] @ robot[moving]), float(weights[moving] @ mean[moving])
+    extras = {"coverage": float(moving.sum()) / len(run.t)}
+    return [literal, label.ratio("corrected", *means, 0.0, extras)]

@@ -1,0 +1,157 @@
+"""How near the robot comes to walls, and how often it touches them, computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from crowdbot.core.encounter import contact_events, robot_of
+from crowdbot.core.footprint import Footprint, footprint_of
+from crowdbot.core.interfaces import References
+from crowdbot.core.preprocess import cropped, finite, time_weights, valid_robot_steps
+from crowdbot.core.score import Score
+from crowdbot.core.score_label import ScoreLabel
+from crowdbot.core.trajectory import Array, RobotTrack, Trajectories
+from crowdbot.plugins.metrics.walls import (
+    AVG_WALL_CLEARANCE,
+    MIN_WALL_CLEARANCE,
+    WALL_CONTACT_COUNT,
+    AvgWallClearanceSpec,
+    MinWallClearanceSpec,
+    WallContactCountSpec,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class WallContactCount:
+    """``recorded`` needs a table of contacts, ``geometric`` walls."""
+
+    spec: WallContactCountSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """All walls together are one body; ``geometric`` has the rules of ``collision_count``."""
+        del refs
+        if run.robot is None:
+            return WALL_CONTACT_COUNT.label.all_undefined("invalid_no_robot")
+        run = cropped(run)
+        return [self._recorded(run), self._geometric(run)]
+
+    def _recorded(self, run: Trajectories) -> Score:
+        label = WALL_CONTACT_COUNT.label
+        if run.contacts is None:
+            return label.undefined("recorded", "invalid_no_contacts")
+        return label.ok("recorded", (run.contacts.agent < 0).sum())
+
+    def _geometric(self, run: Trajectories) -> Score:
+        label, tol = WALL_CONTACT_COUNT.label, self.spec.contact_tol
+        gap = wall_gap(label, run)
+        if isinstance(gap, list):
+            return label.undefined("geometric", "invalid_no_walls")
+        valid = valid_robot_steps(run.t, robot_of(run), self.spec.jump_speed)[:, None]
+        found = contact_events(
+            run.t,
+            gap[:, None],
+            self._first_touch(run, gap)[:, None],
+            valid,
+            contact_tol=tol,
+            release_gap=self.spec.release_gap,
+        )
+        return label.ok("geometric", len(found.time))
+
+    def _first_touch(self, run: Trajectories, gap: Array) -> Array:
+        """Fraction of each step (N-1,) at which a wall is touched; NaN if none is.
+
+        A disc sweeps along the step; a footprint, which may turn, is looked at when it arrives.
+        """
+        robot, tol = robot_of(run), self.spec.contact_tol
+        first = np.where(gap[1:] <= tol, 1.0, np.inf)
+        if footprint_of(run) is None:
+            reach = np.array(robot.radius + tol)
+            x, y = finite(robot.x), finite(robot.y)
+            for wall in _segments(run):
+                swept = wall.first_touch(x[:-1], y[:-1], np.diff(x), np.diff(y), reach)
+                first = np.minimum(first, swept)
+        first = np.where(gap[:-1] <= tol, 0.0, first)
+        return np.where(first <= 1.0, first, np.nan)
+
+
+@dataclass(frozen=True, slots=True)
+class MinWallClearance:
+    """Needs walls."""
+
+    spec: MinWallClearanceSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Least gap at any sample."""
+        del refs
+        label = MIN_WALL_CLEARANCE.label
+        gap = wall_gap(label, cropped(run))
+        return gap if isinstance(gap, list) else [label.ok("corrected", np.nanmin(gap))]
+
+
+@dataclass(frozen=True, slots=True)
+class AvgWallClearance:
+    """Needs walls."""
+
+    spec: AvgWallClearanceSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Mean over time."""
+        del refs
+        label = AVG_WALL_CLEARANCE.label
+        run = cropped(run)
+        gap = wall_gap(label, run)
+        if isinstance(gap, list):
+            return gap
+        known = np.isfinite(gap)
+        weights = time_weights(run.t)[known]
+        if weights.sum() <= 0:
+            return label.all_undefined("too_few_samples")
+        return [label.ok("corrected", weights @ gap[known] / weights.sum())]
+
+
+def wall_gap(label: ScoreLabel, run: Trajectories) -> Array | list[Score]:
+    """Gap between the robot and the nearest wall (N,), m; or why there is none.
+
+    At most 0 in contact; how deep, it says for discs only.
+    """
+    if run.robot is None:
+        return label.all_undefined("invalid_no_robot")
+    if run.walls is None or not run.walls.size:
+        return label.all_undefined("invalid_no_walls")
+    gap = run.derived("wall_gap", lambda: _gap(run))
+    return gap if np.isfinite(gap).any() else label.all_undefined("too_few_samples")
+
+
+def _gap(run: Trajectories) -> Array:
+    robot, outline = robot_of(run), footprint_of(run)
+    robot = replace(robot, x=finite(robot.x), y=finite(robot.y), theta=finite(robot.theta))
+    if outline is None:
+        gaps = [wall.gap(robot.x, robot.y) - robot.radius for wall in _segments(run)]
+    else:
+        gaps = [_outline_gap(outline, wall.corners, robot) for wall in _segments(run)]
+    nearest: Array = np.min(gaps, axis=0)
+    return nearest
+
+
+def _outline_gap(outline: Footprint, wall: Array, robot: RobotTrack) -> Array:
+    """Least distance of an end of the wall from the outline, or of a corner from the wall."""
+    c, s = np.cos(robot.theta), np.sin(robot.theta)
+    ends = []
+    for wx, wy in wall:
+        dx, dy = wx - robot.x, wy - robot.y
+        ends.append((c * dx + s * dy, c * dy - s * dx))
+    gap = np.minimum(*(outline.gap(*end) for end in ends))
+    for cx, cy in outline.corners:
+        corner = robot.x + c * cx - s * cy, robot.y + s * cx + c * cy
+        gap = np.minimum(gap, Footprint(wall, 0.0).gap(*corner) - outline.radius)
+    (ax, ay), (bx, by) = ends
+    crossed = outline.first_touch(ax, ay, bx - ax, by - ay, np.zeros(()))
+    return np.where(crossed <= 1.0, np.minimum(gap, 0.0), gap)
+
+
+def _segments(run: Trajectories) -> list[Footprint]:
+    assert run.walls is not None
+    return [Footprint(row.reshape(2, 2), 0.0) for row in run.walls]

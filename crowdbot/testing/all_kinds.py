@@ -1,0 +1,199 @@
+"""What every component must keep to, whatever it is."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from functools import cache
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+from ruamel.yaml import YAML
+
+from crowdbot.core.component import Component
+from crowdbot.core.registry import discover
+from crowdbot.dsl.base import ComponentSpec
+from crowdbot.dsl.canonical import to_yaml
+from crowdbot.dsl.quantities import UNITS, Quantity
+from crowdbot.dsl.validation import nested_model
+
+#: Loaded in a fraction of a second or not at all by whoever only validates.
+HEAVY = frozenset({"numba", "numpy", "pydrake"})
+#: Words that tell a reader that a number has no unit.
+_WITHOUT_UNIT = (
+    "dimensionless", "factor", "fraction", "number", "per", "ratio", "relatively", "share", "weight"
+)  # fmt: skip
+_UNITS = frozenset(unit.lower() for units in UNITS.values() for unit in units) | {"si"}
+
+
+def check_kind_is_a_name(component: Component[Any]) -> None:
+    """``kind`` is one literal and the default; of a plugin it begins with the plugin's name.
+
+    If this fails, write ``kind: Literal["plugin.name"] = "plugin.name"`` in lower case.
+    """
+    annotation = component.spec.model_fields["kind"].annotation
+    assert get_origin(annotation) is Literal, f"kind is a {annotation}, not a Literal"
+    assert len(get_args(annotation)) == 1, "kind has several values"
+    assert component.spec.model_fields["kind"].default == component.kind, "kind has another default"
+    pattern = "[a-z][a-z0-9_]*" if _is_built_in(component) else r"[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*"
+    assert re.fullmatch(pattern, component.kind), f"'{component.kind}' does not match {pattern}"
+
+
+def check_summary_is_a_line(component: Component[Any]) -> None:
+    """The summary is one line, and a docstring of the spec says what it stands for.
+
+    If this fails, give ``Component(summary=...)`` a few words without a line break, and the spec
+    class a docstring.
+    """
+    assert component.summary.strip() == component.summary != "", "no summary"
+    assert len(component.summary.splitlines()) == 1, "the summary has several lines"
+    assert (component.spec.__doc__ or "").strip(), "the spec has no docstring"
+    assert component.spec_version >= 1, "spec_version begins at 1"
+
+
+def check_examples_validate(component: Component[Any]) -> None:
+    """There is an example, and all are valid documents.
+
+    If this fails, correct ``Component(examples=...)``: mappings of field to value without ``kind``.
+    """
+    assert component.examples, "no example"
+    for example in component.examples:
+        assert "kind" not in example, "the example repeats 'kind'"
+        _validated(component, example)
+
+
+def check_round_trip(component: Component[Any]) -> None:
+    """Spec to YAML and back gives the same spec.
+
+    If this fails, a field is changed by validation or cannot be written; look for validators that
+    are not idempotent and for types that JSON does not have.
+    """
+    for example in component.examples:
+        spec = _validated(component, example)
+        text = to_yaml(spec.model_dump(mode="json"))
+        again = component.spec.model_validate(YAML(typ="safe", pure=True).load(text))
+        assert again == spec, f"{spec!r} came back as {again!r}"
+
+
+def check_fields_are_described(component: Component[Any]) -> None:
+    """Every field has a description, and numbers say their unit.
+
+    If this fails, use a quantity of ``crowdbot.dsl.quantities``, or end the description with
+    ``, UNIT.``; a number without unit is a "weight", "factor", "fraction", "ratio" or "share".
+    """
+    for path, field in _fields(component.spec):
+        assert (field.description or "").strip(), f"field '{path}' has no description"
+        if field.annotation is float:
+            assert _has_unit(field), f"field '{path}' has no unit: {field.description!r}"
+
+
+def check_unknown_field_is_refused(component: Component[Any]) -> None:
+    """A field that the spec does not have is an error, not ignored.
+
+    If this fails, the spec changed ``model_config``; leave ``extra="forbid"`` as it is.
+    """
+    example = dict(component.examples[0]) if component.examples else {}
+    refused: list[str] = []
+    try:
+        _validated(component, {**example, "no_such_field": 1})
+    except ValidationError as error:
+        refused = [e["type"] for e in error.errors()]
+    assert "extra_forbidden" in refused, "an unknown field was accepted"
+
+
+def check_build_resolves(component: Component[Any]) -> None:
+    """``build`` names a function that takes the spec first.
+
+    If this fails, correct ``Component(build="module:function")``.
+    """
+    build = component.load_build()
+    assert callable(build), f"{component.build} is no function"
+    try:
+        parameters = list(inspect.signature(build).parameters.values())
+    except ValueError:  # written in C: nothing to look at
+        return
+    positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    takes_spec = bool(parameters) and parameters[0].kind in positional
+    assert takes_spec, f"{component.build} takes no spec"
+
+
+def check_words_are_light(component: Component[Any]) -> None:
+    """Importing the module of the spec imports neither pydrake nor numba nor numpy.
+
+    If this fails, move what computes into the module that ``build`` names.
+    """
+    module = component.spec.__module__
+    loaded = _loaded_by(module.rpartition(".")[0] or module)
+    if module not in loaded:
+        loaded = _loaded_by(module)
+    heavy = sorted(HEAVY & loaded)
+    assert not heavy, f"import {module} imports {', '.join(heavy)}"
+
+
+def check_entry_point_yields_it(component: Component[Any]) -> None:
+    """The installed plugin really provides the component.
+
+    If this fails, look at ``crowdbot plugins``: the distribution is not installed, its entry point
+    in the group ``crowdbot`` names another module, or no hook returns the component.
+    """
+    registry = discover()
+    failed = [f"{p.name}: {p.error}" for p in registry.plugins if p.error]
+    assert component.kind in registry.components(component.category), (
+        f"no installed plugin provides it{'; ' + '; '.join(failed) if failed else ''}"
+    )
+    found = registry.find(component.category, component.kind)
+    assert found == component, f"{registry.owner(found).distribution} provides another {found.kind}"
+
+
+CHECKS = (
+    check_kind_is_a_name,
+    check_summary_is_a_line,
+    check_examples_validate,
+    check_round_trip,
+    check_fields_are_described,
+    check_unknown_field_is_refused,
+    check_build_resolves,
+    check_words_are_light,
+    check_entry_point_yields_it,
+)
+
+
+def _is_built_in(component: Component[Any]) -> bool:
+    return component.spec.__module__.startswith("crowdbot.plugins.")
+
+
+def _validated(component: Component[Any], example: Any) -> ComponentSpec:
+    spec: ComponentSpec = component.spec.model_validate({"kind": component.kind, **example})
+    return spec
+
+
+def _fields(model: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, FieldInfo]]:
+    """Dotted name and field of a spec and of all it consists of; ``kind`` is core's."""
+    for name, field in model.model_fields.items():
+        if prefix or name != "kind":
+            yield prefix + name, field
+        inner = nested_model(field.annotation)
+        if inner is not None:
+            yield from _fields(inner, f"{prefix}{name}.")
+
+
+def _has_unit(field: FieldInfo) -> bool:
+    text = (field.description or "").rstrip(".").lower()
+    return (
+        any(isinstance(m, Quantity) for m in field.metadata)
+        or text.rpartition(", ")[2] in _UNITS
+        or any(re.search(rf"\b{word}s?\b", text) for word in _WITHOUT_UNIT)
+    )
+
+
+@cache
+def _loaded_by(module: str) -> frozenset[str]:
+    """Modules in memory after a fresh interpreter imported one."""
+    code = f"import sys; sys.path[:] = {sys.path!r}; import {module}; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, f"import {module} fails: {done.stderr.strip()}"
+    return frozenset(done.stdout.split())

@@ -1,0 +1,121 @@
+"""A metric's card: the page that says what its numbers mean, and whether it tells the truth.
+
+The form is fixed, so that cards can be compared with the code: a table of two columns, then the
+sections of `SECTIONS`; those of variants and parameters begin with a table.
+"""
+
+from __future__ import annotations
+
+import doctest
+import io
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from crowdbot.core.component import Component
+from crowdbot.core.score_label import MetricComponent
+from crowdbot.testing import degenerate
+from crowdbot.testing.scored import scores_of
+
+SECTIONS = (
+    "Formula",
+    "Variants",
+    "Parameters",
+    "Failure modes",
+    "What the literal form gets wrong",
+    "Worked example",
+    "Source",
+)
+#: Rows of the table at the head.
+HEAD = ("symbol", "category", "unit", "better", "range", "sampling", "needs")
+
+
+def check_card_says_what_the_scores_say(component: Component[Any]) -> None:
+    """The card has all sections; symbol, unit, direction, variants and parameters are the code's.
+
+    If this fails, correct the card; ``docs/reference/metrics/risk.md`` shows the form.
+    """
+    assert isinstance(component, MetricComponent), "no MetricComponent"
+    text, label = component.read_card(), component.label
+    title = text.splitlines()[0]
+    assert title == f"# {component.kind}", f"the card is called '{title}'"
+    sections = re.findall(r"^## (.+)$", text, re.MULTILINE)
+    assert sections == list(SECTIONS), f"sections are {', '.join(sections)}"
+    head = {name: value for name, value in rows(text.partition("\n## ")[0]) if name}
+    assert tuple(head) == HEAD, f"the table at the head has {', '.join(head)}"
+    for name in ("symbol", "category", "unit", "better"):
+        assert head[name] == getattr(label, name), f"{name}: '{head[name]}'"
+    assert all(head.values()), "an empty cell in the table at the head"
+    _assert_variants(label, dict(_named(section(text, "Variants"))))
+    _assert_parameters(component, dict(_named(section(text, "Parameters"))))
+    for name in SECTIONS:
+        assert section(text, name).strip(), f"section '{name}' is empty"
+    _assert_reasons(component, text)
+
+
+def check_card_examples_run(component: Component[Any]) -> None:
+    """The worked example of the card is a doctest, and what it shows is what comes.
+
+    If this fails, correct the example, or find out what has changed the numbers.
+    """
+    text = re.sub(r"^```.*$", "", section(component.read_card(), "Worked example"), flags=re.M)
+    test = doctest.DocTestParser().get_doctest(text, {}, component.kind, "card", 0)
+    assert any(e.want for e in test.examples), "the card shows no result of '>>>'"
+    told = io.StringIO()
+    doctest.DocTestRunner(verbose=False).run(test, out=told.write)
+    assert not told.getvalue(), told.getvalue()
+
+
+def section(text: str, name: str) -> str:
+    """What follows one heading, up to the next."""
+    return text.partition(f"\n## {name}\n")[2].partition("\n## ")[0]
+
+
+def rows(text: str) -> Iterator[list[str]]:
+    """The rows of all tables in a text, without their rulers; a bar after a backslash is text."""
+    for line in text.splitlines():
+        if line.startswith("|") and not re.fullmatch(r"[|\- :]+", line):
+            cells = re.split(r"(?<!\\)\|", line)[1:-1]
+            yield [cell.strip().replace("\\|", "|") for cell in cells]
+
+
+def _named(text: str) -> Iterator[tuple[str, list[str]]]:
+    """The rows whose first cell is code."""
+    for name, *cells in rows(text):
+        if re.fullmatch(r"`[^`]+`", name):
+            yield name.strip("`"), cells
+
+
+def _assert_variants(label: Any, table: Mapping[str, list[str]]) -> None:
+    expected = {
+        v: [label.units.get(v, label.unit), label.betters.get(v, label.better)]
+        for v in label.variants
+    }
+    found = {name: cells[:2] for name, cells in table.items()}
+    assert found == expected, f"variants, unit and better: {found}, the label says {expected}"
+
+
+def _assert_parameters(component: Component[Any], table: Mapping[str, list[str]]) -> None:
+    fields = {n: f for n, f in component.spec.model_fields.items() if n != "kind"}
+    assert set(table) == set(fields), f"parameters are {', '.join(fields) or 'none'}"
+    for name, (default, *_) in table.items():
+        value = fields[name].get_default()
+        number = float(value) if isinstance(value, int | float) else None
+        said = re.match(r"[-+0-9.e]+", default)
+        if number is not None and not isinstance(value, bool):
+            assert said, f"parameter {name}: '{default}' is no number"
+            close = abs(float(said[0]) - number) <= 1e-4 * abs(number)
+            assert close, f"parameter {name}: default is {number:g}, the card says {default}"
+        else:
+            assert str(value).lower() in default.lower(), f"parameter {name}: default is {value}"
+
+
+def _assert_reasons(component: Component[Any], text: str) -> None:
+    modes = section(text, "Failure modes")
+    for name, world in degenerate.worlds().items():
+        for one in scores_of(component, world).values():
+            assert not one.reason or f"`{one.reason}`" in modes, (
+                f"{name}: '{one.reason}' is no failure mode of the card"
+            )
+            for extra in one.extras:
+                assert f"`{extra}`" in text, f"the card does not explain the extra '{extra}'"

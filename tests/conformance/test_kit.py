@@ -1,0 +1,196 @@
+"""The kit itself: every check fails for a component that breaks what it checks."""
+# ruff: noqa: ARG001, ARG005 - the signature of a metric is fixed
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+from pydantic import ConfigDict, Field
+
+from crowdbot.core.interfaces import References
+from crowdbot.core.laws import Laws
+from crowdbot.core.score import Score
+from crowdbot.core.score_label import MetricComponent, ScoreLabel
+from crowdbot.core.trajectory import Trajectories
+from crowdbot.dsl.base import MetricSpec
+from crowdbot.testing import all_kinds, card, checks_of, metric, parametrize_with_checks
+
+DOCS = Path(__file__).parents[2] / "docs/reference"
+LABEL = ScoreLabel(metric="acme.x", symbol="x", category="c", unit="m", better="none")
+
+
+class GoodSpec(MetricSpec):
+    """Length of the record."""
+
+    kind: Literal["acme.x"] = "acme.x"
+
+
+class BareSpec(MetricSpec):
+    """Fields without words."""
+
+    kind: Literal["acme.x"] = "acme.x"
+    gap: float = Field(default=1.0, description="Some gap.")
+
+
+class LooseSpec(MetricSpec):
+    """Takes anything."""
+
+    model_config = ConfigDict(extra="ignore")
+    kind: Literal["acme.x"] = "acme.x"
+
+
+class NamelessSpec(MetricSpec):
+    """No name of a plugin."""
+
+    kind: Literal["X"] = "X"
+
+
+def component(**changes: Any) -> MetricComponent[Any]:
+    given = {"spec": GoodSpec, "build": "acme_x:build", "summary": "x", "label": LABEL}
+    return MetricComponent(**{**given, **changes})
+
+
+@pytest.fixture
+def deed(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Sets what the metric computes: a function of run and references."""
+    module: Any = ModuleType("acme_x")
+    monkeypatch.setitem(sys.modules, "acme_x", module)
+
+    def use(value: Any) -> None:
+        class Metric:
+            def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+                found = value(run, refs)
+                return [found] if isinstance(found, Score) else [LABEL.ok("corrected", found)]
+
+        module.build = lambda spec: Metric()
+
+    return use
+
+
+@pytest.mark.parametrize(
+    ("check", "changes"),
+    [
+        (all_kinds.check_kind_is_a_name, {"spec": NamelessSpec}),
+        (all_kinds.check_summary_is_a_line, {"summary": "two\nlines"}),
+        (all_kinds.check_examples_validate, {"examples": ()}),
+        (all_kinds.check_fields_are_described, {"spec": BareSpec}),
+        (all_kinds.check_unknown_field_is_refused, {"spec": LooseSpec}),
+        (all_kinds.check_words_are_light, {}),  # this very module imports numpy
+        (all_kinds.check_entry_point_yields_it, {}),
+        (metric.check_label, {"laws": {"literal": Laws()}}),
+        (card.check_card_says_what_the_scores_say, {"card": "# acme.y\n\nNothing."}),
+        (card.check_card_examples_run, {"card": "# acme.x\n\n## Worked example\n\nNone.\n"}),
+    ],
+)
+def test_words_that_break_a_check(check: Any, changes: dict[str, Any]) -> None:
+    with pytest.raises(AssertionError):
+        check(component(**changes))
+
+
+def _grows(run: Trajectories, refs: References) -> float:
+    _grows.calls += 1  # type: ignore[attr-defined]
+    return float(_grows.calls)  # type: ignore[attr-defined]
+
+
+_grows.calls = 0  # type: ignore[attr-defined]
+
+
+def _x(run: Trajectories) -> float:
+    return 0.0 if run.robot is None else float(np.nan_to_num(run.robot.x).max())
+
+
+def _people(run: Trajectories) -> int:
+    return 0 if run.agents is None else len(run.agents.id)
+
+
+def _mutates(run: Trajectories, refs: References) -> float:
+    if run.t.flags.writeable:
+        run.t[0] -= 1.0
+    return 0.0
+
+
+@pytest.mark.parametrize(
+    ("check", "value", "laws"),
+    [
+        (metric.check_pure, _grows, {}),
+        (metric.check_pure, _mutates, {}),
+        (metric.check_point_of_view, lambda run, refs: _x(run), {}),
+        (metric.check_point_of_view, lambda run, refs: float(run.t[0]), {}),
+        (metric.check_itself, lambda run, refs: 2.0, {"itself": 1.0}),
+        (metric.check_sampling, lambda run, refs: len(run.t), {}),
+        (metric.check_sampling, lambda run, refs: 1.0, {"finer": "double"}),
+        (metric.check_more_people, lambda run, refs: -_people(run), {"more_people": "up"}),
+        (metric.check_more_people, lambda run, refs: _people(run), {"more_people": "down"}),
+        (metric.check_masses, lambda run, refs: run.robot.mass if run.robot else 0.0, {}),
+        (
+            metric.check_teleports_add_nothing,
+            lambda run, refs: np.nansum(np.abs(np.diff(run.agents.x, axis=0))),
+            {},
+        ),
+        (metric.check_rounding, lambda run, refs: float(_x(run) > 6.25), {"whole": True}),
+        (metric.check_scores_are_well_formed, lambda run, refs: -1.0, {"least": 0.0}),
+        (metric.check_scores_are_well_formed, lambda run, refs: 0.5, {"whole": True}),
+        (
+            metric.check_scores_are_well_formed,
+            lambda run, refs: ScoreLabel(
+                metric="acme.x", symbol="x", category="c", unit="s", better="none"
+            ).ok("corrected", 1.0),
+            {},
+        ),
+        (metric.check_degenerate_runs, lambda run, refs: float(run.robot.mass), {}),
+    ],
+)
+def test_deeds_that_break_a_check(check: Any, value: Any, laws: dict[str, Any], deed: Any) -> None:
+    deed(value)
+    with pytest.raises(AssertionError):
+        check(component(laws={"corrected": Laws(**laws)}))
+
+
+def test_a_sound_metric_passes(deed: Any) -> None:
+    deed(lambda run, refs: float(run.t[-1] - run.t[0]))
+    for check in metric.CHECKS:
+        if "card" not in check.__name__:
+            check(component())
+
+
+def test_a_build_that_is_not_there() -> None:
+    with pytest.raises(Exception, match="not found"):
+        all_kinds.check_build_resolves(component(build="acme_x_nowhere:build"))
+
+
+def test_expected_failures() -> None:
+    mark = parametrize_with_checks(
+        [component()], expected_failures={"check_pure": "why", "acme.x-check_label": "because"}
+    )
+    tests = {str(p.id): p for p in mark.args[1]}
+    assert set(tests) == {f"acme.x-{c.__name__}" for c in checks_of(component())}
+    assert [m.kwargs["reason"] for m in tests["acme.x-check_pure"].marks] == ["why"]
+    assert [m.kwargs["reason"] for m in tests["acme.x-check_label"].marks] == ["because"]
+    with pytest.raises(ValueError, match="check_nothing"):
+        parametrize_with_checks([component()], expected_failures={"check_nothing": ""})
+    with pytest.raises(ValueError, match="no component"):
+        parametrize_with_checks([])
+
+
+def test_laws_are_checked() -> None:
+    with pytest.raises(ValueError, match="no such exception"):
+        Laws(exceptions={"squeeze": ""})
+    with pytest.raises(ValueError, match="no range"):
+        Laws(least=1.0, most=0.0)
+
+
+def test_checks_say_what_to_do_and_the_page_lists_them() -> None:
+    page = (DOCS / "conformance.md").read_text(encoding="utf-8")
+    for check in (*all_kinds.CHECKS, *metric.CHECKS):
+        text = inspect.getdoc(check)
+        assert text is not None
+        what, _, then = text.partition("If this fails, ")
+        assert then.strip().endswith("."), check.__name__
+        assert f"| `{check.__name__}` | {' '.join(what.split())} |" in page
