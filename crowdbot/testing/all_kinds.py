@@ -28,6 +28,8 @@ _WITHOUT_UNIT = (
     "dimensionless", "factor", "fraction", "number", "per", "ratio", "relatively", "share", "weight"
 )  # fmt: skip
 _UNITS = frozenset(unit.lower() for units in UNITS.values() for unit in units) | {"si"}
+#: Symbols of which other units are made: m^2/s^2, W s^2/(kg m^2).
+_SYMBOLS = frozenset({"m", "s", "kg", "n", "j", "w", "hz", "rad", "1"})
 
 
 def check_kind_is_a_name(component: Component[Any]) -> None:
@@ -185,9 +187,17 @@ def _has_unit(field: FieldInfo) -> bool:
     text = (field.description or "").rstrip(".").lower()
     return (
         any(isinstance(m, Quantity) for m in field.metadata)
-        or text.rpartition(", ")[2] in _UNITS
+        or _is_unit(text.rpartition(", ")[2])
         or any(re.search(rf"\b{word}s?\b", text) for word in _WITHOUT_UNIT)
     )
+
+
+def _is_unit(text: str) -> bool:
+    """Whether a text is a unit, or a product of powers of units."""
+    parts = [p for p in re.split(r"[\s/()]+", text) if p]
+    powers = [re.fullmatch(r"([a-z]+|1)(\^\d)?", part) for part in parts]
+    made = bool(parts) and all(p is not None and p[1] in _SYMBOLS for p in powers)
+    return text in _UNITS or made
 
 
 @cache

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from typing import Any
 
@@ -21,6 +20,7 @@ from spawning_cases import (
     hall,
 )
 
+from crowdbot.core.crowd.policy import PORTAL
 from crowdbot.core.crowd_setup import build_crowd
 from crowdbot.core.realise import realise
 from crowdbot.dsl.areas import Area
@@ -163,27 +163,39 @@ def test_explicit_agents_take_what_they_do_not_say_from_the_crowd() -> None:
     assert both.speed[1] == 2.0
 
 
-def test_the_engine_says_what_it_cannot_do() -> None:
-    for crowd, words in UNABLE:
-        scenario = hall({"goal_areas": AREAS} | json.loads(json.dumps(crowd)))
-        parts = REGISTRY.build(scenario.environment)
-        with pytest.raises(InputError, match=words):
-            build_crowd(scenario, realise(scenario), parts, REGISTRY)
-
-
 STREAM = {"area": "box", "count": 2, "portals": ["a", "b"]}
-UNABLE: list[tuple[dict[str, Any], str]] = [
-    ({"spawns": {"s": STANDING}}, "routes with an end"),
-    ({"spawns": {"s": STREAM, "t": STREAM | {"portals": ["b", "a"]}}}, "several pairs of portals"),
-    ({"spawns": {"s": STREAM | {"start_time": 3}}}, "people who enter later"),
-    (
-        {
-            "spawns": {"s": STREAM, "t": STREAM | {"policy": "p"}},
-            "policies": {"p": {"policy": CROWD["policy"], "costs": CROWD["costs"]}},
-        },
-        "several policies",
-    ),
-]
+MIXED = {
+    "spawns": {
+        "s": STREAM,
+        "t": STREAM | {"portals": ["b", "a"], "policy": "p"},
+        "u": STANDING,
+        "v": {"area": "box", "count": 1, "start_time": 0.5, "goals": {"areas": ["n"]}},
+    },
+    "policies": {"p": {"policy": CROWD["policy"], "costs": CROWD["costs"]}},
+    "goal_areas": AREAS,
+}
+
+
+def test_the_engine_is_given_all_of_it() -> None:
+    """Streams, policies, routes and start times find the agents that they belong to."""
+    scenario = hall(MIXED)
+    drawn = realise(scenario)
+    engine = build_crowd(scenario, drawn, REGISTRY.build(scenario.environment), REGISTRY)
+    assert engine is not None
+    agents = engine.agents
+    for i in range(len(agents)):
+        assert (agents.at_goal[i] == PORTAL) == (drawn.at_goal[i] == "portal")
+        assert agents.policy[i] == (drawn.policy[i] == "p")
+        route = agents.route[agents.first[i] : agents.first[i + 1]]
+        assert route.tolist() == [list(point) for point in drawn.goals[i]]
+        if drawn.at_goal[i] == "portal":
+            box = REGISTRY.build(scenario.environment).portals[drawn.portals[i][0]]
+            assert engine.world.entrance[agents.flow[i]].tolist() == list(box)
+    assert agents.start_time.tolist().count(0.5) == 1
+    times, positions = engine.run(2.0)
+    assert times[-1] == 2.0
+    assert np.isnan(positions[0]).any(axis=1).sum() == 1
+    assert np.isfinite(positions[-1]).all()
 
 
 def test_a_stream_that_the_engine_knows_runs() -> None:
@@ -193,7 +205,7 @@ def test_a_stream_that_the_engine_knows_runs() -> None:
     )
     assert engine is not None
     assert len(engine.agents) == 2
-    assert engine.world.out.tolist() == [40, 41, -5, 5]
+    assert engine.world.out.tolist() == [[40, 41, -5, 5]]
 
 
 @pytest.mark.parametrize(

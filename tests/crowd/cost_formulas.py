@@ -94,7 +94,7 @@ def cosine(a: complex, b: complex) -> float:
 def nearest(p: complex, a: complex, b: complex) -> complex:
     """Point of segment a-b nearest to p."""
     along = dot(p - a, b - a) / abs(b - a) ** 2 if a != b else 0.0
-    return a + min(1.0, max(0.0, along)) * (b - a)
+    return b if along >= 1.0 else a + max(0.0, along) * (b - a)
 
 
 def ratio(a: float, b: float) -> float:

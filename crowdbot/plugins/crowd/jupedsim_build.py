@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd.policy import Agents, CrowdView
 from crowdbot.errors import InputError, PluginError
 from crowdbot.plugins.crowd.jupedsim import JuPedSimSpec
-from crowdbot.plugins.crowd.jupedsim_area import SLIT, Areas
+from crowdbot.plugins.crowd.jupedsim_area_build import SLIT, Areas
 
 Array = NDArray[np.float64]
 

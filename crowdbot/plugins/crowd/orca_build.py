@@ -136,7 +136,7 @@ def _prepare(
     if not parity:
         count = _put_walls(agent, walls, wall_count, params, work, count)
     work[0] = count
-    return count
+    return max(count, 1)  # base alone may be less than the cost of a candidate that is too fast
 
 
 @njit(EXCESS, cache=True, error_model="numpy")
