@@ -152,7 +152,7 @@ def _end_hung_process() -> None:
 
 def _print(run: Run, *, as_json: bool) -> None:
     from crowdbot.core.run_directory import REPLAY, SCORES
-    from crowdbot.core.scores_table import read_scores_csv, scores_table
+    from crowdbot.core.scores_table import headlines, read_scores_csv, scores_table
 
     rows = read_scores_csv(run.directory / SCORES)
     if as_json:
@@ -180,11 +180,12 @@ def _print(run: Run, *, as_json: bool) -> None:
     from rich.console import Console
 
     console = Console()
-    console.print(scores_table([r.score for r in rows]))
+    console.print(scores_table(headlines([r.score for r in rows])))
     record = run.record
     console.print(_summary(run), highlight=False)
     if record["status"] == "planner_failed":
         print(f"error: {record['reason']}", file=sys.stderr)
+    console.print(f"all variants: {run.directory / SCORES}", soft_wrap=True, highlight=False)
     console.print(f"replay: {run.directory / REPLAY}", soft_wrap=True, highlight=False)
 
 

@@ -32,7 +32,7 @@ COLUMNS = (
     "lower",
     "upper",
 )
-_LONGEST_REASON = len("reference_goal_not_reached")
+_VALUE_WIDTH = 20
 _NUMBERS = ("value", "lower", "upper")
 _TEXTS = ("category", "metric", "symbol", "variant", "unit", "better", "status", "reason")
 
@@ -134,17 +134,37 @@ def _score(cells: Mapping[str, Any]) -> Score:
 
 
 # ------------------------------------------------------------------- terminal
+#: Reasons of metrics whose data no simulated run has: a driver's commands, his answers.
+_NOT_ASKED = ("no_command", "no_answers", "no_formula_in_seed")
+_SIGNS = {"higher": "+", "lower": "-", "reference": "=", "none": ""}
+
+
+def headlines(scores: Sequence[Score]) -> list[Score]:
+    """One score for each metric that the run has data for: corrected, else what stands for it."""
+    found = []
+    for _, group in groupby(scores, key=lambda s: s.metric):
+        variants = [s for s in group if s.reason not in _NOT_ASKED]
+        corrected = [s for s in variants if s.variant == "corrected"]
+        restricted = [s for s in variants if s.variant == "restricted" and s.status == "ok"]
+        unclear = corrected and corrected[0].status != "ok"
+        found += ((restricted if unclear else []) + corrected + variants)[:1]
+    return found
+
+
 def scores_table(scores: Sequence[Score]) -> Table:
-    """A table for people, grouped by category; fits 80 columns."""
+    """A table for people, grouped by category; fits 80 columns.
+
+    The last column says what is better: + higher, - lower, = like the people.
+    """
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
     from rich.text import Text
 
     table = Table(box=SIMPLE_HEAD, padding=0, pad_edge=False)
     for name in ("metric", "symbol", "variant"):
-        table.add_column(name, overflow="fold", no_wrap=name != "metric")
-    table.add_column("value", overflow="fold", min_width=_LONGEST_REASON)
-    table.add_column("better", no_wrap=True)
+        table.add_column(name, overflow="fold", no_wrap=True)
+    table.add_column("value", overflow="fold", min_width=_VALUE_WIDTH)
+    table.add_column("")
     by_category = sorted(scores, key=lambda s: s.category)
     for category, group in groupby(by_category, key=lambda s: s.category):
         table.add_section()
@@ -153,7 +173,8 @@ def scores_table(scores: Sequence[Score]) -> Table:
         for s in group:
             head = ("", "") if s.metric == shown else (s.metric, s.symbol)
             style = "" if s.status == "ok" else "dim"
-            table.add_row(*map(Text, (*head, s.variant, verdict(s), s.better)), style=style)
+            cells = (*head, s.variant, verdict(s), _SIGNS[s.better])
+            table.add_row(*map(Text, cells), style=style)
             shown = s.metric
     return table
 

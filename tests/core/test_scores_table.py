@@ -17,6 +17,7 @@ from rich.console import Console
 from crowdbot.core.score import Score
 from crowdbot.core.scores_table import (
     ScoreRow,
+    headlines,
     read_scores_csv,
     scores_table,
     verdict,
@@ -202,10 +203,22 @@ def test_the_table_fits_80_columns_and_loses_nothing() -> None:
         "at most 0.90909",
         "2.9602 s",
         "123456",
-        "higher",
-        "reference",
+        " +",
+        " =",
     ):
         assert shown in joined, shown
+
+
+def test_headlines_are_one_a_metric_that_has_data() -> None:
+    made = replace(SCORES[0], metric="m", variant="literal")
+    corrected = replace(made, variant="corrected")
+    unclear = replace(corrected, status="censored", reason="unfinished_trips", value=None)
+    restricted = replace(made, variant="restricted")
+    unasked = replace(made, metric="n", status="undefined", reason="no_command", value=None)
+    assert headlines([made, corrected, unasked]) == [corrected]
+    assert headlines([made, unclear, restricted]) == [restricted]
+    assert headlines([made, unclear]) == [unclear]
+    assert headlines([replace(made, variant="recorded")]) == [replace(made, variant="recorded")]
 
 
 def test_groups_come_together_and_names_once() -> None:
