@@ -6,6 +6,7 @@ x along the corridor, y left, z up, yaw counter-clockwise (REP-103).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -70,13 +71,17 @@ class EnvironmentParts:
 # ---------------------------------------------------------------------- robot
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotLimits:
-    """A box of velocities and slew limits: m/s, rad/s, m/s^2, rad/s^2."""
+    """A box of velocities and slew limits: m/s, rad/s, m/s^2, rad/s^2.
+
+    A robot that gets no command for ``command_timeout`` seconds brakes to a stop.
+    """
 
     v_min: float
     v_max: float
     w_max: float
     a_max: float
     alpha_max: float
+    command_timeout: float = math.inf
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,6 +102,7 @@ class RobotModel:
         sdf: SDFormat text of one model, base frame on the drive axis' vertical.
         base: name of the base link; its origin is ``base_height`` above the floor.
         footprint_radius: radius of the physical disc, m.
+        height: of the whole robot, m.
         force_height: height above the floor at which people push, m.
     """
 
@@ -106,6 +112,7 @@ class RobotModel:
     drive: DifferentialDrive
     limits: RobotLimits
     footprint_radius: float
+    height: float
     force_height: float
     mass: float
 

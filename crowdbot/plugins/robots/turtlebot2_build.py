@@ -40,8 +40,10 @@ def build(spec: Turtlebot2Spec) -> RobotModel:
             w_max=spec.max_yaw_rate,
             a_max=spec.max_acceleration,
             alpha_max=spec.max_yaw_acceleration,
+            command_timeout=spec.command_timeout,
         ),
         footprint_radius=BODY_RADIUS,
+        height=BODY_HEIGHT,
         force_height=COM_HEIGHT,
         mass=spec.mass,
     )
