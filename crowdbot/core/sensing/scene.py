@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core.interfaces import RobotState
+from crowdbot.core.sensing.bodies import DISC_COLUMNS, PARTS, place_people
+from crowdbot.core.sensing.columns import Grid, cast_columns
 from crowdbot.core.sensing.raycast import cast_rays
 
 Array = NDArray[np.float64]
@@ -19,10 +21,10 @@ def _constant(values: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 
 class Scene:
-    """Walls, people as upright cylinders on the floor, and the robot; world frame, SI.
+    """Walls, pillars, walking people, and the robot; world frame, SI.
 
     Built once. `update` keeps views, no copies: whoever owns the arrays may go on changing them
-    in place, and the scene follows. The robot's own body is never hit.
+    in place until the first reading. The robot's own body is never hit.
 
     Attributes:
         walls: (S, 4) segments x0, y0, x1, y1, m.
@@ -39,6 +41,8 @@ class Scene:
         wall_heights: ArrayLike,
         people_radius: ArrayLike,
         people_height: ArrayLike,
+        pillars: ArrayLike = (),
+        pillar_heights: ArrayLike = (0.0, 2.5),
     ) -> None:
         self.walls = _constant(np.reshape(walls, (-1, 4)), (np.size(walls) // 4, 4))
         self.wall_heights = _constant(wall_heights, (len(self.walls), 2))
@@ -49,9 +53,28 @@ class Scene:
         self.people: Array = _constant(0.0, (count, 4))
         self.present: NDArray[np.bool_] = np.zeros(count, dtype=np.bool_)
         self.present.setflags(write=False)
+        self._direction, self._walked = _constant((1.0, 0.0), (count, 2)), _constant(0.0, (count,))
+        self._discs, self._owner = self._lay_out(pillars, pillar_heights)
+        self._placed = False
+
+    def _lay_out(self, pillars: ArrayLike, heights: ArrayLike) -> tuple[Array, NDArray[np.int64]]:
+        """Cylinders of everybody, placed later, and of the pillars; whose they are."""
+        round_ones = np.reshape(np.asarray(pillars, np.float64), (-1, 3))
+        people = PARTS * len(self.people_radius)
+        discs = np.zeros((people + len(round_ones), DISC_COLUMNS))
+        discs[people:, :3] = round_ones
+        discs[people:, 3:] = np.broadcast_to(heights, (len(round_ones), 2))
+        owner = np.arange(people) // PARTS
+        pillar = -(2 + len(self.walls) + np.arange(len(round_ones)))
+        return discs, np.concatenate([owner, pillar]).astype(np.int64)
 
     def update(
-        self, robot_state: RobotState | None, people_xyv: Array, present: NDArray[np.bool_]
+        self,
+        robot_state: RobotState | None,
+        people_xyv: Array,
+        present: NDArray[np.bool_],
+        direction: Array | None = None,
+        walked: Array | None = None,
     ) -> None:
         """Show another instant.
 
@@ -59,6 +82,8 @@ class Scene:
             robot_state: where the robot is and how it moves.
             people_xyv: (M, 4) float64 x, y (m), vx, vy (m/s); kept as a view.
             present: (M,) bool, who is in the world; kept as a view.
+            direction: (M, 2) unit vectors of the way people face; as before if left out.
+            walked: (M,) way walked so far, m, the phase of their legs; as before if left out.
 
         Raises:
             ValueError: a shape or a type does not fit.
@@ -73,14 +98,27 @@ class Scene:
         self.people.setflags(write=False)
         self.present = present.view()
         self.present.setflags(write=False)
+        self._direction = self._direction if direction is None else direction
+        self._walked = self._walked if walked is None else walked
+        self._placed = False
+
+    def _bodies(self) -> tuple[Array, NDArray[np.int64]]:
+        """Cylinders (D, 5) and whose they are; people are placed when somebody looks."""
+        if not self._placed:
+            place_people(
+                self.people, self.present, self._direction, self._walked,
+                self.people_radius, self.people_height, self._discs,
+            )  # fmt: skip
+            self._placed = True
+        return self._discs, self._owner
 
     def cast(
         self, origins: Array, directions: Array, max_range: float
     ) -> tuple[Array, Array, NDArray[np.int64]]:
-        """Nearest hit of each ray on a wall or a person.
+        """Nearest hit of each ray on a wall, a pillar or a person.
 
-        Fast for consecutive rays with equal origins. An origin inside a person's cylinder, or on
-        its surface, hits that person at distance 0 with incidence 0.
+        Fast for consecutive rays with equal origins. An origin inside a body, or on its surface,
+        hits it at distance 0 with incidence 0.
 
         Args:
             origins: (R, 3) world frame, m.
@@ -89,16 +127,44 @@ class Scene:
 
         Returns:
             distance (R,) m, inf without a hit; incidence (R,) angle to the surface normal, rad, 0
-            without a hit; body (R,) int64, a person's index, -(2 + index) of a wall, -1 for none.
+            without a hit; body (R,) int64, a person's index, -(2 + index) of a wall, and on from
+            there of a pillar, -1 for none.
         """
+        discs, owner = self._bodies()
         return cast_rays(
-            origins,
-            directions,
-            max_range,
-            self.walls,
-            self.wall_heights,
-            self.people,
-            self.present,
-            self.people_radius,
-            self.people_height,
+            origins, directions, max_range, self.walls, self.wall_heights, discs, owner
         )
+
+    def cast_grid(
+        self,
+        grid: Grid,
+        at: tuple[float, float, float],
+        yaw: float,
+        max_range: float,
+        *,
+        floor: bool = False,
+        details: bool = True,
+    ) -> tuple[Array, Array, NDArray[np.int64]]:
+        """Nearest hit of each ray of a grid from one point; much faster than ray by ray.
+
+        Args:
+            at: the point, world frame, m.
+            yaw: direction of the grid's azimuth 0, world frame, rad.
+            max_range: m; hits beyond it do not count.
+            floor: whether the floor is hit; its body is -1.
+            details: whether incidence and body are wanted; they are empty if not.
+
+        Returns:
+            distance, incidence, body as in `cast`, each (R, C).
+        """
+        distance = np.empty(grid.shape)
+        incidence = np.empty(grid.shape if details else (0, 0))
+        body = np.empty(incidence.shape, dtype=np.int64)
+        if distance.size:
+            discs, owner = self._bodies()
+            cast_columns(
+                *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, max_range,
+                floor, self.walls, self.wall_heights, discs, owner, grid.work,
+                distance, incidence, body,
+            )  # fmt: skip
+        return distance, incidence, body

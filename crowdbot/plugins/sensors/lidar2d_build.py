@@ -14,6 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Pose, SensorInfo
+from crowdbot.core.sensing.columns import Grid
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 
@@ -43,7 +44,7 @@ class Lidar2d:
             range_min=spec.range_min,
             range_max=spec.range_max,
         )
-        self._cos, self._sin = np.cos(angles), np.sin(angles)
+        self._grid = Grid(angles, [0.0])
 
     def info(self) -> SensorInfo:
         """Constant description; ``angles`` are in the sensor frame."""
@@ -53,41 +54,20 @@ class Lidar2d:
         """Ranges (R,) in m, inf for no return."""
         del t
         spec = self._spec
-        distance, _, _ = scene.cast(*self._rays(scene, pose), spec.range_max)
+        at, yaw = self._place(scene, pose)
+        (distance,), _, _ = scene.cast_grid(self._grid, at, yaw, spec.range_max, details=False)
         # Drawn for every beam, so that one beam's noise does not depend on what the others hit.
         noise = spec.noise * rng.standard_normal(len(distance))
         _measure(distance, noise, spec.range_min, spec.range_max)
         return distance
 
-    def _rays(self, scene: Scene, pose: Pose) -> tuple[Array, Array]:
-        """Origins and directions (R, 3) in the world frame."""
+    def _place(self, scene: Scene, pose: Pose) -> tuple[tuple[float, float, float], float]:
+        """Position and heading in the world frame, m and rad."""
         mount = self._spec.mount
         c, s = math.cos(pose.yaw), math.sin(pose.yaw)
         base = BASE_HEIGHT if scene.robot is None else scene.robot.z
-        origins, directions = np.empty((len(self._cos), 3)), np.empty((len(self._cos), 3))
         x, y = pose.x + c * mount.x - s * mount.y, pose.y + s * mount.x + c * mount.y
-        c, s = math.cos(pose.yaw + mount.yaw), math.sin(pose.yaw + mount.yaw)
-        _aim(x, y, base + mount.z, c, s, self._cos, self._sin, origins, directions)
-        return origins, directions
-
-
-@njit(cache=True, error_model="numpy")
-def _aim(
-    x: float,
-    y: float,
-    z: float,
-    c: float,
-    s: float,
-    cos: Array,
-    sin: Array,
-    origins: Array,
-    directions: Array,
-) -> None:
-    """Level rays from one point, turned by the angle with cosine c and sine s."""
-    for k in range(len(cos)):
-        origins[k, 0], origins[k, 1], origins[k, 2] = x, y, z
-        directions[k, 0], directions[k, 1] = c * cos[k] - s * sin[k], s * cos[k] + c * sin[k]
-        directions[k, 2] = 0.0
+        return (x, y, base + mount.z), pose.yaw + mount.yaw
 
 
 @njit(cache=True, error_model="numpy")
