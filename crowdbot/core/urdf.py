@@ -14,10 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import RobotModel, SensorInfo
+from crowdbot.core.optical import OPTICAL_RPY, optical
 from crowdbot.errors import InputError
 
 Array = NDArray[np.float64]
 FOOTPRINT = "base_footprint"
+LEVEL = (0.0, 0.0, 0.0)
 _SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
 
 
@@ -34,12 +36,17 @@ def to_urdf(robot: RobotModel, sensors: Mapping[str, SensorInfo], name: str) -> 
     source = Xml.fromstring(robot.sdf)
     document = source if source.tag == "robot" else _from_sdf(source)
     document.set("name", name)
-    _frame(document, FOOTPRINT, robot.base, "base_footprint_joint", (0, 0, robot.base_height), 0.0)
+    _frame(
+        document, FOOTPRINT, robot.base, "base_footprint_joint", (0, 0, robot.base_height), LEVEL
+    )
     for sensor, info in sensors.items():
         if info.category == "odometry":
             continue
         x, y, z, yaw = info.mount
-        _frame(document, "base_link", sensor, f"{sensor}_joint", (x, y, z), yaw)
+        _frame(document, "base_link", sensor, f"{sensor}_joint", (x, y, z), (0.0, 0.0, yaw))
+        if info.camera is not None:
+            eye = optical(sensor)
+            _frame(document, sensor, eye, f"{eye}_joint", (0.0, 0.0, 0.0), OPTICAL_RPY)
     Xml.indent(document)
     return '<?xml version="1.0"?>\n' + Xml.tostring(document, encoding="unicode") + "\n"
 
@@ -50,7 +57,7 @@ def _frame(
     child: str,
     joint: str,
     at: tuple[float, float, float],
-    yaw: float,
+    rpy: tuple[float, float, float],
 ) -> None:
     """A fixed joint; links that are not there yet are made."""
     links = {link.get("name") for link in document.iter("link")}
@@ -60,7 +67,7 @@ def _frame(
     fixed = Xml.SubElement(document, "joint", name=joint, type="fixed")
     Xml.SubElement(fixed, "parent", link=parent)
     Xml.SubElement(fixed, "child", link=child)
-    _origin(fixed, [*at, 0.0, 0.0, yaw])
+    _origin(fixed, [*at, *rpy])
 
 
 def _origin(parent: Xml.Element, pose: list[float]) -> None:

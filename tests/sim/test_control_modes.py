@@ -107,7 +107,8 @@ def test_a_force_is_no_more_than_the_wheels_could_give() -> None:
     quick = "robots.robot.model.max_acceleration=100 m/s^2"
     track = rig(alone(MIDDLE, _mode("force"), quick), constant(0.5)).track(0.5, TICK)
     for (_, before), (_, after) in itertools.pairwise(track):
-        assert (after.vx - before.vx) / TICK <= 2.0 / 0.0352 / 6.0 * 1.02
+        # The body pitches by 0.03 degrees: base_link, near the floor, swings ahead of its centre.
+        assert (after.vx - before.vx) / TICK <= 2.0 / 0.0352 / 6.0 * 1.08
     reached = next(t for t, r in track if r.vx > 0.495)
     assert reached == pytest.approx(0.5 * 6.45 * 0.0352 / 2.0 + TICK, abs=2 * TICK)
 

@@ -68,6 +68,7 @@ class CrowdEngine:
         to_goal = rows[:, s.GOAL_X : s.GOAL_Y + 1] - rows[:, s.X : s.Y + 1]
         distance = np.maximum(np.hypot(to_goal[:, 0], to_goal[:, 1]), 1e-9)
         rows[:, s.VX : s.VY + 1] = to_goal * (a.preferred_speed / distance)[:, np.newaxis]
+        rows[:, s.DIR_X : s.DIR_Y + 1] = to_goal / distance[:, np.newaxis]
         return flat
 
     def advance(self, flat: Array, robots: Array = NOBODY) -> None:

@@ -18,13 +18,15 @@ HEADER_SIZE = 9
 # Agent columns: position, velocity, willed acceleration, push by people and walls (m/s^2), goal;
 # trip number, 1 while waiting outside, attempts to re-enter, start of the trip, last arrival (s);
 # contact with the robot: 1 while touching, start, end (s), impulse (N s), peak force (N),
-# relative speed before (m/s), finished contacts.
+# relative speed before (m/s), finished contacts; way walked (m) and the unit vector of the way
+# faced, which sensors show.
 (
     X, Y, VX, VY, AX, AY, PUSH_X, PUSH_Y, GOAL_X, GOAL_Y,
     TRIP, WAITING, ATTEMPT, TRIP_START, ARRIVED,
     TOUCHING, TOUCH_START, TOUCH_END, TOUCH_IMPULSE, TOUCH_PEAK, TOUCH_SPEED, TOUCHES,
-) = range(22)  # fmt: skip
-AGENT_COLUMNS = 22
+    WALKED, DIR_X, DIR_Y,
+) = range(25)  # fmt: skip
+AGENT_COLUMNS = 25
 
 
 def size(agents: int) -> int:

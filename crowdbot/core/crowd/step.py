@@ -13,6 +13,8 @@ from crowdbot.core.crowd.portals import entry_fraction, leave, try_to_enter
 from crowdbot.core.crowd.state import (
     AX,
     AY,
+    DIR_X,
+    DIR_Y,
     HEADER_SIZE,
     PUSH_X,
     PUSH_Y,
@@ -21,10 +23,14 @@ from crowdbot.core.crowd.state import (
     VX,
     VY,
     WAITING,
+    WALKED,
     Array,
     X,
     Y,
 )
+
+#: Slower people do not turn where they are pushed, m/s.
+_TURNS_ABOVE = 0.1
 
 
 @njit(cache=True, error_model="numpy")
@@ -92,3 +98,7 @@ def _move(agents: Array, i: int, fastest: float, ax: float, ay: float, dt: float
     agents[i, VX], agents[i, VY] = vx + ax * dt, vy + ay * dt
     agents[i, X] += agents[i, VX] * dt
     agents[i, Y] += agents[i, VY] * dt
+    speed = math.hypot(agents[i, VX], agents[i, VY])
+    agents[i, WALKED] += speed * dt
+    if speed > _TURNS_ABOVE:
+        agents[i, DIR_X], agents[i, DIR_Y] = agents[i, VX] / speed, agents[i, VY] / speed

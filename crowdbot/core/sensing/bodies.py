@@ -30,6 +30,12 @@ _FULL_SWING_SPEED = 0.6  # m/s; slower people take shorter steps
 _USUAL_DISC = 0.33  # m
 
 
+def trunk_radius(height: Array, radius: Array) -> Array:
+    """Radius of trunks (M,) from heights and discs of people, m."""
+    radii: Array = _TRUNK_RADIUS * height * np.minimum(1.0, radius / _USUAL_DISC)
+    return radii
+
+
 @numba.njit(cache=True, error_model="numpy")
 def place_people(
     people: Array,

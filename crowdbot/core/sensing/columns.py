@@ -110,15 +110,12 @@ def _insert(
 
 @numba.njit(cache=True, error_model="numpy")
 def _add_disc(
-    ox: float, oy: float, yaw: float, disc: Array, who: int, reach: float,
+    px: float, py: float, r: float, bottom: float, top: float, yaw: float, who: int,
     azimuth: Array, cos: Array, sin: Array, work: Array, count: NDArray[np.int64],
     runs: NDArray[np.int64],
 ) -> None:  # fmt: skip
-    """Put an upright cylinder into every column that meets it within ``reach``."""
-    px, py, r = disc[X] - ox, disc[Y] - oy, disc[RADIUS]
+    """Put an upright cylinder, its axis at (px, py) from the rays' origin, into its columns."""
     away = math.hypot(px, py)
-    if not away - r <= reach:
-        return
     number = 1
     if away <= r:
         runs[0, 0], runs[0, 1] = 0, azimuth.shape[0]
@@ -136,9 +133,7 @@ def _add_disc(
                 continue
             near = max(0.0, along - depth)
             facing = 1.0 if near == 0.0 or r == 0.0 else min(1.0, depth / r)
-            _insert(
-                work, count, c, near, along + depth, facing, disc[BOTTOM], disc[TOP], who
-            )  # fmt: skip
+            _insert(work, count, c, near, along + depth, facing, bottom, top, who)
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -241,16 +236,20 @@ def cast_columns(
                 azimuth, ahead, aside, work, count, runs,
             )  # fmt: skip
     for i in range(discs.shape[0]):
+        px, py, r = discs[i, X] - x, discs[i, Y] - y, discs[i, RADIUS]
+        far = max_range + r  # most are: sorted out here, before anything is called
+        if not (abs(px) <= far and abs(py) <= far and math.hypot(px, py) - r <= max_range):
+            continue
         if discs[i, BOTTOM] <= highest and discs[i, TOP] >= lowest:
             _add_disc(
-                x, y, yaw, discs[i], owner[i], max_range,
+                px, py, r, discs[i, BOTTOM], discs[i, TOP], yaw, owner[i],
                 azimuth, ahead, aside, work, count, runs,
             )  # fmt: skip
     wants_incidence, wants_body = incidence.shape[0] > 0, body.shape[0] > 0
     for r in range(rows):
         for c in range(columns):
             slope = rise[r] * lean[c]
-            best, hit = math.inf, -1
+            best, hit = -z / slope if floor and slope < 0.0 else math.inf, -1
             for k in range(count[c]):
                 here = work[c, k]
                 if here[NEAR] >= best:
@@ -258,8 +257,6 @@ def cast_columns(
                 t = _meet(slope, z, here[NEAR], here[FAR], here[LOW], here[HIGH])
                 if t < best:
                     best, hit = t, k
-            if floor and slope < 0.0 and -z / slope < best:
-                best, hit = -z / slope, -1
             stretch = math.sqrt(1.0 + slope * slope)
             found = best * stretch <= max_range
             distance[r, c] = best * stretch if found else math.inf

@@ -30,6 +30,7 @@ class Scene:
         walls: (S, 4) segments x0, y0, x1, y1, m.
         wall_heights: (S, 2) bottom and top, m.
         people_radius, people_height: (M,) m.
+        pillars, pillar_heights: (P, 3) x, y, radius, and (P, 2) bottom and top, m.
         robot: the robot's state, None before the first update or in a scene without one.
         people: (M, 4) x, y (m), vx, vy (m/s), a read-only view.
         present: (M,) bool, who is in the world, a read-only view.
@@ -54,18 +55,18 @@ class Scene:
         self.present: NDArray[np.bool_] = np.zeros(count, dtype=np.bool_)
         self.present.setflags(write=False)
         self._direction, self._walked = _constant((1.0, 0.0), (count, 2)), _constant(0.0, (count,))
-        self._discs, self._owner = self._lay_out(pillars, pillar_heights)
+        self.pillars = _constant(np.reshape(pillars, (-1, 3)), (np.size(pillars) // 3, 3))
+        self.pillar_heights = _constant(pillar_heights, (len(self.pillars), 2))
+        self._discs, self._owner = self._lay_out()
         self._placed = False
 
-    def _lay_out(self, pillars: ArrayLike, heights: ArrayLike) -> tuple[Array, NDArray[np.int64]]:
+    def _lay_out(self) -> tuple[Array, NDArray[np.int64]]:
         """Cylinders of everybody, placed later, and of the pillars; whose they are."""
-        round_ones = np.reshape(np.asarray(pillars, np.float64), (-1, 3))
         people = PARTS * len(self.people_radius)
-        discs = np.zeros((people + len(round_ones), DISC_COLUMNS))
-        discs[people:, :3] = round_ones
-        discs[people:, 3:] = np.broadcast_to(heights, (len(round_ones), 2))
+        discs = np.zeros((people + len(self.pillars), DISC_COLUMNS))
+        discs[people:, :3], discs[people:, 3:] = self.pillars, self.pillar_heights
         owner = np.arange(people) // PARTS
-        pillar = -(2 + len(self.walls) + np.arange(len(round_ones)))
+        pillar = -(2 + len(self.walls) + np.arange(len(self.pillars)))
         return discs, np.concatenate([owner, pillar]).astype(np.int64)
 
     def update(
@@ -101,6 +102,16 @@ class Scene:
         self._direction = self._direction if direction is None else direction
         self._walked = self._walked if walked is None else walked
         self._placed = False
+
+    @property
+    def headings(self) -> Array:
+        """Way that people face (M,), world frame, rad."""
+        ways: Array = np.arctan2(self._direction[:, 1], self._direction[:, 0])
+        return ways
+
+    def move_robot(self, robot_state: RobotState | None) -> None:
+        """Show another instant to those who do not look at people, who stay as they were."""
+        self.robot = robot_state
 
     def _bodies(self) -> tuple[Array, NDArray[np.int64]]:
         """Cylinders (D, 5) and whose they are; people are placed when somebody looks."""

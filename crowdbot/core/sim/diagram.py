@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,7 @@ from pydrake.systems.framework import Diagram, DiagramBuilder
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as crowd_state
-from crowdbot.core.interfaces import EnvironmentParts, Pose, RobotModel, Task
+from crowdbot.core.interfaces import EnvironmentParts, Pose, RobotModel, SensorInfo, Task
 from crowdbot.core.planner_host import HostedCommand, PlannerHost
 from crowdbot.core.registry import Registry
 from crowdbot.core.run_log import RunLog
@@ -18,6 +18,7 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control import ControlledRobot, add_robot
 from crowdbot.core.sim.crowd_system import CrowdSystem
+from crowdbot.core.sim.images import Painter
 from crowdbot.core.sim.metric_logger import MetricLogger
 from crowdbot.core.sim.planner_system import PlannerSystem
 from crowdbot.core.sim.recorder import Recorder
@@ -92,15 +93,18 @@ def build_diagram(
         size = crowd_state.size(len(engine.agents))
 
     # Sensors, odometry among them.
+    scene = _scene(scenario, parts, engine)
+    built = {n: registry.build(x) for n, x in robot.sensors.items() if n in sensors}
     bank = builder.AddNamedSystem(
         "sensors",
         SensorBank(
-            {n: registry.build(x) for n, x in robot.sensors.items() if n in sensors},
-            _scene(scenario, parts, engine),
+            built,
+            scene,
             size,
             seed=run_seed,
             robot=robot_name,
             on_reading=log.writer.reading,
+            painters=_painters({n: x.info() for n, x in built.items()}, scene),
         ),
     )
     builder.Connect(robot_state, bank.GetInputPort(ports.ROBOT_STATE))
@@ -148,8 +152,21 @@ def build_diagram(
     )
 
 
+def _painters(sensors: Mapping[str, SensorInfo], scene: Scene) -> dict[str, Painter]:
+    """What draws the pictures of cameras with colour; VTK is loaded for these only."""
+    cameras = {n: i for n, i in sensors.items() if i.camera is not None and i.camera.colour}
+    if not cameras:
+        return {}
+    from crowdbot.core.sim.rendering import Renderer
+
+    return {n: Renderer(scene, i.camera, i.mount) for n, i in cameras.items() if i.camera}
+
+
 def _scene(scenario: Scenario, parts: EnvironmentParts, engine: CrowdEngine | None) -> Scene:
     count = 0 if engine is None else len(engine.agents)
     radius = np.zeros(0) if engine is None else engine.agents.radius
     height = scenario.crowd.body.height if scenario.crowd else 0.0
-    return Scene(parts.walls, parts.wall_heights, radius, np.full(count, height))
+    return Scene(
+        parts.walls, parts.wall_heights, radius, np.full(count, height),
+        parts.pillars, parts.pillar_heights,
+    )  # fmt: skip

@@ -43,6 +43,7 @@ class PlannerSystem(LeafSystem):
         self._dv, self._dw = limits.a_max * TICK, limits.alpha_max * TICK
         self._ticks = ticks(rate)
         self._timeout = math.ceil(limits.command_timeout * TICKS_PER_SECOND)
+        self._bank = bank
         self._slots = {n: s for n, s in bank.slots.items() if n in visible}
         self._odometry = next(
             (s for s in bank.slots.values() if s.info.category == "odometry"), None
@@ -89,7 +90,11 @@ class PlannerSystem(LeafSystem):
             twist=twist,
             goal=self._task.goal,
             goal_zone=self._task.goal_zone,
-            readings={n: s.reading(bank) for n, s in self._slots.items() if bank[s.stamp] >= 0.0},
+            readings={
+                n: self._bank.reading(n, bank)
+                for n, s in self._slots.items()
+                if bank[s.stamp] >= 0.0
+            },
             log=lambda name, value: self._on_signal(t, name, value),
         )
 

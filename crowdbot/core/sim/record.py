@@ -66,7 +66,8 @@ def record_robot(setup: RunSetup) -> Outcome:
     model: RobotModel = registry.build(robot.model)
     engine = build_crowd(scenario, realise(scenario), parts, registry)
     infos = {n: _framed(n, registry.build(x).info()) for n, x in robot.sensors.items()}
-    visible = select_sensors(setup.choice.needs, infos, setup.choice.name)
+    choice = setup.choice
+    visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
     sensors = set(infos) if setup.record == "all" else {*visible, *_odometry(infos)}
     task = robot_task(robot, parts)
     header = RecordingHeader(
