@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         CrowdPolicySpec,
         EnvironmentSpec,
         MetricSpec,
+        NoiseSpec,
         PlannerSpec,
         RobotSpec,
         SensorSpec,
@@ -46,6 +47,11 @@ def crowdbot_robots() -> Sequence[Component[RobotSpec]]:  # type: ignore[empty-b
 @hookspec
 def crowdbot_sensors() -> Sequence[Component[SensorSpec]]:  # type: ignore[empty-body]
     """Return the sensors this package provides."""
+
+
+@hookspec
+def crowdbot_noise_generators() -> Sequence[Component[NoiseSpec]]:  # type: ignore[empty-body]
+    """Return the noise generators of sensors this package provides."""
 
 
 @hookspec

@@ -45,7 +45,7 @@ error means is on the page [errors](errors.md). The fields of planners are on
 A quantity is a number in the unit of its column, or text with a unit of the same dimension, such
 as `80 cm/s`. World frame: x along the corridor, y left, z up, angles counter-clockwise.
 """
-_COMPONENTS = ("environment", "crowd policy", "cost function", "robot", "sensor")
+_COMPONENTS = ("environment", "crowd policy", "cost function", "robot", "sensor", "noise")
 _DRAWS = (LengthDraw, SpeedDraw, AccelerationDraw, MassDraw, DurationDraw)
 _SHARED = (Mount, Range, Rectangle, Area, SpeedDistribution, *_DRAWS)
 _NAMES = {float: "number", int: "integer", str: "text", bool: "true or false", Any: "anything"}

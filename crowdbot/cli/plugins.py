@@ -155,6 +155,8 @@ def _fields(model: Any, prefix: str = "") -> Iterator[list[str]]:
 
 
 def _type_name(annotation: Any) -> str:
+    if getattr(annotation, "__origin__", None) is dict:
+        return "map of names"
     text = getattr(annotation, "__name__", "") if not hasattr(annotation, "__args__") else ""
     words = {"int": "integer", "str": "text", "bool": "true/false"}
     return words.get(text, text) or str(annotation).replace("typing.", "").replace(

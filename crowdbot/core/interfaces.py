@@ -6,6 +6,7 @@ x along the corridor, y left, z up, yaw counter-clockwise (REP-103).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -77,13 +78,17 @@ class EnvironmentParts:
 # ---------------------------------------------------------------------- robot
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotLimits:
-    """A box of velocities and slew limits: m/s, rad/s, m/s^2, rad/s^2."""
+    """A box of velocities and slew limits: m/s, rad/s, m/s^2, rad/s^2.
+
+    A robot that gets no command for ``command_timeout`` seconds brakes to a stop.
+    """
 
     v_min: float
     v_max: float
     w_max: float
     a_max: float
     alpha_max: float
+    command_timeout: float = math.inf
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,6 +109,7 @@ class RobotModel:
         sdf: SDFormat text of one model, base frame on the drive axis' vertical.
         base: name of the base link; its origin is ``base_height`` above the floor.
         footprint_radius: radius of the physical disc, m.
+        height: of the whole robot, m.
         force_height: height above the floor at which people push, m.
     """
 
@@ -113,6 +119,7 @@ class RobotModel:
     drive: DifferentialDrive
     limits: RobotLimits
     footprint_radius: float
+    height: float
     force_height: float
     mass: float
 
@@ -134,6 +141,27 @@ class RobotState(NamedTuple):
 
 # --------------------------------------------------------------------- sensor
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Pinhole:
+    """A camera that looks along x of its frame; images are (height, width), top left first.
+
+    Attributes:
+        width, height: pixels.
+        focal: focal length, pixels; pixels are square and the axis goes through the centre.
+        colour: whether it takes colour images too.
+    """
+
+    width: int
+    height: int
+    focal: float
+    colour: bool = False
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """Column and row of the optical axis, counted from the centre of the first pixel."""
+        return 0.5 * (self.width - 1), 0.5 * (self.height - 1)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SensorInfo:
     """What a planner or a recorder may know about a sensor.
 
@@ -141,9 +169,17 @@ class SensorInfo:
         category: ``lidar``, ``odometry``, ``ultrasound``, …
         mount: x, y, z, yaw from base_link (m, rad).
         shape: shape of a reading's values.
-        angles: (R,) beam angles in the sensor frame, rad, or None.
+        angles: in the sensor frame, rad: (R,) of the beams of a lidar, (L, C, 2) azimuth and
+            elevation of each beam of a multi-layer lidar, (2,) edges of the zone of an ultrasound
+            or an infrared sensor; or None.
+        sees: whether ``read`` looks at the people of the scene; if not, they may be out of date.
         memory: number of float64 the sensor keeps between readings (0: none).
         random: whether ``read`` draws from ``rng``; if not, it must leave it alone.
+        camera: of a sensor whose readings are images. They are a pure function of what is seen
+            at their instant and are kept out of the simulation's state; such a sensor has no
+            memory.
+        privileged: whether readings tell what no sensor of a real robot could; only planners
+            that say that they are privileged may read them.
     """
 
     category: str
@@ -157,13 +193,20 @@ class SensorInfo:
     range_max: float = float("inf")
     memory: int = 0
     random: bool = True
+    sees: bool = True
+    camera: Pinhole | None = None
+    privileged: bool = False
 
 
 class Reading(NamedTuple):
-    """A sensor's latest values and the simulated time at which they were taken (s)."""
+    """A sensor's latest values and the simulated time at which they were taken (s).
+
+    Images are float32. ``colour`` is (height, width, 3) uint8 of a camera that has it.
+    """
 
     stamp: float
     values: Array
+    colour: NDArray[np.uint8] | None = None
 
 
 class Sensor(Protocol):
@@ -189,6 +232,24 @@ class SensorWithMemory(Protocol):
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator, memory: Array
     ) -> Array:
         """As `Sensor.read`; ``memory`` starts as zeros and is changed in place."""
+        ...
+
+
+class NoiseGenerator(Protocol):
+    """One error of a proximity sensor.
+
+    Attributes:
+        random: whether ``errors`` draws from ``rng``; if not, it must leave it alone.
+    """
+
+    random: bool
+
+    def errors(self, distance: Array, rng: np.random.Generator) -> Array:
+        """What to add to distances (N,), m, finite; inf is a beam that hit nothing.
+
+        As many numbers are drawn whatever the distances are. Errors of generators that come
+        before are in ``distance`` already.
+        """
         ...
 
 

@@ -24,7 +24,6 @@ from crowdbot.core.interfaces import (
     NoValidCommand,
     Observation,
     Planner,
-    Reading,
     RobotLimits,
     SensorInfo,
     Task,
@@ -171,7 +170,7 @@ def _read_only(array: Array) -> Array:
 
 def _protected(obs: Observation) -> Observation:
     """Copies, since the simulation may go on changing the arrays that a planner keeps."""
-    readings = {n: Reading(r.stamp, _read_only(r.values)) for n, r in obs.readings.items()}
+    readings = {n: r._replace(values=_read_only(r.values)) for n, r in obs.readings.items()}
     return Observation(
         t=obs.t,
         pose=obs.pose,

@@ -45,7 +45,9 @@ class PlannerChoice:
         build: makes a new one; raises `PlannerError` or `PluginError`.
         pinned: whether it comes from an installed distribution.
         needs: sensors it reads, by name or category; None asks for all.
-        label: ``name``, with ``+`` and four hex digits when parameters are not the defaults.
+        label: ``name``, with ``+`` and four hex digits when parameters are not the defaults, and
+            with ``+privileged`` where that holds: scores carry it.
+        privileged: whether it may read what no sensor of a real robot could tell.
     """
 
     name: str
@@ -54,6 +56,7 @@ class PlannerChoice:
     pinned: bool
     needs: tuple[str, ...] | None
     label: str
+    privileged: bool = False
 
 
 def resolve_planner(text: str, registry: Registry, settings: Sequence[str] = ()) -> PlannerChoice:
@@ -85,26 +88,38 @@ def resolve_planner(text: str, registry: Registry, settings: Sequence[str] = ())
 
 
 def select_sensors(
-    needs: Sequence[str] | None, sensors: Mapping[str, SensorInfo], planner: str
+    needs: Sequence[str] | None,
+    sensors: Mapping[str, SensorInfo],
+    planner: str,
+    *,
+    privileged: bool = False,
 ) -> tuple[str, ...]:
     """Names of the sensors that a planner gets, in the robot's order.
 
     Args:
-        needs: names or categories; None is all.
+        needs: names or categories; None is all that it may have.
         sensors: what the robot has.
         planner: for the message.
+        privileged: whether it may have privileged sensors.
 
     Raises:
-        InputError: the robot has nothing that answers to a need.
+        InputError: the robot has nothing that answers to a need, or only something privileged.
     """
     if needs is None:
-        return tuple(sensors)
+        return tuple(n for n, s in sensors.items() if privileged or not s.privileged)
     offered = {*sensors, *(s.category for s in sensors.values())}
     for need in needs:
         if need not in offered:
             has = ", ".join(sorted(offered)) or "none"
             raise InputError(f"planner '{planner}' needs '{need}'; the robot's sensors: {has}")
-    return tuple(n for n, s in sensors.items() if n in needs or s.category in needs)
+    found = tuple(n for n, s in sensors.items() if n in needs or s.category in needs)
+    for name in found:
+        if sensors[name].privileged and not privileged:
+            raise InputError(
+                f"planner '{planner}' needs '{name}', which is privileged: "
+                "a planner that reads it must say 'privileged = True'"
+            )
+    return found
 
 
 # ------------------------------------------------------------------ registered kinds
@@ -122,7 +137,10 @@ def _from_kind(
         build=lambda: component.load_build()(spec),
         pinned=registry.owner(component).pinned,
         needs=_needs(component.spec),
-        label=kind if _is_default(component, spec) else f"{kind}+{_digest(spec)}",
+        label=_label(
+            kind if _is_default(component, spec) else f"{kind}+{_digest(spec)}", component.spec
+        ),
+        privileged=_is_privileged(component.spec),
     )
 
 
@@ -165,6 +183,14 @@ def _digest(value: Any) -> str:
 def _needs(holder: type) -> tuple[str, ...] | None:
     needs = getattr(holder, "needs", None)
     return None if needs is None else tuple(str(n) for n in needs)
+
+
+def _is_privileged(holder: type) -> bool:
+    return getattr(holder, "privileged", False) is True
+
+
+def _label(label: str, holder: type) -> str:
+    return f"{label}+privileged" if _is_privileged(holder) else label
 
 
 # ------------------------------------------------------------------------ documents
@@ -228,7 +254,8 @@ def _from_class(path: Path, name: str, parameters: Mapping[str, Any]) -> Planner
         build=build,
         pinned=False,
         needs=_needs(kind),
-        label=f"{name}+{_digest(dict(parameters))}" if parameters else name,
+        label=_label(f"{name}+{_digest(dict(parameters))}" if parameters else name, kind),
+        privileged=_is_privileged(kind),
     )
 
 

@@ -25,6 +25,7 @@ from pydantic import BaseModel, Field, SerializeAsAny, create_model
 from crowdbot import hookspecs
 from crowdbot.core.component import Component
 from crowdbot.dsl.base import CATEGORIES, ComponentSpec
+from crowdbot.dsl.proximity import ProximitySpec, noise_map
 from crowdbot.dsl.scenario import Crowd, NamedPolicy, Robot, Scenario
 from crowdbot.errors import PluginError, UnknownNameError
 
@@ -33,6 +34,7 @@ _HOOKS = {
     "crowdbot_environments": "environment",
     "crowdbot_robots": "robot",
     "crowdbot_sensors": "sensor",
+    "crowdbot_noise_generators": "noise",
     "crowdbot_planners": "planner",
     "crowdbot_crowd_policies": "crowd policy",
     "crowdbot_cost_functions": "cost function",
@@ -79,7 +81,12 @@ class Registry:
         return next(p for p in self.plugins if any(c is component for c in p.components))
 
     def build(self, spec: ComponentSpec, *args: Any) -> Any:
-        """Turn a spec into deeds through its component's build function."""
+        """Turn a spec into deeds through its component's build function.
+
+        That of a proximity sensor also gets its noise generators, built, in the order of names.
+        """
+        if isinstance(spec, ProximitySpec):
+            args = ([self.build(spec.noise[name]) for name in sorted(spec.noise)], *args)
         return self.find(spec.category, spec.kind).load_build()(spec, *args)
 
     @cached_property
@@ -127,7 +134,17 @@ class Registry:
                 used += [named.policy, *named.costs.values()]
         for entry in scenario.robots.values():
             used += [entry.model, *entry.sensors.values()]
+            for sensor in entry.sensors.values():
+                used += sensor.noise.values() if isinstance(sensor, ProximitySpec) else ()
         return {s.kind: self.find(s.category, s.kind).spec_version for s in used}
+
+    def spec_model(self, category: str, kind: str) -> type[ComponentSpec]:
+        """The spec of one kind, narrowed to the installed components where it holds others."""
+        spec: type[ComponentSpec] = self.find(category, kind).spec
+        if not issubclass(spec, ProximitySpec):
+            return spec
+        noise: Any = noise_map(self._union("noise")), spec.model_fields["noise"]
+        return create_model(spec.__name__, __base__=spec, noise=noise)
 
     @staticmethod
     def _named(base: type[BaseModel], field: str, member: Any) -> Any:
@@ -136,7 +153,7 @@ class Registry:
         return dict[str, member], Field(default={}, description=description)
 
     def _union(self, category: str) -> Any:
-        specs: Any = tuple(c.spec for c in self._by_category[category].values())
+        specs: Any = tuple(self.spec_model(category, kind) for kind in self._by_category[category])
         if not specs:
             broken = [f"{p.name} ({p.error})" for p in self.plugins if p.error]
             why = f"; plugins that failed: {', '.join(broken)}" if broken else ""

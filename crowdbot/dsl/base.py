@@ -21,7 +21,7 @@ class ComponentSpec(Spec):
     """Spec of something pluggable, told apart by ``kind``.
 
     The abstract specs below only say which category a component belongs to. They refuse
-    validation: the union of concrete specs is assembled from the registry.
+    documents: the union of concrete specs is assembled from the registry.
     """
 
     category: ClassVar[str] = "component"
@@ -30,7 +30,7 @@ class ComponentSpec(Spec):
     @model_validator(mode="before")
     @classmethod
     def _refuse_abstract(cls, value: Any) -> Any:
-        if cls.__name__ in ABSTRACT_SPECS:
+        if cls.__name__ in ABSTRACT_SPECS and not isinstance(value, cls):
             raise ValueError(f"{cls.__name__} is abstract; build the model from a registry")
         return value
 
@@ -113,6 +113,12 @@ class SensorSpec(ComponentSpec):
     category: ClassVar[str] = "sensor"
 
 
+class NoiseSpec(ComponentSpec):
+    """Abstract: one error in the readings of a sensor."""
+
+    category: ClassVar[str] = "noise"
+
+
 class PlannerSpec(ComponentSpec):
     """Abstract: the thing under test. Never part of a scenario."""
 
@@ -143,9 +149,10 @@ CATEGORIES: tuple[type[ComponentSpec], ...] = (
     EnvironmentSpec,
     RobotSpec,
     SensorSpec,
+    NoiseSpec,
     PlannerSpec,
     CrowdPolicySpec,
     CostFunctionSpec,
     MetricSpec,
 )
-ABSTRACT_SPECS = frozenset({"ComponentSpec", *(c.__name__ for c in CATEGORIES)})
+ABSTRACT_SPECS = frozenset({"ComponentSpec", "ProximitySpec", *(c.__name__ for c in CATEGORIES)})

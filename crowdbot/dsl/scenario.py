@@ -180,7 +180,7 @@ class Robot(Spec):
     """One robot with its sensors and its task."""
 
     model: SerializeAsAny[RobotSpec]
-    control: Literal["differential_drive"] = Field(
+    control: Literal["kinematic", "force", "differential_drive"] = Field(
         default="differential_drive", description="How commands become motion."
     )
     sensors: dict[str, SerializeAsAny[SensorSpec]] = Field(default={}, description="Named sensors.")

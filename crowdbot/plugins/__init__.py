@@ -15,12 +15,13 @@ from crowdbot.dsl.base import (
     CrowdPolicySpec,
     EnvironmentSpec,
     MetricSpec,
+    NoiseSpec,
     PlannerSpec,
     RobotSpec,
     SensorSpec,
 )
 from crowdbot.hookspecs import API_VERSION, hookimpl
-from crowdbot.plugins import crowd, environments, metrics, planners, robots, sensors
+from crowdbot.plugins import crowd, environments, metrics, noise, planners, robots, sensors
 
 CROWDBOT_API = API_VERSION
 
@@ -41,6 +42,12 @@ def crowdbot_robots() -> Sequence[Component[RobotSpec]]:
 def crowdbot_sensors() -> Sequence[Component[SensorSpec]]:
     """Sensors."""
     return sensors.COMPONENTS
+
+
+@hookimpl
+def crowdbot_noise_generators() -> Sequence[Component[NoiseSpec]]:
+    """Errors of sensors."""
+    return noise.COMPONENTS
 
 
 @hookimpl

@@ -67,4 +67,4 @@ def test_show_json(capsys: Captured) -> None:
 
 def test_show_unknown(capsys: Captured) -> None:
     assert main(["plugins", "show", "lidar2"]) == 1
-    assert "did you mean 'lidar2d'?" in capsys.readouterr().err
+    assert "did you mean 'lidar2d'" in capsys.readouterr().err

@@ -1,5 +1,7 @@
 """Planners by kind, by YAML file and by Python class."""
 
+import re
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar, Literal
 
@@ -28,6 +30,11 @@ class HungrySpec(PlannerSpec):
     must: int = Field(description="No default.")
 
 
+class SeerSpec(PlannerSpec):
+    privileged: ClassVar[bool] = True
+    kind: Literal["seer"] = "seer"
+
+
 class Built:
     """What the build function below makes; a real planner would move."""
 
@@ -45,10 +52,11 @@ BUILD = f"{__name__}:build"
 @pytest.fixture
 def registry() -> Registry:
     tiny = Component(spec=TinySpec, build=BUILD, summary="")
+    seer = Component(spec=SeerSpec, build=BUILD, summary="")
     hungry = Component(spec=HungrySpec, build=BUILD, summary="")
     return assemble(
         [
-            Plugin(name="builtin", distribution="crowdbot", components=(tiny,)),
+            Plugin(name="builtin", distribution="crowdbot", components=(tiny, seer)),
             Plugin(name="acme", distribution="acme/", pinned=False, components=(hungry,)),
         ]
     )
@@ -296,3 +304,38 @@ def test_a_need_that_the_robot_cannot_meet() -> None:
         select_sensors(("lidar", "sonar"), SENSORS, "p")
     with pytest.raises(InputError, match=r"sensors: none"):
         select_sensors(("lidar",), {}, "p")
+
+
+TRUTH = {**SENSORS, "tracker": replace(SENSORS["front"], category="people", privileged=True)}
+
+
+def test_privileged_sensors_are_for_privileged_planners() -> None:
+    assert select_sensors(None, TRUTH, "p") == ("front", "odometry", "rear")
+    assert select_sensors(None, TRUTH, "p", privileged=True) == tuple(TRUTH)
+    for need in ("people", "tracker"):
+        assert select_sensors((need,), TRUTH, "p", privileged=True) == ("tracker",)
+        with pytest.raises(InputError, match=r"needs 'tracker', which is privileged"):
+            select_sensors((need,), TRUTH, "p")
+
+
+def test_the_label_says_that_a_planner_is_privileged(registry: Registry, tmp_path: Path) -> None:
+    seer = resolve_planner("seer", registry)
+    assert (seer.privileged, seer.label) == (True, "seer+privileged")
+    file = tmp_path / "oracle.py"
+    file.write_text(
+        "class Oracle:\n"
+        "    privileged = True\n"
+        "    def __init__(self, gain=1.0): pass\n"
+        "    def reset(self, task, limits, sensors, seed): pass\n"
+        "    def step(self, obs): return 0.0, 0.0\n"
+        "class Honest(Oracle):\n"
+        "    privileged = False\n",
+        encoding="utf-8",
+    )
+    oracle = resolve_planner(f"{file}:Oracle", registry)
+    assert oracle.privileged
+    assert oracle.label == "Oracle+privileged"
+    other = resolve_planner(f"{file}:Oracle", registry, ["gain=2.0"])
+    assert re.fullmatch(r"Oracle\+[0-9a-f]{4}\+privileged", other.label)
+    honest = resolve_planner(f"{file}:Honest", registry)
+    assert (honest.privileged, honest.label) == (False, "Honest")

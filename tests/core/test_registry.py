@@ -61,7 +61,8 @@ def test_everything_built_in_is_there() -> None:
     kinds = {c: set(registry.components(c)) for c in registry._by_category}
     assert kinds["environment"] >= {"corridor"}
     assert kinds["robot"] >= {"turtlebot2"}
-    assert kinds["sensor"] >= {"lidar2d", "wheel_odometry"}
+    assert kinds["sensor"] >= {"lidar2d", "lidar3d", "ultrasound", "infrared", "wheel_odometry"}
+    assert kinds["noise"] >= {"gaussian", "offset", "peak"}
     assert kinds["planner"] >= {"goal_seek", "stop_and_go", "dwa"}
     assert kinds["crowd policy"] >= {"velocity_space"}
     assert kinds["cost function"] >= {"ttca_dca", "rvo"}

@@ -131,3 +131,44 @@ def test_needs_a_robot() -> None:
     sensor, scene = build(SPEC), Scene(np.empty((0, 4)), [0.0, 1.0], [], [])
     with pytest.raises(SimulationError, match="robot"):
         sensor.read(scene, Pose(0, 0, 0), 0.0, np.random.default_rng(0), np.zeros(9))
+
+
+def test_noisy_wheels_drift_as_a_random_walk() -> None:
+    """Angles add up s dt n at each reading; the difference of the wheels turns the robot."""
+    spec = WheelOdometrySpec(noise=0.5, ticks_per_turn=1e6)
+    still, steps = np.zeros(4001), 4000
+    rows = drive(still, still, spec, Pose(0, 0, 0))
+    assert build(spec).info().random
+    turn = np.diff(np.unwrap(rows[:, 2]))
+    expected = 0.5 * DT * SPEC.wheel_radius / SPEC.track * math.sqrt(2.0)
+    assert turn.std() == pytest.approx(expected, rel=0.05)
+    assert abs(turn.mean()) < 4 * expected / math.sqrt(steps)
+    assert rows[1:, 3].std() == pytest.approx(0.5 * SPEC.wheel_radius / math.sqrt(2.0), rel=0.05)
+
+
+def turned(spec: WheelOdometrySpec, yaws: Array, wheel: float = 0.0) -> Array:
+    sensor, scene = build(spec), Scene(np.empty((0, 4)), [0.0, 1.0], [], [])
+    memory, rows = np.zeros(sensor.info().memory), []
+    for k, yaw in enumerate(yaws.tolist()):
+        scene.move_robot(RobotState(0, 0, yaw, 0, 0, 0, 0, 0, k * wheel, k * wheel))
+        rng = sensor_rng(0, "robot", "odometry", k)
+        rows.append(sensor.read(scene, Pose(0, 0, yaw), k * DT, rng, memory))
+    return np.array(rows)
+
+
+def test_a_gyro_knows_the_heading_when_wheels_slip() -> None:
+    spec = WheelOdometrySpec(heading="gyro", gyro_noise=0.0)
+    assert not build(spec).info().random
+    way = np.linspace(3.0, 4.0, 50)
+    rows = turned(spec, np.array([math.remainder(y, 2 * math.pi) for y in way]))
+    assert np.unwrap(rows[:, 2]) == pytest.approx(way)
+    assert rows[1:, 4] == pytest.approx(np.diff(way) / DT)
+    assert rows[:, :2] == pytest.approx(np.zeros((50, 2)))
+    wheels_only = turned(SPEC, way)
+    assert wheels_only[:, 2] == pytest.approx(np.full(50, 3.0))
+
+
+def test_a_noisy_gyro_walks_with_the_root_of_time() -> None:
+    spec = WheelOdometrySpec(heading="gyro", gyro_noise=0.02)
+    yaw = np.unwrap(turned(spec, np.zeros(4001))[:, 2])
+    assert np.diff(yaw).std() == pytest.approx(0.02 * math.sqrt(DT), rel=0.05)

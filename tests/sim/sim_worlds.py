@@ -24,7 +24,7 @@ from crowdbot.core.registry import Registry, discover
 from crowdbot.core.run_log import RunLog
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.diagram import Blocks, build_diagram, robot_task
-from crowdbot.core.sim.plant import place_robot
+from crowdbot.core.sim.plant import RobotPlant
 from crowdbot.dsl.scenario import Scenario
 
 Array = NDArray[np.float64]
@@ -117,10 +117,17 @@ class Rig:
         self.simulator.AdvanceTo(until)
         return self
 
+    @property
+    def plant(self) -> RobotPlant:
+        """The multibody plant of a robot that has one."""
+        rig = self.blocks.robot.rig
+        assert rig is not None
+        return rig
+
     def robot(self) -> RobotState:
         """The robot's state now."""
-        mine = self.blocks.robot_state.GetMyContextFromRoot(self.context)
-        port = self.blocks.robot_state.GetOutputPort(ports.ROBOT_STATE)
+        mine = self.blocks.robot.state.GetMyContextFromRoot(self.context)
+        port = self.blocks.robot.state.GetOutputPort(ports.ROBOT_STATE)
         return RobotState(*port.Eval(mine).tolist())
 
     def crowd(self) -> Array:
@@ -172,7 +179,7 @@ def rig(
     )  # fmt: skip
     simulator: Any = Simulator(blocks.diagram)
     context = simulator.get_mutable_context()
-    place_robot(blocks.rig, blocks.rig.plant.GetMyMutableContextFromRoot(context), task.start)
+    blocks.robot.place(context, task.start)
     if initialize:  # publishes t = 0
         simulator.Initialize()
     return Rig(blocks, simulator, memory, log)

@@ -14,8 +14,8 @@ START = "robots.robot.task.start=[{}, {}, {}]"
 def test_the_robot_moves() -> None:
     """A desired state that is not connected disarms the wheels without a word."""
     world = rig(alone(), constant(0.3))
-    plant = world.blocks.rig.plant
-    port = plant.get_desired_state_input_port(world.blocks.rig.model)
+    plant = world.plant.plant
+    port = plant.get_desired_state_input_port(world.plant.model)
     assert port.HasValue(plant.GetMyContextFromRoot(world.context))
     assert plant.get_applied_generalized_force_input_port().HasValue(
         plant.GetMyContextFromRoot(world.context)
@@ -113,7 +113,7 @@ def test_all_periods_are_dyadic(monkeypatch: pytest.MonkeyPatch) -> None:
             watched(name)
     world = rig(scenario(), constant(0.0), sensors=("odometry", "front_lidar", "rear_lidar"))
     assert len(declared) == 5  # crowd, sensors, planner, logger, recorder
-    declared.append((world.blocks.rig.plant.time_step(), 0.0))
+    declared.append((world.plant.plant.time_step(), 0.0))
     for period, offset in declared:
         mantissa, exponent = math.frexp(period)
         assert (mantissa, offset) == (0.5, 0.0)
@@ -122,9 +122,9 @@ def test_all_periods_are_dyadic(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_the_plants_weight_is_the_models() -> None:
     world = rig(alone(), constant(0.0))
-    plant = world.blocks.rig.plant
+    plant = world.plant.plant
     context = plant.GetMyContextFromRoot(world.context)
-    assert plant.CalcTotalMass(context, [world.blocks.rig.model]) == pytest.approx(6.3)
+    assert plant.CalcTotalMass(context, [world.plant.model]) == pytest.approx(6.3)
     before = world.robot()
     after = world.advance(1.0).robot()
     assert abs(after.z - before.z) < 1e-3  # stands where it was put

@@ -38,7 +38,7 @@ def test_head_on_impulses_balance() -> None:
     crowd = world.blocks.crowd
     assert crowd is not None
     on_robot = np.zeros(2)
-    start = world.blocks.rig.plant.GetBodyByName("base_link").floating_velocities_start_in_v()
+    start = world.plant.plant.GetBodyByName("base_link").floating_velocities_start_in_v()
     before = rows(world.crowd())[0, s.VX : s.VY + 1].copy()
     for tick in range(1, 3 * 128):
         world.advance(tick * TICK)

@@ -7,9 +7,12 @@ from collections.abc import Collection
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from sim_worlds import Drive, Memory, Rig, constant, rig, scenario
 
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.sensor_bank import Timetable
 
 TICK = 1.0 / 128.0
 ALL = ("front_lidar", "rear_lidar", "odometry")
@@ -129,3 +132,47 @@ def test_people_outside_are_not_seen() -> None:
     bank = world.blocks.bank
     mine = bank.GetMyContextFromRoot(world.context)
     assert bank.GetOutputPort(ports.READINGS).Eval(mine)[0] == 1.5 * 128
+
+
+def _times(timetable: Timetable, name: str, until: int) -> list[float]:
+    return [k * TICK for k in range(until) if name in timetable(k)]
+
+
+@settings(deadline=None)
+@given(st.lists(st.one_of(st.sampled_from([1, 2, 8, 16, 64, 128]), st.floats(0.7, 128.0)),
+                min_size=1, max_size=4))  # fmt: skip
+def test_a_timetable_says_who_is_due(rates: list[float]) -> None:
+    """Kept or worked out anew, for whole periods and others."""
+    timetable = Timetable({f"s{i}": rate for i, rate in enumerate(rates)})
+    for i, rate in enumerate(rates):
+        assert _times(timetable, f"s{i}", 300) == _expected(rate, 299 * TICK)
+
+
+def test_no_sensors_no_turns() -> None:
+    assert Timetable({})(5) == ()
+
+
+def test_the_ring_of_ultrasounds() -> None:
+    """8 Hz, from the same instants as the lidars; what is near is near for both."""
+    ring = [f"us{k}" for k in range(12)]
+    world, _ = _run(sensors=[*ring, *ALL], until=1.0)
+    world.advance(1.0 + TICK)
+    for name in ring:
+        assert _stamps(world.memory, name) == _expected(8.0, 1.0)
+        assert all(r.values[0] >= 0.2 for r in world.memory.readings[name])
+    wall = [r.values[0] for name in ("us5", "us6", "us7") for r in world.memory.readings[name]]
+    assert min(wall) == pytest.approx(2.5 - 0.17, abs=0.05)  # the end of the corridor behind it
+
+
+def test_people_are_seen_walking() -> None:
+    """Legs swing with the way walked: the scene gets it from the crowd."""
+    world, _ = _run(until=0.0)
+    seen = []
+    for tick in range(1, 129, 8):
+        world.advance(tick * TICK)
+        bodies, _ = world.blocks.bank._scene._bodies()
+        person = int(np.argmax(world.blocks.bank._scene.present))
+        left, right = bodies[3 * person, :2], bodies[3 * person + 1, :2]
+        seen.append(math.dist(left, right))
+    assert max(seen) - min(seen) > 0.05
+    assert min(seen) == pytest.approx(0.9 * 0.191 * 1.7, abs=0.05)

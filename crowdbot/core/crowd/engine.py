@@ -89,6 +89,11 @@ class CrowdEngine:
             else:
                 enter(rows, i, a.x[i], a.y[i], a.preferred_speed[i], 0.0)
         rows[:, s.ON_TRIP] = (a.at_goal == PORTAL) | (np.diff(a.first) > 0)
+        to_goal = rows[:, s.GOAL_X : s.GOAL_Y + 1] - rows[:, s.X : s.Y + 1]
+        distance = np.hypot(to_goal[:, :1], to_goal[:, 1:])
+        facing = np.divide(to_goal, distance, out=np.zeros_like(to_goal), where=distance > 0.0)
+        facing[distance[:, 0] == 0.0] = 1.0, 0.0
+        rows[:, s.DIR_X : s.DIR_Y + 1] = facing
         return flat
 
     def advance(self, flat: Array, robots: Array = NOBODY) -> None:

@@ -20,14 +20,16 @@ HEADER_SIZE = 9
 # (s); contact with the robot: 1 while touching, start, end (s), impulse (N s), peak force (N),
 # relative speed before (m/s), finished contacts; 1 while on a trip, start of the last finished
 # trip (s), finished trips, next point of the route, jumps through portals and across the border,
-# sizes of the torus that the agent has gone (m).
+# sizes of the torus that the agent has gone (m); way walked (m) and the unit vector of the way
+# faced, which sensors show.
 (
     X, Y, VX, VY, AX, AY, PUSH_X, PUSH_Y, GOAL_X, GOAL_Y,
     TRIP, WAITING, ATTEMPT, TRIP_START, ARRIVED,
     TOUCHING, TOUCH_START, TOUCH_END, TOUCH_IMPULSE, TOUCH_PEAK, TOUCH_SPEED, TOUCHES,
     ON_TRIP, LAST_START, ARRIVALS, WAYPOINT, JUMPS, LAP_X, LAP_Y,
-) = range(29)  # fmt: skip
-AGENT_COLUMNS = 29
+    WALKED, DIR_X, DIR_Y,
+) = range(32)  # fmt: skip
+AGENT_COLUMNS = 32
 
 #: Values of ``WAITING``: in the world; outside, in front of the in-portal; outside, to start
 #: later; gone for good.

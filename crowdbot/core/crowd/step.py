@@ -17,6 +17,8 @@ from crowdbot.core.crowd.state import (
     AT_PORTAL,
     AX,
     AY,
+    DIR_X,
+    DIR_Y,
     GOAL_X,
     GOAL_Y,
     HEADER_SIZE,
@@ -31,6 +33,7 @@ from crowdbot.core.crowd.state import (
     VX,
     VY,
     WAITING,
+    WALKED,
     Array,
     X,
     Y,
@@ -38,6 +41,9 @@ from crowdbot.core.crowd.state import (
 from crowdbot.core.crowd.torus import wrap
 
 Rows = NDArray[np.int64]
+
+#: Slower people do not turn where they are pushed, m/s.
+_TURNS_ABOVE = 0.1
 
 
 @njit(cache=True, error_model="numpy")
@@ -162,3 +168,7 @@ def _move(agents: Array, i: int, fastest: float, ax: float, ay: float, dt: float
     agents[i, VX], agents[i, VY] = vx + ax * dt, vy + ay * dt
     agents[i, X] += agents[i, VX] * dt
     agents[i, Y] += agents[i, VY] * dt
+    speed = math.hypot(agents[i, VX], agents[i, VY])
+    agents[i, WALKED] += speed * dt
+    if speed > _TURNS_ABOVE:
+        agents[i, DIR_X], agents[i, DIR_Y] = agents[i, VX] / speed, agents[i, VY] / speed

@@ -161,6 +161,57 @@ def laser_scan(ns: int, info: SensorInfo, angles: Array, ranges: Array) -> Any:
     )
 
 
+def range_reading(ns: int, info: SensorInfo, distance: float) -> Any:
+    """The reading of a sonar or an infrared sensor; ``distance`` m, inf where nothing is."""
+    edges = np.zeros(2) if info.angles is None else info.angles
+    cls = _type("sensor_msgs/Range")
+    return cls(
+        header=header(ns, info.frame),
+        radiation_type=cls.INFRARED if info.category == "infrared" else cls.ULTRASOUND,
+        field_of_view=float(np.ptp(edges)),
+        min_range=info.range_min,
+        max_range=info.range_max,
+        range=distance,
+    )
+
+
+def point_cloud(ns: int, info: SensorInfo, points: NDArray[np.float32]) -> Any:
+    """An organised cloud; ``points`` (L, C, 3) in the sensor frame, m, NaN where nothing is."""
+    rows, columns, _ = points.shape
+    field, number = _type("sensor_msgs/PointField"), points.itemsize
+    fields = [
+        new("sensor_msgs/PointField", name=n, offset=k * number, datatype=field.FLOAT32, count=1)
+        for k, n in enumerate("xyz")
+    ]
+    return new(
+        "sensor_msgs/PointCloud2",
+        header=header(ns, info.frame),
+        height=rows,
+        width=columns,
+        fields=fields,
+        is_bigendian=False,
+        point_step=3 * number,
+        row_step=3 * number * columns,
+        data=np.frombuffer(points.tobytes(), np.uint8),
+        is_dense=False,
+    )
+
+
+def imu(ns: int, frame: str, values: Array) -> Any:
+    """Angular rate (3), rad/s, and specific force (3), m/s^2; the orientation is not measured."""
+    unknown = np.zeros(9)
+    return new(
+        "sensor_msgs/Imu",
+        header=header(ns, frame),
+        orientation=_quaternion(0.0),
+        orientation_covariance=np.array([-1.0, *unknown[1:]]),
+        angular_velocity=_vector(*values[:3].tolist()),
+        angular_velocity_covariance=unknown,
+        linear_acceleration=_vector(*values[3:].tolist()),
+        linear_acceleration_covariance=unknown,
+    )
+
+
 def numbers(values: Array) -> Any:
     """The values of a sensor of unknown category, flattened row by row."""
     dims, stride = [], values.size

@@ -106,6 +106,24 @@ def laser_scan(info: SensorInfo, angles: Array) -> Template:
     return Template(ros.laser_scan(_NS, info, angles, ranges), stamp(_NS), mark)
 
 
+def range_reading(info: SensorInfo) -> Template:
+    """Places: stamp; range as float32."""
+    return Template(ros.range_reading(_NS, info, _A), stamp(_NS), np.float32(_A).tobytes())
+
+
+def point_cloud(info: SensorInfo) -> Template:
+    """Places: stamp; x, y, z of every point as float32."""
+    points = np.full((*info.shape, 3), _A, np.float32)
+    return Template(ros.point_cloud(_NS, info, points), stamp(_NS), points.tobytes())
+
+
+def imu(frame: str) -> Template:
+    """Places: stamp; angular rate; specific force; three float64 each."""
+    values = np.array([_A, _B, _C, _C, _D, _E])
+    marks = values[:3].tobytes(), values[3:].tobytes()
+    return Template(ros.imu(_NS, frame, values), stamp(_NS), *marks)
+
+
 def numbers(shape: tuple[int, ...]) -> Template:
     """Place: values."""
     values = np.full(shape, _A)

@@ -51,6 +51,12 @@ def sensor_topics(sensors: Mapping[str, SensorInfo]) -> dict[str, SensorTopic]:
             topics[name] = _odometry(topic)
         elif is_scan(info):
             topics[name] = _scan(scan_topic(name), info)
+        elif info.ros_type == "sensor_msgs/msg/Range" and info.shape == (1,):
+            topics[name] = _range(f"/{name}/range", info)
+        elif is_cloud(info):
+            topics[name] = _cloud(f"/{name}/points", info)
+        elif info.ros_type == "sensor_msgs/msg/Imu" and info.shape == (6,):
+            topics[name] = _imu(f"/{name}/imu", info)
         else:
             topics[name] = _numbers(f"/{name}", info)
     return topics
@@ -70,6 +76,12 @@ def is_scan(info: SensorInfo) -> bool:
     return bool(angles.ndim == 1 and np.ptp(steps) < 1e-6) if steps.size else True
 
 
+def is_cloud(info: SensorInfo) -> bool:
+    """Whether readings are the ranges of beams (L, C) whose azimuths and elevations are known."""
+    known = info.angles is not None and info.angles.shape == (*info.shape, 2)
+    return known and len(info.shape) == 2 and info.ros_type == "sensor_msgs/msg/PointCloud2"
+
+
 def _odometry(topic: str) -> SensorTopic:
     blank = template.odometry("base_footprint")
 
@@ -87,6 +99,39 @@ def _scan(topic: str, info: SensorInfo) -> SensorTopic:
 
     def message(ns: int, values: Array) -> bytes:
         return blank.fill(template.stamp(ns), values.astype(np.float32).tobytes())
+
+    return SensorTopic(topic, blank.msgtype, message)
+
+
+def _range(topic: str, info: SensorInfo) -> SensorTopic:
+    blank = template.range_reading(info)
+
+    def message(ns: int, values: Array) -> bytes:
+        return blank.fill(template.stamp(ns), values.astype(np.float32).tobytes())
+
+    return SensorTopic(topic, blank.msgtype, message)
+
+
+def _cloud(topic: str, info: SensorInfo) -> SensorTopic:
+    assert info.angles is not None  # by is_cloud
+    azimuth, elevation = info.angles[..., 0], info.angles[..., 1]
+    level = np.cos(elevation)
+    rays = np.stack([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)], axis=-1)
+    blank = template.point_cloud(info)
+
+    def message(ns: int, values: Array) -> bytes:
+        points = np.where(np.isfinite(values), values, np.nan)[..., np.newaxis] * rays
+        return blank.fill(template.stamp(ns), points.astype(np.float32).tobytes())
+
+    return SensorTopic(topic, blank.msgtype, message)
+
+
+def _imu(topic: str, info: SensorInfo) -> SensorTopic:
+    blank = template.imu(info.frame)
+
+    def message(ns: int, values: Array) -> bytes:
+        data = np.asarray(values, np.float64)
+        return blank.fill(template.stamp(ns), data[:3].tobytes(), data[3:].tobytes())
 
     return SensorTopic(topic, blank.msgtype, message)
 

@@ -15,8 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Array, Command, Reading
+from crowdbot.core.optical import OPTICAL_QUATERNION, optical
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
+from crowdbot.core.recording.camera import camera_messages
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
@@ -45,7 +47,7 @@ class RecordingWriter:
             path: file to write; the caller gives it its final name when the run is complete.
             header: constants of the run.
             record: ``none`` leaves out all that scores do not need. ``all`` and ``used`` write
-                every reading they are given.
+                every reading they are given; images, which are large, only ``all`` does.
 
         Raises:
             InputError: the path cannot be written.
@@ -54,7 +56,11 @@ class RecordingWriter:
         self._header = header
         self._ros = record != "none"
         self._people = PeopleMessages(header.agents) if header.agents else None
-        self._sensors = sensor_topics(header.sensors)
+        self._images = record == "all"
+        self._cameras = {n: i for n, i in header.sensors.items() if i.camera is not None}
+        self._sensors = sensor_topics(
+            {n: i for n, i in header.sensors.items() if n not in self._cameras}
+        )
         self._clock, self._twist = template.clock(), template.twist()
         self._truth, self._pose = template.transform("map", BASE), template.pose_stamped("map")
         self._state_of, self._signal_of = cache(template.run_state), cache(template.signal)
@@ -96,7 +102,13 @@ class RecordingWriter:
         """One reading of a sensor that the header lists."""
         if not self._ros:
             return
-        topic, ns = self._sensors[sensor], ros.nanoseconds(reading.stamp)
+        ns = ros.nanoseconds(reading.stamp)
+        if sensor in self._cameras:
+            if self._images:
+                for image in camera_messages(sensor, self._cameras[sensor], reading):
+                    self._file.put_bytes(image.topic, ns, image.msgtype, image.data)
+            return
+        topic = self._sensors[sensor]
         self._file.put_bytes(topic.name, ns, topic.msgtype, topic.message(ns, reading.values))
 
     def command(self, t: float, command: Command) -> None:
@@ -210,4 +222,9 @@ class RecordingWriter:
         mounts = {s.frame: s.mount for s in self._header.sensors.values() if s.frame not in FRAMES}
         for frame, (x, y, z, yaw) in mounts.items():
             frames.append(ros.transform(0, "base_link", frame, (x, y, z), yaw))
+        for info in self._cameras.values():
+            here = ros.transform(0, info.frame, optical(info.frame), (0.0, 0.0, 0.0), 0.0)
+            turned = dict(zip("xyzw", OPTICAL_QUATERNION, strict=True))
+            here.transform.rotation = ros.new("geometry_msgs/Quaternion", **turned)
+            frames.append(here)
         return frames

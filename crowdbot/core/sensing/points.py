@@ -17,13 +17,13 @@ class LidarPoints:
     """Turns the scans of all of a robot's lidars into points in the base frame.
 
     Args:
-        sensors: description of every sensor the planner sees; only lidars are used.
+        sensors: description of every sensor the planner sees; only planar lidars are used.
     """
 
     def __init__(self, sensors: Mapping[str, SensorInfo]) -> None:
         self._beams: dict[str, tuple[tuple[float, float], Array]] = {}
         for name, info in sensors.items():
-            if info.category == "lidar" and info.angles is not None:
+            if info.category == "lidar" and info.angles is not None and info.angles.ndim == 1:
                 angle = info.angles + info.mount[3]
                 rays = np.column_stack([np.cos(angle), np.sin(angle)])
                 self._beams[name] = (info.mount[:2], rays)

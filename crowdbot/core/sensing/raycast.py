@@ -1,9 +1,9 @@
 """Ray casting against vertical walls and solid upright cylinders, compiled.
 
-A person is a solid cylinder from the floor to its height: side, top and bottom can be hit. A
-wall is a vertical plate without thickness, between its two heights. An origin inside a cylinder
-hits it at distance 0 with incidence 0, so that a body that touches or swallows a sensor never
-becomes invisible to it.
+Legs, trunks and pillars are solid cylinders: side, top and bottom can be hit. A wall is a
+vertical plate without thickness, between its two heights. An origin inside a cylinder hits it at
+distance 0 with incidence 0, so that a body that touches or swallows a sensor never becomes
+invisible to it.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ import math
 import numba
 import numpy as np
 from numpy.typing import NDArray
+
+from crowdbot.core.sensing.bodies import BOTTOM, RADIUS, TOP, X, Y
 
 Array = NDArray[np.float64]
 
@@ -44,22 +46,13 @@ def _near_walls(walls: Array, x: float, y: float, max_range: float, out: NDArray
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _near_people(
-    people: Array,
-    present: NDArray[np.bool_],
-    radius: Array,
-    x: float,
-    y: float,
-    max_range: float,
-    gap: Array,
-    out: NDArray[np.int64],
+def _near_discs(
+    discs: Array, x: float, y: float, max_range: float, gap: Array, out: NDArray[np.int64]
 ) -> int:
-    """Write the present people within range, nearest surface first; return how many there are."""
+    """Write the cylinders within range, nearest surface first; return how many there are."""
     count = 0
-    for i in range(people.shape[0]):
-        if not present[i]:
-            continue
-        g = math.hypot(people[i, 0] - x, people[i, 1] - y) - radius[i]
+    for i in range(discs.shape[0]):
+        g = math.hypot(discs[i, X] - x, discs[i, Y] - y) - discs[i, RADIUS]
         if g <= max_range:
             gap[count] = g
             out[count] = i
@@ -100,7 +93,15 @@ def _wall_incidence(wall: Array, dx: float, dy: float) -> float:
 
 @numba.njit(cache=True, error_model="numpy")
 def _hit_cylinder(
-    px: float, py: float, r: float, height: float, oz: float, dx: float, dy: float, dz: float
+    px: float,
+    py: float,
+    r: float,
+    bottom: float,
+    height: float,
+    oz: float,
+    dx: float,
+    dy: float,
+    dz: float,
 ) -> tuple[float, bool]:
     """Distance of one ray to one solid cylinder, whether on its side; inf if it misses.
 
@@ -119,12 +120,12 @@ def _hit_cylinder(
         return math.inf, False
     lateral = True
     if dz != 0.0:
-        floor, top = -oz / dz, (height - oz) / dz
+        floor, top = (bottom - oz) / dz, (height - oz) / dz
         low, high = min(floor, top), max(floor, top)
         if low > enter:
             enter, lateral = low, False
         leave = min(leave, high)
-    elif oz < 0.0 or oz > height:
+    elif oz < bottom or oz > height:
         return math.inf, False
     if leave < 0.0 or enter > leave:
         return math.inf, False
@@ -151,14 +152,12 @@ def cast_rays(
     max_range: float,
     walls: Array,
     wall_heights: Array,
-    people: Array,
-    present: NDArray[np.bool_],
-    radius: Array,
-    height: Array,
+    discs: Array,
+    owner: NDArray[np.int64],
 ) -> tuple[Array, Array, NDArray[np.int64]]:
     """Nearest hit of each ray; see `crowdbot.core.sensing.scene.Scene.cast`.
 
-    Bodies out of range are sorted out once per run of equal origins, and people are tried from
+    Bodies out of range are sorted out once per run of equal origins, and cylinders are tried from
     the nearest to the farthest, so that a ray stops at the first that no later one can beat.
     Angles are computed for the nearest hit alone.
     """
@@ -167,21 +166,21 @@ def cast_rays(
     incidence = np.zeros(rays)
     body = np.full(rays, -1, dtype=np.int64)
     near_wall = np.empty(walls.shape[0], dtype=np.int64)
-    near = np.empty(people.shape[0], dtype=np.int64)
-    gap = np.empty(people.shape[0])
-    disc = np.empty((people.shape[0], 3))  # of those near: position from the origin, radius
-    wall_count = people_count = 0
+    near = np.empty(discs.shape[0], dtype=np.int64)
+    gap = np.empty(discs.shape[0])
+    disc = np.empty((discs.shape[0], 3))  # of those near: position from the origin, radius
+    wall_count = disc_count = 0
     for k in range(rays):
         o = origins[k]
         if k == 0 or (
             o[0] != origins[k - 1, 0] or o[1] != origins[k - 1, 1]
         ):  # heights do not matter to what is near
             wall_count = _near_walls(walls, o[0], o[1], max_range, near_wall)
-            people_count = _near_people(people, present, radius, o[0], o[1], max_range, gap, near)
-            for j in range(people_count):
+            disc_count = _near_discs(discs, o[0], o[1], max_range, gap, near)
+            for j in range(disc_count):
                 i = near[j]
-                disc[j, 0], disc[j, 1] = people[i, 0] - o[0], people[i, 1] - o[1]
-                disc[j, 2] = radius[i]
+                disc[j, 0], disc[j, 1] = discs[i, X] - o[0], discs[i, Y] - o[1]
+                disc[j, 2] = discs[i, RADIUS]
         dx, dy, dz = directions[k, 0], directions[k, 1], directions[k, 2]
         length = math.sqrt(dx * dx + dy * dy + dz * dz)
         dx, dy, dz = dx / length, dy / length, dz / length
@@ -191,15 +190,16 @@ def cast_rays(
             t = _hit_wall(walls[i], wall_heights[i], o, dx, dy, dz)
             if t < best:
                 best, hit = t, -(2 + i)
-        winner = -1  # place of a person among those near
-        for j in range(people_count):
+        winner = -1  # place of a cylinder among those near
+        for j in range(disc_count):
             if gap[j] > best:
                 break
             px, py, r = disc[j, 0], disc[j, 1], disc[j, 2]
             side = dx * py - dy * px
             if side * side > r * r:  # quick: passes beside it
                 continue
-            t, lateral = _hit_cylinder(px, py, r, height[near[j]], o[2], dx, dy, dz)
+            i = near[j]
+            t, lateral = _hit_cylinder(px, py, r, discs[i, BOTTOM], discs[i, TOP], o[2], dx, dy, dz)
             if t < best:
                 best, winner, side_hit = t, j, lateral
         if best > max_range:
@@ -207,7 +207,7 @@ def cast_rays(
         distance[k] = best
         if winner >= 0:
             px, py, r = disc[winner, 0], disc[winner, 1], disc[winner, 2]
-            body[k] = near[winner]
+            body[k] = owner[near[winner]]
             incidence[k] = _cylinder_incidence(px, py, r, best, side_hit, dx, dy, dz)
         else:
             body[k], incidence[k] = hit, _wall_incidence(walls[-2 - hit], dx, dy)

@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core.interfaces import RobotState
+from crowdbot.core.sensing.bodies import DISC_COLUMNS, PARTS, place_people
+from crowdbot.core.sensing.columns import Grid, cast_columns
 from crowdbot.core.sensing.raycast import cast_rays
 
 Array = NDArray[np.float64]
@@ -19,17 +21,16 @@ def _constant(values: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 
 class Scene:
-    """Walls, pillars, people as upright cylinders, and the robot; world frame, SI.
+    """Walls, pillars, walking people, and the robot; world frame, SI.
 
     Built once. `update` keeps views, no copies: whoever owns the arrays may go on changing them
-    in place, and the scene follows. The robot's own body is never hit.
+    in place until the first reading. The robot's own body is never hit.
 
     Attributes:
         walls: (S, 4) segments x0, y0, x1, y1, m.
         wall_heights: (S, 2) bottom and top, m.
         people_radius, people_height: (M,) m.
-        pillars: (P, 3) x, y, radius of round obstacles that stand on the floor, m.
-        pillar_heights: (P,) m.
+        pillars, pillar_heights: (P, 3) x, y, radius, and (P, 2) bottom and top, m.
         robot: the robot's state, None before the first update or in a scene without one.
         people: (M, 4) x, y (m), vx, vy (m/s), a read-only view.
         present: (M,) bool, who is in the world, a read-only view.
@@ -42,7 +43,7 @@ class Scene:
         people_radius: ArrayLike,
         people_height: ArrayLike,
         pillars: ArrayLike = (),
-        pillar_heights: ArrayLike = (),
+        pillar_heights: ArrayLike = (0.0, 2.5),
     ) -> None:
         self.walls = _constant(np.reshape(walls, (-1, 4)), (np.size(walls) // 4, 4))
         self.wall_heights = _constant(wall_heights, (len(self.walls), 2))
@@ -55,9 +56,28 @@ class Scene:
         self.people: Array = _constant(0.0, (count, 4))
         self.present: NDArray[np.bool_] = np.zeros(count, dtype=np.bool_)
         self.present.setflags(write=False)
+        self._direction, self._walked = _constant((1.0, 0.0), (count, 2)), _constant(0.0, (count,))
+        self.pillars = _constant(np.reshape(pillars, (-1, 3)), (np.size(pillars) // 3, 3))
+        self.pillar_heights = _constant(pillar_heights, (len(self.pillars), 2))
+        self._discs, self._owner = self._lay_out()
+        self._placed = False
+
+    def _lay_out(self) -> tuple[Array, NDArray[np.int64]]:
+        """Cylinders of everybody, placed later, and of the pillars; whose they are."""
+        people = PARTS * len(self.people_radius)
+        discs = np.zeros((people + len(self.pillars), DISC_COLUMNS))
+        discs[people:, :3], discs[people:, 3:] = self.pillars, self.pillar_heights
+        owner = np.arange(people) // PARTS
+        pillar = -(2 + len(self.walls) + np.arange(len(self.pillars)))
+        return discs, np.concatenate([owner, pillar]).astype(np.int64)
 
     def update(
-        self, robot_state: RobotState | None, people_xyv: Array, present: NDArray[np.bool_]
+        self,
+        robot_state: RobotState | None,
+        people_xyv: Array,
+        present: NDArray[np.bool_],
+        direction: Array | None = None,
+        walked: Array | None = None,
     ) -> None:
         """Show another instant.
 
@@ -65,6 +85,8 @@ class Scene:
             robot_state: where the robot is and how it moves.
             people_xyv: (M, 4) float64 x, y (m), vx, vy (m/s); kept as a view.
             present: (M,) bool, who is in the world; kept as a view.
+            direction: (M, 2) unit vectors of the way people face; as before if left out.
+            walked: (M,) way walked so far, m, the phase of their legs; as before if left out.
 
         Raises:
             ValueError: a shape or a type does not fit.
@@ -79,14 +101,37 @@ class Scene:
         self.people.setflags(write=False)
         self.present = present.view()
         self.present.setflags(write=False)
+        self._direction = self._direction if direction is None else direction
+        self._walked = self._walked if walked is None else walked
+        self._placed = False
+
+    @property
+    def headings(self) -> Array:
+        """Way that people face (M,), world frame, rad."""
+        ways: Array = np.arctan2(self._direction[:, 1], self._direction[:, 0])
+        return ways
+
+    def move_robot(self, robot_state: RobotState | None) -> None:
+        """Show another instant to those who do not look at people, who stay as they were."""
+        self.robot = robot_state
+
+    def _bodies(self) -> tuple[Array, NDArray[np.int64]]:
+        """Cylinders (D, 5) and whose they are; people are placed when somebody looks."""
+        if not self._placed:
+            place_people(
+                self.people, self.present, self._direction, self._walked,
+                self.people_radius, self.people_height, self._discs,
+            )  # fmt: skip
+            self._placed = True
+        return self._discs, self._owner
 
     def cast(
         self, origins: Array, directions: Array, max_range: float
     ) -> tuple[Array, Array, NDArray[np.int64]]:
         """Nearest hit of each ray on a wall, a pillar or a person.
 
-        Fast for consecutive rays with equal origins. An origin inside a person's cylinder, or on
-        its surface, hits that person at distance 0 with incidence 0.
+        Fast for consecutive rays with equal origins. An origin inside a body, or on its surface,
+        hits it at distance 0 with incidence 0.
 
         Args:
             origins: (R, 3) world frame, m.
@@ -95,46 +140,44 @@ class Scene:
 
         Returns:
             distance (R,) m, inf without a hit; incidence (R,) angle to the surface normal, rad, 0
-            without a hit; body (R,) int64, a person's index, -(2 + index) of a wall, -1 for none;
-            pillars count on after the walls.
+            without a hit; body (R,) int64, a person's index, -(2 + index) of a wall, and on from
+            there of a pillar, -1 for none.
         """
-        hits = cast_rays(
-            origins,
-            directions,
-            max_range,
-            self.walls,
-            self.wall_heights,
-            self.people,
-            self.present,
-            self.people_radius,
-            self.people_height,
+        discs, owner = self._bodies()
+        return cast_rays(
+            origins, directions, max_range, self.walls, self.wall_heights, discs, owner
         )
-        return hits if not len(self.pillars) else self._nearer(hits, origins, directions, max_range)
 
-    def _nearer(
+    def cast_grid(
         self,
-        hits: tuple[Array, Array, NDArray[np.int64]],
-        origins: Array,
-        directions: Array,
+        grid: Grid,
+        at: tuple[float, float, float],
+        yaw: float,
         max_range: float,
+        *,
+        floor: bool = False,
+        details: bool = True,
     ) -> tuple[Array, Array, NDArray[np.int64]]:
-        """Hits on pillars where they are nearer: to rays they are people who stand."""
-        count = len(self.pillars)
-        distance, incidence, body = cast_rays(
-            origins,
-            directions,
-            max_range,
-            self.walls[:0],
-            self.wall_heights[:0],
-            np.column_stack([self.pillars[:, :2], np.zeros((count, 2))]),
-            np.ones(count, np.bool_),
-            np.ascontiguousarray(self.pillars[:, 2]),
-            self.pillar_heights,
-        )
-        nearer = distance < hits[0]
-        number = -(2 + len(self.walls) + body)
-        return (
-            np.where(nearer, distance, hits[0]),
-            np.where(nearer, incidence, hits[1]),
-            np.where(nearer, number, hits[2]),
-        )
+        """Nearest hit of each ray of a grid from one point; much faster than ray by ray.
+
+        Args:
+            at: the point, world frame, m.
+            yaw: direction of the grid's azimuth 0, world frame, rad.
+            max_range: m; hits beyond it do not count.
+            floor: whether the floor is hit; its body is -1.
+            details: whether incidence and body are wanted; they are empty if not.
+
+        Returns:
+            distance, incidence, body as in `cast`, each (R, C).
+        """
+        distance = np.empty(grid.shape)
+        incidence = np.empty(grid.shape if details else (0, 0))
+        body = np.empty(incidence.shape, dtype=np.int64)
+        if distance.size:
+            discs, owner = self._bodies()
+            cast_columns(
+                *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, max_range,
+                floor, self.walls, self.wall_heights, discs, owner, grid.work,
+                distance, incidence, body,
+            )  # fmt: skip
+        return distance, incidence, body

@@ -13,24 +13,22 @@ from pydrake.systems.framework import Context, DiscreteStateIndex, LeafSystem, S
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.plant import RobotPlant
+from crowdbot.core.sim.control.controlled import Push
 from crowdbot.core.ticks import TICK
 
 
 class CrowdSystem(LeafSystem):
-    """Input: robot state. Outputs: crowd state, events, generalised force on the plant."""
+    """Input: robot state. Outputs: crowd state, events, force on the robot."""
 
-    def __init__(self, engine: CrowdEngine, rig: RobotPlant, perceived_radius: float) -> None:
+    def __init__(
+        self, engine: CrowdEngine, push: Push, physical_radius: float, perceived_radius: float
+    ) -> None:
         super().__init__()
-        plant, robot = rig.plant, rig.robot
-        self._engine = engine
-        base = plant.GetBodyByName(robot.base, rig.model)
-        self._start = base.floating_velocities_start_in_v()
-        self._lever = robot.force_height - robot.base_height
-        self._robot = np.array([[0.0, 0.0, 0.0, 0.0, robot.footprint_radius, perceived_radius]])
+        self._engine, self._push = engine, push
+        self._robot = np.array([[0.0, 0.0, 0.0, 0.0, physical_radius, perceived_radius]])
         self._port = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         crowd = self.DeclareDiscreteState(engine.initial_state())
-        force = self.DeclareDiscreteState(plant.num_velocities())
+        force = self.DeclareDiscreteState(push.size)
         events = self.DeclareDiscreteState(1)
         self.DeclareStateOutputPort(ports.CROWD_STATE, crowd)
         self.DeclareStateOutputPort(ports.EVENTS, events)
@@ -46,7 +44,6 @@ class CrowdSystem(LeafSystem):
         crowd = values.get_mutable_value(self._crowd)
         self._engine.advance(crowd, self._robot)
         header = crowd[: s.HEADER_SIZE].tolist()
-        fx, fy, i = header[s.ROBOT_FX], header[s.ROBOT_FY], self._start
         force = values.get_mutable_value(self._force)
-        force[i : i + 5] = -self._lever * fy, self._lever * fx, 0.0, fx, fy
+        self._push.write(force, header[s.ROBOT_FX], header[s.ROBOT_FY])
         values.get_mutable_value(self._events)[0] = header[s.CONTACTS] + header[s.TRIPS]

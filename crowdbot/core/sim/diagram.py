@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,19 +10,20 @@ from pydrake.systems.framework import Diagram, DiagramBuilder
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as crowd_state
-from crowdbot.core.interfaces import EnvironmentParts, Pose, RobotModel, Task
+from crowdbot.core.interfaces import EnvironmentParts, Pose, RobotModel, SensorInfo, Task
 from crowdbot.core.planner_host import HostedCommand, PlannerHost
 from crowdbot.core.registry import Registry
 from crowdbot.core.run_log import RunLog
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.control import ControlledRobot, add_robot
 from crowdbot.core.sim.crowd_system import CrowdSystem
+from crowdbot.core.sim.images import Painter
 from crowdbot.core.sim.metric_logger import MetricLogger
 from crowdbot.core.sim.planner_system import PlannerSystem
-from crowdbot.core.sim.plant import RobotPlant, add_plant
 from crowdbot.core.sim.recorder import Recorder
-from crowdbot.core.sim.robot_state import RobotStateSystem
 from crowdbot.core.sim.sensor_bank import SensorBank
+from crowdbot.core.sim.wall_contact import WallContacts
 from crowdbot.dsl.scenario import Robot, Scenario
 
 
@@ -31,11 +32,11 @@ class Blocks:
     """A finished diagram and its named parts. Never look anything up by index."""
 
     diagram: Diagram
-    rig: RobotPlant
-    robot_state: RobotStateSystem
+    robot: ControlledRobot
     bank: SensorBank
     planner: PlannerSystem
     logger: MetricLogger
+    walls: WallContacts
     crowd: CrowdSystem | None
 
 
@@ -75,62 +76,63 @@ def build_diagram(
     task = robot_task(robot, parts)
     builder = DiagramBuilder()
 
-    # Robot: multibody plant with floor and obstacles, and the one vector that stands for its state.
-    rig = add_plant(builder, parts, model)
-    state = builder.AddNamedSystem("robot_state", RobotStateSystem(rig))
-    builder.Connect(rig.plant.get_state_output_port(rig.model), state.GetInputPort("plant_state"))
-    robot_state = state.GetOutputPort(ports.ROBOT_STATE)
+    # Robot: how commands become motion, and the one vector that stands for its state.
+    body = add_robot(builder, parts, model, robot.control)
+    robot_state = body.state.GetOutputPort(ports.ROBOT_STATE)
 
     # Crowd and contact, one event: force on the robot, reaction on people.
     crowd, size = None, 0
     if engine is not None:
         margin = scenario.crowd.robot_response.margin if scenario.crowd else 0.0
-        system = CrowdSystem(engine, rig, model.footprint_radius + margin)
+        radius = model.footprint_radius
+        system = CrowdSystem(engine, body.push, radius, radius + margin)
         crowd = builder.AddNamedSystem("crowd", system)
         builder.Connect(robot_state, crowd.GetInputPort(ports.ROBOT_STATE))
-        builder.Connect(
-            crowd.GetOutputPort(ports.ROBOT_FORCE),
-            rig.plant.get_applied_generalized_force_input_port(),
-        )
+        if body.push_port is not None:
+            builder.Connect(crowd.GetOutputPort(ports.ROBOT_FORCE), body.push_port)
         size = crowd_state.size(len(engine.agents))
 
     # Sensors, odometry among them.
+    scene = _scene(scenario, parts, engine)
+    built = {n: registry.build(x) for n, x in robot.sensors.items() if n in sensors}
     bank = builder.AddNamedSystem(
         "sensors",
         SensorBank(
-            {n: registry.build(x) for n, x in robot.sensors.items() if n in sensors},
-            _scene(scenario, parts, engine),
+            built,
+            scene,
             size,
             seed=run_seed,
             robot=robot_name,
             on_reading=log.writer.reading,
+            painters=_painters({n: x.info() for n, x in built.items()}, scene),
         ),
     )
     builder.Connect(robot_state, bank.GetInputPort(ports.ROBOT_STATE))
 
-    # Planner, slew limits, wheels.
+    # Planner, slew limits, control mode.
     def on_step(t: float, hosted: HostedCommand) -> None:
         log.command(t, hosted.command, hosted.seconds, hosted.clamped)
 
     planner = builder.AddNamedSystem(
         "planner",
         PlannerSystem(
-            host, bank, model, task,
+            host, bank, body, model.limits, task,
             rate=scenario.rates.planner, visible=dict.fromkeys(visible),
             on_step=on_step, on_signal=log.writer.signal,
         ),
     )  # fmt: skip
     builder.Connect(bank.GetOutputPort(ports.READINGS), planner.GetInputPort(ports.READINGS))
-    builder.Connect(
-        planner.GetOutputPort(ports.DESIRED_STATE),
-        rig.plant.get_desired_state_input_port(rig.model),
-    )
+    builder.Connect(planner.GetOutputPort(ports.DESIRED_STATE), body.desired)
 
     # Metric logger and recorder.
+    walls = WallContacts(parts, model, log)
     logger = builder.AddNamedSystem(
-        "metric_logger", MetricLogger(log, task, size, scenario.rates.log)
+        "metric_logger", MetricLogger(log, task, walls, size, scenario.rates.log)
     )
     builder.Connect(robot_state, logger.GetInputPort(ports.ROBOT_STATE))
+    if body.rig is not None:
+        forces = body.rig.plant.get_contact_results_output_port()
+        builder.Connect(forces, logger.GetInputPort(ports.FORCES))
     builder.AddNamedSystem("recorder", Recorder(log.writer))
     if crowd is not None:
         for block in (bank, logger):
@@ -141,13 +143,23 @@ def build_diagram(
 
     return Blocks(
         diagram=builder.Build(),
-        rig=rig,
-        robot_state=state,
+        robot=body,
         bank=bank,
         planner=planner,
         logger=logger,
+        walls=walls,
         crowd=crowd,
     )
+
+
+def _painters(sensors: Mapping[str, SensorInfo], scene: Scene) -> dict[str, Painter]:
+    """What draws the pictures of cameras with colour; VTK is loaded for these only."""
+    cameras = {n: i for n, i in sensors.items() if i.camera is not None and i.camera.colour}
+    if not cameras:
+        return {}
+    from crowdbot.core.sim.rendering import Renderer
+
+    return {n: Renderer(scene, i.camera, i.mount) for n, i in cameras.items() if i.camera}
 
 
 def _scene(scenario: Scenario, parts: EnvironmentParts, engine: CrowdEngine | None) -> Scene:
@@ -156,5 +168,5 @@ def _scene(scenario: Scenario, parts: EnvironmentParts, engine: CrowdEngine | No
     height = scenario.crowd.body.height if scenario.crowd else 0.0
     return Scene(
         parts.walls, parts.wall_heights, radius, np.full(count, height),
-        parts.pillars, parts.pillar_heights[:, 1],
+        parts.pillars, parts.pillar_heights,
     )  # fmt: skip

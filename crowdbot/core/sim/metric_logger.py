@@ -5,21 +5,26 @@ A publish event at tick k sees the state at k, before any update of that tick.
 
 from __future__ import annotations
 
+from pydrake.common.value import Value
+from pydrake.multibody.plant import ContactResults
 from pydrake.systems.framework import Context, EventStatus, LeafSystem
 
 from crowdbot.core.arrival import entry_fraction, inside
 from crowdbot.core.interfaces import Array, RobotState, Task
 from crowdbot.core.run_log import RunLog
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.wall_contact import WallContacts, wall_force
 from crowdbot.core.ticks import TICK, TICKS_PER_SECOND, ticks
 
 
 class MetricLogger(LeafSystem):
-    """Inputs: robot state, crowd state. Ends the run on arrival and at the time limit."""
+    """Inputs: robot state, crowd state, forces. Ends the run on arrival and at the time limit."""
 
-    def __init__(self, log: RunLog, task: Task, crowd_size: int, rate: float) -> None:
+    def __init__(
+        self, log: RunLog, task: Task, walls: WallContacts, crowd_size: int, rate: float
+    ) -> None:
         super().__init__()
-        self._log, self._task = log, task
+        self._log, self._task, self._walls = log, task, walls
         self._ticks_per_sample = ticks(rate)
         self._last_tick = -1
         self._previous = (0.0, 0.0)
@@ -29,6 +34,7 @@ class MetricLogger(LeafSystem):
         if crowd_size:
             self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size)
             self._events = self.DeclareVectorInputPort(ports.EVENTS, 1)
+        self._forces = self.DeclareAbstractInputPort(ports.FORCES, Value(ContactResults()))
         self.DeclarePeriodicPublishEvent(TICK, 0.0, self._publish)
 
     def _publish(self, context: Context) -> EventStatus | None:
@@ -42,6 +48,7 @@ class MetricLogger(LeafSystem):
         crowd = self._crowd_state(context, always=sampled)
         if crowd is not None:
             self._log.book(crowd)
+        self._watch_walls(context, t, robot)
         if sampled:
             self._log.sample(t, robot, crowd)
         return self._watch(t, robot)
@@ -54,6 +61,12 @@ class MetricLogger(LeafSystem):
             return None
         crowd: Array = self._crowd.Eval(context)
         return crowd
+
+    def _watch_walls(self, context: Context, t: float, robot: RobotState) -> None:
+        if self._forces.HasValue(context):
+            self._walls.watch(t, robot, lambda: wall_force(self._forces.Eval(context)))
+        else:
+            self._walls.watch(t, robot, None)
 
     def _watch(self, t: float, robot: RobotState) -> EventStatus | None:
         zone = self._task.goal_zone

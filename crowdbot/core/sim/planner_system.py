@@ -1,33 +1,36 @@
-"""PlannerSystem: the planner, then slew limits, then wheel rates.
+"""PlannerSystem: the planner, then command timeout and slew limits, then what the base wants.
 
 Discrete events run after unrestricted ones, so a planner step sees the readings of its own tick.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 from pydrake.systems.framework import Context, DiscreteStateIndex, DiscreteValues, LeafSystem
 
-from crowdbot.core.interfaces import Observation, Pose, RobotModel, Task
+from crowdbot.core.interfaces import Observation, Pose, RobotLimits, Task
 from crowdbot.core.planner_host import HostedCommand, PlannerHost
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.sensor_bank import SensorBank
-from crowdbot.core.ticks import TICK, ticks
+from crowdbot.core.ticks import TICK, TICKS_PER_SECOND, ticks
 
 Array = NDArray[np.float64]
 
 
 class PlannerSystem(LeafSystem):
-    """Input: readings. Outputs: command and the wheels' desired state."""
+    """Input: readings. Outputs: command and what the control mode makes of it."""
 
     def __init__(
         self,
         host: PlannerHost,
         bank: SensorBank,
-        robot: RobotModel,
+        robot: ControlledRobot,
+        limits: RobotLimits,
         task: Task,
         *,
         rate: float,
@@ -36,9 +39,11 @@ class PlannerSystem(LeafSystem):
         on_signal: Callable[[float, str, float], None],
     ) -> None:
         super().__init__()
-        self._host, self._drive, self._task = host, robot.drive, task
-        self._dv, self._dw = robot.limits.a_max * TICK, robot.limits.alpha_max * TICK
+        self._host, self._desire, self._task = host, robot.desire, task
+        self._dv, self._dw = limits.a_max * TICK, limits.alpha_max * TICK
         self._ticks = ticks(rate)
+        self._timeout = math.ceil(limits.command_timeout * TICKS_PER_SECOND)
+        self._bank = bank
         self._slots = {n: s for n, s in bank.slots.items() if n in visible}
         self._odometry = next(
             (s for s in bank.slots.values() if s.info.category == "odometry"), None
@@ -48,7 +53,7 @@ class PlannerSystem(LeafSystem):
             ports.READINGS, bank.GetOutputPort(ports.READINGS).size()
         )
         command = self.DeclareDiscreteState(ports.COMMAND_SIZE)
-        desired = self.DeclareDiscreteState(ports.DESIRED_STATE_SIZE)
+        desired = self.DeclareDiscreteState(robot.desired_size)
         self.DeclareStateOutputPort(ports.COMMAND, command)
         self.DeclareStateOutputPort(ports.DESIRED_STATE, desired)
         self._command, self._desired = DiscreteStateIndex(command), DiscreteStateIndex(desired)
@@ -57,7 +62,10 @@ class PlannerSystem(LeafSystem):
     def _update(self, context: Context, values: DiscreteValues) -> None:
         state = values.get_mutable_value(self._command)
         tick, v, w, slewed_v, slewed_w = state.tolist()
-        due = int(tick) % self._ticks == 0
+        since = int(tick) % self._ticks
+        due = since == 0
+        if since == self._timeout:  # a driver that hears nothing stops the robot
+            v = w = 0.0
         if not due and slewed_v == v and slewed_w == w:
             state[0] = tick + 1.0  # all the rest stays as it is
             return
@@ -68,12 +76,7 @@ class PlannerSystem(LeafSystem):
             self._on_step(t, hosted)
         slewed_v, slewed_w = _slew(slewed_v, v, self._dv), _slew(slewed_w, w, self._dw)
         state[:] = (tick + 1.0, v, w, slewed_v, slewed_w)
-        drive = self._drive
-        across = 0.5 * drive.track * slewed_w
-        values.get_mutable_value(self._desired)[2:] = (
-            (slewed_v - across) / drive.command_radius,
-            (slewed_v + across) / drive.command_radius,
-        )
+        values.get_mutable_value(self._desired)[:] = self._desire(slewed_v, slewed_w)
 
     def _observe(self, bank: Array, t: float) -> Observation:
         if self._odometry is None:
@@ -87,7 +90,11 @@ class PlannerSystem(LeafSystem):
             twist=twist,
             goal=self._task.goal,
             goal_zone=self._task.goal_zone,
-            readings={n: s.reading(bank) for n, s in self._slots.items() if bank[s.stamp] >= 0.0},
+            readings={
+                n: self._bank.reading(n, bank)
+                for n, s in self._slots.items()
+                if bank[s.stamp] >= 0.0
+            },
             log=lambda name, value: self._on_signal(t, name, value),
         )
 

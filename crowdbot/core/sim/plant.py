@@ -1,4 +1,4 @@
-"""The multibody plant: floor, obstacles and one robot with velocity-controlled wheels."""
+"""The multibody plant: floor, obstacles and one robot."""
 
 from __future__ import annotations
 
@@ -24,7 +24,6 @@ from crowdbot.core.ticks import TICK
 _FLOOR = CoulombFriction(1.0, 1.0)
 _WALL = CoulombFriction(0.3, 0.3)
 _WALL_THICKNESS = 0.2  # m
-_WHEEL_DAMPING = 1.0  # N m s: implicit velocity gain, stable from 0.1 to 50 (docs/decisions/0004)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,8 +35,13 @@ class RobotPlant:
     robot: RobotModel
 
 
-def add_plant(builder: DiagramBuilder, parts: EnvironmentParts, robot: RobotModel) -> RobotPlant:
-    """Add the plant to a diagram, ready to be wired."""
+def add_plant(
+    builder: DiagramBuilder,
+    parts: EnvironmentParts,
+    robot: RobotModel,
+    gains: PdControllerGains | None,
+) -> RobotPlant:
+    """Add the plant to a diagram, ready to be wired; without gains the wheels roll freely."""
     config = MultibodyPlantConfig(
         time_step=TICK, discrete_contact_approximation="lagged", contact_model="point"
     )
@@ -58,9 +62,9 @@ def add_plant(builder: DiagramBuilder, parts: EnvironmentParts, robot: RobotMode
         pose = RigidTransform([x, y, 0.5 * (low + high)])
         pillar = Cylinder(radius, high - low)
         plant.RegisterCollisionGeometry(world, pose, pillar, f"pillar{p}", _WALL)
-    for joint in (robot.drive.left_joint, robot.drive.right_joint):
-        actuator = plant.GetJointActuatorByName(joint)
-        actuator.set_controller_gains(PdControllerGains(p=0.0, d=_WHEEL_DAMPING))
+    if gains is not None:
+        for joint in (robot.drive.left_joint, robot.drive.right_joint):
+            plant.GetJointActuatorByName(joint).set_controller_gains(gains)
     # With sampled ports the crowd would see the plant already advanced: action != reaction.
     plant.SetUseSampledOutputPorts(False)
     plant.Finalize()

@@ -8,11 +8,13 @@ ROBOT_STATE, ROBOT_STATE_SIZE = "robot_state", 10
 CROWD_STATE = "crowd_state"
 #: Number of trips, and of contacts with the robot, that have ended.
 EVENTS = "events"
-#: Generalised force on the plant's velocities, N m and N.
+#: Force of people on the robot, as the control mode wants it (`crowdbot.core.sim.control`).
 ROBOT_FORCE = "robot_force"
 #: Latest readings of all sensors, in the order of the sensor bank.
 READINGS = "readings"
-#: Wheel rates left, right (rad/s) as the plant's desired state [0, 0, left, right].
-DESIRED_STATE, DESIRED_STATE_SIZE = "desired_state", 4
+#: What the control mode makes of a command.
+DESIRED_STATE = "desired_state"
 #: Tick, the planner's command v (m/s) and w (rad/s), the same two after slew limits.
 COMMAND, COMMAND_SIZE = "command", 5
+#: Drake's contact results of the plant.
+FORCES = "forces"

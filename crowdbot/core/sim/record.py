@@ -67,7 +67,8 @@ def record_robot(setup: RunSetup) -> Outcome:
     model: RobotModel = registry.build(robot.model)
     engine = build_crowd(scenario, setup.agents, parts, registry)
     infos = {n: _framed(n, registry.build(x).info()) for n, x in robot.sensors.items()}
-    visible = select_sensors(setup.choice.needs, infos, setup.choice.name)
+    choice = setup.choice
+    visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
     sensors = set(infos) if setup.record == "all" else {*visible, *_odometry(infos)}
     task = robot_task(robot, parts)
     header = RecordingHeader(

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from pydrake.systems.framework import BasicVector, Context, LeafSystem
+from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, LeafSystem
 
 from crowdbot.core.interfaces import RobotState
 from crowdbot.core.sim import ports
@@ -56,3 +56,11 @@ class RobotStateSystem(LeafSystem):
             left_angle=values[self._wheels[0]],
             right_angle=values[self._wheels[1]],
         )
+
+
+def add_robot_state(builder: DiagramBuilder, rig: RobotPlant) -> RobotStateSystem:
+    """Add the adaptor to a diagram and connect it to the plant."""
+    state = RobotStateSystem(rig)
+    builder.AddNamedSystem("robot_state", state)
+    builder.Connect(rig.plant.get_state_output_port(rig.model), state.GetInputPort("plant_state"))
+    return state

@@ -15,7 +15,6 @@ from crowdbot.core.interfaces import RobotState, Task
 from crowdbot.core.run_log import RunLog
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.diagram import Blocks
-from crowdbot.core.sim.plant import place_robot
 from crowdbot.errors import PlannerError
 
 #: Simulated time between looks at progress and interruption, s.
@@ -76,7 +75,7 @@ def run(
     """
     simulator = Simulator(blocks.diagram)
     context = simulator.get_mutable_context()
-    place_robot(blocks.rig, blocks.rig.plant.GetMyMutableContextFromRoot(context), task.start)
+    blocks.robot.place(context, task.start)
     begin, cpu = time.perf_counter(), time.process_time()
     status, reason = TIMEOUT, f"time limit of {task.time_limit:g} s"
     try:
@@ -120,6 +119,7 @@ def _crowd(blocks: Blocks, context: object) -> crowd_state.Array | None:
 
 
 def _finish(blocks: Blocks, log: RunLog, context: object) -> None:
+    blocks.walls.finish()
     log.finish(float(context.get_time()), _crowd(blocks, context))  # type: ignore[attr-defined]
 
 
@@ -131,8 +131,9 @@ def _report(
     context: object,
     begin: float,
 ) -> None:
-    mine = blocks.robot_state.GetMyContextFromRoot(context)
-    robot = RobotState(*blocks.robot_state.GetOutputPort(ports.ROBOT_STATE).Eval(mine))
+    state = blocks.robot.state
+    mine = state.GetMyContextFromRoot(context)
+    robot = RobotState(*state.GetOutputPort(ports.ROBOT_STATE).Eval(mine))
     t = float(context.get_time())  # type: ignore[attr-defined]
     factor = t / max(time.perf_counter() - begin, 1e-9)
     distance = distance_to(task.goal_zone, robot.x, robot.y)

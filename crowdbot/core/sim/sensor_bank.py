@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +27,7 @@ from crowdbot.core.interfaces import (
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.images import Images, Painter, capture, view_size
 from crowdbot.core.ticks import TICK, TICKS_PER_SECOND, is_due
 
 Array = NDArray[np.float64]
@@ -32,7 +35,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """Where a sensor's stamp, values and memory lie in the bank's state vector."""
+    """Where a sensor's stamp, values and memory lie in the bank's state vector.
+
+    Of a camera, ``values`` is what it saw (`crowdbot.core.sim.images`).
+    """
 
     info: SensorInfo
     stamp: int
@@ -46,11 +52,12 @@ class Slot:
         return Reading(float(state[self.stamp]), values)
 
 
-def lay_out(infos: Mapping[str, SensorInfo]) -> tuple[dict[str, Slot], int]:
+def lay_out(infos: Mapping[str, SensorInfo], people: int) -> tuple[dict[str, Slot], int]:
     """Slots by sensor name and the length of the state vector; entry 0 is the tick."""
     slots, end = {}, 1
     for name, info in infos.items():
-        values_end = end + 1 + int(np.prod(info.shape))
+        size = view_size(people) if info.camera else int(np.prod(info.shape))
+        values_end = end + 1 + size
         memory_end = values_end + info.memory
         slots[name] = Slot(info, end, slice(end + 1, values_end), slice(values_end, memory_end))
         end = memory_end
@@ -63,6 +70,28 @@ def ticks_between(rates: Iterable[float]) -> int:
     if not all(p.is_integer() for p in periods):
         return 1
     return math.gcd(TICKS_PER_SECOND, *(int(p) for p in periods))
+
+
+class Timetable:
+    """Which sensors are due at a tick; worked out once where their turns repeat."""
+
+    _LONGEST = 1024  # ticks after which turns must repeat to be kept
+
+    def __init__(self, rates: Mapping[str, float]) -> None:
+        self._rates = dict(rates)
+        periods = [TICKS_PER_SECOND / rate for rate in self._rates.values()]
+        self._turns: list[tuple[str, ...]] = []
+        if all(p.is_integer() for p in periods):
+            cycle = math.lcm(*(int(p) for p in periods))
+            if cycle <= self._LONGEST:
+                self._turns = [self._at(tick) for tick in range(cycle)]
+
+    def __call__(self, tick: int) -> tuple[str, ...]:
+        """Names of the sensors, in their order."""
+        return self._turns[tick % len(self._turns)] if self._turns else self._at(tick)
+
+    def _at(self, tick: int) -> tuple[str, ...]:
+        return tuple(n for n, rate in self._rates.items() if is_due(tick, rate))
 
 
 class SensorBank(LeafSystem):
@@ -80,13 +109,26 @@ class SensorBank(LeafSystem):
         seed: int,
         robot: str,
         on_reading: Callable[[str, Reading], None],
+        painters: Mapping[str, Painter] = MappingProxyType({}),
     ) -> None:
+        """Take the sensors.
+
+        Args:
+            crowd_size: length of the crowd's state, 0 without people.
+            painters: what draws the colour images of cameras, by the camera's name.
+        """
         super().__init__()
         self._sensors, self._scene = dict(sensors), scene
         self._seed, self._robot_name = seed, robot
         self._on_reading = on_reading
         self._not_random = sensor_rng(seed, robot, "", 0)
-        self.slots, size = lay_out({n: x.info() for n, x in sensors.items()})
+        people = len(s.view(np.zeros(crowd_size))[1]) if crowd_size else 0
+        self.slots, size = lay_out({n: x.info() for n, x in sensors.items()}, people)
+        self._images = {
+            n: Images(sensors[n], partial(self._rng, n), painters.get(n))  # type: ignore[arg-type]
+            for n, slot in self.slots.items()
+            if slot.info.camera
+        }
         initial = np.zeros(size)
         for slot in self.slots.values():
             initial[slot.stamp] = -1.0
@@ -97,11 +139,22 @@ class SensorBank(LeafSystem):
         index = self.DeclareDiscreteState(initial)
         self.DeclareStateOutputPort(ports.READINGS, index)
         self._index = DiscreteStateIndex(index)
-        # Ticks between samples, None where they vary.
-        periods = {n: TICKS_PER_SECOND / x.info.rate for n, x in self.slots.items()}
-        self._periods = {n: int(p) if p.is_integer() else None for n, p in periods.items()}
-        self._step = ticks_between(x.info.rate for x in self.slots.values())
+        rates = {n: x.info.rate for n, x in self.slots.items()}
+        self._step = ticks_between(rates.values())
+        self._due = Timetable(rates)
+        self._blind = {n for n, x in self.slots.items() if not x.info.sees}
         self.DeclarePeriodicUnrestrictedUpdateEvent(self._step * TICK, 0.0, self._update)
+
+    def reading(self, name: str, bank: Array) -> Reading:
+        """The latest reading in a state of the bank, read-only."""
+        slot = self.slots[name]
+        if name not in self._images:
+            return slot.reading(bank)
+        return self._images[name].reading(self._scene, float(bank[slot.stamp]), bank[slot.values])
+
+    def _rng(self, name: str, t: float) -> np.random.Generator:
+        """Random numbers of one reading."""
+        return sensor_rng(self._seed, self._robot_name, name, round(t * TICKS_PER_SECOND))
 
     def _update(self, context: Context, state: State) -> None:
         bank = state.get_mutable_discrete_state().get_mutable_value(self._index)
@@ -111,25 +164,38 @@ class SensorBank(LeafSystem):
         if not due:
             return
         robot = RobotState(*self._robot.Eval(context).tolist())
-        self._see(context, robot)
+        if self._blind.issuperset(due):
+            self._scene.move_robot(robot)
+        else:
+            self._see(context, robot)
         pose = Pose(robot.x, robot.y, robot.yaw)
         for name in due:
-            self._read(name, bank, pose, tick)
+            if name in self._images:
+                self._photograph(name, context, bank, robot, tick * TICK)
+            else:
+                self._read(name, bank, pose, tick)
 
-    def _due(self, tick: int) -> list[str]:
-        return [
-            n
-            for n, period in self._periods.items()
-            if (is_due(tick, self.slots[n].info.rate) if period is None else tick % period == 0)
-        ]
+    def _photograph(
+        self, name: str, context: Context, bank: Array, robot: RobotState, t: float
+    ) -> None:
+        slot = self.slots[name]
+        people = None if self._crowd is None else s.view(self._crowd.Eval(context))[1]
+        bank[slot.stamp] = t
+        capture(robot, people, bank[slot.values])
+        self._on_reading(name, self._images[name].take(self._scene, t, bank[slot.values]))
 
     def _see(self, context: Context, robot: RobotState) -> None:
         if self._crowd is None:
-            people, present = np.zeros((0, 4)), np.zeros(0, np.bool_)
-        else:
-            _, rows = s.view(self._crowd.Eval(context))
-            people, present = rows[:, s.X : s.VY + 1], rows[:, s.WAITING] == 0.0
-        self._scene.update(robot, people, present)
+            self._scene.update(robot, np.zeros((0, 4)), np.zeros(0, np.bool_))
+            return
+        _, rows = s.view(self._crowd.Eval(context))
+        self._scene.update(
+            robot,
+            rows[:, s.X : s.VY + 1],
+            rows[:, s.WAITING] == 0.0,
+            rows[:, s.DIR_X : s.DIR_Y + 1],
+            rows[:, s.WALKED],
+        )
 
     def _read(self, name: str, bank: Array, pose: Pose, tick: int) -> None:
         slot, sensor = self.slots[name], self._sensors[name]

@@ -81,10 +81,21 @@ def simulate(
 
 
 def _check_needs(request: Request) -> None:
-    """Refuse a planner whose sensors the robot lacks before anything is written."""
+    """Refuse what this robot, or this machine, cannot give before anything is written.
+
+    Raises:
+        InputError: the robot lacks a sensor that the planner needs.
+        MissingLibraryError: colour images are wanted where they cannot be drawn.
+    """
     (robot,) = request.scenario.robots.values()
     infos = {n: request.registry.build(x).info() for n, x in robot.sensors.items()}
-    select_sensors(request.choice.needs, infos, request.choice.name)
+    choice = request.choice
+    visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
+    cameras = [infos[n].camera for n in (infos if request.record == "all" else visible)]
+    if any(camera is not None and camera.colour for camera in cameras):
+        from crowdbot.core.sim.rendering import check_egl
+
+        check_egl()
 
 
 def _wants_references(request: Request) -> bool:

@@ -34,6 +34,9 @@ class DwaSpec(PlannerSpec):
 
     kind: Literal["dwa"] = "dwa"
     robot_radius: PositiveLength = Field(default=0.178, description="Radius of the robot, m.")
+    person_radius: NonNegativeLength = Field(
+        default=0.33, description="Disc that is kept clear around legs; 0: legs alone, m."
+    )
     speed: Annotated[float, Gt(0), Le(1)] = Field(
         default=1.0, description="Cruising speed as a fraction of the robot's largest."
     )

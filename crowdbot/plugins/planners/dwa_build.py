@@ -28,6 +28,7 @@ from crowdbot.plugins.planners.dwa_points_build import (
     nearest_per_sector,
 )
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
+from crowdbot.plugins.planners.people_build import carry, people_in, with_discs
 
 Array = NDArray[np.float64]
 
@@ -41,6 +42,8 @@ _ARRIVED = 0.1
 _LEEWAY = 0.05
 #: The map is renewed so often while it is needed, s.
 _MAP_PERIOD = 0.5
+#: People in that map have this share of their radius.
+_MAPPED = 0.5
 #: Speed and duration of the way back out of a dead end: m/s, s.
 _REVERSE, _ESCAPE = -0.2, 2.0
 
@@ -56,8 +59,9 @@ class Dwa:
         self._forget()
 
     def _forget(self) -> None:
-        self._scans: deque[tuple[float, Array]] = deque(maxlen=64)
+        self._scans: deque[tuple[float, Array, Array]] = deque(maxlen=64)
         self._map: Array = np.empty((0, 2))
+        self._around = (np.empty((0, 2)), np.empty((0, 2)))
         self._mapped_at = -math.inf
         self._way: float | None = None
         self._last = (0.0, 0.0)
@@ -108,7 +112,7 @@ class Dwa:
         escaping = self._is_stuck(obs)
         room = distance
         if self._is_lost(distance):
-            goal, room = self._way_out(obs, points, goal, distance)
+            goal, room = self._way_out(obs, goal, distance)
         else:
             self._map, self._way = np.empty((0, 2)), None
         direction, free = self._choose(obs.pose, goal, room, points, velocities, escaping)
@@ -131,21 +135,27 @@ class Dwa:
 
     def _see(self, obs: Observation) -> tuple[Array, Array]:
         """Thinned points and their velocities (K, 2), base frame."""
-        points = nearest_per_sector(self._lidars(obs.readings, obs.t, obs.twist), _SECTORS, _REACH)
+        radius = self._spec.person_radius
+        seen = self._lidars(obs.readings, obs.t, obs.twist)
+        people, rest = people_in(seen, _REACH if radius else 0.0)
+        points = nearest_per_sector(with_discs(rest, people, radius), _SECTORS, _REACH)
+        self._around = rest, people
         c, s = math.cos(obs.pose.yaw), math.sin(obs.pose.yaw)
         to_world = np.array([[c, s], [-s, c]])  # for row vectors
-        world = points @ to_world + (obs.pose.x, obs.pose.y)
+        now = [p @ to_world + (obs.pose.x, obs.pose.y) for p in (points, people)]
         while len(self._scans) > 1 and self._scans[1][0] <= obs.t - self._spec.look_back:
             self._scans.popleft()
         velocities = np.zeros_like(points)
         if self._scans and self._spec.look_back > 0.0:
-            then, before = self._scans[0]
+            then, *before = self._scans[0]
             if obs.t - then >= 0.5 * self._spec.look_back:
-                moved = apparent_velocity(
-                    world, before, obs.t - then, _STILL, self._spec.max_obstacle_speed
+                velocities, going = (
+                    apparent_velocity(new, old, obs.t - then, _STILL, self._spec.max_obstacle_speed)
+                    @ to_world.T
+                    for new, old in zip(now, before, strict=True)
                 )
-                velocities = moved @ to_world.T
-        self._scans.append((obs.t, world))
+                carry(points, velocities, people, going, radius)
+        self._scans.append((obs.t, now[0], now[1]))
         return points, velocities
 
     def _choose(
@@ -200,9 +210,7 @@ class Dwa:
             self._nearest = (distance, now)
         return now - self._nearest[1] > 2.0 * self._spec.patience
 
-    def _way_out(
-        self, obs: Observation, points: Array, goal: float, distance: float
-    ) -> tuple[float, float]:
+    def _way_out(self, obs: Observation, goal: float, distance: float) -> tuple[float, float]:
         """Bearing and length of the first stretch past everything that stands around.
 
         Those of the goal if there is no way.
@@ -211,6 +219,10 @@ class Dwa:
         if obs.t - self._mapped_at >= _MAP_PERIOD:
             self._mapped_at = obs.t
             c, s = math.cos(yaw), math.sin(yaw)
+            # Of one who stands sideways one leg is seen, and the disc is too near: no way would
+            # be left in a map that remembers discs at their full size.
+            discs = with_discs(*self._around, _MAPPED * self._spec.person_radius)
+            points = nearest_per_sector(discs, _SECTORS, _REACH)
             seen = points @ np.array([[c, s], [-s, c]]) + (x, y)
             self._map = remembered(self._map, seen, x, y, _REACH)
             radius = self._spec.robot_radius + self._spec.margin + 0.02

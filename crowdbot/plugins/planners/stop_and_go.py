@@ -25,6 +25,9 @@ class StopAndGoSpec(PlannerSpec):
 
     kind: Literal["stop_and_go"] = "stop_and_go"
     robot_radius: PositiveLength = Field(default=0.178, description="Radius of the robot, m.")
+    person_radius: NonNegativeLength = Field(
+        default=0.33, description="Disc that is kept clear around legs; 0: legs alone, m."
+    )
     speed: Annotated[float, Gt(0), Le(1)] = Field(
         default=1.0, description="Cruising speed as a fraction of the robot's largest."
     )

@@ -16,9 +16,13 @@ from crowdbot.core.interfaces import Command, Observation, RobotLimits, SensorIn
 from crowdbot.core.sensing.points import LidarPoints
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import GoalSeek
+from crowdbot.plugins.planners.people_build import people_in, with_discs
 from crowdbot.plugins.planners.stop_and_go import StopAndGoSpec
 
 Array = NDArray[np.float64]
+
+#: People farther away do not matter yet, m.
+_REACH = 4.0
 
 
 class StopAndGo:
@@ -48,7 +52,9 @@ class StopAndGo:
         """Goal seek's command, slowed down or stopped."""
         assert self._limits is not None
         v, w, _ = self._seek.step(obs)
-        room = self._room(self._points(obs.readings, obs.t, obs.twist))
+        points = self._points(obs.readings, obs.t, obs.twist)
+        people, rest = people_in(points, _REACH if self._spec.person_radius else 0.0)
+        room = self._room(with_discs(rest, people, self._spec.person_radius))
         obs.log("stop_and_go/room", min(room, 100.0))
         return Command(min(v, safe_speed(room, self._limits.a_max, self._spec.reaction_time)), w)
 

@@ -12,6 +12,7 @@ from crowdbot.dsl.quantities import (
     PositiveAcceleration,
     PositiveAngularAcceleration,
     PositiveAngularSpeed,
+    PositiveDuration,
     PositiveMass,
     PositiveSpeed,
 )
@@ -26,6 +27,9 @@ class Turtlebot2Spec(RobotSpec):
     max_acceleration: PositiveAcceleration = Field(default=1.0, description="Slew of v, m/s^2.")
     max_yaw_acceleration: PositiveAngularAcceleration = Field(
         default=2.0, description="Slew of w, rad/s^2."
+    )
+    command_timeout: PositiveDuration = Field(
+        default=0.6, description="Without a command for so long it stops, s (as the Kobuki does)."
     )
     mass: PositiveMass = Field(default=6.3, description="Whole robot, kg.")
 

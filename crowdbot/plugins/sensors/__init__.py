@@ -1,6 +1,23 @@
 """Sensors."""
 
+from crowdbot.plugins.sensors.bumper import BUMPER
+from crowdbot.plugins.sensors.imu import IMU
+from crowdbot.plugins.sensors.infrared import INFRARED
 from crowdbot.plugins.sensors.lidar2d import LIDAR2D
+from crowdbot.plugins.sensors.lidar3d import LIDAR3D
+from crowdbot.plugins.sensors.people_tracker import PEOPLE_TRACKER
+from crowdbot.plugins.sensors.rgbd_camera import RGBD_CAMERA
+from crowdbot.plugins.sensors.ultrasound import ULTRASOUND
 from crowdbot.plugins.sensors.wheel_odometry import WHEEL_ODOMETRY
 
-COMPONENTS = (LIDAR2D, WHEEL_ODOMETRY)
+COMPONENTS = (
+    LIDAR2D,
+    LIDAR3D,
+    ULTRASOUND,
+    INFRARED,
+    RGBD_CAMERA,
+    WHEEL_ODOMETRY,
+    IMU,
+    BUMPER,
+    PEOPLE_TRACKER,
+)

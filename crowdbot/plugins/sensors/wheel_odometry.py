@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from annotated_types import Gt
+from annotated_types import Ge, Gt
 from pydantic import Field
 
 from crowdbot.core.component import Component
@@ -24,10 +24,20 @@ class WheelOdometrySpec(SensorSpec):
     ticks_per_turn: Annotated[float, Gt(0)] = Field(
         default=2578.33, description="Encoder ticks per wheel turn."
     )
+    noise: Annotated[float, Ge(0)] = Field(
+        default=0.0,
+        description="Standard deviation of each wheel's rate, anew at each reading, rad/s.",
+    )
+    heading: Literal["wheels", "gyro"] = Field(
+        default="wheels", description="Where yaw and w come from; a Kobuki can use its gyro."
+    )
+    gyro_noise: Annotated[float, Ge(0)] = Field(
+        default=5.2e-4, description="Density of the gyro's noise, rad/s/sqrt(Hz)."
+    )
 
 
 WHEEL_ODOMETRY = Component(
     spec=WheelOdometrySpec,
     build="crowdbot.plugins.sensors.wheel_odometry_build:build",
-    summary="pose and twist integrated from quantised wheel encoders",
+    summary="pose and twist integrated from quantised wheel encoders, or encoders and gyro",
 )

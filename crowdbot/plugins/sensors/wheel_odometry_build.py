@@ -2,7 +2,11 @@
 
 Between two readings the left and right wheel roll s_l and s_r, whole ticks long. The robot turns
 by (s_r - s_l) / track and moves (s_l + s_r) / 2 along the heading half-way through the turn, which
-is exact on straight lines and second-order on arcs.
+is exact on straight lines and second-order on arcs. With ``heading: gyro`` the turn is the one that
+a gyro measures, whose noise of density n adds n sqrt(dt) (Woodman 2007, section 3.2.1).
+
+``noise`` makes a wheel seem to turn faster or slower by as much as a draw says, anew from one
+reading to the next; the encoders count what the wheels seem to do.
 """
 
 from __future__ import annotations
@@ -20,8 +24,8 @@ from crowdbot.plugins.sensors.wheel_odometry import WheelOdometrySpec
 Array = NDArray[np.float64]
 
 #: Layout of the memory.
-STARTED, TIME, LEFT, RIGHT = 0, 1, 2, 3
-READING = slice(4, 9)
+STARTED, TIME, LEFT, RIGHT, YAW = range(5)
+ERRORS, READING = slice(5, 7), slice(7, 12)
 
 
 class WheelOdometry:
@@ -32,6 +36,7 @@ class WheelOdometry:
 
     def __init__(self, spec: WheelOdometrySpec) -> None:
         self._spec = spec
+        self._gyro = spec.heading == "gyro"
         self._info = SensorInfo(
             category="odometry",
             frame="odom",
@@ -40,7 +45,8 @@ class WheelOdometry:
             shape=(5,),
             ros_type="nav_msgs/msg/Odometry",
             memory=READING.stop,
-            random=False,
+            random=spec.noise > 0.0 or (self._gyro and spec.gyro_noise > 0.0),
+            sees=False,
         )
 
     def info(self) -> SensorInfo:
@@ -55,19 +61,25 @@ class WheelOdometry:
         Raises:
             SimulationError: the scene has no robot.
         """
-        del rng
         if scene.robot is None:
             raise SimulationError("wheel odometry needs a robot in the scene")
-        left, right = self._ticks(scene.robot.left_angle), self._ticks(scene.robot.right_angle)
-        if memory[STARTED] == 0.0:
-            memory[STARTED] = 1.0
+        dt = t - memory[TIME]
+        if memory[STARTED] and dt <= 0.0:
+            return memory[READING].copy()
+        turned = math.remainder(pose.yaw - memory[YAW], 2.0 * math.pi)
+        if memory[STARTED] and self._info.random:
+            draws = rng.standard_normal(3)
+            memory[ERRORS] += self._spec.noise * dt * draws[:2]
+            turned += self._spec.gyro_noise * math.sqrt(dt) * draws[2]
+        left = self._ticks(scene.robot.left_angle + memory[ERRORS][0])
+        right = self._ticks(scene.robot.right_angle + memory[ERRORS][1])
+        if memory[STARTED]:
+            ways = left - memory[LEFT], right - memory[RIGHT]
+            memory[READING] = self._advanced(memory[READING], *ways, turned, dt)
+        else:
             memory[READING] = (pose.x, pose.y, _wrapped(pose.yaw), 0.0, 0.0)
-            memory[TIME], memory[LEFT], memory[RIGHT] = t, left, right
-        elif t > memory[TIME]:
-            memory[READING] = self._advanced(
-                memory[READING], left - memory[LEFT], right - memory[RIGHT], t - memory[TIME]
-            )
-            memory[TIME], memory[LEFT], memory[RIGHT] = t, left, right
+        memory[STARTED], memory[TIME], memory[YAW] = 1.0, t, pose.yaw
+        memory[LEFT], memory[RIGHT] = left, right
         return memory[READING].copy()
 
     def _ticks(self, angle: float) -> int:
@@ -75,11 +87,11 @@ class WheelOdometry:
         return math.floor(angle / (2.0 * math.pi) * self._spec.ticks_per_turn)
 
     def _advanced(
-        self, state: Array, left: float, right: float, dt: float
+        self, state: Array, left: float, right: float, turned: float, dt: float
     ) -> tuple[float, float, float, float, float]:
         metre = 2.0 * math.pi * self._spec.wheel_radius / self._spec.ticks_per_turn
         ahead = (left + right) / 2.0 * metre
-        turn = (right - left) * metre / self._spec.track
+        turn = turned if self._gyro else (right - left) * metre / self._spec.track
         x, y, yaw = state[0], state[1], state[2]
         middle = yaw + turn / 2.0
         x, y = x + ahead * math.cos(middle), y + ahead * math.sin(middle)

@@ -1,0 +1,67 @@
+"""``crowdbot export-urdf``: a robot's body and sensor frames for the tools of ROS."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from crowdbot.core.interfaces import SensorInfo
+    from crowdbot.core.registry import Registry
+    from crowdbot.dsl.scenario import Robot
+
+
+def export_urdf(
+    robot: Annotated[
+        str, typer.Argument(help="Kind of a robot; with --spec, name of a robot in a scenario.")
+    ],
+    spec: Annotated[
+        str | None, typer.Option("--spec", help="Scenario whose robot, with its sensors, is meant.")
+    ] = None,
+    id_: Annotated[
+        str | None, typer.Option("--id", help="Id in a suite; default: its first scenario.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="File to write; default: standard output.")
+    ] = None,
+) -> None:
+    """Write a robot as URDF, with a frame for each sensor.
+
+    Example: crowdbot export-urdf robot --spec challenge-2020 --out turtlebot2.urdf
+    """
+    from crowdbot.core.aside import write_aside
+    from crowdbot.core.registry import discover
+    from crowdbot.core.urdf import to_urdf
+
+    registry = discover()
+    sensors: Mapping[str, SensorInfo] = {}
+    if spec is None:
+        model = registry.build(registry.find("robot", robot).spec(kind=robot))
+    else:
+        found = _robot(registry, robot, spec, id_)
+        model, sensors = registry.build(found.model), _sensors(registry, found)
+    text = to_urdf(model, sensors, robot)
+    if out is None:
+        typer.echo(text, nl=False)
+    else:
+        write_aside(out, text)
+        typer.echo(str(out), err=True)
+
+
+def _robot(registry: Registry, name: str, spec: str, id_: str | None) -> Robot:
+    from crowdbot.core.library import open_spec, pick
+    from crowdbot.errors import UnknownNameError
+
+    expansion = open_spec(spec, registry)
+    scenario = expansion.scenarios[0] if id_ is None else pick(expansion, id_)
+    if name not in scenario.robots:
+        raise UnknownNameError("robot", name, scenario.robots)
+    return scenario.robots[name]
+
+
+def _sensors(registry: Registry, robot: Robot) -> Mapping[str, SensorInfo]:
+    return {name: registry.build(spec).info() for name, spec in robot.sensors.items()}

@@ -1,0 +1,25 @@
+"""Where a sensor on a robot is in the world."""
+
+from __future__ import annotations
+
+import math
+
+from crowdbot.core.interfaces import Pose
+from crowdbot.core.sensing.scene import Scene
+from crowdbot.dsl.base import Mount
+
+#: Height of base_link above the floor (m) where the scene does not say it: the Kobuki's.
+BASE_HEIGHT = 0.0102
+
+
+def mount_of(mount: Mount) -> tuple[float, float, float, float]:
+    """x, y, z, yaw from base_link, m and rad."""
+    return mount.x, mount.y, mount.z, mount.yaw
+
+
+def placed(mount: Mount, scene: Scene, pose: Pose) -> tuple[tuple[float, float, float], float]:
+    """Position and heading of a sensor in the world frame, m and rad."""
+    c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+    base = BASE_HEIGHT if scene.robot is None else scene.robot.z
+    x, y = pose.x + c * mount.x - s * mount.y, pose.y + s * mount.x + c * mount.y
+    return (x, y, base + mount.z), pose.yaw + mount.yaw

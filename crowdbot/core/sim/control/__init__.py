@@ -1,0 +1,27 @@
+"""Control modes: how commands become motion. All feed the same ``robot_state``."""
+
+from __future__ import annotations
+
+from pydrake.systems.framework import DiagramBuilder
+
+from crowdbot.core.interfaces import EnvironmentParts, RobotModel
+from crowdbot.core.sim.control.controlled import ControlledRobot
+from crowdbot.core.sim.control.differential_drive import add_differential_drive
+from crowdbot.core.sim.control.force import add_force
+from crowdbot.core.sim.control.kinematic import add_kinematic
+
+_MODES = {
+    "differential_drive": add_differential_drive,
+    "force": add_force,
+    "kinematic": add_kinematic,
+}
+
+
+def add_robot(
+    builder: DiagramBuilder, parts: EnvironmentParts, model: RobotModel, control: str
+) -> ControlledRobot:
+    """Add a robot to a diagram, moved in one of the control modes."""
+    return _MODES[control](builder, parts, model)
+
+
+__all__ = ["ControlledRobot", "add_robot"]

@@ -1,0 +1,70 @@
+"""What the three control modes have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.systems.framework import InputPort, LeafSystem
+
+from crowdbot.core.interfaces import Pose
+from crowdbot.core.sim.plant import RobotPlant
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Push:
+    """How a horizontal force on the robot is written for the block that feels it.
+
+    Attributes:
+        size: length of the vector.
+        at: first of the five entries torque x, y, z, force x, y; None: force x, y alone.
+        lever: height of the force above the base frame, m.
+    """
+
+    size: int
+    at: int | None
+    lever: float
+
+    def write(self, values: Array, fx: float, fy: float) -> None:
+        """Force (N, world frame) into a vector of ``size``, in place."""
+        if self.at is None:
+            values[0], values[1] = fx, fy
+        else:
+            i = self.at
+            values[i : i + 5] = -self.lever * fy, self.lever * fx, 0.0, fx, fy
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControlledRobot:
+    """A robot in a diagram.
+
+    Attributes:
+        state: the system with the port ``robot_state``, which everything downstream reads.
+        desired: port for what `desire` makes of a command.
+        desire: v (m/s), w (rad/s), after slew limits -> values for ``desired``.
+        desired_size: their number.
+        push: layout of the force that people exert.
+        push_port: takes that force; None: nothing pushes the robot off its way.
+        place: puts the robot, at rest, at a pose; takes the root context.
+        rig: the multibody plant; None where there is none.
+    """
+
+    state: LeafSystem
+    desired: InputPort
+    desire: Callable[[float, float], tuple[float, ...]]
+    desired_size: int
+    push: Push
+    push_port: InputPort | None
+    place: Callable[[object, Pose], None]
+    rig: RobotPlant | None
+
+
+def push_on(rig: RobotPlant) -> Push:
+    """The push as a generalised force on a plant's velocities."""
+    base = rig.plant.GetBodyByName(rig.robot.base, rig.model)
+    lever = rig.robot.force_height - rig.robot.base_height
+    return Push(rig.plant.num_velocities(), base.floating_velocities_start_in_v(), lever)

@@ -1,0 +1,104 @@
+"""Force control: F = m dv/dt on the base, no more than the wheels could give.
+
+Source: CrowdBot D7.3, section 1.1 (control modes). Mass and inertia are those that a force at the
+base has to move, rolling wheels among them.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, LeafSystem
+
+from crowdbot.core.interfaces import EnvironmentParts, RobotModel
+from crowdbot.core.sim import ports
+from crowdbot.core.sim.control.controlled import ControlledRobot, push_on
+from crowdbot.core.sim.plant import RobotPlant, add_plant, place_robot
+from crowdbot.core.sim.robot_state import add_robot_state
+from crowdbot.core.ticks import TICK
+
+
+class ForceDrive(LeafSystem):
+    """Inputs: robot state, wanted v and w, push by people. Output: generalised force.
+
+    The output follows the state directly: one tick late, a gain of one would oscillate.
+    """
+
+    def __init__(self, rig: RobotPlant) -> None:
+        super().__init__()
+        size = rig.plant.num_velocities()
+        self._start = push_on(rig).at or 0
+        self._mass, self._inertia = moved(rig)
+        self._most, self._most_torque = strongest(rig)
+        self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
+        self._desired = self.DeclareVectorInputPort(ports.DESIRED_STATE, 2)
+        self._push = self.DeclareVectorInputPort(ports.ROBOT_FORCE, size)
+        self.DeclareVectorOutputPort(
+            "force",
+            size,
+            self._calc,
+            prerequisites_of_calc={p.ticket() for p in (self._robot, self._desired, self._push)},
+        )
+
+    def _calc(self, context: Context, output: BasicVector) -> None:
+        _, _, yaw, vx, vy, w, *_ = self._robot.Eval(context).tolist()
+        wanted_v, wanted_w = self._desired.Eval(context).tolist()
+        c, s = math.cos(yaw), math.sin(yaw)
+        force = _clamp(self._mass * (wanted_v - (c * vx + s * vy)) / TICK, self._most)
+        torque = _clamp(self._inertia * (wanted_w - w) / TICK, self._most_torque)
+        values = output.get_mutable_value()
+        values[:] = self._push.Eval(context) if self._push.HasValue(context) else 0.0
+        i = self._start
+        values[i + 2 : i + 5] += torque, c * force, s * force
+
+
+def _clamp(value: float, most: float) -> float:
+    return min(most, max(-most, value))
+
+
+def moved(rig: RobotPlant) -> tuple[float, float]:
+    """Mass (kg) and yaw inertia (kg m^2) that a push at the base moves, wheels rolling."""
+    plant, drive = rig.plant, rig.robot.drive
+    matrix = plant.CalcMassMatrix(plant.CreateDefaultContext())
+    start = plant.GetBodyByName(rig.robot.base, rig.model).floating_velocities_start_in_v()
+    joints = [plant.GetJointByName(j) for j in (drive.left_joint, drive.right_joint)]
+    rolling = sum(float(matrix[j.velocity_start(), j.velocity_start()]) for j in joints)
+    rolling /= drive.command_radius**2
+    mass = float(matrix[start + 3, start + 3]) + rolling
+    return mass, float(matrix[start + 2, start + 2]) + rolling * (0.5 * drive.track) ** 2
+
+
+def strongest(rig: RobotPlant) -> tuple[float, float]:
+    """The largest force (N) and torque (N m) that both wheel motors give together."""
+    drive = rig.robot.drive
+    efforts = [
+        rig.plant.GetJointActuatorByName(j).effort_limit()
+        for j in (drive.left_joint, drive.right_joint)
+    ]
+    force = float(np.sum(efforts)) / drive.command_radius
+    return force, force * 0.5 * drive.track
+
+
+def add_force(
+    builder: DiagramBuilder, parts: EnvironmentParts, model: RobotModel
+) -> ControlledRobot:
+    """A force on the base; the wheels roll along freely."""
+    rig = add_plant(builder, parts, model, None)
+    plant = rig.plant
+    state = add_robot_state(builder, rig)
+    drive = builder.AddNamedSystem("force_drive", ForceDrive(rig))
+    builder.Connect(state.GetOutputPort(ports.ROBOT_STATE), drive.GetInputPort(ports.ROBOT_STATE))
+    builder.Connect(drive.GetOutputPort("force"), plant.get_applied_generalized_force_input_port())
+    return ControlledRobot(
+        state=state,
+        desired=drive.GetInputPort(ports.DESIRED_STATE),
+        desire=lambda v, w: (v, w),
+        desired_size=2,
+        push=push_on(rig),
+        push_port=drive.GetInputPort(ports.ROBOT_FORCE),
+        place=lambda context, start: place_robot(
+            rig, plant.GetMyMutableContextFromRoot(context), start
+        ),
+        rig=rig,
+    )

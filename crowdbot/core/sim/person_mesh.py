@@ -1,0 +1,63 @@
+"""A low-poly person for pictures: prisms for two legs and a trunk, and a head.
+
+The proportions are those that sensors see (`crowdbot.core.sensing.bodies`); the head is added.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.sensing.bodies import BOTTOM, PARTS, RADIUS, TOP, X, Y, place_people
+
+Array = NDArray[np.float64]
+_SIDES = 8
+_SHOULDER = 0.82  # of the height: where the trunk ends that is drawn
+_HEAD = 0.055  # of the height: radius of the head
+
+
+def person_obj(height: float, radius: float) -> str:
+    """Wavefront OBJ text of a person who stands at the origin and looks along x.
+
+    Args:
+        height: m.
+        radius: of the disc that touches, m.
+    """
+    discs = np.zeros((PARTS, 5))
+    place_people(
+        np.zeros((1, 4)), np.ones(1, np.bool_), np.array([[1.0, 0.0]]), np.zeros(1),
+        np.array([radius]), np.array([height]), discs,
+    )  # fmt: skip
+    discs[-1, TOP] = _SHOULDER * height
+    neck = [0.0, 0.0, _HEAD * height, (_SHOULDER + 0.04) * height, height]
+    vertices: list[Array] = []
+    normals: list[Array] = []
+    faces: list[str] = []
+    for disc in [*discs, np.array(neck)]:
+        _prism(disc, vertices, normals, faces)
+    lines = [f"v {v[0]:.6f} {v[1]:.6f} {v[2]:.6f}" for v in vertices]
+    lines += [f"vn {n[0]:.6f} {n[1]:.6f} {n[2]:.6f}" for n in normals]
+    return "\n".join([*lines, *faces]) + "\n"
+
+
+def _prism(disc: Array, vertices: list[Array], normals: list[Array], faces: list[str]) -> None:
+    """Add an upright prism with a flat top; sides are shaded round."""
+    first, normal = len(vertices) + 1, len(normals) + 1
+    turns = 2.0 * math.pi * np.arange(_SIDES) / _SIDES
+    for turn in turns:
+        out = np.array([math.cos(turn), math.sin(turn), 0.0])
+        foot = np.array([disc[X], disc[Y], disc[BOTTOM]]) + disc[RADIUS] * out
+        vertices += [foot, foot + np.array([0.0, 0.0, disc[TOP] - disc[BOTTOM]])]
+        normals.append(out)
+    normals.append(np.array([0.0, 0.0, 1.0]))
+    for k in range(_SIDES):
+        a, b = first + 2 * k, first + 2 * ((k + 1) % _SIDES)
+        na, nb = normal + k, normal + (k + 1) % _SIDES
+        faces.append(f"f {a}//{na} {b}//{nb} {b + 1}//{nb}")
+        faces.append(f"f {a}//{na} {b + 1}//{nb} {a + 1}//{na}")
+    up = normal + _SIDES
+    for k in range(1, _SIDES - 1):
+        a, b, c = first + 1, first + 2 * k + 1, first + 2 * k + 3
+        faces.append(f"f {a}//{up} {b}//{up} {c}//{up}")

@@ -1,0 +1,203 @@
+"""Colour images, drawn by VTK through EGL: floor, walls, pillars and low-poly people.
+
+The pictures live in a SceneGraph of their own, so that they cost the plant nothing. What VTK
+draws may differ from machine to machine: colour is outside of crowdbot's determinism.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.common import MemoryFile
+from pydrake.geometry import (
+    Box,
+    ClippingRange,
+    ColorRenderCamera,
+    Cylinder,
+    FrameId,
+    FramePoseVector,
+    GeometryFrame,
+    GeometryInstance,
+    InMemoryMesh,
+    LightParameter,
+    MakeRenderEngineVtk,
+    Mesh,
+    PerceptionProperties,
+    RenderCameraCore,
+    RenderEngineVtkParams,
+    Rgba,
+    SceneGraph,
+    Shape,
+)
+from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
+from pydrake.systems.sensors import CameraInfo
+
+from crowdbot.core.interfaces import Pinhole, Pose
+from crowdbot.core.optical import OPTICAL_RPY
+from crowdbot.core.sensing.place import placed
+from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.sim.person_mesh import person_obj
+from crowdbot.dsl.base import Mount
+from crowdbot.errors import MissingLibraryError
+
+Array = NDArray[np.float64]
+_NAME = "vtk"
+_FLOOR, _WALL, _PILLAR = (0.55, 0.53, 0.5), (0.8, 0.79, 0.75), (0.6, 0.6, 0.65)
+_SKY = np.array([0.75, 0.85, 0.95])
+_CLOTHES = (
+    (0.75, 0.25, 0.2), (0.2, 0.35, 0.65), (0.25, 0.5, 0.3), (0.85, 0.7, 0.3),
+    (0.45, 0.3, 0.5), (0.3, 0.3, 0.32), (0.85, 0.82, 0.78), (0.3, 0.6, 0.65),
+)  # fmt: skip
+_HIDDEN = RigidTransform([0.0, 0.0, -100.0])
+_PROBE = "from crowdbot.core.sim.rendering import probe; probe()"
+
+
+class Renderer:
+    """Draws what one camera sees."""
+
+    def __init__(
+        self, scene: Scene, camera: Pinhole, mount: tuple[float, float, float, float]
+    ) -> None:
+        """Set the stage.
+
+        Args:
+            scene: walls, pillars and sizes of people; these stay as they are.
+            camera: whose pictures are wanted.
+            mount: x, y, z, yaw from base_link, m and rad.
+
+        Raises:
+            MissingLibraryError: this machine cannot draw.
+        """
+        check_egl()
+        self._mount = Mount(x=mount[0], y=mount[1], z=mount[2], yaw=mount[3])
+        self._graph = SceneGraph()
+        self._graph.AddRenderer(_NAME, MakeRenderEngineVtk(_parameters()))
+        self._source = self._graph.RegisterSource("crowdbot")
+        self._scenery(scene)
+        self._people = self._crowd(scene)
+        self._context = self._graph.CreateDefaultContext()
+        self._camera = _render_camera(camera)
+
+    def __call__(self, scene: Scene, pose: Pose) -> NDArray[np.uint8]:
+        """The picture (H, W, 3), first row on top."""
+        poses = FramePoseVector()
+        for frame, place in zip(self._people, _places(scene), strict=True):
+            poses.set_value(frame, place)
+        self._graph.get_source_pose_port(self._source).FixValue(self._context, poses)
+        at, yaw = placed(self._mount, scene, pose)
+        eye = RigidTransform(
+            RotationMatrix.MakeZRotation(yaw) @ RollPitchYaw(*OPTICAL_RPY).ToRotationMatrix(),
+            list(at),
+        )
+        query = self._graph.get_query_output_port().Eval(self._context)
+        picture = query.RenderColorImage(self._camera, self._graph.world_frame_id(), eye)
+        colours: NDArray[np.uint8] = picture.data[:, :, :3].copy()
+        return colours
+
+    def _scenery(self, scene: Scene) -> None:
+        self._add(Box(400.0, 400.0, 0.1), RigidTransform([0.0, 0.0, -0.05]), _FLOOR, "floor")
+        for k, (wall, (low, high)) in enumerate(zip(scene.walls, scene.wall_heights, strict=True)):
+            way, middle = wall[2:] - wall[:2], 0.5 * (wall[:2] + wall[2:])
+            pose = RigidTransform(
+                RotationMatrix.MakeZRotation(np.arctan2(way[1], way[0])),
+                [*middle, 0.5 * (low + high)],
+            )
+            shape = Box(max(float(np.hypot(*way)), 1e-3), 0.01, high - low)
+            self._add(shape, pose, _WALL, f"wall{k}")
+        rounds = zip(scene.pillars, scene.pillar_heights, strict=True)
+        for k, ((x, y, radius), (low, high)) in enumerate(rounds):
+            pose = RigidTransform([x, y, 0.5 * (low + high)])
+            self._add(Cylinder(radius, high - low), pose, _PILLAR, f"pillar{k}")
+
+    def _crowd(self, scene: Scene) -> list[FrameId]:
+        """A frame with a person in it for everybody; those of one size share a mesh."""
+        frames, meshes = [], dict[tuple[float, float], Mesh]()
+        sizes = zip(scene.people_height.tolist(), scene.people_radius.tolist(), strict=True)
+        for k, size in enumerate(sizes):
+            if size not in meshes:
+                meshes[size] = _mesh(*size)
+            frame = self._graph.RegisterFrame(self._source, GeometryFrame(f"person{k}"))
+            colour = _CLOTHES[k % len(_CLOTHES)]
+            self._add(meshes[size], RigidTransform(), colour, f"person{k}", frame)
+            frames.append(frame)
+        return frames
+
+    def _add(
+        self,
+        shape: Shape,
+        pose: RigidTransform,
+        colour: tuple[float, float, float],
+        name: str,
+        frame: FrameId | None = None,
+    ) -> None:
+        instance = GeometryInstance(pose, shape, name)
+        looks = PerceptionProperties()
+        looks.AddProperty("phong", "diffuse", Rgba(*colour, 1.0))
+        instance.set_perception_properties(looks)
+        where = self._graph.world_frame_id() if frame is None else frame
+        self._graph.RegisterGeometry(self._source, where, instance)
+
+
+def _mesh(height: float, radius: float) -> Mesh:
+    text = person_obj(height, radius)
+    return Mesh(InMemoryMesh(mesh_file=MemoryFile(text.encode(), ".obj", "person")))
+
+
+def _parameters() -> RenderEngineVtkParams:
+    sun = LightParameter(
+        type="directional", frame="world", direction=[0.4, 0.6, -1.0], intensity=0.8
+    )
+    lamp = LightParameter(
+        type="directional", frame="camera", direction=[0.0, 0.3, 1.0], intensity=0.5
+    )
+    return RenderEngineVtkParams(lights=[sun, lamp], default_clear_color=_SKY, backend="EGL")
+
+
+def _render_camera(camera: Pinhole) -> ColorRenderCamera:
+    focal, (cx, cy) = camera.focal, camera.centre
+    # Drake counts from the corner of the first pixel, ROS from its centre.
+    about = CameraInfo(camera.width, camera.height, focal, focal, cx + 0.5, cy + 0.5)
+    core = RenderCameraCore(_NAME, about, ClippingRange(0.01, 200.0), RigidTransform())
+    return ColorRenderCamera(core, False)
+
+
+def _places(scene: Scene) -> list[RigidTransform]:
+    """Where people stand; the absent lie under the floor."""
+    return [
+        RigidTransform(RotationMatrix.MakeZRotation(yaw), [x, y, 0.0]) if here else _HIDDEN
+        for (x, y), yaw, here in zip(
+            scene.people[:, :2].tolist(), scene.headings.tolist(), scene.present, strict=True
+        )
+    ]
+
+
+# ------------------------------------------------------------------------------- EGL
+@cache
+def check_egl() -> None:
+    """Try in another process whether pictures can be drawn: a failed try kills its process.
+
+    Raises:
+        MissingLibraryError: they cannot; the message names what to install.
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", _PROBE], capture_output=True, text=True, timeout=60, check=False
+    )
+    if done.returncode != 0:
+        last = (done.stderr.strip().splitlines() or [f"it ended with {done.returncode}"])[-1]
+        raise MissingLibraryError(
+            "colour images need EGL and OpenGL, which do not work here; install them with "
+            f"'apt-get install libegl1 libgl1', or set colour: false ({last})"
+        )
+
+
+def probe() -> None:
+    """Draw one small picture; may crash where libraries are missing."""
+    graph = SceneGraph()
+    graph.AddRenderer(_NAME, MakeRenderEngineVtk(_parameters()))
+    query = graph.get_query_output_port().Eval(graph.CreateDefaultContext())
+    camera = _render_camera(Pinhole(width=8, height=8, focal=8.0))
+    query.RenderColorImage(camera, graph.world_frame_id(), RigidTransform())

@@ -1,0 +1,92 @@
+"""WallContacts: the book of the robot's contacts with walls and pillars.
+
+A contact begins with the first force (a kinematic robot feels none: where it touches) and ends
+when the gap exceeds the release gap, as contacts with people do. Its impulse is the sum of the
+horizontal contact force over the ticks, its speed that of the robot one tick before it began.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from pydrake.multibody.plant import ContactResults
+from pydrake.multibody.tree import world_index
+
+from crowdbot.core.crowd.contact import RELEASE_GAP
+from crowdbot.core.interfaces import EnvironmentParts, RobotModel, RobotState
+from crowdbot.core.run_log import RunLog
+from crowdbot.core.sim.control.kinematic import gap_to_walls, obstacles
+from crowdbot.core.ticks import TICK
+
+#: Nearer than this the plant is asked for forces, m.
+_NEAR = 0.01
+#: A normal steeper than this belongs to the floor.
+_LEVEL = 0.5
+#: What a robot without forces counts as touching, m.
+_TOUCH = 1e-6
+_WALL = -1
+
+
+@dataclass(slots=True)
+class _Contact:
+    start: float
+    end: float
+    speed: float
+    impulse: float = 0.0
+    peak: float = 0.0
+
+
+class WallContacts:
+    """Watches one robot; to be told its state at every tick."""
+
+    def __init__(self, parts: EnvironmentParts, robot: RobotModel, log: RunLog) -> None:
+        self._walls, self._pillars = obstacles(parts, robot.height)
+        self._radius, self._log = robot.footprint_radius, log
+        self._contact: _Contact | None = None
+        self._speed = 0.0
+
+    def watch(self, t: float, robot: RobotState, force: Callable[[], float] | None) -> None:
+        """One tick.
+
+        Args:
+            force: the horizontal force of walls on the robot now (N); None where there is none.
+        """
+        gap = gap_to_walls(self._walls, self._pillars, robot.x, robot.y) - self._radius
+        if gap < _NEAR:
+            self._touch(t, gap, None if force is None else force())
+        elif gap > RELEASE_GAP:
+            self.finish()
+        self._speed = math.hypot(robot.vx, robot.vy)
+
+    def _touch(self, t: float, gap: float, force: float | None) -> None:
+        touching = gap <= _TOUCH if force is None else force > 0.0
+        if not touching:
+            return
+        if self._contact is None:
+            self._contact = _Contact(t, t, self._speed)
+        self._contact.end = t
+        self._contact.impulse += (force or 0.0) * TICK
+        self._contact.peak = max(self._contact.peak, force or 0.0)
+
+    def finish(self) -> None:
+        """End the contact that is going on, if any."""
+        if self._contact is not None:
+            c, self._contact = self._contact, None
+            self._log.writer.contact(
+                t0=c.start, t1=c.end, agent=_WALL, impulse=c.impulse, peak_force=c.peak,
+                relative_speed=c.speed,
+            )  # fmt: skip
+
+
+def wall_force(results: ContactResults) -> float:
+    """Norm of the sum of all contact forces on the robot but the floor's, N."""
+    total = np.zeros(2)
+    for k in range(results.num_point_pair_contacts()):
+        info = results.point_pair_contact_info(k)
+        if abs(info.point_pair().nhat_BA_W[2]) < _LEVEL:
+            sign = -1.0 if info.bodyB_index() == world_index() else 1.0
+            total += sign * info.contact_force()[:2]
+    return float(np.linalg.norm(total))

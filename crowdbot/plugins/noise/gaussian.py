@@ -1,0 +1,27 @@
+"""Gaussian noise."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from crowdbot.core.component import Component
+from crowdbot.dsl.base import NoiseSpec
+from crowdbot.dsl.quantities import Length, NonNegativeLength
+
+
+class GaussianSpec(NoiseSpec):
+    """An error drawn anew for every beam of every reading from a normal distribution."""
+
+    kind: Literal["gaussian"] = "gaussian"
+    std: NonNegativeLength = Field(description="Standard deviation, m.")
+    mean: Length = Field(default=0.0, description="Mean, m.")
+
+
+GAUSSIAN = Component(
+    spec=GaussianSpec,
+    build="crowdbot.plugins.noise.gaussian_build:build",
+    summary="normally distributed errors",
+    examples=({"std": "1 mm"},),
+)

@@ -1,0 +1,26 @@
+"""Offset: a constant error."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from crowdbot.core.component import Component
+from crowdbot.dsl.base import NoiseSpec
+from crowdbot.dsl.quantities import Length
+
+
+class OffsetSpec(NoiseSpec):
+    """A sensor that always reads too far or too near by the same length."""
+
+    kind: Literal["offset"] = "offset"
+    value: Length = Field(description="Added to every hit, m.")
+
+
+OFFSET = Component(
+    spec=OffsetSpec,
+    build="crowdbot.plugins.noise.offset_build:build",
+    summary="the same error always",
+    examples=({"value": "2 cm"},),
+)

@@ -1,0 +1,29 @@
+"""Offset: a constant error; draws nothing."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.plugins.noise.offset import OffsetSpec
+
+Array = NDArray[np.float64]
+
+
+class Offset:
+    """Adds the same length to every hit."""
+
+    random = False
+
+    def __init__(self, spec: OffsetSpec) -> None:
+        self._value = spec.value
+
+    def errors(self, distance: Array, rng: np.random.Generator) -> Array:
+        """Errors (N,), m."""
+        del rng
+        return np.full(len(distance), self._value)
+
+
+def build(spec: OffsetSpec) -> Offset:
+    """A generator from its spec."""
+    return Offset(spec)

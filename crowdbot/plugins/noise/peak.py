@@ -1,0 +1,30 @@
+"""Peaks: rare, large errors."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Le
+from pydantic import Field
+
+from crowdbot.core.component import Component
+from crowdbot.dsl.base import NoiseSpec
+from crowdbot.dsl.quantities import Length, NonNegativeLength
+
+
+class PeakSpec(NoiseSpec):
+    """Now and then a beam reads far off, as after a double reflection or cross-talk."""
+
+    kind: Literal["peak"] = "peak"
+    probability: Annotated[float, Ge(0), Le(1)] = Field(
+        default=0.01, description="Probability of a peak for each beam."
+    )
+    mean: Length = Field(default=2.0, description="Mean height of a peak, m.")
+    std: NonNegativeLength = Field(default=1.0, description="Standard deviation of heights, m.")
+
+
+PEAK = Component(
+    spec=PeakSpec,
+    build="crowdbot.plugins.noise.peak_build:build",
+    summary="rare, large errors",
+)

@@ -1,0 +1,29 @@
+"""Peaks: a beam in a hundred is off by a normally distributed height."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.plugins.noise.peak import PeakSpec
+
+Array = NDArray[np.float64]
+
+
+class Peak:
+    """Draws chance and height for every beam, so that beams do not depend on each other."""
+
+    random = True
+
+    def __init__(self, spec: PeakSpec) -> None:
+        self._probability, self._mean, self._std = spec.probability, spec.mean, spec.std
+
+    def errors(self, distance: Array, rng: np.random.Generator) -> Array:
+        """Errors (N,), m; most are 0."""
+        struck = rng.random(len(distance)) < self._probability
+        return struck * (self._mean + self._std * rng.standard_normal(len(distance)))
+
+
+def build(spec: PeakSpec) -> Peak:
+    """A generator from its spec."""
+    return Peak(spec)

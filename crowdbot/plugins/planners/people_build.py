@@ -1,0 +1,165 @@
+"""Discs of people around the legs that a lidar shows; compiled.
+
+A planar lidar near the floor sees legs, while people touch with a wider disc. Runs of points as
+narrow as a leg are paired, as leg detectors do (Arras, Mozos, Burgard, "Using boosted features for
+the detection of people in 2D range data", ICRA 2007), and the near half of the disc around each
+pair takes the place of their points, as if the lidar had seen it. Walls stay as they are.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+#: Points farther apart than this, and a share of their distance, belong to two bodies, m.
+_GAP, _GAP_SHARE = 0.1, 0.015
+#: Widest run of points that may be one leg, and two legs side by side, m.
+_LEG, _LEGS = 0.22, 0.55
+#: Legs of one person are no farther apart than this, m.
+_STEP = 0.5
+#: Radius of a leg, m.
+_RADIUS = 0.07
+#: What is nearer than the end of a run by this covers it, m.
+_IN_FRONT = 0.1
+#: Legs nearer than this stay: the robot may be inside a disc, m.
+_NEAR = 0.8
+#: Points on the near half of a disc.
+_ARC = 15
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _runs(points: Array, first: NDArray[np.int64]) -> int:
+    """Write where each run of neighbouring points begins; return how many there are."""
+    count = 0
+    for i in range(points.shape[0]):
+        x, y, apart = points[i, 0], points[i, 1], math.inf
+        if i:
+            dx, dy = x - points[i - 1, 0], y - points[i - 1, 1]
+            apart = math.sqrt(dx * dx + dy * dy)
+        if apart > _GAP + _GAP_SHARE * math.sqrt(x * x + y * y):  # hypot is five times as slow
+            first[count] = i
+            count += 1
+    return count
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _hidden(points: Array, edge: int, beside: int) -> bool:
+    """Whether the end of a run is where something nearer begins to cover it."""
+    if beside < 0 or beside >= points.shape[0]:
+        return False
+    x, y, p, q = points[edge, 0], points[edge, 1], points[beside, 0], points[beside, 1]
+    turn = abs(x * q - y * p) / max(math.hypot(x, y) * math.hypot(p, q), 1e-9)
+    return turn < 0.05 and math.hypot(p, q) < math.hypot(x, y) - _IN_FRONT
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _legs(points: Array, reach: float) -> Array:
+    """Runs that may be legs, (L, 5).
+
+    Columns: x, y of its middle, 1 if it is wide enough for both, its first point, its end.
+    """
+    first = np.empty(points.shape[0] + 1, dtype=np.int64)
+    runs = _runs(points, first)
+    first[runs] = points.shape[0]
+    out = np.empty((runs, 5))
+    count = 0
+    for k in range(runs):
+        a, b = first[k], first[k + 1] - 1
+        x, y = 0.5 * (points[a, 0] + points[b, 0]), 0.5 * (points[a, 1] + points[b, 1])
+        wide = math.hypot(points[b, 0] - points[a, 0], points[b, 1] - points[a, 1])
+        away = math.hypot(x, y)
+        if wide > _LEGS or away > reach or away == 0.0:
+            continue
+        if _hidden(points, a, a - 1) and _hidden(points, b, b + 1):
+            continue
+        depth = math.sqrt(max(0.0, _RADIUS**2 - 0.25 * wide**2))  # of the middle behind the chord
+        out[count, 0], out[count, 1] = x + depth * x / away, y + depth * y / away
+        out[count, 2] = 1.0 if wide > _LEG else 0.0
+        out[count, 3], out[count, 4] = a, b + 1
+        count += 1
+    return out[:count]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _middles(legs: Array) -> Array:
+    """Middles of pairs of legs, and of legs whose other one is not seen; (K, 2)."""
+    used = np.zeros(legs.shape[0], dtype=np.bool_)
+    out = np.empty((legs.shape[0], 2))
+    count = 0
+    for i in range(legs.shape[0]):
+        if used[i]:
+            continue
+        best, other = _STEP, -1
+        for j in range(i + 1, legs.shape[0]):
+            apart = math.hypot(legs[i, 0] - legs[j, 0], legs[i, 1] - legs[j, 1])
+            if not used[j] and legs[i, 2] + legs[j, 2] == 0.0 and apart < best:
+                best, other = apart, j
+        out[count] = legs[i, :2]
+        if other >= 0:
+            used[other] = True
+            out[count] = 0.5 * (legs[i, :2] + legs[other, :2])
+        count += 1
+    return out[:count]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def people_in(points: Array, reach: float) -> tuple[Array, Array]:
+    """Where people stand, and what else there is.
+
+    Args:
+        points: (P, 2) base frame, m, those of one lidar in the order of its beams.
+        reach: legs farther than this are left alone, m.
+
+    Returns:
+        (K, 2) middles of people; (Q, 2) points that are no legs, or legs very near.
+    """
+    legs = _legs(points, reach)
+    kept = np.ones(points.shape[0], dtype=np.bool_)
+    for k in range(legs.shape[0]):
+        if math.hypot(legs[k, 0], legs[k, 1]) > _NEAR:
+            kept[int(legs[k, 3]) : int(legs[k, 4])] = False
+    return _middles(legs), points[kept]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def with_discs(points: Array, people: Array, radius: float) -> Array:
+    """Points, and those that a lidar at the origin would see of discs (K, 2) of a radius.
+
+    A disc around the origin adds nothing.
+
+    Returns:
+        (P', 2), the points first.
+    """
+    out = np.empty((points.shape[0] + people.shape[0] * _ARC, 2))
+    count = points.shape[0]
+    out[:count] = points
+    for k in range(people.shape[0]):
+        x, y = people[k, 0], people[k, 1]
+        away = math.hypot(x, y)
+        if away <= radius:
+            continue
+        half = math.acos(radius / away)  # what can be seen of a disc
+        toward = math.atan2(-y, -x)
+        for step in range(_ARC):
+            angle = toward + half * (2.0 * step / (_ARC - 1) - 1.0)
+            out[count, 0] = x + radius * math.cos(angle)
+            out[count, 1] = y + radius * math.sin(angle)
+            count += 1
+    return out[:count]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def carry(points: Array, velocities: Array, people: Array, going: Array, radius: float) -> None:
+    """Give the points on people's discs, in place, the velocities (K, 2) of the people."""
+    for i in range(points.shape[0]):
+        best = radius + 0.05
+        for k in range(people.shape[0]):
+            gap = math.hypot(points[i, 0] - people[k, 0], points[i, 1] - people[k, 1])
+            if gap < best:
+                best = gap
+                velocities[i] = going[k]

@@ -1,0 +1,47 @@
+"""Bumper: which sides of the robot touch something."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Le
+from pydantic import Field, model_validator
+
+from crowdbot.core.component import Component
+from crowdbot.dsl.base import Mount, SensorSpec
+from crowdbot.dsl.quantities import Angle, NonNegativeLength, PositiveFrequency, PositiveLength
+
+
+class BumperSpec(SensorSpec):
+    """Reading: 1 for each sector that touches, else 0; from ``angle_min`` on, counter-clockwise.
+
+    Defaults are the Kobuki's: right, centre and left of the front half.
+    """
+
+    kind: Literal["bumper"] = "bumper"
+    mount: Mount = Field(default=Mount(), description="Centre of the ring; only x, y, yaw count.")
+    rate: PositiveFrequency = Field(default=64.0, le=128, description="Readings per second, Hz.")
+    sectors: Annotated[int, Ge(1), Le(360)] = Field(default=3, description="Number of sectors.")
+    angle_min: Angle = Field(default=-math.pi / 2, description="Begin of the first sector, rad.")
+    angle_max: Angle = Field(default=math.pi / 2, description="End of the last sector, rad.")
+    radius: PositiveLength = Field(default=0.178, description="Radius of the ring, m.")
+    reach: NonNegativeLength = Field(
+        default=0.002, description="How far out of the ring it feels, m."
+    )
+    height: PositiveLength = Field(
+        default=0.42, description="Walls whose lower edge is above this are not felt, m."
+    )
+
+    @model_validator(mode="after")
+    def _within_a_turn(self) -> BumperSpec:
+        if not 0.0 < self.angle_max - self.angle_min <= 2.0 * math.pi + 1e-9:
+            raise ValueError("angle_max must be above angle_min by one turn at most")
+        return self
+
+
+BUMPER = Component(
+    spec=BumperSpec,
+    build="crowdbot.plugins.sensors.bumper_build:build",
+    summary="sectors around the robot that touch people, walls or pillars",
+)

@@ -1,0 +1,36 @@
+"""Infrared."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt, Le
+from pydantic import Field
+
+from crowdbot.core.component import Component
+from crowdbot.dsl.proximity import Incidence, ProximitySpec
+from crowdbot.dsl.quantities import Quantity
+
+
+class InfraredSpec(ProximitySpec):
+    """The nearest surface that faces a narrow beam."""
+
+    kind: Literal["infrared"] = "infrared"
+    dispersion: Annotated[float, Gt(0), Le(0.5), Quantity("angle")] = Field(
+        default=math.pi / 360, description="Angle from the axis to the edge of the beam, rad."
+    )
+    rays: Annotated[int, Ge(1), Le(10_000)] = Field(
+        default=100, description="Random rays of one reading, denser near the axis."
+    )
+    max_incidence: Incidence = Field(
+        default=math.pi / 4,
+        description="Surfaces struck at a larger angle to their normal return nothing, rad.",
+    )
+
+
+INFRARED = Component(
+    spec=InfraredSpec,
+    build="crowdbot.plugins.sensors.infrared_build:build",
+    summary="narrow beam that sees what faces it",
+)

@@ -1,0 +1,67 @@
+"""Infrared: the nearest hit of random rays in a narrow cone.
+
+The rays aim at a disc at the end of the range. Their distance from its centre is uniform, so that
+their density falls as one over that distance, as that of a beam bright in the middle does.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.interfaces import NoiseGenerator, Pose, SensorInfo
+from crowdbot.core.sensing.proximity import Proximity
+from crowdbot.core.sensing.scene import Scene
+from crowdbot.plugins.sensors.infrared import InfraredSpec
+
+Array = NDArray[np.float64]
+
+
+class Infrared:
+    """New rays for every reading, from the sensor's own stream, before any noise is drawn."""
+
+    def __init__(self, spec: InfraredSpec, noise: Sequence[NoiseGenerator] = ()) -> None:
+        self._spec, self._proximity = spec, Proximity(spec, noise)
+        self._info = SensorInfo(
+            category="infrared",
+            frame="infrared",
+            mount=self._proximity.mount,
+            rate=spec.rate,
+            shape=(1,),
+            ros_type="sensor_msgs/msg/Range",
+            angles=np.array([-spec.dispersion, spec.dispersion]),
+            range_min=spec.range_min,
+            range_max=spec.range_max,
+        )
+
+    def info(self) -> SensorInfo:
+        """Constant description; ``angles`` are the edges of the beam."""
+        return self._info
+
+    def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
+        """Distance (1,) to the nearest surface that faces the beam, m; inf if there is none."""
+        del t
+        at, yaw = self._proximity.place(scene, pose)
+        rays = self._rays(yaw, rng)
+        origins = np.broadcast_to(np.array(at), rays.shape)
+        distance, incidence, _ = scene.cast(
+            np.ascontiguousarray(origins), rays, self._spec.range_max
+        )
+        self._proximity.returned(distance, incidence)
+        return self._proximity.measured(distance.min(keepdims=True), rng)
+
+    def _rays(self, yaw: float, rng: np.random.Generator) -> Array:
+        """Directions (N, 3), world frame."""
+        share, turn = rng.random((2, self._spec.rays))
+        away = share * math.tan(self._spec.dispersion)
+        left, up = away * np.cos(2.0 * math.pi * turn), away * np.sin(2.0 * math.pi * turn)
+        c, s = math.cos(yaw), math.sin(yaw)
+        return np.column_stack([c - s * left, s + c * left, up])
+
+
+def build(spec: InfraredSpec, noise: Sequence[NoiseGenerator] = ()) -> Infrared:
+    """An infrared sensor from its spec and its noise generators."""
+    return Infrared(spec, noise)

@@ -1,0 +1,61 @@
+"""Ground truth of the people around the robot: privileged."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt, Le, Lt
+from pydantic import Field
+
+from crowdbot.core.component import Component
+from crowdbot.dsl.base import Mount, SensorSpec
+from crowdbot.dsl.quantities import (
+    NonNegativeLength,
+    NonNegativeSpeed,
+    PositiveFrequency,
+    PositiveLength,
+    Quantity,
+)
+
+
+class PeopleTrackerSpec(SensorSpec):
+    """Reading (max_people, 5), nearest first: id, x, y (m), vx, vy (m/s), in base_link's axes.
+
+    The id is a person's place in the crowd's list; rows without anybody have id -1 and zeros.
+    Privileged: no sensor of a real robot knows this, so a planner must say that it is.
+    """
+
+    kind: Literal["people_tracker"] = "people_tracker"
+    mount: Mount = Field(
+        default=Mount(z=0.4), description="Where lines of sight begin; yaw turns the view."
+    )
+    rate: PositiveFrequency = Field(default=16.0, le=128, description="Readings per second, Hz.")
+    range_max: PositiveLength = Field(
+        default=10.0, description="Farthest centre of a person, from the mount, m."
+    )
+    view: Annotated[float, Gt(0), Le(2.0 * math.pi), Quantity("angle")] = Field(
+        default=2.0 * math.pi, description="Horizontal field of view, rad."
+    )
+    max_people: Annotated[int, Ge(1), Le(10_000)] = Field(
+        default=32, description="Rows of a reading; the nearest are kept."
+    )
+    occlusion: bool = Field(
+        default=True, description="Whether people must be in line of sight to be tracked."
+    )
+    miss: Annotated[float, Ge(0), Lt(1)] = Field(
+        default=0.0, description="Probability that a person is left out of a reading."
+    )
+    position_noise: NonNegativeLength = Field(
+        default=0.0, description="Standard deviation along each axis, m."
+    )
+    velocity_noise: NonNegativeSpeed = Field(
+        default=0.0, description="Standard deviation along each axis, m/s."
+    )
+
+
+PEOPLE_TRACKER = Component(
+    spec=PeopleTrackerSpec,
+    build="crowdbot.plugins.sensors.people_tracker_build:build",
+    summary="privileged: people around the robot, with noise, misses and occlusion",
+)

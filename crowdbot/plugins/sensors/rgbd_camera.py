@@ -1,0 +1,67 @@
+"""Depth camera, with colour where wanted."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt, Le, Lt
+from pydantic import Field, model_validator
+
+from crowdbot.core.component import Component
+from crowdbot.dsl.base import Mount, SensorSpec
+from crowdbot.dsl.quantities import (
+    NonNegativeLength,
+    PositiveFrequency,
+    PositiveLength,
+    Quantity,
+)
+
+Pixels = Annotated[int, Ge(2), Le(4096)]
+FieldOfView = Annotated[float, Gt(0), Lt(math.pi), Quantity("angle")]
+#: Pixels of one image; more is a slip of the pen.
+MOST_PIXELS = 4_000_000
+
+
+class RgbdCameraSpec(SensorSpec):
+    """Reading: depth along the optical axis (height, width), m.
+
+    A hit nearer than ``depth_min`` reads 0, nothing within ``depth_max`` reads inf. Defaults are
+    those of the TurtleBot2's camera.
+    """
+
+    kind: Literal["rgbd_camera"] = "rgbd_camera"
+    mount: Mount = Field(default=Mount(), description="Pose on the robot; it looks along x.")
+    rate: PositiveFrequency = Field(default=8.0, le=128, description="Images per second, Hz.")
+    width: Pixels = Field(default=320, description="Columns of an image.")
+    height: Pixels = Field(default=240, description="Rows of an image.")
+    horizontal_view: FieldOfView = Field(
+        default=math.pi / 3, description="Horizontal field of view, rad; pixels are square."
+    )
+    depth_min: NonNegativeLength = Field(default=0.4, description="Nearest depth measured, m.")
+    depth_max: PositiveLength = Field(default=8.0, description="Farthest depth measured, m.")
+    noise: Annotated[float, Ge(0)] = Field(
+        default=0.0,
+        description="Standard deviation of depth per squared depth, 1/m; 0.0014 is a Kinect's.",
+    )
+    resolution: NonNegativeLength = Field(
+        default=0.0, description="Depths are rounded to multiples of this, m; 0: not."
+    )
+    colour: bool = Field(
+        default=False, description="Whether it takes colour images too; they need EGL."
+    )
+
+    @model_validator(mode="after")
+    def _sensible(self) -> RgbdCameraSpec:
+        if not self.depth_min < self.depth_max:
+            raise ValueError("depth_min must be below depth_max")
+        if self.width * self.height > MOST_PIXELS:
+            raise ValueError(f"an image has at most {MOST_PIXELS} pixels")
+        return self
+
+
+RGBD_CAMERA = Component(
+    spec=RgbdCameraSpec,
+    build="crowdbot.plugins.sensors.rgbd_camera_build:build",
+    summary="pinhole camera with depth, and colour if wanted",
+)

@@ -1,0 +1,39 @@
+"""Ultrasound."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Le
+from pydantic import Field
+
+from crowdbot.core.component import Component
+from crowdbot.dsl.proximity import ProximitySpec
+from crowdbot.dsl.quantities import PositiveLength, Quantity
+
+_DEGREE = math.pi / 180.0
+
+
+class UltrasoundSpec(ProximitySpec):
+    """The nearest thing in a drop-shaped zone, whatever its direction. The floor is not seen."""
+
+    kind: Literal["ultrasound"] = "ultrasound"
+    radius: PositiveLength = Field(
+        default=1.0, description="Largest radius of the zone, at three quarters of its length, m."
+    )
+    resolution: Annotated[float, Ge(0.2 * _DEGREE), Le(10 * _DEGREE), Quantity("angle")] = Field(
+        default=2.0 * _DEGREE, description="Between the rays that search the zone, rad."
+    )
+
+    @property
+    def half_angle(self) -> float:
+        """Opening of the zone to one side, rad."""
+        return math.atan(8.0 * self.radius / (3.0 * math.sqrt(3.0) * self.range_max))
+
+
+ULTRASOUND = Component(
+    spec=UltrasoundSpec,
+    build="crowdbot.plugins.sensors.ultrasound_build:build",
+    summary="sonar with a drop-shaped zone",
+)

@@ -1,0 +1,89 @@
+"""What runs lives in the context: all sensors and all noise on, a planner that uses everything."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydrake.systems.analysis import Simulator
+from sim_worlds import Rig, rig, scenario
+
+from crowdbot.core.interfaces import Command, Observation
+
+SENSORS = {
+    "camera": "{kind: rgbd_camera, width: 64, height: 48, rate: 8, noise: 0.0014,"
+    " resolution: 0.001, mount: {x: -0.087, z: 0.287}}",
+    "imu": "{kind: imu, rate: 64, gyro_bias: 0.01, gyro_walk: 0.01, force_bias: 0.1,"
+    " force_walk: 0.1, mount: {x: 0.056, y: 0.062, z: 0.0202}}",
+    "bumper": "{kind: bumper}",
+    "tracker": "{kind: people_tracker, miss: 0.1, position_noise: 0.05, velocity_noise: 0.05}",
+    "odometry": "{kind: wheel_odometry, noise: 0.05, heading: gyro}",
+}
+WORLD = tuple(f"robots.robot.sensors.{n}={text}" for n, text in SENSORS.items())
+ALL = ("front_lidar", "rear_lidar", *SENSORS)
+
+
+class ByEverything:
+    """Steers by every sensor, so that a bit that differs anywhere soon differs everywhere."""
+
+    def __init__(self) -> None:
+        self.seen: list[Observation] = []
+
+    def reset(self, task: object, limits: object, sensors: object, seed: int) -> None:
+        pass
+
+    def step(self, obs: Observation) -> Command:
+        self.seen.append(obs)
+        assert set(obs.readings) == set(ALL)
+        total = 0.0
+        for reading in obs.readings.values():
+            values = np.asarray(reading.values, np.float64)
+            total += float(np.where(np.isfinite(values), values, 0.0).mean())
+        return Command(0.3 + 0.1 * np.sin(total + obs.t), 0.5 * np.cos(100.0 * total))
+
+
+def _rig() -> tuple[Rig, ByEverything]:
+    planner = ByEverything()
+    return rig(scenario(*WORLD), planner, sensors=ALL), planner
+
+
+def test_one_advance_equals_many() -> None:
+    one, planner = _rig()
+    one.advance(1.5)
+    many, _ = _rig()
+    for k in range(1, 101):
+        many.advance(1.5 * k / 100)
+    assert one.everything() == many.everything()
+    images = [obs.readings["camera"] for obs in planner.seen]
+    assert {(r.values.shape, r.values.dtype.name) for r in images} == {((48, 64), "float32")}
+    assert [r.stamp for r in images] == [n // 2 / 8.0 for n in range(24)]
+    assert len({r.values.tobytes() for r in images}) == 12
+
+
+def test_a_clone_goes_on_bit_by_bit() -> None:
+    """Cloned between two images: the resumed planner's next step must see the older one."""
+    whole, planner = _rig()
+    whole.advance(1.14)
+    clone = whole.context.Clone()
+    steps = len(planner.seen)
+    whole.advance(2.0)
+
+    end, rest = whole.everything(), planner.seen[steps:]
+    assert rest[0].readings["camera"].stamp == 1.125
+
+    planner.seen = []
+    whole.simulator = Simulator(whole.blocks.diagram, clone)
+    whole.advance(2.0)
+    assert whole.everything() == end
+    assert [obs.t for obs in planner.seen] == [obs.t for obs in rest]
+    for mine, theirs in zip(planner.seen, rest, strict=True):
+        for name in ALL:
+            assert mine.readings[name].stamp == theirs.readings[name].stamp
+            assert mine.readings[name].values.tobytes() == theirs.readings[name].values.tobytes()
+
+
+def test_images_are_not_part_of_the_state() -> None:
+    small, _ = _rig()
+    size = len(small.everything())
+    large = rig(
+        scenario(*WORLD, "robots.robot.sensors.camera.width=640"), ByEverything(), sensors=ALL
+    )
+    assert len(large.everything()) == size
