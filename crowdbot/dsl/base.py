@@ -30,7 +30,8 @@ class ComponentSpec(Spec):
     @model_validator(mode="before")
     @classmethod
     def _refuse_abstract(cls, value: Any) -> Any:
-        if cls.__name__ in ABSTRACT_SPECS and not isinstance(value, cls):
+        abstract = cls.model_fields["kind"].annotation is str  # concrete ones name theirs
+        if abstract and not isinstance(value, cls):
             raise ValueError(f"{cls.__name__} is abstract; build the model from a registry")
         return value
 
@@ -155,4 +156,3 @@ CATEGORIES: tuple[type[ComponentSpec], ...] = (
     CostFunctionSpec,
     MetricSpec,
 )
-ABSTRACT_SPECS = frozenset({"ComponentSpec", "ProximitySpec", *(c.__name__ for c in CATEGORIES)})

@@ -25,7 +25,8 @@ from crowdbot.dsl.validation import nested_model
 HEAVY = frozenset({"numba", "numpy", "pydrake"})
 #: Words that tell a reader that a number has no unit.
 _WITHOUT_UNIT = (
-    "dimensionless", "factor", "fraction", "number", "per", "ratio", "relatively", "share", "weight"
+    "bits", "count", "dimensionless", "factor", "fraction", "number", "per", "probability",
+    "ratio", "relatively", "share", "ticks", "weight",
 )  # fmt: skip
 _UNITS = frozenset(unit.lower() for units in UNITS.values() for unit in units) | {"si"}
 #: Symbols of which other units are made: m^2/s^2, W s^2/(kg m^2).

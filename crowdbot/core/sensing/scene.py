@@ -50,8 +50,6 @@ class Scene:
         count = np.size(people_radius)
         self.people_radius = _constant(people_radius, (count,))
         self.people_height = _constant(people_height, (count,))
-        self.pillars = _constant(np.reshape(pillars, (-1, 3)), (np.size(pillars) // 3, 3))
-        self.pillar_heights = _constant(pillar_heights, (len(self.pillars),))
         self.robot: RobotState | None = None
         self.people: Array = _constant(0.0, (count, 4))
         self.present: NDArray[np.bool_] = np.zeros(count, dtype=np.bool_)

@@ -127,7 +127,8 @@ def build_diagram(
     # Metric logger and recorder.
     walls = WallContacts(parts, model, log)
     logger = builder.AddNamedSystem(
-        "metric_logger", MetricLogger(log, task, walls, size, scenario.rates.log)
+        "metric_logger",
+        MetricLogger(log, task, walls, size, scenario.rates.log, felt=body.rig is not None),
     )
     builder.Connect(robot_state, logger.GetInputPort(ports.ROBOT_STATE))
     if body.rig is not None:

@@ -21,8 +21,16 @@ class MetricLogger(LeafSystem):
     """Inputs: robot state, crowd state, forces. Ends the run on arrival and at the time limit."""
 
     def __init__(
-        self, log: RunLog, task: Task, walls: WallContacts, crowd_size: int, rate: float
+        self,
+        log: RunLog,
+        task: Task,
+        walls: WallContacts,
+        crowd_size: int,
+        rate: float,
+        *,
+        felt: bool,
     ) -> None:
+        """``felt``: whether the robot's base is one that forces act on."""
         super().__init__()
         self._log, self._task, self._walls = log, task, walls
         self._ticks_per_sample = ticks(rate)
@@ -34,7 +42,10 @@ class MetricLogger(LeafSystem):
         if crowd_size:
             self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size)
             self._events = self.DeclareVectorInputPort(ports.EVENTS, 1)
-        self._forces = self.DeclareAbstractInputPort(ports.FORCES, Value(ContactResults()))
+        # Asking an input port whether it has a value would compute the forces at every tick.
+        self._forces = (
+            self.DeclareAbstractInputPort(ports.FORCES, Value(ContactResults())) if felt else None
+        )
         self.DeclarePeriodicPublishEvent(TICK, 0.0, self._publish)
 
     def _publish(self, context: Context) -> EventStatus | None:
@@ -63,10 +74,9 @@ class MetricLogger(LeafSystem):
         return crowd
 
     def _watch_walls(self, context: Context, t: float, robot: RobotState) -> None:
-        if self._forces.HasValue(context):
-            self._walls.watch(t, robot, lambda: wall_force(self._forces.Eval(context)))
-        else:
-            self._walls.watch(t, robot, None)
+        forces = self._forces
+        felt = None if forces is None else lambda: wall_force(forces.Eval(context))
+        self._walls.watch(t, robot, felt)
 
     def _watch(self, t: float, robot: RobotState) -> EventStatus | None:
         zone = self._task.goal_zone
