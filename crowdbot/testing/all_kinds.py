@@ -195,7 +195,7 @@ def _has_unit(field: FieldInfo) -> bool:
 
 def _is_unit(text: str) -> bool:
     """Whether a text is a unit, or a product of powers of units."""
-    parts = [p for p in re.split(r"[\s/()]+", text) if p]
+    parts = [p for p in re.split(r"[\s/()]+", text.replace("sqrt", "")) if p]
     powers = [re.fullmatch(r"([a-z]+|1)(\^\d)?", part) for part in parts]
     made = bool(parts) and all(p is not None and p[1] in _SYMBOLS for p in powers)
     return text in _UNITS or made

@@ -51,9 +51,9 @@ def test_bad_input(case: str, shell: Shell) -> None:
 
 
 def test_a_planner_that_needs_what_the_robot_has_not(shell: Shell, tmp_path: Path) -> None:
-    answer = shell("--planner", planner_file(tmp_path, needs="('camera',)"))
+    answer = shell("--planner", planner_file(tmp_path, needs="('sonar',)"))
     assert answer.code == 1
-    assert "camera" in answer.err
+    assert "sonar" in answer.err
     assert shell.runs() == []
     assert shell.leftovers() == []
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core.library import open_spec
@@ -107,7 +107,7 @@ class Formatter:
         return self.rng.choice(["", "", " # comment", "   # a: b"])
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.large_base_example])
 @given(st.randoms(use_true_random=False))
 def test_reformatting_does_not_move_the_hash(
     tmp_path_factory: pytest.TempPathFactory, rng: random.Random
