@@ -20,7 +20,10 @@ _Derived = TypeVar("_Derived")
 
 
 def _frozen(values: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
-    array = np.array(values, dtype=dtype)
+    try:
+        array = np.array(values, dtype=dtype)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"trajectories: not an array of numbers: {error}") from error
     array.setflags(write=False)
     return array
 
@@ -183,7 +186,8 @@ class Trajectories:
         """Build from plain arrays; ``robot_*`` or ``agent_*`` may be left out.
 
         An omnidirectional robot gives ``robot_vx`` and ``robot_vy`` (world frame, m/s), and may
-        leave out ``robot_v``. ``robot_footprint`` is a polygon (K, 2), or the (2, 2) ends of a
+        leave out ``robot_v``. Velocities that are left out, or NaN, are derived from positions
+        and headings. ``robot_footprint`` is a polygon (K, 2), or the (2, 2) ends of a
         capsule of radius ``robot_radius``, in the robot's frame.
 
         Raises:
@@ -213,17 +217,19 @@ def _need(given: Mapping[str, Any], *names: str) -> None:
 
 
 def _robot(given: Mapping[str, Any]) -> RobotTrack:
-    _need(given, "robot_y", "robot_theta", "robot_w", "robot_radius", "robot_mass")
+    _need(given, "robot_y", "robot_theta", "robot_radius", "robot_mass")
     goal_time, goal = given["robot_goal_time"], given["robot_goal"]
-    rows = {k: _frozen(given[f"robot_{k}"]) for k in ("x", "y", "theta", "w")}
-    if given["robot_vx"] is None and given["robot_vy"] is None:
-        _need(given, "robot_v")
-    else:
+    rows = {k: _frozen(given[f"robot_{k}"]) for k in ("x", "y", "theta")}
+    unknown = np.full(rows["x"].shape, np.nan)
+    rows["w"] = _frozen(unknown if given["robot_w"] is None else given["robot_w"])
+    v = given["robot_v"]
+    if given["robot_vx"] is not None or given["robot_vy"] is not None:
         _need(given, "robot_vx", "robot_vy")
         rows |= {k: _frozen(given[f"robot_{k}"]) for k in ("vx", "vy")}
+        v = _forward(rows) if v is None else v
     return RobotTrack(
         **rows,
-        v=_forward(rows) if given["robot_v"] is None else _frozen(given["robot_v"]),
+        v=_frozen(unknown if v is None else v),
         radius=float(given["robot_radius"]),
         mass=float(given["robot_mass"]),
         goal_time=None if goal_time is None else float(goal_time),
@@ -306,6 +312,8 @@ def _check(run: Trajectories) -> None:
             k = table.agent.shape
             for column in fields(table):
                 _shape(column.name, getattr(table, column.name), k)
+    if run.trips is not None and not np.all(run.trips.t0 <= run.trips.t1):
+        raise InputError("trajectories: trip_t0 and trip_t1 must be times, trip_t1 the later one")
     if run.walls is not None and run.walls.size:
         _shape("walls", run.walls, (len(run.walls), 4))
     for name, least in (("goal_zone", 3), ("robot_footprint", 2)):

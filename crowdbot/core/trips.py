@@ -94,7 +94,7 @@ def meets_robot(run: Trajectories, radius: float) -> Mask:
 def walked(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
     """Length of the path and straight displacement of each trip (K,), (K,), m.
 
-    Both from the samples inside the trip; teleports add to neither.
+    Both from the samples inside the trip; teleports add no length.
     """
     agents = people(run)
     first, last, column = _samples(run)
@@ -112,12 +112,13 @@ def walked(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
     return length, displacement
 
 
-def displacement(t: Array, x: Array, y: Array, valid: Mask) -> float:
-    """Distance of a body's last position from its first one, without teleports, m."""
-    zero = np.zeros(1, dtype=np.int64)
-    ends = zero, zero + len(t) - 1, zero
-    bodies = finite(x)[:, None], finite(y)[:, None]
-    return float(_displacement(*bodies, valid[:, None], ends)[0])
+def displacement(x: Array, y: Array) -> float:
+    """Distance of a body's last known position from its first one (N,), (N,), m."""
+    known = np.flatnonzero(present(x, y))
+    if not len(known):
+        return 0.0
+    first, last = known[0], known[-1]
+    return float(np.hypot(x[last] - x[first], y[last] - y[first]))
 
 
 def _displacement(
@@ -134,14 +135,12 @@ def _displacement(
     after = np.minimum.accumulate(np.where(here, index, len(x))[::-1], axis=0)[::-1]
     a, b = after[first, column], before[last, column]
     seen = a < b
-    a, b = np.where(seen, a, 0), np.where(seen, b, 0)
+    a, b = np.where(seen, a, 0), np.where(seen, b, 1)
+    # two trips may share the sample at a portal: it belongs to the trip on its side of the jump
     teleport = here[1:] & here[:-1] & ~valid
-    straight = []
-    for p in (x, y):
-        jumps = np.where(teleport, np.diff(p, axis=0), 0.0)
-        jumped = np.concatenate([np.zeros((1, p.shape[1])), jumps.cumsum(axis=0)])
-        straight.append(p[b, column] - p[a, column] - (jumped[b, column] - jumped[a, column]))
-    return np.where(seen, np.hypot(*straight), 0.0)
+    a, b = a + teleport[a, column], b - teleport[b - 1, column]
+    straight = np.hypot(x[b, column] - x[a, column], y[b, column] - y[a, column])
+    return np.where(seen & (a < b), straight, 0.0)
 
 
 def _samples(

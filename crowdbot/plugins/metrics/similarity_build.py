@@ -23,7 +23,6 @@ from crowdbot.core.preprocess import (
     travel_time,
     turns,
     valid_agent_steps,
-    valid_robot_steps,
     wrap,
 )
 from crowdbot.core.score import Score
@@ -198,8 +197,7 @@ def _per_distance(
 ) -> Score:
     """Amounts of robot and of all people, each per straight distance."""
     robot = robot_of(run)
-    valid = valid_robot_steps(run.t, robot, spec.jump_speed)
-    own, others = displacement(run.t, robot.x, robot.y, valid), float(straight.sum())
+    own, others = displacement(robot.x, robot.y), float(straight.sum())
     if min(own, others) <= spec.zero_tol:
         return label.undefined("corrected", "zero_denominator")
     both = {"robot": amounts[0] / own, "agents": amounts[1] / others}
