@@ -20,6 +20,9 @@ from crowdbot.errors import SpecError, did_you_mean, nearest
 
 MAX_INCLUDES = 64
 
+#: Maps at the top of a document whose keys are kinds, which have dots of their own.
+_VERBATIM = ("kinds",)
+
 #: Plugin name -> its folders with suites and parts.
 Roots = Mapping[str, Sequence[Path]]
 
@@ -61,7 +64,7 @@ class Loader:
             self.problems.append(Diagnostic("E011", f"the document {what}", root.mark))
             return Node(root.mark, {})
         here = replace(file, chain=(*file.chain, file.path.resolve()))
-        return self._resolve(self._with_rows(undot(root, self.problems), here), here)
+        return self._resolve(self._with_rows(undot(root, self.problems, verbatim=_VERBATIM), here), here)
 
     def _with_rows(self, node: Node, file: _File, below: str = "") -> Node:
         """A tree in which the rows of each table stand for ``crowd.agents: {csv: FILE}``."""

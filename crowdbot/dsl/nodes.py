@@ -11,8 +11,8 @@ import math
 import os
 import re
 import stat
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -62,11 +62,17 @@ class Entry:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Node:
-    """A scalar, a list or a map. ``implied``: a map that only a dotted key made necessary."""
+    """A scalar, a list or a map.
+
+    Attributes:
+        implied: a map that only a dotted key made necessary.
+        removed: fields that ``null`` removed from the map, and where that is written.
+    """
 
     mark: Mark
     value: Scalar | tuple[Node, ...] | dict[str, Entry]
     implied: bool = False
+    removed: Mapping[str, Mark] = field(default_factory=dict)
 
     @property
     def entries(self) -> dict[str, Entry]:

@@ -43,7 +43,6 @@ MAX_FIELDS = 10_000_000
 _ELSEWHERE = {
     "id": "ids are made of the labels of the matrix",
     "references": "references stand beside 'base' or 'scenario'",
-    "extends": "'extends' stands at the top of a file, or in 'base' or 'scenario'",
 }
 
 
@@ -180,6 +179,7 @@ def read_suite(
 def _scenario(root: Node, body: Node, problems: list[Diagnostic]) -> Suite:
     name, title = _text(body.child("id"), ""), _text(body.child("title"), "")
     _check_elsewhere(body, ("references",), problems)
+    _check_references(root, problems)
     return Suite(
         name, title, name, None, body, (), (), _metrics(root), _references(root), tuple(problems)
     )
@@ -194,6 +194,7 @@ def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> Suite:
     for axis in axes:
         for over in axis.labels.values():
             _check_elsewhere(over, ("id", "references"), problems)
+    _check_references(root, problems)
     _check_own_id(head, problems)
     seed = head.child("seed") if head else None
     if seed is None or not isinstance(seed.value, int):
@@ -270,6 +271,15 @@ def _check_elsewhere(body: Node, names: tuple[str, ...], problems: list[Diagnost
             mark: Mark = body.entries[name].key
             text = f"field '{name}' is not written here"
             problems.append(Diagnostic("E102", text, mark, _ELSEWHERE[name]))
+
+
+def _check_references(root: Node, problems: list[Diagnostic]) -> None:
+    """A reference is known by its name, beside the id of its scenario."""
+    listed = root.child("references")
+    for entry in (listed.entries if listed else {}).values():
+        for name in {"id", "references"} & entry.node.entries.keys():
+            text = f"a reference has no '{name}'"
+            problems.append(Diagnostic("E102", text, entry.node.entries[name].key))
 
 
 def _check_metrics(listed: Node | None, known: Collection[str], problems: list[Diagnostic]) -> None:

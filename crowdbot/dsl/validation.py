@@ -123,6 +123,8 @@ def _unknown_field(parent: Place, name: str) -> Diagnostic:
     mark = entry.key if entry else parent.node.mark
     others = [known for known in field_names(parent) if known != name]
     hint = did_you_mean(nearest(name, others)[:1]).removeprefix("; ")
+    if name == "extends":
+        hint = "it stands at the top of a file, or in 'base' or 'scenario'"
     where = f" in {parent.name}" if parent.path else ""
     if entry and entry.dotted:
         text = f"'{entry.dotted}' overrides nothing: no field '{name}'{where}"
@@ -144,6 +146,9 @@ def missing_field(tree: Node, place: Place, name: str) -> Diagnostic:
             text = f"'{entry.dotted}' overrides nothing: there is no {made}"
             return Diagnostic("E204", text, entry.key, did_you_mean(near).removeprefix("; "))
     where = f" in {place.name}" if place.path else ""
+    if name in place.node.removed:
+        text = f"missing field '{name}'{where}"
+        return Diagnostic("E103", text, place.node.removed[name], "null removes it")
     mark = place.node.mark
     return Diagnostic(
         "E103", f"missing field '{name}'{where}", Mark(mark.source, mark.line, mark.column)
