@@ -14,7 +14,7 @@ import stat
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError
@@ -121,9 +121,7 @@ def read_text(path: Path, name: str) -> str:
         SpecError: E001, there is no such file or it is no text of reasonable size.
     """
     try:
-        with open(path, "rb", opener=_without_waiting) as file:
-            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-                raise _unreadable(name, "is a device or pipe, not a file")
+        with open_file(path) as file:
             raw = file.read(MAX_BYTES + 1)
     except IsADirectoryError:
         raise _unreadable(name, "is a folder, not a file") from None
@@ -159,6 +157,32 @@ def parse(text: str, source: Source, problems: list[Diagnostic], shift: int = 0)
     return _Builder(text, source, problems, shift).document()
 
 
+def _explained(error: MarkedYAMLError) -> tuple[str, str]:
+    """Message and hint for an error of the YAML parser, whose own words are for its authors."""
+    problem, context, start = error.problem or "", error.context or "", error.context_mark
+    if "flow" in context and start is not None:
+        what = "'{'" if "mapping" in context else "'['"
+        where = f"line {start.line + 1}, column {start.column + 1}"
+        return f"{problem or 'something is wrong'} after the {what} of {where}", ""
+    if "mapping values are not allowed" in problem:
+        text = "a second ':' on this line, or a line that is indented too far"
+        return text, "quote text that holds ': '"
+    return " ".join(filter(None, (problem, context))), ""
+
+
+def open_file(path: Path) -> BinaryIO:
+    """A plain file, open for reading.
+
+    Raises:
+        OSError: it cannot be opened, or is something else, such as a pipe.
+    """
+    file = open(path, "rb", opener=_without_waiting)  # noqa: SIM115 - the caller closes it
+    if stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+        return file
+    file.close()
+    raise OSError("is a device or pipe, not a file")
+
+
 def _without_waiting(path: str, flags: int) -> int:
     """Opening a pipe that nobody writes to would wait for ever."""
     return os.open(path, flags | os.O_NONBLOCK)
@@ -182,7 +206,8 @@ class _Builder:
         if found := _CONTROL.search(self._text):
             line = self._text.count("\n", 0, found.start())
             column = found.start() - (self._text.rfind("\n", 0, found.start()) + 1)
-            self._stop("E002", f"character U+{ord(found[0]):04X} is not allowed", line, column)
+            text = f"character U+{ord(found[0]):04X} is not allowed"
+            self._stop("E002", text, "", line, column)
         self._next()
         start = self._next()
         if isinstance(start, StreamEndEvent):
@@ -202,15 +227,16 @@ class _Builder:
         except MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
             line, column = (mark.line, mark.column) if mark else (0, 0)
-            self._stop("E002", " ".join(filter(None, (error.problem, error.context))), line, column)
+            self._stop("E002", *_explained(error), line, column)
         except Exception as error:  # ruamel lets ValueError and OverflowError of escapes through
-            self._stop("E002", str(error), self._last.line, self._last.column - self._shift)
+            self._stop("E002", str(error), "", self._last.line, self._last.column - self._shift)
         self._last = self._mark(event)
         return event
 
-    def _stop(self, code: str, message: str, line: int, column: int) -> None:
+    def _stop(self, code: str, message: str, hint: str, line: int, column: int) -> None:
         mark = Mark(self._source, line, column + (self._shift if line == 0 else 0))
-        raise SpecError([*self._problems, Diagnostic(code, message.replace("\n", " "), mark)])
+        stop = Diagnostic(code, message.replace("\n", " "), mark, hint)
+        raise SpecError([*self._problems, stop])
 
     def _add(self, code: str, message: str, mark: Mark, hint: str = "") -> None:
         self._problems.append(Diagnostic(code, message, mark, hint))
@@ -224,7 +250,8 @@ class _Builder:
     def _node(self, event: Event, depth: int) -> Node:
         mark = self._mark(event)
         if depth > MAX_DEPTH:
-            self._stop("E009", f"nested deeper than {MAX_DEPTH} levels", mark.line, mark.column)
+            text = f"nested deeper than {MAX_DEPTH} levels"
+            self._stop("E009", text, "", mark.line, mark.column)
         self._refuse_indirection(event, mark)
         if isinstance(event, ScalarEvent):
             return Node(mark, self._scalar(event, mark))

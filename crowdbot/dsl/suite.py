@@ -27,6 +27,7 @@ from pydantic import Field, WithJsonSchema
 
 from crowdbot.dsl.base import Spec
 from crowdbot.dsl.diagnostics import Diagnostic, Mark
+from crowdbot.dsl.finder import Finder
 from crowdbot.dsl.matrix import MAX_COMBINATIONS, REPLICATE, Axis, read_axes
 from crowdbot.dsl.nodes import Node, count, to_data
 from crowdbot.dsl.selection import Kept, read_selection
@@ -115,6 +116,7 @@ class Suite:
         crowd_axes: names of the axes whose labels make the crowd's seed key.
         kept: labels of the combinations that stay; None: all.
         problems: errors found so far.
+        finder: finds the files that the document names; None: assets are not looked for.
     """
 
     id: str
@@ -128,6 +130,7 @@ class Suite:
     references: dict[str, Node]
     problems: tuple[Diagnostic, ...]
     kept: Kept | None = None
+    finder: Finder | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
@@ -107,7 +108,10 @@ def diagnose(error: Error, tree: Node, model: type[BaseModel]) -> Diagnostic:
     if kind in ("missing", "union_tag_not_found"):
         if isinstance(loc[-1], int):
             count = len(place.node.value) if isinstance(place.node.value, tuple) else 0
-            text = f"{place.name} has {count} entries, too few"
+            wanted = [len(get_args(t)) for t in place.types if get_origin(t) is tuple]
+            text = (
+                f"{place.name} has {count} entries, {f'not {wanted[0]}' if wanted else 'too few'}"
+            )
             return Diagnostic("E114", text, place.node.mark)
         return missing_field(tree, place, str(loc[-1]) if kind == "missing" else "kind")
     if kind == "union_tag_invalid":
@@ -200,13 +204,21 @@ def _bad_value(error: Error, kind: str, place: Place) -> tuple[str, str, str]:
     if kind.startswith(_RANGE):
         return "E112", f"{name}: {_lower(text).replace('input should', 'must')}, not {given}", ""
     if kind == "string_pattern_mismatch":
-        return "E116", f"{name}: {given} does not match {context['pattern']}", ""
+        return "E116", f"{name}: {given} {_form(context['pattern'])}", ""
     wanted = _TYPES.get(kind.split("_")[0])
     if wanted and kind != "value_error":
         scalar = isinstance(place.node.value, int | float)
         hint = "quote it if it is text" if wanted == "text" and scalar else ""
         return "E111", f"{name} must be {wanted}, not {given}", hint
     return "E115", f"{name}: {text}", ""
+
+
+def _form(pattern: str) -> str:
+    """What a regular expression asks for; in words where it is a set of characters."""
+    found = re.fullmatch(r"\^\[A-Za-z0-9(.+)\]\+\$", pattern)
+    if found is None:
+        return f"does not match {pattern}"
+    return f"may have letters, digits and {' '.join(found[1])} only"
 
 
 def _lower(text: str) -> str:
