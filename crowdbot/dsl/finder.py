@@ -50,7 +50,9 @@ class Finder:
             reason = getattr(error, "strerror", None) or str(error)
             return Diagnostic("E201", f"'{text[:60]}' cannot be opened: {reason}", mark)
         if not allowed:
-            return Diagnostic("E203", f"'{text}' leaves the folder of {self.top.name}", mark)
+            hint = f"files lie beside or below {self.top.name}, or in a plugin's folder"
+            text = f"'{text}' leaves the folder of {self.top.name}"
+            return Diagnostic("E203", text, mark, hint)
         if not exists:
             return Diagnostic("E201", f"no file '{text}'", mark, _similar(path))
         return path

@@ -126,8 +126,9 @@ def read_text(path: Path, name: str) -> str:
     except IsADirectoryError:
         raise _unreadable(name, "is a folder, not a file") from None
     except (OSError, ValueError) as error:
-        reason = "no such file" if isinstance(error, FileNotFoundError) else str(error)
-        raise _unreadable(name, getattr(error, "strerror", None) or reason) from None
+        reason = getattr(error, "strerror", None) or str(error)
+        reason = "no such file" if isinstance(error, FileNotFoundError) else reason
+        raise _unreadable(name, reason) from None
     if len(raw) > MAX_BYTES:
         raise _unreadable(name, f"is larger than {MAX_BYTES // 1_000_000} MB")
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
@@ -157,12 +158,13 @@ def parse(text: str, source: Source, problems: list[Diagnostic], shift: int = 0)
     return _Builder(text, source, problems, shift).document()
 
 
-def _explained(error: MarkedYAMLError) -> tuple[str, str]:
+def _explained(error: MarkedYAMLError, shift: int) -> tuple[str, str]:
     """Message and hint for an error of the YAML parser, whose own words are for its authors."""
     problem, context, start = error.problem or "", error.context or "", error.context_mark
     if "flow" in context and start is not None:
         what = "'{'" if "mapping" in context else "'['"
-        where = f"line {start.line + 1}, column {start.column + 1}"
+        column = start.column + 1 + (shift if start.line == 0 else 0)
+        where = f"line {start.line + 1}, column {column}"
         return f"{problem or 'something is wrong'} after the {what} of {where}", ""
     if "mapping values are not allowed" in problem:
         text = "a second ':' on this line, or a line that is indented too far"
@@ -227,7 +229,7 @@ class _Builder:
         except MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
             line, column = (mark.line, mark.column) if mark else (0, 0)
-            self._stop("E002", *_explained(error), line, column)
+            self._stop("E002", *_explained(error, self._shift), line, column)
         except Exception as error:  # ruamel lets ValueError and OverflowError of escapes through
             self._stop("E002", str(error), "", self._last.line, self._last.column - self._shift)
         self._last = self._mark(event)

@@ -18,6 +18,8 @@ from crowdbot.errors import PluginError, did_you_mean, nearest
 M = TypeVar("M", bound=BaseModel)
 Error = Mapping[str, Any]
 
+#: More fields are too many for a hint.
+_FEW = 12
 _RANGE = ("greater_than", "less_than", "finite_number", "multiple_of")
 _LENGTH = ("too_short", "too_long")
 _TYPES = {
@@ -127,6 +129,8 @@ def _unknown_field(parent: Place, name: str) -> Diagnostic:
     mark = entry.key if entry else parent.node.mark
     others = [known for known in field_names(parent) if known != name]
     hint = did_you_mean(nearest(name, others)[:1]).removeprefix("; ")
+    if not hint and 0 < len(others) <= _FEW:
+        hint = f"known: {', '.join(others)}"
     if name == "extends":
         hint = "it stands at the top of a file, or in 'base' or 'scenario'"
     where = f" in {parent.name}" if parent.path else ""
