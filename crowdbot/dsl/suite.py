@@ -55,7 +55,7 @@ _CHOICES = {
 
 #: Checked by `read_selection`, which knows the axes.
 _Choices = Annotated[Any, WithJsonSchema(_CHOICES)]
-#: Checked by `_check_versions`: the dots of a plugin's kinds make maps.
+#: Checked by `_check_versions`.
 _Versions = Annotated[
     Any,
     WithJsonSchema({"type": "object", "additionalProperties": {"type": "integer", "minimum": 1}}),
@@ -84,9 +84,18 @@ class SuiteDocument(Spec):
     crowdbot: int = Field(description="Version of the format.")
     suite: SuiteHead
     base: dict[str, Any] = Field(description="What all scenarios have in common.")
-    matrix: Any = Field(default=None, description="Axes of variation.")
-    only: _Choices = Field(default=None, description="Labels by axis; the rest is left out.")
-    exclude: _Choices = Field(default=None, description="Labels by axis that are left out.")
+    matrix: Any = Field(
+        default=None,
+        description="Axes of variation: axis, label, and the fields that the label overrides.",
+    )
+    only: _Choices = Field(
+        default=None,
+        description="Combinations that stay: labels by axis, or a list of such maps, of which one "
+        "has to fit.",
+    )
+    exclude: _Choices = Field(
+        default=None, description="Combinations that are left out, written as in `only`."
+    )
     replicates: Annotated[int, Ge(1), Le(MAX_COMBINATIONS)] = Field(
         default=1, description="How often each scenario is repeated, with other people each time."
     )

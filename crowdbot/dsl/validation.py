@@ -131,6 +131,8 @@ def _unknown_field(parent: Place, name: str) -> Diagnostic:
     hint = did_you_mean(nearest(name, others)[:1]).removeprefix("; ")
     if not hint and 0 < len(others) <= _FEW:
         hint = f"known: {', '.join(others)}"
+    if entry and " " in name and entry.node.value is None:
+        hint = "inside {} a comma ends a text; quote text that holds one"
     if name == "extends":
         hint = "it stands at the top of a file, or in 'base' or 'scenario'"
     where = f" in {parent.name}" if parent.path else ""
