@@ -43,9 +43,7 @@ scenario:
 
 
 @pytest.fixture
-def option(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> Iterator[list[str]]:
+def option(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
     monkeypatch.chdir(tmp_path)
     Path("acme.py").write_text(PLUGIN)
     Path("two.yaml").write_text(SCENARIO)
@@ -58,9 +56,8 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> str:
     return capsys.readouterr().out
 
 
-def test_without_the_plugin_its_kinds_are_unknown(
-    option: list[str], capsys: pytest.CaptureFixture[str]
-) -> None:
+@pytest.mark.usefixtures("option")
+def test_without_the_plugin_its_kinds_are_unknown(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["validate", "two.yaml"]) == 1
     errors = capsys.readouterr().err
     assert errors.count("is the package providing 'acme' installed?") == 4
