@@ -15,7 +15,7 @@ from annotated_types import MinLen
 from pydantic import ConfigDict, Field, PrivateAttr, model_validator
 
 from crowdbot.dsl.base import Spec
-from crowdbot.dsl.nodes import open_file
+from crowdbot.dsl.text_files import open_file
 from crowdbot.errors import InputError
 
 MAX_BYTES = 1 << 30

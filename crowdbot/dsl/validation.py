@@ -20,6 +20,12 @@ Error = Mapping[str, Any]
 
 #: More fields are too many for a hint.
 _FEW = 12
+#: Fields that people look for, and where they are.
+_ELSEWHERE = {
+    "extends": "it stands at the top of a file, or in 'base' or 'scenario'",
+    "planner": "it is what you test: crowdbot simulate … --planner NAME",
+    "scenario": "a document holds 'suite' and 'base', or one 'scenario'",
+}
 _RANGE = ("greater_than", "less_than", "finite_number", "multiple_of")
 _LENGTH = ("too_short", "too_long")
 _TYPES = {
@@ -98,7 +104,7 @@ def field_names(place: Place) -> list[str]:
     """The fields that the model knows at a place."""
     tag = kind_of(place.node)
     models = [t for t in place.types if _is_model(t) and _has_kind(t, tag)]
-    return [name for model in models for name in model.model_fields]
+    return [n for model in models for n, info in model.model_fields.items() if not info.exclude]
 
 
 def diagnose(error: Error, tree: Node, model: type[BaseModel]) -> Diagnostic:
@@ -133,8 +139,7 @@ def _unknown_field(parent: Place, name: str) -> Diagnostic:
         hint = f"known: {', '.join(others)}"
     if entry and " " in name and entry.node.value is None:
         hint = "inside {} a comma ends a text; quote text that holds one"
-    if name == "extends":
-        hint = "it stands at the top of a file, or in 'base' or 'scenario'"
+    hint = _ELSEWHERE.get(name, hint)
     where = f" in {parent.name}" if parent.path else ""
     if entry and entry.dotted:
         text = f"'{entry.dotted}' overrides nothing: no field '{name}'{where}"
@@ -214,9 +219,21 @@ def _bad_value(error: Error, kind: str, place: Place) -> tuple[str, str, str]:
     wanted = _TYPES.get(kind.split("_")[0])
     if wanted and kind != "value_error":
         scalar = isinstance(place.node.value, int | float)
-        hint = "quote it if it is text" if wanted == "text" and scalar else ""
+        hint = "quote it if it is text" if wanted == "text" and scalar else _as_map(wanted, place)
         return "E111", f"{name} must be {wanted}, not {given}", hint
     return "E115", f"{name}: {text}", ""
+
+
+def _as_map(wanted: str, place: Place) -> str:
+    """How to write a map where there is something else."""
+    if wanted == "a map of names":
+        return "write {NAME: …}"
+    if wanted != "a map of fields":
+        return ""
+    if any(hasattr(t, "category") for t in place.types):
+        return f"write {{kind: {place.node.value if isinstance(place.node.value, str) else '…'}}}"
+    names = field_names(place)
+    return f"its fields: {', '.join(names)}" if 0 < len(names) <= _FEW else ""
 
 
 def _form(pattern: str) -> str:
