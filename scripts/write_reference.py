@@ -16,6 +16,7 @@ from pydantic.fields import FieldInfo
 
 from crowdbot.core.registry import Registry, discover
 from crowdbot.dsl.areas import Area
+from crowdbot.dsl.assets import Asset
 from crowdbot.dsl.base import CATEGORIES, ComponentSpec, Mount, Range, Rectangle
 from crowdbot.dsl.parameters import (
     AccelerationDraw,
@@ -47,7 +48,19 @@ as `80 cm/s`. World frame: x along the corridor, y left, z up, angles counter-cl
 """
 _COMPONENTS = ("environment", "crowd policy", "cost function", "robot", "sensor", "noise")
 _DRAWS = (LengthDraw, SpeedDraw, AccelerationDraw, MassDraw, DurationDraw)
-_SHARED = (Mount, Range, Rectangle, Area, SpeedDistribution, *_DRAWS)
+_SHARED = (Asset, Mount, Range, Rectangle, Area, SpeedDistribution, *_DRAWS)
+#: Fields that a document's reader checks; the models do not know their types.
+_READ = {
+    "matrix": "map of maps of maps",
+    "only": "map or list of maps",
+    "exclude": "map or list of maps",
+    "kinds": "map of integer",
+}
+_EXTENDS = (
+    "| `extends` | text or list of text |  | empty | Files laid under this map, left to right: "
+    "relative to this file, not outside the folder of the document, or `NAME:path` in a plugin's "
+    "folder. |"
+)
 _NAMES = {float: "number", int: "integer", str: "text", bool: "true or false", Any: "anything"}
 _BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
 
@@ -66,14 +79,14 @@ def _units() -> str:
 
 
 def _documents() -> Iterator[str]:
-    yield _section("## A suite document", SuiteDocument)
+    yield _section("## A suite document", SuiteDocument, extends=True)
     yield _section("### suite", SuiteHead)
     yield _section("### seeds", Seeds)
-    yield _section("## A scenario document", ScenarioDocument)
+    yield _section("## A scenario document", ScenarioDocument, extends=True)
 
 
 def _scenario(registry: Registry) -> Iterator[str]:
-    yield _section("## A scenario", registry.scenario_model)
+    yield _section("## A scenario", registry.scenario_model, extends=True)
     for path, model in _nested(registry.scenario_model, ""):
         yield _section(f"### {path}", model)
 
@@ -119,11 +132,13 @@ def _model_of(annotation: Any) -> tuple[type[BaseModel] | None, bool]:
     return None, False
 
 
-def _section(heading: str, model: type[BaseModel], about: str = "") -> str:
+def _section(
+    heading: str, model: type[BaseModel], about: str = "", *, extends: bool = False
+) -> str:
     lines = [heading, "", *([about, ""] if about else []), _prose(model), ""]
     rows = [_row(n, i) for n, i in model.model_fields.items() if n != "kind" and not i.exclude]
     head = ["| field | type | unit | default | meaning |", "|---|---|---|---|---|"]
-    return "\n".join([*lines, *head, *rows, ""])
+    return "\n".join([*lines, *head, *rows, *([_EXTENDS] if extends else []), ""])
 
 
 def _prose(model: type[BaseModel]) -> str:
@@ -134,7 +149,8 @@ def _prose(model: type[BaseModel]) -> str:
 
 def _row(name: str, info: FieldInfo) -> str:
     unit = ", ".join(_units_of(info.annotation, info.metadata))
-    cells = [f"`{name}`", _type(info), unit, _default(info), info.description or _about(info)]
+    kind = _READ.get(name, "anything") if _word(info.annotation) == "anything" else _type(info)
+    cells = [f"`{name}`", kind, unit, _default(info), info.description or _about(info)]
     return "| " + " | ".join(c.replace("|", "\\|") for c in cells) + " |"
 
 

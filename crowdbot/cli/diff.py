@@ -7,10 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from crowdbot.cli._options import Plugins
+
 if TYPE_CHECKING:
     from crowdbot.core.comparand import Comparand
     from crowdbot.core.diff import Difference
 
+#: A longer value pushes its neighbour aside instead of all others.
+_WIDEST = 72
 _SIDE = "SUITE/ID, FILE#ID, a file with one scenario, or a run directory."
 
 
@@ -21,6 +25,7 @@ def diff(
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Change B first; repeatable."),
     ] = None,
+    plugin: Plugins = None,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
     """Compare two scenarios or two runs; exit 0 when equal, 1 when not.
@@ -31,7 +36,7 @@ def diff(
     from crowdbot.core.diff import differences
     from crowdbot.core.registry import discover
 
-    registry = discover()
+    registry = discover(extra=plugin or ())
     first = read_comparand(a, registry)
     second = read_comparand(b, registry, overrides or ())
     found = {"scenario": list(differences(first.scenario, second.scenario))}
@@ -66,6 +71,6 @@ def _print(a: Comparand, b: Comparand, found: dict[str, list[Difference]]) -> No
         count = "1 difference" if len(listed) == 1 else f"{len(listed)} differences"
         typer.echo(f"{part}: {count}")
         rows = [(d.path, shown(d.a), shown(d.b)) for d in listed]
-        widths = [max(len(row[i]) for row in rows) for i in range(2)]
+        widths = [min(_WIDEST, max(len(row[i]) for row in rows)) for i in range(2)]
         for path, left, right in rows:
             typer.echo(f"  {path:<{widths[0]}}  {left:<{widths[1]}}  {right}")

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli._options import Plugins
+
 if TYPE_CHECKING:
     from crowdbot.core.registry import Registry
     from crowdbot.dsl.expand import Expansion
@@ -25,6 +27,7 @@ def expand(
         bool, typer.Option("--explain", help="With --one: say where each value is written.")
     ] = False,
     count: Annotated[bool, typer.Option("--count", help="Print only how many there are.")] = False,
+    plugin: Plugins = None,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
     overrides: Annotated[
         list[str] | None,
@@ -40,7 +43,7 @@ def expand(
 
     if explain and one is None:
         raise typer.BadParameter("--explain goes with --one ID")
-    registry = discover()
+    registry = discover(extra=plugin or ())
     expansion = open_spec(spec, registry, overrides or ())
     if one is not None:
         typer.echo(_one(expansion, one, registry, as_json=as_json, explain=explain), nl=False)

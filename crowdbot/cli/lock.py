@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli._options import Plugins
+
 if TYPE_CHECKING:
     from crowdbot.core.registry import Registry
     from crowdbot.dsl.expand import Expansion
@@ -21,6 +23,7 @@ def lock(
     redraw: Annotated[
         bool, typer.Option("--redraw", help="Draw all agents anew, also those that need not be.")
     ] = False,
+    plugin: Plugins = None,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
     """Draw the agents of a suite once and freeze them, with the hashes of its scenarios.
@@ -35,7 +38,7 @@ def lock(
 
     if check and redraw:
         raise typer.BadParameter("--check writes nothing, --redraw writes; give one of them")
-    registry = discover()
+    registry = discover(extra=plugin or ())
     expansion, files = open_suite(spec, registry)
     if check:
         _check(expansion, files, registry, as_json=as_json)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli._files import write_file
+from crowdbot.cli._options import Plugins
 from crowdbot.errors import UsageError
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def schema(
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write there instead of stdout.")
     ] = None,
+    plugin: Plugins = None,
 ) -> None:
     """Print the JSON Schema of a document, for editors; plugins' components are in it.
 
@@ -48,7 +50,7 @@ def schema(
             f"a {document} has no canonical form; 'crowdbot schema scenario --canonical' is that "
             "of its scenarios"
         )
-    text = to_text(build(document, discover(), canonical=canonical))
+    text = to_text(build(document, discover(extra=plugin or ()), canonical=canonical))
     if out is None:
         typer.echo(text, nl=False)
     else:

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli._options import Plugins
+
 if TYPE_CHECKING:
     from crowdbot.core.sim.request import Run
 
@@ -52,10 +54,7 @@ def simulate(
         bool, typer.Option(help="Run robot_alone and crowd_alone where they are missing.")
     ] = True,
     force: Annotated[bool, typer.Option("--force", help="Run again what is complete.")] = False,
-    plugin: Annotated[
-        list[Path] | None,
-        typer.Option(metavar="DIR", help="A plugin that is not installed; repeatable."),
-    ] = None,
+    plugin: Plugins = None,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
     """Simulate one scenario with one planner; record, score and replay it.

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli._options import Plugins
 from crowdbot.errors import SpecError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ def validate(
     format_: Annotated[
         Format, typer.Option("--format", help="text on stderr; json or github on stdout.")
     ] = Format.TEXT,
+    plugin: Plugins = None,
     as_json: Annotated[bool, typer.Option("--json", help="Same as --format json.")] = False,
 ) -> None:
     """Check suites and scenarios; report every error with its place.
@@ -41,7 +43,7 @@ def validate(
     """
     from crowdbot.core.registry import discover
 
-    registry = discover()
+    registry = discover(extra=plugin or ())
     results = {spec: _check(spec, registry) for spec in dict.fromkeys(specs)}
     errors = [d for _, found in results.values() for d in found]
     if as_json or format_ is Format.JSON:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli._files import write_file
+from crowdbot.cli._options import Plugins
 from crowdbot.errors import InputError, UsageError
 
 if TYPE_CHECKING:
@@ -34,19 +35,22 @@ def view(
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Change the scenario; repeatable."),
     ] = None,
+    plugin: Plugins = None,
     as_json: Annotated[bool, typer.Option("--json", help="Path and facts as JSON.")] = False,
 ) -> None:
     """Draw a scenario from above, or find the replay page of a run. Nothing is simulated.
 
     Example: crowdbot view challenge-2020 counter-d0500-fast-c20-r05 --out scenario.png
     """
+    from crowdbot.core.registry import discover
+
     facts: dict[str, str] = {}
     if Path(spec).is_dir():
         if scenario is not None or out is not None or overrides:
             raise UsageError(f"{spec} is a run, whose page is there already: no ID, --out or --set")
         path = _replay(Path(spec))
     else:
-        path, facts = _draw(spec, scenario, out, overrides or [])
+        path, facts = _draw(discover(extra=plugin or ()), spec, scenario, out, overrides or [])
     if as_json:
         typer.echo(json.dumps({"path": str(path), "facts": facts}, indent=2, ensure_ascii=False))
     else:
@@ -66,11 +70,10 @@ def _replay(run: Path) -> Path:
 
 
 def _draw(
-    spec: str, wanted: str | None, out: Path | None, overrides: list[str]
+    registry: Registry, spec: str, wanted: str | None, out: Path | None, overrides: list[str]
 ) -> tuple[Path, dict[str, str]]:
     from crowdbot.core.library import open_spec, pick
     from crowdbot.core.lock import population
-    from crowdbot.core.registry import discover
     from crowdbot.core.view.build import build_scene
     from crowdbot.core.view.draw import draw
     from crowdbot.core.view.facts import scenario_facts
@@ -78,7 +81,6 @@ def _draw(
 
     if out is not None and out.suffix.lower() not in _FORMATS:
         raise UsageError(f"--out {out}: the name must end in {', '.join(_FORMATS)}")
-    registry: Registry = discover()
     expansion = open_spec(spec, registry, overrides)
     chosen = pick(expansion, wanted)
     people = population(chosen, registry)

@@ -15,6 +15,7 @@ from crowdbot.core.floor import Floor
 from crowdbot.core.placing import ATTEMPTS
 from crowdbot.core.realisation import Realisation
 from crowdbot.core.spawning import SpawnDraw, Streams, draw_speeds, heading_to, stream_heading
+from crowdbot.dsl.assets import Asset
 from crowdbot.dsl.scenario import Crowd, Flow, Scenario
 from crowdbot.dsl.spawning import Agent
 from crowdbot.errors import InputError
@@ -33,6 +34,8 @@ def realise(scenario: Scenario) -> Realisation:
         return Realisation.nobody()
     streams = Streams(crowd.seed.root, crowd.seed.key)
     floor = Floor([robot.task.start[:2] for robot in scenario.robots.values()])
+    if crowd.names_nobody and crowd.policy.record is not None:
+        return Realisation.from_rows(list(_recorded(crowd, crowd.policy.record, streams)))
     explicit = [_agent_row(a, scenario, crowd, streams) for a in crowd.agents]
     for row in explicit:
         floor.add(row["x"], row["y"], row["radius"])
@@ -45,6 +48,31 @@ def realise(scenario: Scenario) -> Realisation:
     key = {"goal_key": streams.seed("crowd.goal")}
     numbered = [*explicit, *_numbered(drawn, {agent.id for agent in crowd.agents})]
     return Realisation.from_rows(sorted((row | key for row in numbered), key=lambda r: r["id"]))
+
+
+def _recorded(crowd: Crowd, record: Asset, streams: Streams) -> Iterator[Row]:
+    """The people of a record: each enters where and when it begins and goes where it ends."""
+    from crowdbot.core.crowd.record import read_record  # with the engine, which takes its time
+
+    people = read_record(record.file).agents()
+    for i, who in enumerate(people.id.tolist()):
+        start = float(people.x[i]), float(people.y[i])
+        goal = float(people.route[i, 0]), float(people.route[i, 1])  # one point each
+        yield {
+            **crowd.body.model_dump(include={"radius", "mass", "max_speed", "max_acceleration"}),
+            "id": who,
+            "x": start[0],
+            "y": start[1],
+            "heading": heading_to(*start, goal),
+            "speed": float(people.preferred_speed[i]),
+            "start_time": float(people.start_time[i]),
+            "group": -1,
+            "policy": "",
+            "at_goal": "remove",
+            "portals": ("", ""),
+            "goals": (goal,),
+            "goal_key": streams.seed("crowd.goal"),
+        }
 
 
 def _numbered(rows: Sequence[Row], taken: set[int]) -> Iterator[Row]:

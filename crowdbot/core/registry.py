@@ -25,6 +25,7 @@ from pydantic import BaseModel, Field, SerializeAsAny, create_model
 from crowdbot import hookspecs
 from crowdbot.core.component import Component
 from crowdbot.dsl.base import CATEGORIES, ComponentSpec
+from crowdbot.dsl.components import components
 from crowdbot.dsl.proximity import ProximitySpec, noise_map
 from crowdbot.dsl.scenario import Crowd, NamedPolicy, Robot, Scenario
 from crowdbot.errors import PluginError, UnknownNameError
@@ -127,15 +128,7 @@ class Registry:
 
     def spec_versions(self, scenario: Scenario) -> dict[str, int]:
         """Kind -> spec_version of every component a scenario uses."""
-        used: list[ComponentSpec] = [scenario.environment]
-        if scenario.crowd is not None:
-            used += [scenario.crowd.policy, *scenario.crowd.costs.values()]
-            for named in scenario.crowd.policies.values():
-                used += [named.policy, *named.costs.values()]
-        for entry in scenario.robots.values():
-            used += [entry.model, *entry.sensors.values()]
-            for sensor in entry.sensors.values():
-                used += sensor.noise.values() if isinstance(sensor, ProximitySpec) else ()
+        used = [spec for _, spec in components(scenario)]
         return {s.kind: self.find(s.category, s.kind).spec_version for s in used}
 
     def spec_model(self, category: str, kind: str) -> type[ComponentSpec]:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from crowdbot.dsl.quantities import Angle, Length, PositiveLength
+
+if TYPE_CHECKING:
+    from crowdbot.dsl.assets import Asset
 
 
 class Spec(BaseModel):
@@ -132,6 +135,11 @@ class CrowdPolicySpec(ComponentSpec):
     category: ClassVar[str] = "crowd policy"
     #: Whether the policy is nothing without cost functions.
     needs_costs: ClassVar[bool] = False
+
+    @property
+    def record(self) -> Asset | None:
+        """Recorded people who walk where the crowd names nobody; None without a record."""
+        return None
 
 
 class CostFunctionSpec(ComponentSpec):

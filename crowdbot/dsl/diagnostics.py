@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 #: Every code and its title; docs/reference/errors.md has a paragraph on each.
 CODES = {
@@ -57,6 +58,7 @@ CODES = {
     "E210": "unknown label",
     "E211": "empty selection",
     "E212": "suite without an id of its own",
+    "E213": "asset with another content",
     "E301": "plugin collision",
 }
 REFERENCE = "docs/reference/errors.md"
@@ -68,11 +70,12 @@ _LONGEST = 400
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Source:
-    """A text that was read: its name for people, its lines, and who included it."""
+    """A text that was read: its name for people, its lines, who included it, and its file."""
 
     name: str
     lines: Sequence[str] = ()
     included_from: Mark | None = None
+    file: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.dsl import semantics
+from crowdbot.dsl.asset_files import AssetFiles
 from crowdbot.dsl.diagnostics import MAX_ERRORS, Diagnostic, Mark, Source
-from crowdbot.dsl.include import Loader, Roots
+from crowdbot.dsl.finder import Finder, Roots
+from crowdbot.dsl.include import Loader
 from crowdbot.dsl.matrix import REPLICATE, combinations
 from crowdbot.dsl.merge import merge, nest, undot
 from crowdbot.dsl.nodes import Entry, Node, parse, to_data
@@ -92,7 +94,7 @@ def load_document(
     if all(d.code in _GO_ON for d in problems):
         suite = read_suite(root, problems, installed)
         if suite is not None and all(d.code in _GO_ON for d in problems):
-            return suite
+            return replace(suite, finder=Finder(path, roots or {}))
     raise SpecError(_sorted(problems))
 
 
@@ -144,6 +146,7 @@ class _Expander:
         self._data: dict[Node, Any] = {}
         self._seeds: dict[str, Node] = {}
         self._parts = ValidParts()
+        self._assets = AssetFiles(suite.finder) if suite.finder else None
         self._validated: dict[tuple[tuple[str, int], ...], Scenario] = {}
         self._total = self._noted = 0
 
@@ -222,7 +225,12 @@ class _Expander:
         found: list[Diagnostic] = []
         if scenario is None:
             scenario, found = validate(self._model, data, tree)
-        if scenario is not None:
+        if scenario is not None and self._assets is not None:
+            filled = self._assets.fill(scenario, tree, data, found)
+            if filled is not data:
+                scenario, more = validate(self._model, filled, tree)
+                found += more
+        if scenario is not None and not found:
             self._parts.add(tree, scenario)
             found = semantics.check(scenario, tree)
         for diagnostic in found:
@@ -254,7 +262,7 @@ class _Expander:
             if len(folded.ids) < self._total:
                 of = f"the first {self._total}" if self._noted > _ENOUGH else str(self._total)
                 notes.append(f"in {len(folded.ids)} of {of} combinations, first: {folded.ids[0]}")
-            yield replace(folded.diagnostic, hint="; ".join(notes))
+            yield replace(folded.diagnostic, hint="; ".join(notes).replace("?; ", "? "))
 
 
 def _unless_removed(change: Node, reference: Node) -> Node:

@@ -1,27 +1,26 @@
-"""``extends``: files laid under the map that names them, left to right.
+"""``extends``: files laid under the map that names them, left to right; tables of agents.
 
-A path is relative to the file that contains it, never to the working directory; ``name:path``
-looks in a plugin's packaged folder. Nothing outside the top-level file's folder and the
-packaged folders is ever read.
+A path is relative to the file that contains it, never to the working directory.
 """
 
 from __future__ import annotations
 
 import os.path
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path, PurePosixPath, PureWindowsPath
+from pathlib import Path
 
 from crowdbot.dsl.agents_csv import read_agents
 from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
+from crowdbot.dsl.finder import Finder, Roots
 from crowdbot.dsl.merge import merge, undot
-from crowdbot.dsl.nodes import Node, parse, read_text
-from crowdbot.errors import SpecError, did_you_mean, nearest
+from crowdbot.dsl.nodes import Node, parse
+from crowdbot.dsl.text_files import read_text
+from crowdbot.errors import SpecError
 
 MAX_INCLUDES = 64
 
-#: Plugin name -> its folders with suites and parts.
-Roots = Mapping[str, Sequence[Path]]
+#: Maps at the top of a document whose keys are kinds, which have dots of their own.
+_VERBATIM = ("kinds",)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,10 +47,10 @@ class Loader:
 
     def _read(self, file: _File, included_from: Mark | None) -> Node:
         """One file; an unreadable one counts as an empty map, its error is kept."""
-        source = Source(file.name, (), included_from)
+        source = Source(file.name, (), included_from, file.path)
         try:
             text = _read_text(file, source)
-            source = Source(file.name, text.split("\n"), included_from)
+            source = replace(source, lines=text.split("\n"))
             root = parse(text, source, self.problems)
         except SpecError as error:
             self.problems += [d for d in error.diagnostics if d not in self.problems]
@@ -61,7 +60,9 @@ class Loader:
             self.problems.append(Diagnostic("E011", f"the document {what}", root.mark))
             return Node(root.mark, {})
         here = replace(file, chain=(*file.chain, file.path.resolve()))
-        return self._resolve(self._with_rows(undot(root, self.problems), here), here)
+        return self._resolve(
+            self._with_rows(undot(root, self.problems, verbatim=_VERBATIM), here), here
+        )
 
     def _with_rows(self, node: Node, file: _File, below: str = "") -> Node:
         """A tree in which the rows of each table stand for ``crowd.agents: {csv: FILE}``."""
@@ -138,30 +139,11 @@ class Loader:
 
     def _find(self, text: str, mark: Mark, file: _File) -> _File | None:
         """The file that a path means, if it may be read; else the error is kept."""
-        prefix, colon, rest = text.rpartition(":")
-        if PurePosixPath(rest).is_absolute() or PureWindowsPath(text).drive or "\0" in text:
-            self._add("E203", f"'{text}' is not a relative path", mark)
+        path = Finder(self.top, self.roots).find(text, mark)
+        if isinstance(path, Diagnostic):
+            self.problems.append(path)
             return None
-        if colon and prefix not in self.roots:
-            hint = did_you_mean(nearest(prefix, self.roots)).removeprefix("; ")
-            hint = hint or f"is the package providing '{prefix}' installed?"
-            self._add("E201", f"no plugin '{prefix}' with scenario files", mark, hint)
-            return None
-        folders = self.roots[prefix] if colon else [file.path.parent]
-        try:
-            path = next((f / rest for f in folders if (f / rest).exists()), folders[0] / rest)
-            allowed, exists = self._allowed(path), path.exists()
-        except (OSError, RuntimeError) as error:  # a name too long, links in a circle
-            reason = getattr(error, "strerror", None) or str(error)
-            self._add("E201", f"'{text[:60]}' cannot be opened: {reason}", mark)
-            return None
-        if not allowed:
-            self._add("E203", f"'{text}' leaves the folder of {self.top.name}", mark)
-            return None
-        if not exists:
-            self._add("E201", f"no file '{text}'", mark, self._similar(path))
-            return None
-        name = text if colon else self._beside(file.name, text)
+        name = text if ":" in text else self._beside(file.name, text)
         return self._unless_cycle(_File(path, name, file.chain), mark)
 
     def _beside(self, name: str, text: str) -> str:
@@ -178,16 +160,6 @@ class Loader:
         chain = " -> ".join(p.name for p in (*found.chain[found.chain.index(target) :], target))
         self._add("E202", f"files include each other: {chain}", mark)
         return None
-
-    def _allowed(self, path: Path) -> bool:
-        allowed = [self.top.parent, *(f for fs in self.roots.values() for f in fs)]
-        target = path.resolve()
-        return any(target.is_relative_to(folder.resolve()) for folder in allowed)
-
-    @staticmethod
-    def _similar(path: Path) -> str:
-        names = (p.name for p in path.parent.iterdir()) if path.parent.is_dir() else ()
-        return did_you_mean(nearest(path.name, names)).removeprefix("; ")
 
     def _add(self, code: str, message: str, mark: Mark, hint: str = "") -> None:
         self.problems.append(Diagnostic(code, message, mark, hint))

@@ -96,7 +96,7 @@ def _read_axis(name: str, key: Mark, node: Node, problems: list[Diagnostic]) -> 
     _check_name("axis", name, key, problems)
     if not node.entries:
         text = f"axis '{name}' wants a map of labels with overrides"
-        problems.append(Diagnostic("E209", text, node.mark))
+        problems.append(Diagnostic("E209", text, node.mark, "{label: {some.field: value}}"))
     labels = {}
     for label, entry in node.entries.items():
         _check_name("label", label, entry.key, problems)
@@ -130,7 +130,8 @@ def _check_overlap(axes: Sequence[Axis], problems: list[Diagnostic]) -> None:
                     told.add(name)
                     text = f"axes '{name}' and '{axis.name}' both write {'.'.join(path)}"
                     also = (("also written at", place),)
-                    problems.append(Diagnostic("E205", text, mark, also=also))
+                    hint = "make them one axis"
+                    problems.append(Diagnostic("E205", text, mark, hint, also))
         for path, mark in written.items():
             leaves.setdefault(path, (axis.name, mark))
             for n in range(len(path)):

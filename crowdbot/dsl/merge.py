@@ -6,7 +6,7 @@ replaces the old map, ``null`` over something removes it, and ``{}`` over a map 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from crowdbot.dsl.diagnostics import Diagnostic, Mark
@@ -19,18 +19,19 @@ def merge(base: Node, over: Node) -> Node:
         return base
     if not (base.entries and over.entries) or _changes_kind(base, over):
         return over
-    entries = dict(base.entries)
+    entries, removed = dict(base.entries), {**base.removed, **over.removed}
     for key, entry in over.entries.items():
         old = entries.get(key)
         if old is None:
             entries[key] = entry
         elif entry.node.value is None:
             del entries[key]
+            removed[key] = entry.node.mark
         else:
             winner = old if entry.node.implied else entry
             entries[key] = replace(winner, node=merge(old.node, entry.node))
     place = base if over.implied else over
-    return Node(place.mark, entries, implied=base.implied and over.implied)
+    return Node(place.mark, entries, base.implied and over.implied, removed)
 
 
 def kind_of(node: Node) -> object:
@@ -39,13 +40,16 @@ def kind_of(node: Node) -> object:
     return kind.value if kind else None
 
 
-def undot(node: Node, problems: list[Diagnostic], depth: int = 0) -> Node:
+def undot(
+    node: Node, problems: list[Diagnostic], depth: int = 0, verbatim: Collection[str] = ()
+) -> Node:
     """Write ``a.b: x`` as ``a: {b: x}`` everywhere below a node.
 
     Args:
         node: tree as it was read.
         problems: keys that clash with others of the same map are added here.
         depth: levels above the node.
+        verbatim: keys of the node whose maps have names with dots.
     """
     if isinstance(node.value, tuple):
         return replace(node, value=tuple(undot(item, problems, depth + 1) for item in node.value))
@@ -62,12 +66,8 @@ def undot(node: Node, problems: list[Diagnostic], depth: int = 0) -> Node:
             text = f"key nested deeper than {MAX_DEPTH} levels"
             problems.append(Diagnostic("E009", text, entry.key))
             continue
-        _join(
-            out,
-            parts[0],
-            _nest(parts, replace(entry, node=undot(entry.node, problems, below))),
-            problems,
-        )
+        inner = entry.node if key in verbatim else undot(entry.node, problems, below)
+        _join(out, parts[0], _nest(parts, replace(entry, node=inner)), problems)
     return replace(node, value=out)
 
 

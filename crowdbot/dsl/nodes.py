@@ -8,12 +8,9 @@ and merges keys; a document that means something else than it says is refused he
 from __future__ import annotations
 
 import math
-import os
 import re
-import stat
-from collections.abc import Iterator
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from ruamel.yaml import YAML
@@ -33,7 +30,6 @@ from ruamel.yaml.events import (
 from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
 from crowdbot.errors import SpecError
 
-MAX_BYTES = 1_000_000
 MAX_DEPTH = 32
 
 Scalar = str | int | float | bool | None
@@ -62,11 +58,17 @@ class Entry:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Node:
-    """A scalar, a list or a map. ``implied``: a map that only a dotted key made necessary."""
+    """A scalar, a list or a map.
+
+    Attributes:
+        implied: a map that only a dotted key made necessary.
+        removed: fields that ``null`` removed from the map, and where that is written.
+    """
 
     mark: Mark
     value: Scalar | tuple[Node, ...] | dict[str, Entry]
     implied: bool = False
+    removed: Mapping[str, Mark] = field(default_factory=dict)
 
     @property
     def entries(self) -> dict[str, Entry]:
@@ -108,36 +110,6 @@ def count(node: Node) -> int:
     return 1 + sum(count(e.node) for e in node.entries.values()) + sum(map(count, items))
 
 
-def read_text(path: Path, name: str) -> str:
-    """Text of a file: UTF-8 with or without a byte order mark, any line ends.
-
-    Raises:
-        SpecError: E001, there is no such file or it is no text of reasonable size.
-    """
-    try:
-        with open(path, "rb", opener=_without_waiting) as file:
-            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-                raise _unreadable(name, "is a device or pipe, not a file")
-            raw = file.read(MAX_BYTES + 1)
-    except IsADirectoryError:
-        raise _unreadable(name, "is a folder, not a file") from None
-    except (OSError, ValueError) as error:
-        reason = "no such file" if isinstance(error, FileNotFoundError) else str(error)
-        raise _unreadable(name, getattr(error, "strerror", None) or reason) from None
-    if len(raw) > MAX_BYTES:
-        raise _unreadable(name, f"is larger than {MAX_BYTES // 1_000_000} MB")
-    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise _unreadable(name, "is UTF-16; save it as UTF-8")
-    if b"\0" in raw:
-        raise _unreadable(name, "is a binary file")
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = raw.count(b"\n", 0, error.start) + 1
-        raise _unreadable(name, f"is not UTF-8 (line {line}); save it as UTF-8") from None
-    return text.replace("\r\n", "\n").replace("\r", "\n")
-
-
 def parse(text: str, source: Source, problems: list[Diagnostic], shift: int = 0) -> Node:
     """Turn text into a tree.
 
@@ -153,13 +125,20 @@ def parse(text: str, source: Source, problems: list[Diagnostic], shift: int = 0)
     return _Builder(text, source, problems, shift).document()
 
 
-def _without_waiting(path: str, flags: int) -> int:
-    """Opening a pipe that nobody writes to would wait for ever."""
-    return os.open(path, flags | os.O_NONBLOCK)
-
-
-def _unreadable(name: str, why: str) -> SpecError:
-    return SpecError([Diagnostic("E001", why, Mark(Source(name)))])
+def _explained(error: MarkedYAMLError, shift: int) -> tuple[str, str]:
+    """Message and hint for an error of the YAML parser, whose own words are for its authors."""
+    problem, context, start = error.problem or "", error.context or "", error.context_mark
+    if "flow" in context and start is not None:
+        what = "'{'" if "mapping" in context else "'['"
+        column = start.column + 1 + (shift if start.line == 0 else 0)
+        where = f"line {start.line + 1}, column {column}"
+        return f"{problem or 'something is wrong'} after the {what} of {where}", ""
+    if "'\\t'" in problem:
+        return "a tab, which YAML does not take for indentation", "use blanks"
+    if "mapping values are not allowed" in problem:
+        text = "a second ':' on this line, or a line that is indented too far"
+        return text, "quote text that holds ': '"
+    return " ".join(filter(None, (problem, context))), ""
 
 
 class _Builder:
@@ -176,7 +155,8 @@ class _Builder:
         if found := _CONTROL.search(self._text):
             line = self._text.count("\n", 0, found.start())
             column = found.start() - (self._text.rfind("\n", 0, found.start()) + 1)
-            self._stop("E002", f"character U+{ord(found[0]):04X} is not allowed", line, column)
+            text = f"character U+{ord(found[0]):04X} is not allowed"
+            self._stop("E002", text, "", line, column)
         self._next()
         start = self._next()
         if isinstance(start, StreamEndEvent):
@@ -196,15 +176,16 @@ class _Builder:
         except MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
             line, column = (mark.line, mark.column) if mark else (0, 0)
-            self._stop("E002", " ".join(filter(None, (error.problem, error.context))), line, column)
+            self._stop("E002", *_explained(error, self._shift), line, column)
         except Exception as error:  # ruamel lets ValueError and OverflowError of escapes through
-            self._stop("E002", str(error), self._last.line, self._last.column - self._shift)
+            self._stop("E002", str(error), "", self._last.line, self._last.column - self._shift)
         self._last = self._mark(event)
         return event
 
-    def _stop(self, code: str, message: str, line: int, column: int) -> None:
+    def _stop(self, code: str, message: str, hint: str, line: int, column: int) -> None:
         mark = Mark(self._source, line, column + (self._shift if line == 0 else 0))
-        raise SpecError([*self._problems, Diagnostic(code, message.replace("\n", " "), mark)])
+        stop = Diagnostic(code, message.replace("\n", " "), mark, hint)
+        raise SpecError([*self._problems, stop])
 
     def _add(self, code: str, message: str, mark: Mark, hint: str = "") -> None:
         self._problems.append(Diagnostic(code, message, mark, hint))
@@ -218,7 +199,8 @@ class _Builder:
     def _node(self, event: Event, depth: int) -> Node:
         mark = self._mark(event)
         if depth > MAX_DEPTH:
-            self._stop("E009", f"nested deeper than {MAX_DEPTH} levels", mark.line, mark.column)
+            text = f"nested deeper than {MAX_DEPTH} levels"
+            self._stop("E009", text, "", mark.line, mark.column)
         self._refuse_indirection(event, mark)
         if isinstance(event, ScalarEvent):
             return Node(mark, self._scalar(event, mark))

@@ -159,6 +159,11 @@ class Crowd(Spec):
     )
     seed: CrowdSeed = Field(default=CrowdSeed(), description="Draws the crowd.")
 
+    @property
+    def names_nobody(self) -> bool:
+        """Whether there is neither a flow, nor a spawn, nor an explicit agent."""
+        return self.flow is None and not self.spawns and not self.agents
+
 
 class Goal(Spec):
     """Where the robot has to get: its centre inside a zone."""

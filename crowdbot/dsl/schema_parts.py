@@ -157,8 +157,8 @@ class Parts:
         field = self._raw[name].get("short")
         if field is None or self._canonical:
             return {"$ref": _REF + name}
-        whole, short = {"$ref": _REF + name}, self._raw[name]["properties"][field]["anyOf"]
-        return {"anyOf": [*short, whole]}
+        whole, short = {"$ref": _REF + name}, self._raw[name]["properties"][field]
+        return {"anyOf": [*short.get("anyOf", [short]), whole]}
 
     def _map(self, raw: Json, name: str) -> Json:
         """Named members; a dotted key leads into one of them."""

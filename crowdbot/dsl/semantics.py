@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from crowdbot.dsl.components import components
 from crowdbot.dsl.diagnostics import Diagnostic
 from crowdbot.dsl.nodes import Node
 from crowdbot.dsl.scenario import Scenario, Task
@@ -26,17 +27,7 @@ def check(scenario: Scenario, tree: Node) -> list[Diagnostic]:
 
 def _check_kinds(scenario: Scenario, tree: Node) -> Iterator[Diagnostic]:
     """A kind is always written: left out, it would mean something as long as one is installed."""
-    paths: list[tuple[str, ...]] = [("environment",)]
-    if scenario.crowd is not None:
-        crowd = scenario.crowd
-        paths += [("crowd", "policy"), *(("crowd", "costs", n) for n in crowd.costs)]
-        for name, named in crowd.policies.items():
-            within = ("crowd", "policies", name)
-            paths += [(*within, "policy"), *((*within, "costs", n) for n in named.costs)]
-    for name, robot in scenario.robots.items():
-        paths += [("robots", name, "model")]
-        paths += [("robots", name, "sensors", sensor) for sensor in robot.sensors]
-    for path in paths:
+    for path, _ in components(scenario):
         place = locate(tree, path)
         if not place.rest and place.node.child("kind") is None:
             yield missing_field(tree, place, "kind")

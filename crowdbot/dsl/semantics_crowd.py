@@ -13,7 +13,7 @@ from crowdbot.dsl.semantics_facts import Facts
 def check_crowd(facts: Facts) -> Iterator[Diagnostic]:
     """Everything about a crowd that is in neither a spawn nor an agent of its own."""
     crowd = facts.crowd
-    if crowd.flow is None and not crowd.spawns and not crowd.agents:
+    if crowd.names_nobody and crowd.policy.record is None:
         hint = "write one of flow, spawns and agents; 'crowd: null' is a scenario without people"
         yield Diagnostic("E134", "the crowd has no people", facts.mark("crowd"), hint)
     if crowd.flow is not None:
@@ -44,7 +44,8 @@ def _check_costs(
     if policy.needs_costs and bare:
         where = ".".join((*path, "costs"))
         text = f"policy {policy.kind} minimises cost functions, and {where} has none"
-        yield Diagnostic("E133", text, facts.mark(*path, "costs"))
+        hint = "write some, such as {reflex: {kind: rvo}}"
+        yield Diagnostic("E133", text, facts.mark(*path, "costs"), hint)
 
 
 def missing_speed(facts: Facts, who: str, *path: str | int) -> Diagnostic:

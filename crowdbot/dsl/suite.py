@@ -27,6 +27,7 @@ from pydantic import Field, WithJsonSchema
 
 from crowdbot.dsl.base import Spec
 from crowdbot.dsl.diagnostics import Diagnostic, Mark
+from crowdbot.dsl.finder import Finder
 from crowdbot.dsl.matrix import MAX_COMBINATIONS, REPLICATE, Axis, read_axes
 from crowdbot.dsl.nodes import Node, count, to_data
 from crowdbot.dsl.selection import Kept, read_selection
@@ -43,7 +44,6 @@ MAX_FIELDS = 10_000_000
 _ELSEWHERE = {
     "id": "ids are made of the labels of the matrix",
     "references": "references stand beside 'base' or 'scenario'",
-    "extends": "'extends' stands at the top of a file, or in 'base' or 'scenario'",
 }
 
 
@@ -55,7 +55,7 @@ _CHOICES = {
 
 #: Checked by `read_selection`, which knows the axes.
 _Choices = Annotated[Any, WithJsonSchema(_CHOICES)]
-#: Checked by `_check_versions`: the dots of a plugin's kinds make maps.
+#: Checked by `_check_versions`.
 _Versions = Annotated[
     Any,
     WithJsonSchema({"type": "object", "additionalProperties": {"type": "integer", "minimum": 1}}),
@@ -84,9 +84,18 @@ class SuiteDocument(Spec):
     crowdbot: int = Field(description="Version of the format.")
     suite: SuiteHead
     base: dict[str, Any] = Field(description="What all scenarios have in common.")
-    matrix: Any = Field(default=None, description="Axes of variation.")
-    only: _Choices = Field(default=None, description="Labels by axis; the rest is left out.")
-    exclude: _Choices = Field(default=None, description="Labels by axis that are left out.")
+    matrix: Any = Field(
+        default=None,
+        description="Axes of variation: axis, label, and the fields that the label overrides.",
+    )
+    only: _Choices = Field(
+        default=None,
+        description="Combinations that stay: labels by axis, or a list of such maps, of which one "
+        "has to fit.",
+    )
+    exclude: _Choices = Field(
+        default=None, description="Combinations that are left out, written as in `only`."
+    )
     replicates: Annotated[int, Ge(1), Le(MAX_COMBINATIONS)] = Field(
         default=1, description="How often each scenario is repeated, with other people each time."
     )
@@ -116,6 +125,7 @@ class Suite:
         crowd_axes: names of the axes whose labels make the crowd's seed key.
         kept: labels of the combinations that stay; None: all.
         problems: errors found so far.
+        finder: finds the files that the document names; None: assets are not looked for.
     """
 
     id: str
@@ -129,6 +139,7 @@ class Suite:
     references: dict[str, Node]
     problems: tuple[Diagnostic, ...]
     kept: Kept | None = None
+    finder: Finder | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,6 +191,7 @@ def read_suite(
 def _scenario(root: Node, body: Node, problems: list[Diagnostic]) -> Suite:
     name, title = _text(body.child("id"), ""), _text(body.child("title"), "")
     _check_elsewhere(body, ("references",), problems)
+    _check_references(root, problems)
     return Suite(
         name, title, name, None, body, (), (), _metrics(root), _references(root), tuple(problems)
     )
@@ -194,6 +206,7 @@ def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> Suite:
     for axis in axes:
         for over in axis.labels.values():
             _check_elsewhere(over, ("id", "references"), problems)
+    _check_references(root, problems)
     _check_own_id(head, problems)
     seed = head.child("seed") if head else None
     if seed is None or not isinstance(seed.value, int):
@@ -270,6 +283,15 @@ def _check_elsewhere(body: Node, names: tuple[str, ...], problems: list[Diagnost
             mark: Mark = body.entries[name].key
             text = f"field '{name}' is not written here"
             problems.append(Diagnostic("E102", text, mark, _ELSEWHERE[name]))
+
+
+def _check_references(root: Node, problems: list[Diagnostic]) -> None:
+    """A reference is known by its name, beside the id of its scenario."""
+    listed = root.child("references")
+    for entry in (listed.entries if listed else {}).values():
+        for name in {"id", "references"} & entry.node.entries.keys():
+            text = f"a reference has no '{name}'"
+            problems.append(Diagnostic("E102", text, entry.node.entries[name].key))
 
 
 def _check_metrics(listed: Node | None, known: Collection[str], problems: list[Diagnostic]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
@@ -17,6 +18,14 @@ from crowdbot.errors import PluginError, did_you_mean, nearest
 M = TypeVar("M", bound=BaseModel)
 Error = Mapping[str, Any]
 
+#: More fields are too many for a hint.
+_FEW = 12
+#: Fields that people look for, and where they are.
+_ELSEWHERE = {
+    "extends": "it stands at the top of a file, or in 'base' or 'scenario'",
+    "planner": "it is what you test: crowdbot simulate … --planner NAME",
+    "scenario": "a document holds 'suite' and 'base', or one 'scenario'",
+}
 _RANGE = ("greater_than", "less_than", "finite_number", "multiple_of")
 _LENGTH = ("too_short", "too_long")
 _TYPES = {
@@ -95,7 +104,7 @@ def field_names(place: Place) -> list[str]:
     """The fields that the model knows at a place."""
     tag = kind_of(place.node)
     models = [t for t in place.types if _is_model(t) and _has_kind(t, tag)]
-    return [name for model in models for name in model.model_fields]
+    return [n for model in models for n, info in model.model_fields.items() if not info.exclude]
 
 
 def diagnose(error: Error, tree: Node, model: type[BaseModel]) -> Diagnostic:
@@ -107,7 +116,10 @@ def diagnose(error: Error, tree: Node, model: type[BaseModel]) -> Diagnostic:
     if kind in ("missing", "union_tag_not_found"):
         if isinstance(loc[-1], int):
             count = len(place.node.value) if isinstance(place.node.value, tuple) else 0
-            text = f"{place.name} has {count} entries, too few"
+            wanted = [len(get_args(t)) for t in place.types if get_origin(t) is tuple]
+            text = (
+                f"{place.name} has {count} entries, {f'not {wanted[0]}' if wanted else 'too few'}"
+            )
             return Diagnostic("E114", text, place.node.mark)
         return missing_field(tree, place, str(loc[-1]) if kind == "missing" else "kind")
     if kind == "union_tag_invalid":
@@ -123,6 +135,11 @@ def _unknown_field(parent: Place, name: str) -> Diagnostic:
     mark = entry.key if entry else parent.node.mark
     others = [known for known in field_names(parent) if known != name]
     hint = did_you_mean(nearest(name, others)[:1]).removeprefix("; ")
+    if not hint and 0 < len(others) <= _FEW:
+        hint = f"known: {', '.join(others)}"
+    if entry and " " in name and entry.node.value is None:
+        hint = "inside {} a comma ends a text; quote text that holds one"
+    hint = _ELSEWHERE.get(name, hint)
     where = f" in {parent.name}" if parent.path else ""
     if entry and entry.dotted:
         text = f"'{entry.dotted}' overrides nothing: no field '{name}'{where}"
@@ -144,6 +161,9 @@ def missing_field(tree: Node, place: Place, name: str) -> Diagnostic:
             text = f"'{entry.dotted}' overrides nothing: there is no {made}"
             return Diagnostic("E204", text, entry.key, did_you_mean(near).removeprefix("; "))
     where = f" in {place.name}" if place.path else ""
+    if name in place.node.removed:
+        text = f"missing field '{name}'{where}"
+        return Diagnostic("E103", text, place.node.removed[name], "null removes it")
     mark = place.node.mark
     return Diagnostic(
         "E103", f"missing field '{name}'{where}", Mark(mark.source, mark.line, mark.column)
@@ -195,13 +215,33 @@ def _bad_value(error: Error, kind: str, place: Place) -> tuple[str, str, str]:
     if kind.startswith(_RANGE):
         return "E112", f"{name}: {_lower(text).replace('input should', 'must')}, not {given}", ""
     if kind == "string_pattern_mismatch":
-        return "E116", f"{name}: {given} does not match {context['pattern']}", ""
+        return "E116", f"{name}: {given} {_form(context['pattern'])}", ""
     wanted = _TYPES.get(kind.split("_")[0])
     if wanted and kind != "value_error":
         scalar = isinstance(place.node.value, int | float)
-        hint = "quote it if it is text" if wanted == "text" and scalar else ""
+        hint = "quote it if it is text" if wanted == "text" and scalar else _as_map(wanted, place)
         return "E111", f"{name} must be {wanted}, not {given}", hint
     return "E115", f"{name}: {text}", ""
+
+
+def _as_map(wanted: str, place: Place) -> str:
+    """How to write a map where there is something else."""
+    if wanted == "a map of names":
+        return "write {NAME: …}"
+    if wanted != "a map of fields":
+        return ""
+    if any(hasattr(t, "category") for t in place.types):
+        return f"write {{kind: {place.node.value if isinstance(place.node.value, str) else '…'}}}"
+    names = field_names(place)
+    return f"its fields: {', '.join(names)}" if 0 < len(names) <= _FEW else ""
+
+
+def _form(pattern: str) -> str:
+    """What a regular expression asks for; in words where it is a set of characters."""
+    found = re.fullmatch(r"\^\[A-Za-z0-9(.+)\]\+\$", pattern)
+    if found is None:
+        return f"does not match {pattern}"
+    return f"may have letters, digits and {' '.join(found[1])} only"
 
 
 def _lower(text: str) -> str:

@@ -13,6 +13,7 @@ from oracle_cases import compiled
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.record import read_record
+from crowdbot.dsl.assets import Asset
 from crowdbot.dsl.base import Range
 from crowdbot.errors import InputError
 from crowdbot.plugins.crowd.replay import ReplaySpec
@@ -41,6 +42,10 @@ def table(tmp_path: Path) -> Path:
     return path
 
 
+def words(table: Path) -> ReplaySpec:
+    return ReplaySpec(file=Asset(path=str(table)))
+
+
 def test_a_record_is_resampled_on_the_line_between_samples(table: Path) -> None:
     record = read_record(table)
     assert sorted(record.time) == [3, 5, 9]
@@ -61,9 +66,7 @@ def test_the_agents_of_a_record(table: Path) -> None:
 
 def test_people_walk_as_recorded(table: Path) -> None:
     record = read_record(table)
-    engine = CrowdEngine(
-        record.agents(), CrowdWorld(), lambda a: build(ReplaySpec(file=str(table)), [], a)
-    )
+    engine = CrowdEngine(record.agents(), CrowdWorld(), lambda a: build(words(table), [], a))
     t, place = engine.run(9.0)
     for column, who in enumerate((3, 5, 9)):
         seen = np.isfinite(place[:, column, 0])
@@ -77,9 +80,7 @@ def test_people_walk_as_recorded(table: Path) -> None:
 
 def test_pushed_people_find_back_to_the_record(table: Path) -> None:
     record = read_record(table)
-    engine = CrowdEngine(
-        record.agents(), CrowdWorld(), lambda a: build(ReplaySpec(file=str(table)), [], a)
-    )
+    engine = CrowdEngine(record.agents(), CrowdWorld(), lambda a: build(words(table), [], a))
     flat = engine.initial_state()
     for tick in range(4 * TICKS):
         if tick == TICKS:
@@ -97,7 +98,7 @@ def test_reactive_people_follow_the_record_and_avoid_what_is_in_the_way(table: P
     for name, costs in (("exact", []), ("reactive", [cost])):
         engine = CrowdEngine(
             record.agents(), CrowdWorld(pillars=pillar),
-            lambda a, c=costs: build(ReplaySpec(file=str(table)), c, a),  # type: ignore[misc]
+            lambda a, c=costs: build(words(table), c, a),  # type: ignore[misc]
         )  # fmt: skip
         _, place = engine.run(5.0)
         least[name] = float(np.min(np.hypot(*(place[:, 0] - pillar[0, :2]).T)))
@@ -110,7 +111,7 @@ def test_reactive_people_follow_the_record_and_avoid_what_is_in_the_way(table: P
 
 def test_an_agent_that_is_not_recorded_is_refused(table: Path) -> None:
     with pytest.raises(InputError, match="nobody with id 4"):
-        build(ReplaySpec(file=str(table)), [], Agents.of(id=[3, 4], x=[0, 1], y=0.0))
+        build(words(table), [], Agents.of(id=[3, 4], x=[0, 1], y=0.0))
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,8 @@ Two oracles say what may be valid. One knows from the mutation that it must be r
 reads the text with another loader: a document that means the same must have the same hashes, one
 that means something else must have others.
 
-A larger campaign: CROWDBOT_MUTATIONS=20000 pytest tests/dsl/test_mutations.py
+A larger campaign: CROWDBOT_MUTATIONS=20000 pytest tests/dsl/test_mutations.py; with
+CROWDBOT_MUTATIONS_SEED=anything it is another one.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ from crowdbot.errors import SpecError
 REGISTRY = discover(allow=())
 INSTALLED = installed(REGISTRY)
 COUNT = int(os.environ.get("CROWDBOT_MUTATIONS", "1000"))
+SEED = os.environ.get("CROWDBOT_MUTATIONS_SEED", "")
 PARTS = Path(__file__).parent.parent / "data" / "diagnostics" / "parts"
 BODY = to_data(parse((PARTS / "minimal.yaml").read_text(), Source("minimal"), []))
 DOCUMENT: dict[str, Any] = {
@@ -239,7 +241,7 @@ def original(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 @pytest.mark.parametrize("mutation", PERHAPS)
 def test_refused_or_understood(mutation: Mutation, tmp_path: Path, original: Any) -> None:
-    rng, file, valid = random.Random(mutation.__name__), tmp_path / "d.yaml", 0
+    rng, file, valid = random.Random(mutation.__name__ + SEED), tmp_path / "d.yaml", 0
     for _ in range(COUNT * 3 // 20):
         text = mutation(rng)
         file.write_bytes(text)
@@ -255,7 +257,7 @@ def test_refused_or_understood(mutation: Mutation, tmp_path: Path, original: Any
 
 @pytest.mark.parametrize("mutation", ALWAYS_WRONG)
 def test_refused(mutation: Mutation, tmp_path: Path) -> None:
-    rng, file = random.Random(mutation.__name__), tmp_path / "d.yaml"
+    rng, file = random.Random(mutation.__name__ + SEED), tmp_path / "d.yaml"
     for _ in range(COUNT // 12):
         text = mutation(rng)
         file.write_bytes(text)

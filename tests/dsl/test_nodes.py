@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from crowdbot.dsl.canonical import to_yaml
 from crowdbot.dsl.diagnostics import Diagnostic, Source
-from crowdbot.dsl.nodes import MAX_BYTES, Node, parse, read_text, to_data
+from crowdbot.dsl.nodes import Node, parse, to_data
+from crowdbot.dsl.text_files import MAX_BYTES, read_text
 from crowdbot.errors import SpecError
 
 

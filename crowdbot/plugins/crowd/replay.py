@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from crowdbot.core.component import Component
+from crowdbot.dsl.assets import Asset
 from crowdbot.dsl.base import CrowdPolicySpec
 from crowdbot.dsl.quantities import NonNegativeSteeringStiffness, PositiveDuration
 
@@ -14,21 +15,25 @@ from crowdbot.dsl.quantities import NonNegativeSteeringStiffness, PositiveDurati
 class ReplaySpec(CrowdPolicySpec):
     """Agents follow the recorded person with their id.
 
-    Without cost functions they do so whatever is in their way. With cost functions they are
-    walkers of velocity_space, on the way to where the person was ``ahead`` later.
+    A crowd without flow, spawns and agents is everybody in the record, from where and when each
+    begins to where it ends. Without cost functions they do so whatever is in their way; with cost
+    functions they are walkers of velocity_space, on the way to where the person was ``ahead``
+    later.
     """
 
     kind: Literal["replay"] = "replay"
-    file: str = Field(
-        description="CSV file with columns t (s), id, x, y (m); its path, absolute or from the "
-        "working directory."
-    )
+    file: Asset = Field(description="CSV file with columns t (s), id, x, y (m).")
     ahead: PositiveDuration = Field(
         default=1.0, description="With cost functions: how far ahead of now the goal is, s."
     )
     contact_stiffness: NonNegativeSteeringStiffness = Field(
         default=0.0, description="Push between overlapping people and walls, 1/s^2."
     )
+
+    @property
+    def record(self) -> Asset:
+        """The people in the file walk where the crowd names nobody."""
+        return self.file
 
 
 REPLAY = Component(

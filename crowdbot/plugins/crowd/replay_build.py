@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -66,10 +65,10 @@ def build(spec: ReplaySpec, costs: Sequence[object], agents: Agents) -> CrowdPol
     Raises:
         InputError: the file is no record, or an agent is not in it.
     """
-    record = read_record(Path(spec.file))
+    record = read_record(spec.file.file)
     missing = sorted(set(agents.id.tolist()) - set(record.time))
     if missing:
-        raise InputError(f"{spec.file}: nobody with id {missing[0]} is recorded")
+        raise InputError(f"{spec.file.path}: nobody with id {missing[0]} is recorded")
     if not costs:
         return Replay(record, spec.contact_stiffness)
     words = VelocitySpaceSpec(contact_stiffness=spec.contact_stiffness)

@@ -1,0 +1,77 @@
+"""Finds the assets of a scenario and hashes them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from crowdbot.dsl.assets import Asset, sha256_of
+from crowdbot.dsl.components import components
+from crowdbot.dsl.diagnostics import Diagnostic, Mark
+from crowdbot.dsl.finder import Finder
+from crowdbot.dsl.nodes import Node
+from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.validation import mark_of
+
+
+class AssetFiles:
+    """The assets of one document; each file is hashed once."""
+
+    def __init__(self, finder: Finder) -> None:
+        self._finder = finder
+        self._known: dict[Path, str] = {}
+
+    def fill(
+        self, scenario: Scenario, tree: Node, data: dict[str, Any], problems: list[Diagnostic]
+    ) -> dict[str, Any]:
+        """The data of a scenario with its assets found; ``data`` itself if it has none to find.
+
+        Args:
+            scenario: validated.
+            tree: knows which file names the asset.
+            data: of the tree; it stays as it is.
+            problems: errors are added.
+        """
+        for path, asset in _waiting(scenario):
+            found = self._found(asset, _mark(tree, path), problems)
+            data = data if found is None else _replaced(data, path, found)
+        return data
+
+    def _found(self, asset: Asset, mark: Mark, problems: list[Diagnostic]) -> Asset | None:
+        """None: there is none, or a resolved scenario that was moved names it by its content."""
+        file = self._finder.find(asset.path, mark)
+        if isinstance(file, Diagnostic):
+            if not (file.code == "E201" and asset.sha256):
+                problems.append(file)
+            return None
+        try:
+            digest = self._known.get(file) or self._known.setdefault(file, sha256_of(file))
+        except OSError as error:
+            reason = error.strerror or str(error)
+            text = f"'{asset.path}' cannot be opened: {reason}"
+            problems.append(Diagnostic("E201", text, mark))
+            return None
+        if asset.sha256 not in (None, digest):
+            text = f"'{asset.path}' has another content than the sha256 written here"
+            problems.append(Diagnostic("E213", text, mark, f"its sha256 is {digest}"))
+            return None
+        return Asset.at(file, self._finder.name_of(file), digest)
+
+
+def _waiting(scenario: Scenario) -> Iterator[tuple[tuple[str, ...], Asset]]:
+    for path, spec in components(scenario):
+        for name, value in vars(spec).items():
+            if isinstance(value, Asset) and not value.is_found:
+                yield (*path, name), value
+
+
+def _mark(tree: Node, path: tuple[str, ...]) -> Mark:
+    """Where the path of an asset is written, in either of its forms."""
+    return mark_of(tree, *path, "path")
+
+
+def _replaced(data: dict[str, Any], path: tuple[str, ...], value: object) -> dict[str, Any]:
+    """A copy with another value under a path."""
+    key, *rest = path
+    return {**data, key: _replaced(data[key], tuple(rest), value) if rest else value}
