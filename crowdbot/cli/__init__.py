@@ -8,7 +8,6 @@ underscore are no commands.
 
 from __future__ import annotations
 
-import gc
 import importlib
 import io
 import logging
@@ -38,7 +37,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         argv: arguments without the program's name; default: those of the process.
     """
     _tolerate_any_encoding()
-    gc.set_threshold(100_000, 50, 100)  # models and trees are no garbage: a fifth of `validate`
     try:
         return _run(argv)
     except CrowdbotError as error:

@@ -14,9 +14,10 @@ from pathlib import Path
 
 from crowdbot.core.registry import Registry
 from crowdbot.dsl.expand import Expansion, expand_document, load_document
+from crowdbot.dsl.installed import Installed
 from crowdbot.dsl.lock import Locked, LockFiles
 from crowdbot.dsl.scenario import Scenario
-from crowdbot.dsl.suite import Installed, Suite
+from crowdbot.dsl.suite import Suite
 from crowdbot.errors import InputError, UnknownNameError
 
 _BUILTIN = "builtin"

@@ -13,35 +13,21 @@ from crowdbot.dsl.asset_files import AssetFiles
 from crowdbot.dsl.diagnostics import MAX_ERRORS, Diagnostic, Mark, Source
 from crowdbot.dsl.finder import Finder, Roots
 from crowdbot.dsl.include import Loader
+from crowdbot.dsl.installed import Installed
 from crowdbot.dsl.matrix import REPLICATE, combinations
 from crowdbot.dsl.merge import merge, nest, undot
 from crowdbot.dsl.nodes import Entry, Node, parse, to_data
 from crowdbot.dsl.reuse import ValidParts
 from crowdbot.dsl.scenario import Scenario
-from crowdbot.dsl.suite import Installed, Suite, read_suite
+from crowdbot.dsl.suite import Suite, read_suite
 from crowdbot.dsl.validation import locate, validate
 from crowdbot.errors import SpecError, UsageError
 
 #: With these the rest of a document is still worth looking at.
 _GO_ON = frozenset(
-    {
-        "E003",
-        "E102",
-        "E103",
-        "E111",
-        "E112",
-        "E116",
-        "E014",
-        "E120",
-        "E121",
-        "E204",
-        "E205",
-        "E208",
-        "E210",
-        "E211",
-        "E212",
-    }
-)
+    ("E003", "E102", "E103", "E111", "E112", "E116", "E014", "E120", "E121", "E204", "E205",
+     "E208", "E210", "E211", "E212")
+)  # fmt: skip
 
 #: Errors of single scenarios after which the rest of a suite is not looked at any more.
 _ENOUGH = 50_000
@@ -221,15 +207,7 @@ class _Expander:
             return known.model_copy(update={"id": name})
         if name:
             data = {**data, "id": name}
-        scenario = self._with_known_parts(tree, data)
-        found: list[Diagnostic] = []
-        if scenario is None:
-            scenario, found = validate(self._model, data, tree)
-        if scenario is not None and self._assets is not None:
-            filled = self._assets.fill(scenario, tree, data, found)
-            if filled is not data:
-                scenario, more = validate(self._model, filled, tree)
-                found += more
+        scenario, found = self._with_assets(tree, data)
         if scenario is not None and not found:
             self._parts.add(tree, scenario)
             found = semantics.check(scenario, tree)
@@ -239,6 +217,20 @@ class _Expander:
             return None
         self._validated[shared] = scenario
         return scenario
+
+    def _with_assets(
+        self, tree: Node, data: dict[str, Any]
+    ) -> tuple[Scenario | None, list[Diagnostic]]:
+        """The validated scenario with its files found, and what is wrong with it."""
+        scenario, found = self._with_known_parts(tree, data), list[Diagnostic]()
+        if scenario is None:
+            scenario, found = validate(self._model, data, tree)
+        if scenario is None or self._assets is None:
+            return scenario, found
+        filled = self._assets.fill(scenario, tree, data, found)
+        if filled is not data and not found:
+            scenario, found = validate(self._model, filled, tree)
+        return scenario, found
 
     def _with_known_parts(self, tree: Node, data: dict[str, Any]) -> Scenario | None:
         """The scenario, made of parts that are known to be valid; None if that does not work."""

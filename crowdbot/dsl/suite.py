@@ -16,9 +16,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
-from fnmatch import fnmatchcase
 from importlib import metadata
 from typing import Annotated, Any
 
@@ -28,10 +26,11 @@ from pydantic import Field, WithJsonSchema
 from crowdbot.dsl.base import Spec
 from crowdbot.dsl.diagnostics import Diagnostic, Mark
 from crowdbot.dsl.finder import Finder
+from crowdbot.dsl.installed import Installed, check_metrics, check_versions
 from crowdbot.dsl.matrix import MAX_COMBINATIONS, REPLICATE, Axis, read_axes
 from crowdbot.dsl.nodes import Node, count, to_data
 from crowdbot.dsl.selection import Kept, read_selection
-from crowdbot.dsl.validation import missing_package, validate
+from crowdbot.dsl.validation import validate
 from crowdbot.errors import did_you_mean, nearest
 
 #: The version of the document format that this release reads.
@@ -55,7 +54,7 @@ _CHOICES = {
 
 #: Checked by `read_selection`, which knows the axes.
 _Choices = Annotated[Any, WithJsonSchema(_CHOICES)]
-#: Checked by `_check_versions`.
+#: Checked by `check_versions`.
 _Versions = Annotated[
     Any,
     WithJsonSchema({"type": "object", "additionalProperties": {"type": "integer", "minimum": 1}}),
@@ -142,19 +141,6 @@ class Suite:
     finder: Finder | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Installed:
-    """What is installed, as far as a document speaks of it.
-
-    Attributes:
-        metrics: kinds of the metrics.
-        versions: kind of any component -> its spec_version and the distribution that has it.
-    """
-
-    metrics: Collection[str]
-    versions: Mapping[str, tuple[int, str]]
-
-
 def read_suite(
     root: Node, problems: list[Diagnostic], installed: Installed | None = None
 ) -> Suite | None:
@@ -179,8 +165,8 @@ def read_suite(
     _, found = validate(model, to_data(root), root)
     problems += found
     if installed is not None:
-        _check_metrics(root.child("metrics"), installed.metrics, problems)
-        _check_versions(root.child("kinds"), installed.versions, problems)
+        check_metrics(root.child("metrics"), installed.metrics, problems)
+        check_versions(root.child("kinds"), installed.versions, problems)
     single = model is ScenarioDocument
     body = root.child("scenario" if single else "base")
     if body is None or not isinstance(body.value, dict):
@@ -292,48 +278,6 @@ def _check_references(root: Node, problems: list[Diagnostic]) -> None:
         for name in {"id", "references"} & entry.node.entries.keys():
             text = f"a reference has no '{name}'"
             problems.append(Diagnostic("E102", text, entry.node.entries[name].key))
-
-
-def _check_metrics(listed: Node | None, known: Collection[str], problems: list[Diagnostic]) -> None:
-    if listed is None or not isinstance(listed.value, tuple):
-        return
-    for item in listed.value:
-        name = item.value
-        if isinstance(name, str) and not any(fnmatchcase(kind, name) for kind in known):
-            hint = did_you_mean(nearest(name, known)).removeprefix("; ")
-            problems.append(Diagnostic("E121", f"unknown metric '{name}'", item.mark, hint))
-
-
-def _check_versions(
-    wanted: Node | None, known: Mapping[str, tuple[int, str]], problems: list[Diagnostic]
-) -> None:
-    """Components older than those the document was written for."""
-    for kind, key, node in _leaves(wanted) if wanted else ():
-        if not kind or type(node.value) is not int or node.value < 1:
-            text = "kinds wants a map of kinds with their version, a whole number from 1"
-            problems.append(Diagnostic("E111", text, node.mark))
-        elif kind not in known:
-            hint = did_you_mean(nearest(kind, known)).removeprefix("; ") or missing_package(kind)
-            problems.append(Diagnostic("E120", f"unknown kind '{kind}'", key, hint))
-        elif node.value > known[kind][0]:
-            version, distribution = known[kind]
-            text = (
-                f"the document needs version {node.value} of '{kind}'; "
-                f"{distribution} has version {version}"
-            )
-            hint = f"pip install --upgrade {distribution.split()[0]}"
-            problems.append(Diagnostic("E014", text, node.mark, hint))
-
-
-def _leaves(
-    node: Node, path: str = "", key: Mark | None = None
-) -> Iterator[tuple[str, Mark, Node]]:
-    if not node.entries:
-        if path or node.value not in (None, {}):
-            yield path, key or node.mark, node
-        return
-    for name, entry in node.entries.items():
-        yield from _leaves(entry.node, f"{path}.{name}" if path else name, key or entry.key)
 
 
 def _metrics(root: Node) -> tuple[str, ...] | None:
