@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld, policy_of
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact import push_apart
-from crowdbot.core.crowd.policy import CrowdView
+from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdView
 from crowdbot.core.crowd.step import tick
 from crowdbot.core.crowd.torus import ENDLESS
 from crowdbot.core.crowd.willed import willed
@@ -59,7 +59,7 @@ def whole_step(
     _, rows = s.view(flat)
     n = len(agents)
     robots, order, everybody = np.zeros((0, 6)), np.arange(n), np.ones(n, np.bool_)
-    stiffness, reaction = np.full(n, chosen.contact_stiffness), np.zeros((n, 2))  # type: ignore[attr-defined]
+    stiffness, reaction = np.full(n, CONTACT_STIFFNESS), np.zeros((n, 2))
     in_turn = np.argsort(agents.id)
 
     def step() -> None:

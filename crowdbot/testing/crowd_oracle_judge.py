@@ -85,8 +85,8 @@ def judge(case: Case) -> Verdict:
     return Verdict(
         name=case.name, samples=count.samples, outright=len(residuals),
         by_perturbation=count.by_perturbation, by_cost=count.by_cost,
-        by_rounding=count.by_rounding, misses=len(missed), not_a_number=count.not_a_number, median=median, p99=p99,
-        largest=largest, first_misses=missed[:10],
+        by_rounding=count.by_rounding, misses=len(missed), not_a_number=count.not_a_number,
+        median=median, p99=p99, largest=largest, first_misses=missed[:10],
     )  # fmt: skip
 
 

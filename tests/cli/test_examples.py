@@ -32,6 +32,7 @@ def test_an_example_runs(name: str, which: list[str], people: int, tmp_path: Pat
     record = json.loads(file.read_text())
     assert (record["status"], record["sim_time"]) == ("timeout", 3.0)
     tracks = read_trajectories(file.parent / "run.mcap")
+    assert tracks.agents is not None
     at = np.stack([tracks.agents.x, tracks.agents.y], axis=-1)
     here = np.isfinite(at[..., 0])
     assert at.shape[1] == people
