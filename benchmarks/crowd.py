@@ -27,6 +27,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from original_steps import FIGURES, whole_step
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld, policy_of
 
@@ -56,13 +57,19 @@ def corridor(count: int) -> tuple[Array, Array]:
     return at + rng.uniform(-0.25, 0.25, at.shape), walls
 
 
+def people(count: int) -> tuple[Agents, Array]:
+    """The people of the corridor, and its walls."""
+    at, walls = corridor(count)
+    agents = Agents.of(
+        x=at[:, 0], y=at[:, 1], preferred_speed=SPEED, radius=RADIUS, max_speed=MAX_SPEED,
+        routes=[[(FAR, y)] for y in at[:, 1].tolist()],
+    )  # fmt: skip
+    return agents, walls
+
+
 def crowdbot(policy: dict[str, Any], **costs: dict[str, Any]) -> Callable[[int], Step]:
     def make(count: int) -> Step:
-        at, walls = corridor(count)
-        agents = Agents.of(
-            x=at[:, 0], y=at[:, 1], preferred_speed=SPEED, radius=RADIUS, max_speed=MAX_SPEED,
-            routes=[[(FAR, y)] for y in at[:, 1].tolist()],
-        )  # fmt: skip
+        agents, walls = people(count)
         # A decision in each tick, so that a step is one of both.
         world = CrowdWorld(walls=walls, decision_rate=128.0)
         engine = CrowdEngine(agents, world, policy_of(policy, costs))
@@ -181,10 +188,27 @@ def one_thread() -> None:
         os.execv(sys.executable, [sys.executable, *sys.argv])
 
 
+def figures(rounds: int, seconds: float) -> None:
+    """Whole steps of 0.1 s with 250 people, beside what the original is known to make."""
+    agents, walls = people(250)
+    best = dict.fromkeys(FIGURES, 0.0)
+    for _ in range(rounds):
+        for name, (policy, costs, _, _) in FIGURES.items():
+            step = whole_step(policy, costs, agents, walls)
+            rate(step, 0.0)
+            best[name] = max(best[name], rate(step, seconds))
+    print("whole steps of 0.1 s per second of one thread, 250 people, best of", rounds)
+    print(f"{'':20} {'steps/s':>9} {'original':>9} {'times':>6} {'asked':>6}")
+    for name, (_, _, original, asked) in FIGURES.items():
+        print(
+            f"{name:20} {best[name]:9.0f} {original:9.0f} {best[name] / original:6.1f} {asked:6.0f}"
+        )
+
+
 def rate(step: Step, seconds: float) -> float:
-    """Steps per second, measured for about so long."""
-    steps, begin = 0, time.perf_counter()
-    while (spent := time.perf_counter() - begin) < seconds or steps == 0:
+    """Steps per second of this thread's time, measured for about so long."""
+    steps, begin = 0, time.thread_time()
+    while (spent := time.thread_time() - begin) < seconds or steps == 0:
         step()
         steps += 1
     return steps / spent
@@ -235,12 +259,16 @@ def main() -> None:
     parser.add_argument("--agents", default="10,50,100,250,500,1000,2000,4000")
     parser.add_argument("--rounds", type=int, default=3, help="the best of so many counts")
     parser.add_argument("--seconds", type=float, default=0.5, help="length of one measurement")
+    parser.add_argument("--figures", action="store_true", help="only the three named figures")
     parser.add_argument("--plot", type=Path, help="PNG file to draw")
     parser.add_argument("--umans", type=Path, help="the original's shared library")
     given = parser.parse_args()
     one_thread()
     logging.disable(logging.INFO)  # a peer turns everybody's debug messages on
 
+    figures(max(given.rounds, 10), min(given.seconds, 0.2))
+    if given.figures:
+        return
     sampling = {"kind": "velocity_space"}
     engines: dict[str, Callable[[int], Step]] = {
         "crowdbot challenge": crowdbot(sampling, mid_term=TTCA_DCA, reflex=RVO),

@@ -11,8 +11,12 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
+from crowdbot.core.kernel_cache import nothing_compiled
+
 if TYPE_CHECKING:
     from crowdbot.core.sim.runner import Progress as Report
+
+_COMPILES = "the first run compiles"
 
 
 @contextmanager
@@ -24,6 +28,8 @@ def show_progress() -> Iterator[Callable[[Report], None]]:
         with _bars() as bars:
             yield bars
     else:
+        if nothing_compiled():
+            print(f"preparing: {_COMPILES}, about half a minute", file=sys.stderr)
         yield _Lines()
 
 
@@ -35,7 +41,9 @@ def _bars() -> Iterator[Callable[[Report], None]]:
         TextColumn("{task.fields[state]}"),
     )
     with Progress(*columns, console=Console(stderr=True)) as progress:
-        preparing = progress.add_task("preparing", total=None, state="the first run compiles")
+        preparing = progress.add_task(
+            "preparing", total=None, state=_COMPILES if nothing_compiled() else ""
+        )
         tasks: dict[str, TaskID] = {}
 
         def show(report: Report) -> None:

@@ -19,6 +19,12 @@ def use_kernel_cache() -> None:
     os.environ.setdefault(_VARIABLE, str(kernel_folder()))
 
 
+def nothing_compiled() -> bool:
+    """Whether compiled functions are going to be written for the first time."""
+    folder = Path(os.environ.get(_VARIABLE) or kernel_folder())
+    return next(folder.rglob("*.nbi"), None) is None
+
+
 def kernel_folder(package: Path = _PACKAGE) -> Path:
     """The folder for the sources as they are now.
 

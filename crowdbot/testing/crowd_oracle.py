@@ -18,8 +18,8 @@ from crowdbot.testing.crowd_oracle_case import load
 from crowdbot.testing.crowd_oracle_judge import Verdict, judge
 
 _HEADER = (
-    f"{'case':42} {'samples':>8} {'outright':>9} {'perturbed':>9} {'by cost':>8} {'misses':>7} "
-    f"{'NaN':>5} {'median':>8} {'p99':>8}"
+    f"{'case':42} {'samples':>8} {'outright':>9} {'perturbed':>9} {'by cost':>8} "
+    f"{'rounding':>8} {'misses':>7} {'NaN':>5} {'median':>8} {'p99':>8}"
 )
 
 
@@ -63,7 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _line(v: Verdict) -> str:
     return (
         f"{v.name:42} {v.samples:8d} {v.outright:9d} {v.by_perturbation:9d} {v.by_cost:8d} "
-        f"{v.misses:7d} {v.not_a_number:5d} {v.median:8.1e} {v.p99:8.1e}"
+        f"{v.by_rounding:8d} {v.misses:7d} {v.not_a_number:5d} {v.median:8.1e} {v.p99:8.1e}"
     )
 
 

@@ -2,7 +2,9 @@
 
 Single precision decides ties and thresholds, and symmetric layouts are full of them. A sample (one
 agent in one step) that differs is *reachable* if a perturbed input makes our engine produce it,
-or if our cost of what the original chose is hardly above our minimum. Otherwise it is a miss.
+if our cost of what the original chose is hardly above our minimum, or if that holds once every
+candidate may be off by the rounding of the original, which decides at limits that the same rounding
+has put some of them on. Otherwise it is a miss.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ import numpy as np
 
 from crowdbot.core.crowd.evaluate import Evaluator
 from crowdbot.core.crowd.gradient import Descent
+from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.core.crowd.sampling import Sampler
 from crowdbot.testing.crowd_oracle_case import Array, Case
 from crowdbot.testing.crowd_oracle_step import Mask, Stepper
@@ -24,6 +27,8 @@ CLOSE = 5e-4
 PERTURBATION, PERTURBATIONS = 1e-5, 256
 #: How far above our minimum the cost of the original's choice may lie.
 RELATIVE, ABSOLUTE = 1e-3, 1e-6
+#: How far the original's candidates may be from ours, each by itself: some ten roundings, m/s.
+ROUNDING = 1e-6
 _SEED = 20201021
 
 
@@ -32,6 +37,7 @@ class Verdict:
     """Counts of samples, and residuals |dv| of those that agree, m/s.
 
     Attributes:
+        by_rounding: samples decided by a candidate on a limit.
         not_a_number: samples in which the original itself has NaN; not part of ``samples``.
         first_misses: step and agent id of up to ten misses.
     """
@@ -41,6 +47,7 @@ class Verdict:
     outright: int
     by_perturbation: int
     by_cost: int
+    by_rounding: int
     misses: int
     not_a_number: int
     median: float
@@ -58,6 +65,7 @@ class _Count:
     samples: int = 0
     by_perturbation: int = 0
     by_cost: int = 0
+    by_rounding: int = 0
     not_a_number: int = 0
 
 
@@ -76,9 +84,9 @@ def judge(case: Case) -> Verdict:
     )
     return Verdict(
         name=case.name, samples=count.samples, outright=len(residuals),
-        by_perturbation=count.by_perturbation, by_cost=count.by_cost, misses=len(missed),
-        not_a_number=count.not_a_number, median=median, p99=p99, largest=largest,
-        first_misses=missed[:10],
+        by_perturbation=count.by_perturbation, by_cost=count.by_cost,
+        by_rounding=count.by_rounding, misses=len(missed), not_a_number=count.not_a_number,
+        median=median, p99=p99, largest=largest, first_misses=missed[:10],
     )  # fmt: skip
 
 
@@ -98,10 +106,13 @@ def _judge_step(stepper: Stepper, k: int, count: _Count) -> tuple[Array, Mask]:
     cheap = left & by_cost_alone(stepper, before, theirs, random, left)
     left &= ~cheap
     found = left & by_perturbed_input(stepper, before, theirs, random, left)
+    left &= ~found
+    rounded = left & by_cost_alone(stepper, before, theirs, random, left, rounding=ROUNDING)
     count.by_cost += int(np.count_nonzero(cheap))
     count.by_perturbation += int(np.count_nonzero(found))
+    count.by_rounding += int(np.count_nonzero(rounded))
     stepper.restore(following)
-    return residual, left & ~found
+    return residual, left & ~rounded
 
 
 def by_perturbed_input(
@@ -121,9 +132,21 @@ def by_perturbed_input(
 
 
 def by_cost_alone(
-    stepper: Stepper, state: Array, theirs: Array, random: list[Array], who: Mask
+    stepper: Stepper,
+    state: Array,
+    theirs: Array,
+    random: list[Array],
+    who: Mask,
+    *,
+    rounding: float = 0.0,
 ) -> Mask:
-    """Which samples are candidates of ours that cost hardly more than our minimum."""
+    """Which samples are candidates of ours that cost hardly more than our minimum.
+
+    Args:
+        rounding: how far each candidate may be off, m/s. The original's choice then counts at its
+            cheapest, and the minimum is that of the candidates at their dearest: one that rounding
+            forbids is no competitor, one that rounding allows is a choice.
+    """  # fmt: skip
     found = np.zeros(len(state), np.bool_)
     push = stepper.push(state) if np.any(who) else state[:, 2:]
     for k, policy in enumerate(stepper.policies):
@@ -140,11 +163,27 @@ def by_cost_alone(
             velocities = np.stack([best, np.where(np.isfinite(chosen), chosen, 0.0)], axis=1)
         else:
             velocities = minimiser.search.candidates(view)
-        total = Evaluator(policy.mix).total(view, velocities)
-        least = np.min(total, axis=1, keepdims=True)
+        cheapest, dearest = _costs(Evaluator(policy.mix), view, velocities, rounding)
+        least = np.min(dearest, axis=1, keepdims=True)
         with np.errstate(invalid="ignore"):
-            cheap = total <= least + np.maximum(RELATIVE * np.abs(least), ABSOLUTE)
+            cheap = cheapest <= least + np.maximum(RELATIVE * np.abs(least), ABSOLUTE)
         for s in np.flatnonzero(np.any(cheap[mine], axis=0)):
             reached = stepper.move(state, policy.towards(velocities[:, s], view))
             found |= mine & cheap[:, s] & (np.hypot(*(reached - theirs).T) < CLOSE)
     return found
+
+
+def _costs(
+    evaluator: Evaluator, view: CrowdView, velocities: Array, rounding: float
+) -> tuple[Array, Array]:
+    """Least and largest cost (N, S) of candidates (N, S, 2) along and across which one moves."""
+    cheapest = evaluator.total(view, velocities)
+    dearest = cheapest
+    if rounding > 0.0:
+        speed = np.maximum(np.hypot(velocities[..., 0], velocities[..., 1]), rounding)
+        along = velocities * (rounding / speed)[..., np.newaxis]
+        across = np.stack([-along[..., 1], along[..., 0]], axis=-1)
+        for step in (along, -along, across, -across):
+            total = evaluator.total(view, velocities + step)
+            cheapest, dearest = np.minimum(cheapest, total), np.maximum(dearest, total)
+    return cheapest, dearest

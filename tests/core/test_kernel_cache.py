@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from crowdbot.cli._progress import show_progress
 from crowdbot.core.kernel_cache import kernel_folder
 
 CALLEE = "from numba import njit\n@njit(cache=True)\ndef inner():\n    return {}\n"
@@ -48,3 +49,18 @@ def test_a_read_only_package_uses_the_users_cache(
     monkeypatch.setattr(os, "access", lambda *_: False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     assert kernel_folder(tmp_path).parent == tmp_path / "cache" / "crowdbot"
+
+
+def test_the_first_run_says_that_it_compiles(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kernels"))
+    with show_progress():
+        pass
+    assert "the first run compiles" in capsys.readouterr().err
+    compiled = tmp_path / "kernels" / "core_0" / "f.nbi"
+    compiled.parent.mkdir(parents=True)
+    compiled.touch()
+    with show_progress():
+        pass
+    assert capsys.readouterr().err == ""

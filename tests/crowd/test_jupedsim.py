@@ -1,4 +1,4 @@
-"""JuPedSim as a policy: our side of it always, the library itself where it is installed."""
+"""JuPedSim as a policy: our side of it always, the library itself with ``pytest -m jupedsim``."""
 
 from __future__ import annotations
 
@@ -109,15 +109,10 @@ def test_a_missing_library_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 # ---------------------------------------------------------------- the library itself
-def _real() -> None:
-    for name in ("jupedsim", "shapely"):
-        pytest.importorskip(name, reason="not installed: pip install 'crowdbot[jupedsim]'")
-
-
+@pytest.mark.jupedsim
 @pytest.mark.parametrize("model", MODELS)
 def test_a_stream_in_a_corridor(model: str) -> None:
     """Thirty people around a pillar: within the walls, onwards, the same twice."""
-    _real()
     rng = np.random.default_rng(0)
     agents = Agents.of(
         x=rng.uniform(0, 20, 30), y=rng.uniform(-3, 3, 30), preferred_speed=1.2, radius=0.25,
@@ -135,9 +130,9 @@ def test_a_stream_in_a_corridor(model: str) -> None:
     assert np.array_equal(engine.run(8.0)[1], place)
 
 
+@pytest.mark.jupedsim
 def test_closed_rooms_and_people_on_walls() -> None:
     """Two rooms that no way joins, a goal outside, somebody on the wall, two on one spot."""
-    _real()
     rooms = [
         [0, 0, 6, 0], [6, 0, 6, 4], [6, 4, 0, 4], [0, 4, 0, 0], [3, 0, 3, 4],
     ]  # fmt: skip
@@ -156,9 +151,9 @@ def test_closed_rooms_and_people_on_walls() -> None:
     assert np.max(place[:, 1, 0]) < 6.0
 
 
+@pytest.mark.jupedsim
 def test_the_stand_in_has_what_the_library_has() -> None:
     """Every call that the stand-in takes, the library takes, too."""
-    _real()
     jps: Any = importlib.import_module("jupedsim")
     for name in dir(fake_jupedsim):
         if name.startswith(("Collision", "Anticipation", "Journey", "Simulation")):

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from oracle_cases import FOLDER, NAMES, load
 
+from crowdbot.core.crowd.sampling import Sampler
 from crowdbot.testing.crowd_oracle import main
 from crowdbot.testing.crowd_oracle_judge import CLOSE, judge
 from crowdbot.testing.crowd_oracle_policy import COSTS, cost_spec, policy_spec
+from crowdbot.testing.crowd_oracle_step import Stepper
 
 #: Most samples that float32 rounding may decide, in a case of few agents: alone, two candidates
 #: mirrored at the preferred velocity often cost exactly the same.
@@ -40,6 +43,27 @@ def test_one_step(name: str) -> None:
     if name.startswith(("corridor", "samp_RVO_random", "iso_ORCA", "iso_PowerLaw", "iso_Social")):
         assert verdict.outright >= 0.999 * verdict.samples
         assert verdict.median < 1e-5
+
+
+def test_a_candidate_on_a_limit_may_be_forbidden_by_rounding() -> None:
+    """The original forbids agent 42 a candidate at 30 degrees, and allows it a slower one there."""
+    verdict = judge(load("ex_25to25-180Degrees_Karamouzas"))
+    assert (verdict.by_rounding, verdict.misses) == (1, 0)
+
+
+def test_rounding_excuses_nothing_else() -> None:
+    """A choice that is dearer than another, far from any limit, stays a miss."""
+    case = load("ex_Circle10_Karamouzas")
+    states = case.states[:2].copy()
+    stepper = Stepper(case)
+    view = stepper.view(states[0], 0)
+    sampler = stepper.policies[0].minimiser
+    assert isinstance(sampler, Sampler)
+    slow = np.ascontiguousarray(sampler.candidates(view)[:, 5])  # of the slowest ring
+    states[1, :, 2:] = stepper.move(states[0], stepper.policies[0].towards(slow, view))
+    found = judge(replace(case, states=states, present=case.present[:2]))
+    assert found.by_rounding == 0
+    assert found.misses == found.samples == 10
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -118,14 +118,13 @@ def gather(
                 break
             ry = table[k, Y] - py
             d2 = rx * rx + ry * ry
-            if d2 >= limit or k == me:
-                continue
+            # Written in any case, kept if near: a branch would often be guessed wrong.
             near[count, D2], near[count, RX], near[count, RY] = d2, rx, ry
             near[count, NVX], near[count, NVY] = table[k, VX], table[k, VY]
             near[count, REACH] = radius + table[k, BODY_RADIUS]
             near[count, NPX], near[count, NPY] = table[k, WANTED_X], table[k, WANTED_Y]
             near[count, STATIC] = table[k, PILLAR]
-            count += 1
+            count += int(d2 < limit and k != me)
     return count
 
 
