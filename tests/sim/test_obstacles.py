@@ -51,9 +51,7 @@ def test_the_robot_is_stopped_where_the_lidar_sees_it(kind: str) -> None:
     x, y = _drive(parts, Pose(1.0, 0.0, 0.0), 8.0)
     assert x + BODY == pytest.approx(2.9, abs=0.01)
     assert abs(y) < 0.1
-    scene = Scene(
-        parts.walls, parts.wall_heights, [], [], parts.pillars, parts.pillar_heights[:, 1]
-    )
+    scene = Scene(parts.walls, parts.wall_heights, [], [], parts.pillars, parts.pillar_heights)
     distance, incidence, body = scene.cast(
         np.array([[1.0, 0.0, 0.2]]), np.array([[1.0, 0.0, 0.0]]), 10.0
     )
@@ -69,12 +67,13 @@ def test_without_an_obstacle_it_drives_on() -> None:
 
 def test_rays_take_the_nearest_of_wall_pillar_and_person() -> None:
     pillars = [[4.0, 0.0, 0.5], [6.0, 0.0, 0.5]]
-    scene = Scene([[5.0, -9.0, 5.0, 9.0]], [0.0, 2.5], [0.3], [1.7], pillars, [1.0, 1.0])
-    ray = (np.array([[0.0, 0.0, 0.5]]), np.array([[1.0, 0.0, 0.0]]), 10.0)
-    for x, expected in ((2.0, (1.7, 0)), (4.5, (3.5, -3)), (8.0, (3.5, -3))):
+    scene = Scene([[5.0, -9.0, 5.0, 9.0]], [0.0, 2.5], [0.33], [1.7], pillars, [0.0, 1.5])
+    ray = (np.array([[0.0, 0.0, 1.2]]), np.array([[1.0, 0.0, 0.0]]), 10.0)
+    trunk = 0.5 * 0.259 * 1.7
+    for x, expected in ((2.0, (2.0 - trunk, 0)), (4.5, (3.5, -3)), (8.0, (3.5, -3))):
         scene.update(None, np.array([[x, 0.0, 0.0, 0.0]]), np.ones(1, np.bool_))
         distance, _, body = scene.cast(*ray)
         assert (distance[0], body[0]) == (pytest.approx(expected[0]), expected[1])
-    over = (np.array([[0.0, 0.0, 1.2]]), ray[1], 10.0)  # above the pillars
+    over = (np.array([[0.0, 0.0, 1.6]]), ray[1], 10.0)  # above the pillars
     distance, _, body = scene.cast(*over)
     assert (distance[0], body[0]) == (5.0, -2)
