@@ -16,7 +16,12 @@ class Spec(BaseModel):
     """A frozen, strict document."""
 
     model_config = ConfigDict(
-        strict=True, frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True
+        strict=True,
+        frozen=True,
+        extra="forbid",
+        allow_inf_nan=False,
+        validate_default=True,
+        defer_build=True,  # a document uses few of the specs that are installed
     )
 
 
