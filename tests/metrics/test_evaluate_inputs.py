@@ -185,9 +185,9 @@ def test_a_bad_run_stops_no_other(jobs: str, campaign: Path, capsys: Captured) -
     assert [r["seed"] for r in found] == [0, 1, None, 3]
     assert [len(r["scores"]) for r in found] == [1, 1, 0, 1]
     assert "seed-2" in found[2]["error"]
-    lines = said.err.splitlines()
-    assert lines[0].startswith("error: ")
-    assert "no MCAP file" in lines[0]
+    lines = said.err.splitlines()  # on a slow machine progress is among them
+    (error,) = [line for line in lines if line.startswith("error: ")]
+    assert "no MCAP file" in error
     assert lines[-1] == "scored 3 of 4 runs, 1 failed"
 
 

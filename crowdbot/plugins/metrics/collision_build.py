@@ -90,7 +90,7 @@ class CollisionSeverity:
         half_sum, reduced = self._masses(run)
         touch = touching(encounter(run, self.spec.jump_speed), self.spec.contact_tol)
         return [
-            label.ok("literal", (np.where(touch, square, 0.0) @ half_sum).sum()),
+            label.ok("literal", (np.where(touch, square, 0.0) * half_sum).sum()),
             label.ok("per_event", half_sum[who] @ at_onset),
             label.ok("corrected", 0.5 * reduced[who] @ at_onset),
             label.ok("impulse", reduced[who] @ np.sqrt(at_onset)),

@@ -28,6 +28,8 @@ from crowdbot.plugins.metrics.overtaking import OVERTAKING_COUNT, OvertakingCoun
 TOLERANCE = 1e-9
 #: Samples that are looked at together; bounds the memory that L x L tables take.
 CHUNK = 8
+#: Farther than anybody, m. Not inf: some BLAS kernels multiply it by a padding of zeros.
+_FAR = 1e300
 
 Index = NDArray[np.intp]
 
@@ -123,7 +125,7 @@ def _crossings(bodies: Bodies, spec: OvertakingCountSpec) -> Iterator[tuple[Inde
     half = moves.max(axis=1, initial=0.0)[:, None] + spec.overtake_eps + TOLERANCE
     middle = x[:-1] * ux[:-1] + y[:-1] * uy[:-1] + (half - spec.overtake_eps - TOLERANCE)
     drives = bodies.walks[:-1] & bodies.valid
-    left = np.stack([ux[:-1], uy[:-1], np.where(drives, -middle, np.inf)], axis=2)
+    left = np.stack([ux[:-1], uy[:-1], np.where(drives, -middle, _FAR)], axis=2)
     right = np.stack([x, y, np.ones_like(x)], axis=1)
     size = x.shape[1]
     offset, near = np.empty((CHUNK, size, size)), np.empty((CHUNK, size, size), dtype=bool)
