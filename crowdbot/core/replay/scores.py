@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from crowdbot.core.score import Score
+from crowdbot.core.scores_table import headlines
 
 _ARROWS = {
     "higher": ("↑", "higher is better"),
@@ -33,21 +34,11 @@ class Row(NamedTuple):
 def grouped(scores: Sequence[Score]) -> dict[str, list[Row]]:
     """Category -> rows, in the order given."""
     groups: dict[str, list[Row]] = {}
-    chosen = {metric: _headline(scores, metric) for metric in {s.metric for s in scores}}
+    chosen = {id(s) for s in headlines(scores)}
     for score in scores:
-        row = _row(score, headline=chosen[score.metric] is score)
+        row = _row(score, headline=id(score) in chosen)
         groups.setdefault(_words(score.category), []).append(row)
     return groups
-
-
-def _headline(scores: Sequence[Score], metric: str) -> Score:
-    """``corrected``; where that has no value ``restricted``, if there is one; else the first."""
-    variants = {s.variant: s for s in scores if s.metric == metric}
-    corrected = variants.get("corrected")
-    restricted = variants.get("restricted")
-    if corrected is not None and (corrected.status == "ok" or restricted is None):
-        return corrected
-    return restricted or next(iter(variants.values()))
 
 
 def _row(score: Score, *, headline: bool) -> Row:
