@@ -224,6 +224,16 @@ def test_scores_and_facts_are_readable_without_script(page: Page) -> None:
     assert rows == ["category", "ok extra", "ok", "censored extra", "ok", "undefined"]
 
 
+def test_what_no_run_can_answer_is_shown_on_request_only(
+    run: tuple[Trajectories, list[ReplayScan]], tmp_path: Path
+) -> None:
+    asked = score("fluency", "corrected", None, reason="no_command", category="shared control")
+    path = tmp_path / "x.html"
+    write_replay(path, run[0], [], [asked], title="t", facts={})
+    rows = re.findall(r'<tr class="([^"]*)"', path.read_text(encoding="utf-8"))
+    assert rows == ["category extra", "undefined extra"]
+
+
 def test_hostile_text_stays_text(
     run: tuple[Trajectories, list[ReplayScan]], tmp_path: Path
 ) -> None:
