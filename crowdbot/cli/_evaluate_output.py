@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import json
 import logging
-import os
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -13,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.errors import InputError
+from crowdbot.core.aside import write_aside
 
 if TYPE_CHECKING:
     from crowdbot.core.recording.rescore import Rescored
@@ -125,11 +124,4 @@ def _fields(score: Score) -> dict[str, Any]:
 
 
 def _write_json(path: Path, document: Any) -> None:
-    aside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        aside.write_text(json.dumps(document, indent=2, allow_nan=False) + "\n", encoding="utf-8")
-        aside.replace(path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
-    finally:
-        aside.unlink(missing_ok=True)
+    write_aside(path, json.dumps(document, indent=2, allow_nan=False) + "\n")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from crowdbot.core.sim.runner import Progress as Report
 
 _COMPILES = "the first run compiles"
+#: How long nothing may be seen without an excuse, s.
+PATIENCE = 1.0
 
 
 @contextmanager
@@ -28,9 +31,22 @@ def show_progress() -> Iterator[Callable[[Report], None]]:
         with _bars() as bars:
             yield bars
     else:
-        if nothing_compiled():
-            print(f"preparing: {_COMPILES}, about half a minute", file=sys.stderr)
-        yield _Lines()
+        with _excuse():
+            yield _Lines()
+
+
+@contextmanager
+def _excuse() -> Iterator[None]:
+    """Say why nothing is seen yet, unless it is over at once, as with a wrong name."""
+    text = f"preparing: {_COMPILES}, about half a minute"
+    timer = threading.Timer(PATIENCE, print, [text], {"file": sys.stderr})
+    timer.daemon = True
+    if nothing_compiled():
+        timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 @contextmanager

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crowdbot.cli._files import write_file
 from crowdbot.cli._options import Plugins
+from crowdbot.core.aside import write_aside
 from crowdbot.errors import UsageError
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def schema(
     if out is None:
         typer.echo(text, nl=False)
     else:
-        write_file(out, text.encode())
+        write_aside(out, text.encode())
 
 
 def build(document: str, registry: Registry, *, canonical: bool = False) -> dict[str, Any]:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli._files import write_file
 from crowdbot.cli._options import Plugins
+from crowdbot.core.aside import write_aside
 from crowdbot.errors import InputError, UsageError
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def _draw(
     path = out or Path(f"{chosen.id.replace('/', '_')}.html")
     scene = build_scene(chosen, people.agents, registry)
     heading = path.suffix.lower() != ".html"
-    write_file(path, _content(draw(scene, title, facts, heading=heading), path.suffix.lower()))
+    write_aside(path, _content(draw(scene, title, facts, heading=heading), path.suffix.lower()))
     return path, facts
 
 

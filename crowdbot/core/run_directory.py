@@ -12,6 +12,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from crowdbot.core.aside import write_aside
 from crowdbot.errors import InputError
 
 RECORD, RECORDING, SCENARIO, SCORES, REPLAY = (
@@ -37,9 +38,7 @@ def is_complete(directory: Path, run_id: str) -> bool:
 
 def write_json(path: Path, document: Mapping[str, Any]) -> None:
     """Write a document aside and rename it."""
-    aside = path.with_name(f"{path.name}.part")
-    aside.write_text(json.dumps(document, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
-    aside.replace(path)
+    write_aside(path, json.dumps(document, indent=2, ensure_ascii=False) + "\n")
 
 
 @contextmanager

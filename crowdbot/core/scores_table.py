@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from crowdbot.core.aside import write_aside
 from crowdbot.core.score import Score
 from crowdbot.errors import InputError
 
@@ -68,15 +70,9 @@ def write_table(path: Path, rows: Iterable[Sequence[str]]) -> None:
     Raises:
         InputError: it cannot be written there.
     """
-    aside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        with aside.open("w", encoding="utf-8", newline="") as file:
-            csv.writer(file).writerows(rows)
-        aside.replace(path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
-    finally:
-        aside.unlink(missing_ok=True)
+    text = io.StringIO(newline="")
+    csv.writer(text).writerows(rows)
+    write_aside(path, text.getvalue())
 
 
 def read_scores_csv(path: str | os.PathLike[str]) -> list[ScoreRow]:

@@ -147,6 +147,6 @@ def test_what_urdf_cannot_say(old: str, new: str, message: str) -> None:
 def test_nothing_is_left_of_a_file_that_failed(tmp_path: Path) -> None:
     folder = tmp_path / "taken"
     folder.mkdir()
-    with pytest.raises(OSError, match="taken"):
+    with pytest.raises(InputError, match="taken: cannot be written"):
         write_aside(folder, "text")
     assert [p.name for p in tmp_path.iterdir()] == ["taken"]

@@ -3,10 +3,12 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
+from crowdbot.cli import _progress
 from crowdbot.cli._progress import show_progress
 from crowdbot.core.kernel_cache import kernel_folder
 
@@ -57,10 +59,14 @@ def test_the_first_run_says_that_it_compiles(
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kernels"))
     with show_progress():
         pass
+    assert capsys.readouterr().err == ""  # over at once: a wrong name, say
+    monkeypatch.setattr(_progress, "PATIENCE", 0.01)
+    with show_progress():
+        time.sleep(0.5)
     assert "the first run compiles" in capsys.readouterr().err
     compiled = tmp_path / "kernels" / "core_0" / "f.nbi"
     compiled.parent.mkdir(parents=True)
     compiled.touch()
     with show_progress():
-        pass
+        time.sleep(0.1)
     assert capsys.readouterr().err == ""

@@ -170,6 +170,7 @@ def test_a_record_is_written_in_one_go(tmp_path: Path, monkeypatch: pytest.Monke
         raise OSError(28, os.strerror(28))
 
     monkeypatch.setattr(Path, "replace", broken)
-    with pytest.raises(OSError, match="space"):
+    with pytest.raises(InputError, match=r"run\.json: cannot be written: No space"):
         files.write_json(path, {"é": 2})
+    assert [p.name for p in tmp_path.iterdir()] == ["run.json"]
     assert json.loads(path.read_text(encoding="utf-8")) == {"é": 1}

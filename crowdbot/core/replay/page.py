@@ -16,12 +16,12 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
+from crowdbot.core.aside import write_aside
 from crowdbot.core.replay.encode import encode, summary
 from crowdbot.core.replay.scan import ReplayScan
 from crowdbot.core.replay.scores import grouped
 from crowdbot.core.score import Score
 from crowdbot.core.trajectory import Trajectories
-from crowdbot.errors import InputError
 
 _SCRIPTS = ("decode.js", "motion.js", "draw.js", "timeline.js", "app.js")
 
@@ -48,12 +48,7 @@ def write_replay(
         InputError: the path cannot be written.
     """
     text = _render(run, scans, scores, title, facts)
-    aside = path.with_name(path.name + ".part")
-    try:
-        aside.write_text(text, encoding="utf-8", newline="\n")
-        aside.replace(path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+    write_aside(path, text)
 
 
 def _render(
