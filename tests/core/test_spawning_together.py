@@ -228,3 +228,13 @@ def test_the_distance_to_an_area_is_that_to_its_nearest_point(
     grid = [area.point(u, v) for u in np.linspace(-3, 3, 41) for v in np.linspace(-1.5, 1.5, 21)]
     near = min(math.dist((x, y), point) for point in grid)
     assert near - 0.12 <= area.distance(x, y) <= near + 1e-9
+
+
+@pytest.mark.parametrize("point", ["random", "offset"])
+def test_the_exit_point_reaches_the_engine(point: str) -> None:
+    scenario = hall({"spawns": {"s": STREAM}, "exit_point": point})
+    engine = build_crowd(
+        scenario, realise(scenario), REGISTRY.build(scenario.environment), REGISTRY
+    )
+    assert engine is not None
+    assert engine.world.exit_point == point
