@@ -108,7 +108,9 @@ class RobotModel:
     Attributes:
         sdf: SDFormat text of one model, base frame on the drive axis' vertical.
         base: name of the base link; its origin is ``base_height`` above the floor.
-        footprint_radius: radius of the physical disc, m.
+        footprint_radius: radius of the physical disc, m; of a capsule with ``footprint``.
+        footprint: outline of a robot that is no disc, in its own frame, m: (2, 2) is the segment
+            of a capsule, (K, 2) with K > 2 a convex polygon, counter-clockwise.
         height: of the whole robot, m.
         force_height: height above the floor at which people push, m.
     """
@@ -122,6 +124,7 @@ class RobotModel:
     height: float
     force_height: float
     mass: float
+    footprint: Array | None = None
 
 
 class RobotState(NamedTuple):

@@ -1,0 +1,107 @@
+"""The rows of a campaign's results, as everybody who reads them sees them.
+
+Plain values, so that statistics, report, linter and bundle need neither a store nor a simulator.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunRow:
+    """One complete run.
+
+    Attributes:
+        run_id: hash of everything that decides what happens in it.
+        suite, scenario, planner, seed: planner is the label, with a digest of its parameters
+            where they are not the defaults.
+        axes: axis of the suite -> label, such as ``{"flow": "counter", "density": "d0250"}``,
+            in the suite's order; ``replicate`` among them where there are several.
+        status: ``arrived``, ``timeout`` or ``planner_failed``; ``reason`` says why it ended.
+        goal_time: s, None when the robot did not arrive.
+        sim_time, wall_time: s.
+        privileged: the planner was told what no sensor can tell.
+        pinned: every plugin and the planner came from an installed distribution.
+        spec_hash, realisation_hash, trajectory_hash: runs with equal ``realisation_hash`` share
+            one drawn crowd: the cluster of the statistics.
+        density: mean number of people present for each m² of the crowd's area, 1/m²; None
+            without people.
+        directory: of the run, relative to the results' root.
+        conditions: what must be equal in runs that are compared: rates, perceived radius, whether
+            people see the robot, versions of software, parameters of metrics. Name -> text.
+        record: the whole ``run.json``.
+    """
+
+    run_id: str
+    suite: str
+    scenario: str
+    planner: str
+    seed: int
+    axes: Mapping[str, str]
+    status: str
+    reason: str
+    goal_time: float | None
+    sim_time: float
+    wall_time: float
+    privileged: bool
+    pinned: bool
+    spec_hash: str
+    realisation_hash: str
+    trajectory_hash: str
+    density: float | None
+    directory: str
+    conditions: Mapping[str, str]
+    record: Mapping[str, Any] = field(default_factory=dict, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScoreRow:
+    """One line of a run's ``scores.csv``.
+
+    Attributes:
+        value: None unless ``status`` is ``ok``.
+        better: ``higher``, ``lower``, ``reference`` (nearer to the reference run) or ``none``.
+        status: ``ok``, ``undefined`` or ``censored``; ``reason`` says why.
+        lower, upper: bounds of a censored value.
+    """
+
+    run_id: str
+    category: str
+    metric: str
+    symbol: str
+    variant: str
+    value: float | None
+    unit: str
+    better: str
+    status: str
+    reason: str
+    lower: float | None
+    upper: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FailureRow:
+    """A run that a campaign could not make, with what Python said."""
+
+    suite: str
+    scenario: str
+    planner: str
+    seed: int
+    error: str
+    traceback: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Results:
+    """Everything at one moment.
+
+    Runs are sorted by suite, scenario in the suite's order, planner and seed; scores by run,
+    metric and variant.
+    """
+
+    runs: tuple[RunRow, ...] = ()
+    scores: tuple[ScoreRow, ...] = ()
+    failures: tuple[FailureRow, ...] = ()
