@@ -2,25 +2,35 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from crowdbot.core.trajectory import Array, Trajectories
 
+if TYPE_CHECKING:
+    from crowdbot.core.interfaces import RobotModel
+
 
 @dataclass(frozen=True, slots=True)
 class Footprint:
-    """All points within ``radius`` of a filled polygon, or of a segment.
+    """All points within ``radius`` of a filled polygon, of a segment, or of the origin.
 
     Attributes:
-        corners: (K, 2), m; K = 2 is a segment.
+        corners: (K, 2), m; K = 2 is a segment, K = 0 the origin, which makes a disc.
         radius: m; 0 for a polygon.
     """
 
     corners: Array
     radius: float
+
+    @property
+    def reach(self) -> float:
+        """Distance of its farthest point from the origin, m."""
+        return float(np.max(np.hypot(*self.corners.T), initial=0.0)) + self.radius
 
     def gap(self, x: Array, y: Array) -> Array:
         """Distance of points from the outline, m; negative inside. NaN where unknown."""
@@ -60,6 +70,50 @@ def footprint_of(run: Trajectories) -> Footprint | None:
         return None
     capsule = len(run.robot_footprint) == 2
     return Footprint(run.robot_footprint, run.robot.radius if capsule else 0.0)
+
+
+def footprint_of_model(robot: RobotModel) -> Footprint:
+    """The outline of a robot, corners of a polygon counter-clockwise; a disc has none.
+
+    Raises:
+        ValueError: it is neither a segment nor a convex polygon.
+    """
+    if robot.footprint is None:
+        return Footprint(np.zeros((0, 2)), robot.footprint_radius)
+    corners = np.ascontiguousarray(robot.footprint, np.float64)
+    if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 2:
+        raise ValueError(f"a footprint has shape (K, 2), K >= 2, not {corners.shape}")
+    if len(corners) == 2:
+        return Footprint(corners, robot.footprint_radius)
+    turns = _turns(corners)
+    if np.all(turns <= 0.0):
+        corners, turns = np.ascontiguousarray(corners[::-1]), -turns
+    if not (np.all(np.isfinite(corners)) and np.all(turns >= 0.0) and np.any(turns > 0.0)):
+        raise ValueError("the footprint is no convex polygon")
+    return Footprint(corners, 0.0)
+
+
+def _turns(corners: Array) -> Array:
+    """Sine of the turn at each corner times both edges; positive to the left."""
+    edge = np.roll(corners, -1, axis=0) - corners
+    following = np.roll(edge, -1, axis=0)
+    return np.asarray(edge[:, 0] * following[:, 1] - edge[:, 1] * following[:, 0])
+
+
+def body_side(bearing: float) -> str:
+    """``front``, ``left``, ``right`` or ``rear`` of a robot; ``unknown`` for NaN.
+
+    Args:
+        bearing: of a point in the robot's frame, rad; each side has a quarter of the circle.
+    """
+    if not math.isfinite(bearing):
+        return "unknown"
+    angle = math.remainder(bearing, 2.0 * math.pi)
+    if abs(angle) <= 0.25 * math.pi:
+        return "front"
+    if abs(angle) >= 0.75 * math.pi:
+        return "rear"
+    return "left" if angle > 0.0 else "right"
 
 
 def into_frame(theta: Array, x: Array, y: Array) -> tuple[Array, Array]:

@@ -102,6 +102,7 @@ class RunLog:
             impulse=float(row[s.TOUCH_IMPULSE]),
             peak_force=float(row[s.TOUCH_PEAK]),
             relative_speed=float(row[s.TOUCH_SPEED]),
+            bearing=float(row[s.TOUCH_SIDE]),
         )
 
 

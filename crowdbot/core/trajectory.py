@@ -78,7 +78,9 @@ class Trips:
 class ContactEvents:
     """Contacts of the robot, each (K,).
 
-    t0, t1 (s), agent id (-1: a wall), impulse (N s), peak force (N), relative speed before (m/s).
+    t0, t1 (s), agent id (-1: a wall), impulse (N s), peak force (N), relative speed before (m/s),
+    bearing of the point of the robot that was touched first, in the robot's frame (rad; NaN:
+    unknown), for which `crowdbot.core.footprint.body_side` has words.
     """
 
     t0: Array
@@ -87,6 +89,7 @@ class ContactEvents:
     impulse: Array
     peak_force: Array
     relative_speed: Array
+    bearing: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -188,7 +191,8 @@ class Trajectories:
         An omnidirectional robot gives ``robot_vx`` and ``robot_vy`` (world frame, m/s), and may
         leave out ``robot_v``. Velocities that are left out, or NaN, are derived from positions
         and headings. ``robot_footprint`` is a polygon (K, 2), or the (2, 2) ends of a
-        capsule of radius ``robot_radius``, in the robot's frame.
+        capsule of radius ``robot_radius``, in the robot's frame. ``contacts`` has the columns of
+        `ContactEvents`, of which ``bearing`` may be left out.
 
         Raises:
             InputError: a shape does not fit, time does not increase, a part is missing.
@@ -277,6 +281,8 @@ def _trips(given: Mapping[str, Any]) -> Trips:
 
 def _contacts(table: Mapping[str, ArrayLike]) -> ContactEvents:
     names = [f.name for f in fields(ContactEvents)]
+    if "bearing" not in table:  # tables of others, and of older recordings
+        table = {**table, "bearing": np.full(np.shape(table.get("t0", ())), np.nan)}
     if set(table) != set(names):
         raise InputError(f"trajectories: contacts needs the columns {', '.join(names)}")
     return ContactEvents(

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from crowdbot.core.commands import read_columns
 from crowdbot.core.trajectory import Array, Trajectories
@@ -18,6 +20,8 @@ ROBOT_COLUMNS = ("t", "x", "y", "theta", "v", "w")
 ROBOT_OPTIONAL = ("vx", "vy")
 AGENT_COLUMNS = ("t", "id", "x", "y")
 AGENT_OPTIONAL = ("vx", "vy", "radius", "mass", "jump")
+CONTACT_COLUMNS = ("t0", "t1", "agent", "impulse", "peak_force", "relative_speed")
+CONTACT_OPTIONAL = ("bearing",)
 TRIP_COLUMNS = ("agent", "t0", "t1", "reached")
 
 
@@ -28,6 +32,7 @@ def read_csv(
     *,
     agent_radius: float = 0.25,
     agent_mass: float = 70.0,
+    contacts: Path | str | Mapping[str, ArrayLike] | None = None,
     **more: Any,
 ) -> Trajectories:
     """Read tables with a header row; SI units, radians, an empty cell is unknown.
@@ -40,6 +45,8 @@ def read_csv(
         trips: agent, t0, t1, reached (0 or 1): one row a trip.
         agent_radius: m, where the table does not say it.
         agent_mass: kg, where the table does not say it.
+        contacts: t0, t1, agent (-1: a wall), impulse, peak_force, relative_speed, optionally
+            bearing: one row a contact of the robot; or such columns.
         more: everything else that `Trajectories.from_arrays` takes; ``robot_radius`` and
             ``robot_mass`` are needed with a robot.
 
@@ -62,10 +69,20 @@ def read_csv(
         rows = read_columns(Path(trips), TRIP_COLUMNS)
         given |= {f"trip_{name}": column for name, column in rows.items()}
         given["trip_reached"] = rows["reached"] != 0
+    if isinstance(contacts, Path | str):
+        contacts = _contacts(Path(contacts))
+    given["contacts"] = contacts
     try:
         return Trajectories.from_arrays(t=t, **given)
     except TypeError as error:
         raise InputError(f"trajectories: {error}") from error
+
+
+def _contacts(path: Path) -> dict[str, Array]:
+    rows = read_columns(path, CONTACT_COLUMNS, CONTACT_OPTIONAL)
+    if not np.all(np.isfinite(rows["agent"])):
+        raise InputError(f"{path}: a row has no agent")
+    return rows
 
 
 def _merged(times: Array) -> Array:

@@ -45,9 +45,12 @@ def moved(
     if agents is not None:
         (x, y), (vx, vy) = placed(agents.x, agents.y), turned(agents.vx, agents.vy)
         agents = replace(agents, x=x, y=y, vx=vx, vy=vy)
-    body = run.robot_footprint
+    body, contacts = run.robot_footprint, run.contacts
+    if contacts is not None:
+        contacts = replace(contacts, bearing=mirror * contacts.bearing)
     return replace(
         run,
+        contacts=contacts,
         robot=robot,
         agents=agents,
         goal_zone=points(run.goal_zone),

@@ -238,6 +238,7 @@ def _events(rng: np.random.Generator, t: Array, people: _People) -> dict[str, An
         "impulse": rng.uniform(0.1, 5.0, k),
         "peak_force": rng.uniform(1.0, 200.0, k),
         "relative_speed": rng.uniform(0.05, 2.0, k),
+        "bearing": rng.uniform(-np.pi, np.pi, k),
     }
     return {
         "contacts": contacts,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.agents import PORTAL, Agents
-from crowdbot.core.crowd.contact import push_apart
+from crowdbot.core.crowd.contact import DISC, push_apart
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdPolicy, CrowdView
 from crowdbot.core.crowd.portals import draw_goal, enter
 from crowdbot.core.crowd.routes import head_for
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 #: Makes the policy of a set of agents.
 PolicyFactory = Callable[[Agents], CrowdPolicy]
 
-NOBODY = np.zeros((0, 6))
+NOBODY = np.zeros((0, 8))
 _SEEN = np.array([0, 1, 2, 3, 5])  # columns of a robot that people know: all but its true radius
 
 
@@ -96,20 +96,24 @@ class CrowdEngine:
         rows[:, s.DIR_X : s.DIR_Y + 1] = facing
         return flat
 
-    def advance(self, flat: Array, robots: Array = NOBODY) -> None:
+    def advance(self, flat: Array, robots: Array = NOBODY, outline: Array = DISC) -> None:
         """One tick of 1/128 s, in place; decides first when a decision is due.
 
         Args:
             flat: state vector.
-            robots: (R, 6) x, y, vx, vy, physical and perceived radius.
+            robots: (R, 8) x, y, vx, vy, physical and perceived radius, heading, yaw rate; the
+                last two may be left out.
+            outline: (K, 2) of robots that are no discs, see `robot_contact`.
         """
+        if robots.shape[1] < 8:
+            robots = np.pad(robots, ((0, 0), (0, 8 - robots.shape[1])))
         if int(flat[s.TICK]) % self._ticks_per_decision == 0:
             self._decide(flat, robots)
         a, w = self.agents, self.world
         _, rows = s.view(flat)
         push_apart(rows, a.radius, self._order, w.walls, self._fixed(rows), self._push)
         tick(
-            flat, s.AGENT_COLUMNS, robots, a.id, self._in_turn, a.radius, a.mass,
+            flat, s.AGENT_COLUMNS, robots, outline, a.id, self._in_turn, a.radius, a.mass,
             a.preferred_speed, a.max_speed, a.start_time, self._heeds, a.at_goal, a.flow,
             a.route, a.first, w.entrance, w.out, w.exit_point == "offset", self._torus,
             not w.parity, w.response, w.stiffness, w.dissipation, self._key, TICK, self._reaction,

@@ -11,9 +11,13 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 # Header: ticks since the start; sums of impulses on the robot and on people (N s); the force on
-# the robot in the current tick (N); counters of finished contacts and finished trips.
-TICK, ROBOT_JX, ROBOT_JY, PEOPLE_JX, PEOPLE_JY, ROBOT_FX, ROBOT_FY, CONTACTS, TRIPS = range(9)
-HEADER_SIZE = 9
+# the robot in the current tick (N); counters of finished contacts and finished trips; torque on the
+# robot about its base in the current tick (N m).
+(
+    TICK, ROBOT_JX, ROBOT_JY, PEOPLE_JX, PEOPLE_JY, ROBOT_FX, ROBOT_FY, CONTACTS, TRIPS,
+    ROBOT_TORQUE,
+) = range(10)  # fmt: skip
+HEADER_SIZE = 10
 
 # Agent columns: position, velocity, willed acceleration, push by people and walls (m/s^2), goal;
 # trip number, where the agent is (below), attempts to re-enter, start of the trip, last arrival
@@ -21,15 +25,15 @@ HEADER_SIZE = 9
 # relative speed before (m/s), finished contacts; 1 while on a trip, start of the last finished
 # trip (s), finished trips, next point of the route, jumps through portals and across the border,
 # sizes of the torus that the agent has gone (m); way walked (m) and the unit vector of the way
-# faced, which sensors show.
+# faced, which sensors show; bearing of the contact as the robot sees it, at its start (rad).
 (
     X, Y, VX, VY, AX, AY, PUSH_X, PUSH_Y, GOAL_X, GOAL_Y,
     TRIP, WAITING, ATTEMPT, TRIP_START, ARRIVED,
     TOUCHING, TOUCH_START, TOUCH_END, TOUCH_IMPULSE, TOUCH_PEAK, TOUCH_SPEED, TOUCHES,
     ON_TRIP, LAST_START, ARRIVALS, WAYPOINT, JUMPS, LAP_X, LAP_Y,
-    WALKED, DIR_X, DIR_Y,
-) = range(32)  # fmt: skip
-AGENT_COLUMNS = 32
+    WALKED, DIR_X, DIR_Y, TOUCH_SIDE,
+) = range(33)  # fmt: skip
+AGENT_COLUMNS = 33
 
 #: Values of ``WAITING``: in the world; outside, in front of the in-portal; outside, to start
 #: later; gone for good.

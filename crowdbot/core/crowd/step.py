@@ -51,6 +51,7 @@ def tick(
     flat: Array,
     columns: int,
     robots: Array,
+    outline: Array,
     ids: Rows,
     in_turn: Rows,
     radius: Array,
@@ -82,7 +83,7 @@ def tick(
 
     Args:
         flat: the crowd's state, changed in place.
-        robots: (R, 6) as in `crowdbot.core.crowd.contact`.
+        robots, outline: (R, 8), (K, 2) as in `crowdbot.core.crowd.contact`.
         in_turn: (N,) rows of agents by id: the order in which they enter.
         torus: (4,) x0, x1, y0, y1, infinite where there is no border.
         reaction: (N, 2) scratch.
@@ -92,7 +93,9 @@ def tick(
     header, agents = flat[:HEADER_SIZE], flat[HEADER_SIZE:].reshape(-1, columns)
     now = header[TICK] * dt
     for r in range(robots.shape[0]):
-        robot_contact(header, agents, radius, robots[r], stiffness, dissipation, now, dt, reaction)
+        robot_contact(
+            header, agents, radius, robots[r], outline, stiffness, dissipation, now, dt, reaction
+        )
     if robots.shape[0] == 0:
         reaction[:] = 0.0
     for i in range(agents.shape[0]):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
@@ -81,8 +82,13 @@ class Collected:
             "robot_goal": robot.goal,
             "robot_goal_radius": robot.goal_radius,
             "robot_footprint": robot.footprint,
-            "contacts": _columns(self._by_topic[Topic.CONTACTS], _CONTACT),
+            "contacts": self._contacts(),
         }
+
+    def _contacts(self) -> dict[str, list[Any]]:
+        rows = self._by_topic[Topic.CONTACTS]
+        bearing = [getattr(row, "bearing", math.nan) for row in rows]  # since format 2
+        return {**_columns(rows, _CONTACT), "bearing": bearing}
 
     def _agents(self, header: RecordingHeader) -> dict[str, Any]:
         agents = header.agents

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Array, RobotLimits, SensorInfo
+from crowdbot.core.interfaces import Array, Pinhole, RobotLimits, SensorInfo
 from crowdbot.core.recording import messages as ros
 from crowdbot.errors import InputError
 
 #: Raised when the meaning of a ``/crowdbot/...`` message changes.
-VERSION = 1
+VERSION = 2
+_READABLE = (1, 2)
 _LIMITS = ("v_min", "v_max", "w_max", "a_max", "alpha_max")
 
 
@@ -25,7 +26,7 @@ class RobotHeader:
     Attributes:
         goal: centre of the goal, world frame.
         base_height: height of base_link above the floor.
-        footprint: array of any shape that stands for the body, or None (the disc).
+        footprint: outline of a body that is no disc, as in `RobotModel.footprint`.
     """
 
     radius: float
@@ -78,6 +79,8 @@ class RecordingHeader:
             sensors=[_sensor_message(name, info) for name, info in self.sensors.items()],
             walls=ros.table(self.walls),
             goal_zone=ros.table(self.goal_zone),
+            cameras=[_camera_message(n, i.camera) for n, i in self.sensors.items() if i.camera],
+            privileged=[n for n, i in self.sensors.items() if i.privileged],
         )
 
     @classmethod
@@ -88,9 +91,10 @@ class RecordingHeader:
             InputError: the message was written by another version of crowdbot, or contradicts
                 itself.
         """
-        if message.version != VERSION:
+        if message.version not in _READABLE:
+            known = " and ".join(map(str, _READABLE))
             raise InputError(
-                f"the recording has format {message.version}; this crowdbot reads format {VERSION}"
+                f"the recording has format {message.version}; this crowdbot reads formats {known}"
             )
         try:
             return cls(
@@ -98,11 +102,11 @@ class RecordingHeader:
                 hashes=dict(zip(message.hash_names, message.hashes, strict=True)),
                 robot=_robot(message.robot[0]) if message.robot else None,
                 agents=_agents(message.agents[0]) if message.agents else None,
-                sensors={s.name: _sensor(s) for s in message.sensors},
+                sensors=_sensors(message),
                 walls=ros.from_table(message.walls),
                 goal_zone=ros.from_table(message.goal_zone),
             )
-        except (ValueError, IndexError) as error:  # tables and lists of the wrong length
+        except (ValueError, LookupError) as error:  # tables and lists of the wrong length
             raise InputError(f"the recording's header contradicts itself: {error}") from error
 
 
@@ -164,6 +168,30 @@ def _sensor_message(name: str, info: SensorInfo) -> Any:
         range_min=info.range_min,
         range_max=info.range_max,
     )
+
+
+def _camera_message(sensor: str, camera: Pinhole) -> Any:
+    return ros.new(
+        "crowdbot_msgs/Camera",
+        sensor=sensor,
+        width=camera.width,
+        height=camera.height,
+        focal=camera.focal,
+        colour=camera.colour,
+    )
+
+
+def _sensors(message: Any) -> dict[str, SensorInfo]:
+    """By name; format 1 tells neither cameras nor what is privileged."""
+    sensors = {s.name: _sensor(s) for s in message.sensors}
+    for found in getattr(message, "cameras", ()):
+        camera = Pinhole(
+            width=found.width, height=found.height, focal=found.focal, colour=bool(found.colour)
+        )
+        sensors[found.sensor] = replace(sensors[found.sensor], camera=camera)
+    for name in getattr(message, "privileged", ()):
+        sensors[name] = replace(sensors[name], privileged=True)
+    return sensors
 
 
 def _sensor(message: Any) -> SensorInfo:

@@ -32,30 +32,38 @@ DEFINITIONS = {
     "RunHeader": (
         "uint32 version\nstring scenario\nstring[] hash_names\nstring[] hashes\n"
         "crowdbot_msgs/RobotInfo[] robot\ncrowdbot_msgs/AgentsInfo[] agents\n"
-        "crowdbot_msgs/Sensor[] sensors\ncrowdbot_msgs/Table walls\ncrowdbot_msgs/Table goal_zone"
+        "crowdbot_msgs/Sensor[] sensors\ncrowdbot_msgs/Table walls\n"
+        "crowdbot_msgs/Table goal_zone\ncrowdbot_msgs/Camera[] cameras\nstring[] privileged"
     ),
+    "Camera": "string sensor\nuint32 width\nuint32 height\nfloat64 focal\nbool colour",
     "RunState": "float64 t\nfloat64[] robot\nfloat64[] agents\nbool has_jump\nbool[] jump",
     "RunEnd": "bool complete\nstring status\nbool arrived\nfloat64 goal_time",
     "Trip": "int64 agent\nfloat64 t0\nfloat64 t1\nbool reached",
     "Signal": "float64 t\nstring name\nfloat64 value",
     "Contact": (
         "std_msgs/Header header\nfloat64 t0\nfloat64 t1\nint64 agent\nfloat64 impulse\n"
-        "float64 peak_force\nfloat64 relative_speed"
+        "float64 peak_force\nfloat64 relative_speed\nfloat64 bearing"
     ),
     "Pedestrians": (
         "std_msgs/Header header\nint64[] id\nfloat32[] x\nfloat32[] y\nfloat32[] vx\n"
         "float32[] vy\nfloat32[] heading\nfloat32[] radius"
     ),
 }
+#: Fields that messages of format 1 end before.
+_SINCE_2 = {
+    "RunHeader": "\ncrowdbot_msgs/Camera[] cameras\nstring[] privileged",
+    "Contact": "\nfloat64 bearing",
+}
 _NO_COVARIANCE = np.zeros(36)
 
 
 @cache
-def _store() -> Any:
+def _store(*, oldest: bool = False) -> Any:
     store = get_typestore(Stores.ROS2_HUMBLE)
     types: dict[str, Any] = {}
     for name, text in DEFINITIONS.items():
-        types.update(get_types_from_msg(text, f"crowdbot_msgs/msg/{name}"))
+        since = _SINCE_2.get(name, "") if oldest else ""
+        types.update(get_types_from_msg(text.removesuffix(since), f"crowdbot_msgs/msg/{name}"))
     store.register(types)
     return store
 
@@ -82,8 +90,16 @@ def to_cdr(message: Any) -> bytes:
 
 
 def from_cdr(data: bytes, msgtype: str) -> Any:
-    """Deserialise; raises whatever the decoder stumbles over."""
-    return _store().deserialize_cdr(data, msgtype)
+    """Deserialise; raises whatever the decoder stumbles over.
+
+    A message of format 1 lacks the attributes that came later.
+    """
+    try:
+        return _store().deserialize_cdr(data, msgtype)
+    except Exception:  # the decoder is generated code; anything may surface
+        if msgtype.removeprefix("crowdbot_msgs/msg/") not in _SINCE_2:
+            raise
+    return _store(oldest=True).deserialize_cdr(data, msgtype)
 
 
 def nanoseconds(t: float) -> int:

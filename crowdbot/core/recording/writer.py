@@ -6,6 +6,7 @@ computed from; all others are for ROS tools and may be left out.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -138,8 +139,12 @@ class RecordingWriter:
         impulse: float,
         peak_force: float,
         relative_speed: float,
+        bearing: float = math.nan,
     ) -> None:
-        """A contact of the robot that ended at ``t1``; N s, N, m/s; agent -1 is a wall."""
+        """A contact of the robot that ended at ``t1``; N s, N, m/s; agent -1 is a wall.
+
+        ``bearing`` is that of the point touched first, in the robot's frame (rad); NaN: unknown.
+        """
         message = ros.new(
             "crowdbot_msgs/Contact",
             header=ros.header(ros.nanoseconds(t0), "map"),
@@ -149,6 +154,7 @@ class RecordingWriter:
             impulse=impulse,
             peak_force=peak_force,
             relative_speed=relative_speed,
+            bearing=bearing,
         )
         self._file.put(Topic.CONTACTS, ros.nanoseconds(t1), message)
 

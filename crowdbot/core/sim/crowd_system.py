@@ -12,6 +12,8 @@ from pydrake.systems.framework import Context, DiscreteStateIndex, LeafSystem, S
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
+from crowdbot.core.footprint import footprint_of_model
+from crowdbot.core.interfaces import RobotModel
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control.controlled import Push
 from crowdbot.core.ticks import TICK
@@ -20,12 +22,14 @@ from crowdbot.core.ticks import TICK
 class CrowdSystem(LeafSystem):
     """Input: robot state. Outputs: crowd state, events, force on the robot."""
 
-    def __init__(
-        self, engine: CrowdEngine, push: Push, physical_radius: float, perceived_radius: float
-    ) -> None:
+    def __init__(self, engine: CrowdEngine, push: Push, robot: RobotModel, margin: float) -> None:
+        """``margin``: how much larger than its body people take the robot for, m."""
         super().__init__()
         self._engine, self._push = engine, push
-        self._robot = np.array([[0.0, 0.0, 0.0, 0.0, physical_radius, perceived_radius]])
+        body = footprint_of_model(robot)
+        self._outline = body.corners
+        self._robot = np.zeros((1, 8))
+        self._robot[0, 4:6] = body.radius, body.reach + margin
         self._port = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         crowd = self.DeclareDiscreteState(engine.initial_state())
         force = self.DeclareDiscreteState(push.size)
@@ -38,12 +42,13 @@ class CrowdSystem(LeafSystem):
         self.DeclarePeriodicUnrestrictedUpdateEvent(TICK, 0.0, self._update)
 
     def _update(self, context: Context, state: State) -> None:
-        x, y, _, vx, vy, *_ = self._port.Eval(context).tolist()
+        x, y, yaw, vx, vy, w, *_ = self._port.Eval(context).tolist()
         self._robot[0, :4] = x, y, vx, vy
+        self._robot[0, 6:] = yaw, w
         values = state.get_mutable_discrete_state()
         crowd = values.get_mutable_value(self._crowd)
-        self._engine.advance(crowd, self._robot)
+        self._engine.advance(crowd, self._robot, self._outline)
         header = crowd[: s.HEADER_SIZE].tolist()
         force = values.get_mutable_value(self._force)
-        self._push.write(force, header[s.ROBOT_FX], header[s.ROBOT_FY])
+        self._push.write(force, header[s.ROBOT_FX], header[s.ROBOT_FY], header[s.ROBOT_TORQUE])
         values.get_mutable_value(self._events)[0] = header[s.CONTACTS] + header[s.TRIPS]

@@ -84,8 +84,7 @@ def build_diagram(
     crowd, size = None, 0
     if engine is not None:
         margin = scenario.crowd.robot_response.margin if scenario.crowd else 0.0
-        radius = model.footprint_radius
-        system = CrowdSystem(engine, body.push, radius, radius + margin)
+        system = CrowdSystem(engine, body.push, model, margin)
         crowd = builder.AddNamedSystem("crowd", system)
         builder.Connect(robot_state, crowd.GetInputPort(ports.ROBOT_STATE))
         if body.push_port is not None:

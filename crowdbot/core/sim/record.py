@@ -79,6 +79,7 @@ def record_robot(setup: RunSetup) -> Outcome:
             goal=task.goal,
             base_height=model.base_height,
             limits=model.limits,
+            footprint=model.footprint,
         ),
         agents=_agents(engine),
         sensors={n: i for n, i in infos.items() if n in sensors},

@@ -29,13 +29,13 @@ class Push:
     at: int | None
     lever: float
 
-    def write(self, values: Array, fx: float, fy: float) -> None:
-        """Force (N, world frame) into a vector of ``size``, in place."""
+    def write(self, values: Array, fx: float, fy: float, torque: float = 0.0) -> None:
+        """Force (N, world frame) and torque about the base's vertical (N m), in place."""
         if self.at is None:
             values[0], values[1] = fx, fy
         else:
             i = self.at
-            values[i : i + 5] = -self.lever * fy, self.lever * fx, 0.0, fx, fy
+            values[i : i + 5] = -self.lever * fy, self.lever * fx, torque, fx, fy
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
