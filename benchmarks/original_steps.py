@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld, policy_of
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.contact import push_apart
+from crowdbot.core.crowd.contact import DISC, push_apart
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdView
 from crowdbot.core.crowd.step import tick
 from crowdbot.core.crowd.torus import ENDLESS
@@ -58,7 +58,7 @@ def whole_step(
     flat = CrowdEngine(agents, world, chosen).initial_state()
     _, rows = s.view(flat)
     n = len(agents)
-    robots, order, everybody = np.zeros((0, 6)), np.arange(n), np.ones(n, np.bool_)
+    robots, order, everybody = np.zeros((0, 8)), np.arange(n), np.ones(n, np.bool_)
     stiffness, reaction = np.full(n, CONTACT_STIFFNESS), np.zeros((n, 2))
     in_turn = np.argsort(agents.id)
 
@@ -72,7 +72,7 @@ def whole_step(
         rows[:, s.AX : s.AY + 1] = willed(chosen, view)
         push_apart(rows, agents.radius, order, walls, world.pillars, stiffness)
         tick(
-            flat, s.AGENT_COLUMNS, robots, agents.id, in_turn, agents.radius, agents.mass,
+            flat, s.AGENT_COLUMNS, robots, DISC, agents.id, in_turn, agents.radius, agents.mass,
             agents.preferred_speed, agents.max_speed, agents.start_time, everybody,
             agents.at_goal, agents.flow, agents.route, agents.first, world.entrance, world.out,
             False, ENDLESS, True, world.response, world.stiffness, world.dissipation,

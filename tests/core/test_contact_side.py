@@ -64,8 +64,12 @@ def _write(path: Path, version: int) -> None:
          store.types["crowdbot_msgs/msg/Contact"](**contact)),
     ):  # fmt: skip
         file.put_bytes(topic, 0, kind, bytes(store.serialize_cdr(message, kind)))
-    state = ros.new("crowdbot_msgs/RunState", t=0.0, robot=RUN.robot[0], agents=RUN.agents[0].ravel(),  # type: ignore[index]
-                    has_jump=False, jump=np.zeros(0, np.bool_))  # fmt: skip
+    assert RUN.robot is not None
+    assert RUN.agents is not None
+    state = ros.new(
+        "crowdbot_msgs/RunState", t=0.0, robot=RUN.robot[0], agents=RUN.agents[0].ravel(),
+        has_jump=False, jump=np.zeros(0, np.bool_),
+    )  # fmt: skip
     file.put(Topic.STATE, 0, state)
     file.close()
 
@@ -104,7 +108,7 @@ def test_a_writer_that_is_told_no_bearing(tmp_path: Path) -> None:
     assert np.isnan(contacts.bearing).all()
 
 
-TABLE = {
+TABLE: dict[str, Any] = {
     "t0": [0.5], "t1": [0.75], "agent": [-1], "impulse": [2.0], "peak_force": [30.0],
     "relative_speed": [0.4],
 }  # fmt: skip

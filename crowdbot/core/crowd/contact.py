@@ -135,9 +135,7 @@ def overlap(
 
 
 @njit(cache=True, error_model="numpy")
-def from_outline(
-    outline: Array, x: float, y: float
-) -> tuple[float, float, float, float, float]:
+def from_outline(outline: Array, x: float, y: float) -> tuple[float, float, float, float, float]:
     """Where a point lies beside a segment (K = 2) or a convex polygon, counter-clockwise.
 
     Returns:

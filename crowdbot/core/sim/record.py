@@ -32,6 +32,7 @@ from crowdbot.core.registry import Registry
 from crowdbot.core.run_log import RunLog
 from crowdbot.core.sim.diagram import build_diagram, robot_task
 from crowdbot.core.sim.runner import INTERRUPTED, TIMEOUT, Outcome, Progress, run
+from crowdbot.core.sim.start_check import check_start
 from crowdbot.core.watchdog import Watchdog
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.dsl.seeds import stream_seed
@@ -59,6 +60,7 @@ def record_robot(setup: RunSetup) -> Outcome:
     """Simulate the scenario's robot with the planner; people too if the scenario has any.
 
     Raises:
+        InputError: the robot would start in a wall, an obstacle or a person.
         PlannerHungError: a planner step never returned; the recording is closed all the same.
     """
     scenario, registry = setup.scenario, setup.registry
@@ -71,6 +73,7 @@ def record_robot(setup: RunSetup) -> Outcome:
     visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
     sensors = set(infos) if setup.record == "all" else {*visible, *_odometry(infos)}
     task = robot_task(robot, parts)
+    check_start(parts, model, task.start, engine, name)
     header = RecordingHeader(
         scenario=scenario.id,
         robot=RobotHeader(

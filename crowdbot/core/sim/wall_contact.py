@@ -16,9 +16,11 @@ from pydrake.multibody.plant import ContactResults
 from pydrake.multibody.tree import world_index
 
 from crowdbot.core.crowd.contact import RELEASE_GAP
+from crowdbot.core.footprint import footprint_of_model
 from crowdbot.core.interfaces import EnvironmentParts, RobotModel, RobotState
 from crowdbot.core.run_log import RunLog
-from crowdbot.core.sim.control.kinematic import gap_to_walls, obstacles
+from crowdbot.core.sim.control.kinematic import obstacles
+from crowdbot.core.sim.outline_gap import outline_gap, touched_at
 from crowdbot.core.ticks import TICK
 
 #: Nearer than this the plant is asked for forces, m.
@@ -35,6 +37,7 @@ class _Contact:
     start: float
     end: float
     speed: float
+    bearing: float
     impulse: float = 0.0
     peak: float = 0.0
 
@@ -44,7 +47,7 @@ class WallContacts:
 
     def __init__(self, parts: EnvironmentParts, robot: RobotModel, log: RunLog) -> None:
         self._walls, self._pillars = obstacles(parts, robot.height)
-        self._radius, self._log = robot.footprint_radius, log
+        self._body, self._log = footprint_of_model(robot), log
         self._contact: _Contact | None = None
         self._speed = 0.0
 
@@ -54,22 +57,22 @@ class WallContacts:
         Args:
             force: the horizontal force of walls on the robot now (N); None where there is none.
         """
-        gap = gap_to_walls(self._walls, self._pillars, robot.x, robot.y) - self._radius
-        if gap < _NEAR:
-            self._touch(t, gap, None if force is None else force())
+        at = (self._walls, self._pillars, self._body.corners, robot.x, robot.y, robot.yaw)
+        gap = outline_gap(*at) - self._body.radius
+        if gap < _NEAR and self._touches(gap, pushed := None if force is None else force()):
+            if self._contact is None:
+                x, y = touched_at(*at)
+                self._contact = _Contact(t, t, self._speed, math.atan2(y, x))
+            self._contact.end = t
+            self._contact.impulse += (pushed or 0.0) * TICK
+            self._contact.peak = max(self._contact.peak, pushed or 0.0)
         elif gap > RELEASE_GAP:
             self.finish()
         self._speed = math.hypot(robot.vx, robot.vy)
 
-    def _touch(self, t: float, gap: float, force: float | None) -> None:
-        touching = gap <= _TOUCH if force is None else force > 0.0
-        if not touching:
-            return
-        if self._contact is None:
-            self._contact = _Contact(t, t, self._speed)
-        self._contact.end = t
-        self._contact.impulse += (force or 0.0) * TICK
-        self._contact.peak = max(self._contact.peak, force or 0.0)
+    @staticmethod
+    def _touches(gap: float, force: float | None) -> bool:
+        return gap <= _TOUCH if force is None else force > 0.0
 
     def finish(self) -> None:
         """End the contact that is going on, if any."""
@@ -77,7 +80,7 @@ class WallContacts:
             c, self._contact = self._contact, None
             self._log.writer.contact(
                 t0=c.start, t1=c.end, agent=_WALL, impulse=c.impulse, peak_force=c.peak,
-                relative_speed=c.speed,
+                relative_speed=c.speed, bearing=c.bearing,
             )  # fmt: skip
 
 

@@ -19,14 +19,17 @@ from pydrake.systems.framework import (
     LeafSystem,
 )
 
+from crowdbot.core.footprint import footprint_of_model
 from crowdbot.core.interfaces import EnvironmentParts, Pose, RobotModel, RobotState
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control.controlled import ControlledRobot, Push
+from crowdbot.core.sim.outline_gap import outline_gap
 from crowdbot.core.ticks import TICK
 
 Array = NDArray[np.float64]
 _HALVINGS = 40  # an arc of 5 mm is cut at a wall to less than a picometre
 _TOUCHING = 1e-9  # m; how deep a robot that touches a wall stands in it
+_SKIN = 1e-6  # m; corners keep this far off: a wall inside a polygon is no farther than 0 m
 _ROUNDING = 1e-13  # m; must not hold a robot that drives along a wall
 
 
@@ -35,7 +38,7 @@ class KinematicBase(LeafSystem):
 
     def __init__(self, parts: EnvironmentParts, robot: RobotModel) -> None:
         super().__init__()
-        self._robot = robot
+        self._robot, self._body = robot, footprint_of_model(robot)
         self._walls, self._pillars = obstacles(parts, robot.height)
         self._port = self.DeclareVectorInputPort(ports.DESIRED_STATE, 2)
         index = self.DeclareDiscreteState(ports.ROBOT_STATE_SIZE)
@@ -48,13 +51,13 @@ class KinematicBase(LeafSystem):
         now = RobotState(*state.tolist())
         v, w = self._port.Eval(context).tolist()
         x, y, yaw = arc(now.x, now.y, now.yaw, v, w, TICK)
-        share = free_share(
-            self._walls, self._pillars, self._robot.footprint_radius,
-            now.x, now.y, now.yaw, v * TICK, w * TICK,
-        )  # fmt: skip
+        share = self._free(now.x, now.y, now.yaw, v, w)
         if share < 1.0:  # stopped by a wall; turning on the spot goes on
-            x, y, _ = arc(now.x, now.y, now.yaw, v * share, w * share, TICK)
+            x, y, turned = arc(now.x, now.y, now.yaw, v * share, w * share, TICK)
             v *= share
+            if len(self._body.corners):  # as far as corners may
+                w *= share + (1.0 - share) * self._free(x, y, turned, 0.0, (1.0 - share) * w)
+                yaw = math.remainder(now.yaw + w * TICK, 2.0 * math.pi)
         drive = self._robot.drive
         across = 0.5 * drive.track * w
         state[:] = RobotState(
@@ -68,6 +71,13 @@ class KinematicBase(LeafSystem):
             z=now.z,
             left_angle=now.left_angle + (v - across) * TICK / drive.command_radius,
             right_angle=now.right_angle + (v + across) * TICK / drive.command_radius,
+        )
+
+    def _free(self, x: float, y: float, yaw: float, v: float, w: float) -> float:
+        body, radius = self._body, max(self._body.radius, _SKIN)
+        way, turn = v * TICK, w * TICK
+        return float(
+            free_share(self._walls, self._pillars, body.corners, radius, x, y, yaw, way, turn)
         )
 
     def place(self, context: object, start: Pose) -> None:
@@ -103,39 +113,29 @@ def arc(
 
 
 @numba.njit(cache=True, error_model="numpy")
-def gap_to_walls(walls: Array, pillars: Array, x: float, y: float) -> float:
-    """Distance from a point to the nearest wall or pillar's surface, m; inf without any."""
-    nearest = math.inf
-    for i in range(walls.shape[0]):
-        ex, ey = walls[i, 2] - walls[i, 0], walls[i, 3] - walls[i, 1]
-        px, py = x - walls[i, 0], y - walls[i, 1]
-        square = ex * ex + ey * ey
-        s = 0.0
-        if square > 0.0:
-            s = min(1.0, max(0.0, (px * ex + py * ey) / square))
-        nearest = min(nearest, math.hypot(px - s * ex, py - s * ey))
-    for i in range(pillars.shape[0]):
-        nearest = min(nearest, math.hypot(x - pillars[i, 0], y - pillars[i, 1]) - pillars[i, 2])
-    return nearest
-
-
-@numba.njit(cache=True, error_model="numpy")
 def _gap_on_arc(
-    walls: Array, pillars: Array, x: float, y: float, yaw: float, way: float, turn: float
+    walls: Array,
+    pillars: Array,
+    outline: Array,
+    x: float,
+    y: float,
+    yaw: float,
+    way: float,
+    turn: float,
 ) -> float:
-    """Gap of the centre after an arc of length ``way`` (m) that turns by ``turn`` (rad)."""
+    """Gap of the outline after an arc of length ``way`` (m) that turns by ``turn`` (rad)."""
     half = 0.5 * turn
     chord = way * (math.sin(half) / half if half != 0.0 else 1.0)
     middle = yaw + half
-    return float(
-        gap_to_walls(walls, pillars, x + chord * math.cos(middle), y + chord * math.sin(middle))
-    )
+    x, y = x + chord * math.cos(middle), y + chord * math.sin(middle)
+    return float(outline_gap(walls, pillars, outline, x, y, yaw + turn))
 
 
 @numba.njit(cache=True, error_model="numpy")
 def free_share(
     walls: Array,
     pillars: Array,
+    outline: Array,
     radius: float,
     x: float,
     y: float,
@@ -143,17 +143,19 @@ def free_share(
     way: float,
     turn: float,
 ) -> float:
-    """Share of an arc that a disc can go before it touches a wall, 0 to 1.
+    """Share of an arc that a robot can go before it touches a wall, 0 to 1.
 
-    A disc that touches already may go where its gap does not shrink.
+    A robot that touches already may go where its gap does not shrink. ``outline`` is as in
+    `outline_gap`, ``radius`` that of its rounding, m.
     """
-    least = min(radius - _TOUCHING, gap_to_walls(walls, pillars, x, y) - _ROUNDING)
-    if _gap_on_arc(walls, pillars, x, y, yaw, way, turn) >= least:
+    gap = outline_gap(walls, pillars, outline, x, y, yaw)
+    least = min(radius - _TOUCHING, gap - _ROUNDING)
+    if _gap_on_arc(walls, pillars, outline, x, y, yaw, way, turn) >= least:
         return 1.0
     free, blocked = 0.0, 1.0
     for _ in range(_HALVINGS):
         share = 0.5 * (free + blocked)
-        if _gap_on_arc(walls, pillars, x, y, yaw, share * way, share * turn) >= least:
+        if _gap_on_arc(walls, pillars, outline, x, y, yaw, share * way, share * turn) >= least:
             free = share
         else:
             blocked = share

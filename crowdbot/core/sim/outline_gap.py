@@ -1,0 +1,127 @@
+"""How far a robot's outline is from walls and pillars, and where it is nearest to them."""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd.contact import from_outline
+from crowdbot.core.crowd.geometry import nearest_on_segment
+
+Array = NDArray[np.float64]
+#: Points that touch at once belong to one contact: the side of a box flush with a wall, m.
+_AT_ONCE = 1e-3
+
+
+@numba.njit(cache=True, error_model="numpy")
+def gap_to_walls(walls: Array, pillars: Array, x: float, y: float) -> float:
+    """Distance from a point to the nearest wall or pillar's surface, m; inf without any."""
+    nearest = math.inf
+    for i in range(walls.shape[0]):
+        ex, ey = walls[i, 2] - walls[i, 0], walls[i, 3] - walls[i, 1]
+        px, py = x - walls[i, 0], y - walls[i, 1]
+        square = ex * ex + ey * ey
+        s = 0.0
+        if square > 0.0:
+            s = min(1.0, max(0.0, (px * ex + py * ey) / square))
+        nearest = min(nearest, math.hypot(px - s * ex, py - s * ey))
+    for i in range(pillars.shape[0]):
+        nearest = min(nearest, math.hypot(x - pillars[i, 0], y - pillars[i, 1]) - pillars[i, 2])
+    return nearest
+
+
+@numba.njit(cache=True, error_model="numpy")
+def outline_gap(
+    walls: Array, pillars: Array, outline: Array, x: float, y: float, yaw: float
+) -> float:
+    """Distance from an outline to the nearest wall or pillar's surface, m; inf without any.
+
+    Args:
+        walls: (S, 4), pillars: (P, 3), as in `EnvironmentParts`.
+        outline: (K, 2) in the robot's frame, m, before rounding: none (its origin), the ends of
+            a segment, or a convex polygon, counter-clockwise; a wall within it is 0 m away.
+        x, y, yaw: pose of the robot.
+    """
+    if outline.shape[0] == 0:
+        return float(gap_to_walls(walls, pillars, x, y))
+    nearest = math.inf
+    for i in range(walls.shape[0]):
+        ax, ay = _into(walls[i, 0], walls[i, 1], x, y, yaw)
+        bx, by = _into(walls[i, 2], walls[i, 3], x, y, yaw)
+        nearest = min(nearest, _to_segment(outline, ax, ay, bx, by))
+    for i in range(pillars.shape[0]):
+        px, py = _into(pillars[i, 0], pillars[i, 1], x, y, yaw)
+        nearest = min(nearest, from_outline(outline, px, py)[0] - pillars[i, 2])
+    return nearest
+
+
+@numba.njit(cache=True, error_model="numpy")
+def touched_at(
+    walls: Array, pillars: Array, outline: Array, x: float, y: float, yaw: float
+) -> tuple[float, float]:
+    """Where walls and pillars are nearest to an outline, in the robot's frame, m.
+
+    Several places that are as near, such as both corners of a side, give their middle. Arguments
+    as in `outline_gap`.
+    """
+    limit = outline_gap(walls, pillars, outline, x, y, yaw) + _AT_ONCE
+    sum_x, sum_y, count = 0.0, 0.0, 0
+    for i in range(walls.shape[0]):
+        ax, ay = _into(walls[i, 0], walls[i, 1], x, y, yaw)
+        bx, by = _into(walls[i, 2], walls[i, 3], x, y, yaw)
+        for k in range(max(1, outline.shape[0])):
+            cx, cy = (outline[k, 0], outline[k, 1]) if outline.shape[0] else (0.0, 0.0)
+            px, py = nearest_on_segment(cx, cy, ax, ay, bx, by)
+            if math.hypot(px - cx, py - cy) <= limit:
+                sum_x, sum_y, count = sum_x + px, sum_y + py, count + 1
+        for ex, ey in ((ax, ay), (bx, by)):
+            if outline.shape[0] and from_outline(outline, ex, ey)[0] <= limit:
+                sum_x, sum_y, count = sum_x + ex, sum_y + ey, count + 1
+    for i in range(pillars.shape[0]):
+        px, py = _into(pillars[i, 0], pillars[i, 1], x, y, yaw)
+        away, ux, uy = math.hypot(px, py), 1.0, 0.0
+        if outline.shape[0]:
+            away, ux, uy, _, _ = from_outline(outline, px, py)
+        elif away > 0.0:
+            ux, uy = px / away, py / away
+        if away - pillars[i, 2] <= limit:
+            sum_x, sum_y = sum_x + px - pillars[i, 2] * ux, sum_y + py - pillars[i, 2] * uy
+            count += 1
+    return (sum_x / count, sum_y / count) if count else (math.nan, math.nan)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _into(px: float, py: float, x: float, y: float, yaw: float) -> tuple[float, float]:
+    """A point of the world in the frame of a pose."""
+    c, s = math.cos(yaw), math.sin(yaw)
+    return c * (px - x) + s * (py - y), c * (py - y) - s * (px - x)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _to_segment(outline: Array, ax: float, ay: float, bx: float, by: float) -> float:
+    """Distance from an outline of at least two points to segment a-b, m; 0 where they overlap."""
+    nearest = min(from_outline(outline, ax, ay)[0], from_outline(outline, bx, by)[0])
+    count = outline.shape[0]
+    for k in range(count):
+        cx, cy = outline[k, 0], outline[k, 1]
+        px, py = nearest_on_segment(cx, cy, ax, ay, bx, by)
+        nearest = min(nearest, math.hypot(px - cx, py - cy))
+        dx, dy = outline[(k + 1) % count, 0], outline[(k + 1) % count, 1]
+        if _cross(ax, ay, bx, by, cx, cy, dx, dy):
+            return 0.0
+    return max(0.0, nearest)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _cross(
+    ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
+) -> bool:
+    """Whether segments a-b and c-d cross, ends left out."""
+    c = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    d = (bx - ax) * (dy - ay) - (by - ay) * (dx - ax)
+    a = (dx - cx) * (ay - cy) - (dy - cy) * (ax - cx)
+    b = (dx - cx) * (by - cy) - (dy - cy) * (bx - cx)
+    return bool(c * d < 0.0 and a * b < 0.0)
