@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any, cast
 
@@ -159,11 +159,15 @@ def rig(
     sensors: Collection[str] = ("odometry",),
     seed: int = 0,
     initialize: bool = True,
+    body: Mapping[str, Any] | None = None,
 ) -> Rig:
-    """Build the diagram of a scenario; ``engine`` replaces the crowd it describes."""
+    """Build the diagram of a scenario; ``engine`` replaces the crowd it describes.
+
+    ``body`` replaces fields of the robot's model.
+    """
     reg = registry()
     ((name, robot),) = world.robots.items()
-    parts, model = reg.build(world.environment), reg.build(robot.model)
+    parts, model = reg.build(world.environment), replace(reg.build(robot.model), **(body or {}))
     if engine is None and world.crowd is not None:
         engine = build_crowd(world, realise(world), parts, reg)
     memory = Memory()
