@@ -21,6 +21,7 @@ from crowdbot.dsl.base import (
     SensorSpec,
     Spec,
 )
+from crowdbot.dsl.body_regions import BodyRegion
 from crowdbot.dsl.lock import Locked
 from crowdbot.dsl.parameters import SpeedDistribution
 from crowdbot.dsl.quantities import (
@@ -195,7 +196,10 @@ class Robot(Spec):
 class Contact(Spec):
     """Compliance between robot and pedestrians: Hunt-Crossley, F = k d (1 + c d')."""
 
-    stiffness: PositiveStiffness = Field(default=30000.0, description="k, N/m.")
+    stiffness: Annotated[PositiveStiffness, BodyRegion()] = Field(
+        default=30000.0,
+        description="k, N/m, or a body region whose value it takes, such as lower_leg.",
+    )
     dissipation: NonNegativeDamping = Field(default=0.3, description="c, s/m.")
 
 

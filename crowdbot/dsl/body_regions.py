@@ -1,0 +1,67 @@
+"""How stiff the regions of a human body are: words for a stiffness.
+
+The values are the effective spring constants of the body model of ISO/TS 15066:2016, annex A,
+table A.3, which go back to BG/BGIA recommendations U 001/2009. The standard itself is not free;
+docs/reference/robots_and_sensors.md says where its numbers were read.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import GetCoreSchemaHandler
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+
+from crowdbot.errors import did_you_mean, nearest
+
+#: Region -> stiffness, N/m.
+STIFFNESS = {
+    "skull": 150e3,
+    "face": 75e3,
+    "neck": 50e3,
+    "back": 35e3,
+    "chest": 25e3,
+    "abdomen": 10e3,
+    "pelvis": 25e3,
+    "upper_arm": 30e3,
+    "lower_arm": 40e3,
+    "hand": 75e3,
+    "thigh": 50e3,
+    "lower_leg": 60e3,
+}
+
+
+class BodyRegion:
+    """Annotation that makes a stiffness accept the name of a body region for its value."""
+
+    def __get_pydantic_core_schema__(
+        self, source: type[Any], handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        quantity = handler(source)
+        words = core_schema.literal_schema(list(STIFFNESS))
+        return core_schema.no_info_before_validator_function(
+            self.parse,
+            quantity,
+            json_schema_input_schema=core_schema.union_schema([quantity, words]),
+        )
+
+    @staticmethod
+    def parse(value: object) -> object:
+        """The stiffness of a region (N/m); what is no bare word is left alone.
+
+        Raises:
+            PydanticCustomError: ``quantity``, the word is no region.
+        """
+        if not isinstance(value, str) or not value.isidentifier():
+            return value
+        if value in STIFFNESS:
+            return STIFFNESS[value]
+        raise PydanticCustomError(
+            "quantity",
+            "'{text}' is neither a stiffness nor a body region (regions: {regions})",
+            {
+                "text": value,
+                "regions": ", ".join(STIFFNESS),
+                "hint": did_you_mean(nearest(value, STIFFNESS, 1)).removeprefix("; "),
+            },
+        )
