@@ -58,10 +58,11 @@ class BodyRegion:
             return STIFFNESS[value]
         raise PydanticCustomError(
             "quantity",
-            "'{text}' is neither a stiffness nor a body region (regions: {regions})",
+            "'{text}' is neither a quantity of {dimension} nor a body region (regions: {units})",
             {
                 "text": value,
-                "regions": ", ".join(STIFFNESS),
+                "dimension": "stiffness",
+                "units": ", ".join(STIFFNESS),
                 "hint": did_you_mean(nearest(value, STIFFNESS, 1)).removeprefix("; "),
             },
         )
