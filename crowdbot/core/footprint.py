@@ -32,6 +32,22 @@ class Footprint:
         """Distance of its farthest point from the origin, m."""
         return float(np.max(np.hypot(*self.corners.T), initial=0.0)) + self.radius
 
+    def outline(self, x: float, y: float, yaw: float, steps: int = 24) -> Array:
+        """Points (N, 2) around it at a pose, counter-clockwise; none of a disc.
+
+        Args:
+            steps: points on the circle that the rounding of a capsule is made of.
+        """
+        points = self.corners
+        if len(points) == 2:
+            (ax, ay), (bx, by) = points
+            across = math.atan2(by - ay, bx - ax) + 0.5 * math.pi
+            half = np.linspace(across, across + math.pi, steps // 2 + 1)
+            arc = self.radius * np.column_stack([np.cos(half), np.sin(half)])
+            points = np.concatenate([points[0] + arc, points[1] - arc])
+        c, s = math.cos(yaw), math.sin(yaw)
+        return np.array([x, y]) + points @ np.array([[c, s], [-s, c]])
+
     def gap(self, x: Array, y: Array) -> Array:
         """Distance of points from the outline, m; negative inside. NaN where unknown."""
         nearest = np.full(np.shape(x), np.inf)

@@ -146,6 +146,7 @@ def test_robot_is_exact_to_single_precision(
     assert np.array_equal(rows, given.astype("<f4"))
     assert page.meta["robot"] == {
         "radius": 0.2,
+        "outline": [],
         "goal": [46.5, 0.0],
         "goalRadius": 0.5,
         "goalTime": 2.25,

@@ -39,6 +39,8 @@ def test_editors_know_the_words() -> None:
 
 
 def test_a_typing_error_is_told_the_nearest_region() -> None:
-    with pytest.raises(ValidationError, match=r"'lower_legs' is neither a quantity of stiffness .*lower_leg") as caught:
+    with pytest.raises(
+        ValidationError, match=r"'lower_legs' is neither a quantity of stiffness .*lower_leg"
+    ) as caught:
         Contact(stiffness="lower_legs")  # type: ignore[arg-type]
     assert caught.value.errors()[0]["ctx"]["hint"] == "did you mean 'lower_leg'?"

@@ -5,6 +5,7 @@ from crowdbot.core.recording.header import AgentsHeader, RecordingHeader, RobotH
 from crowdbot.core.recording.reader import (
     RecordingInfo,
     holds_run,
+    read_cones,
     read_scans,
     read_trajectories,
     recording_info,
@@ -19,6 +20,7 @@ __all__ = [
     "RobotHeader",
     "holds_run",
     "read_commands",
+    "read_cones",
     "read_scans",
     "read_trajectories",
     "recording_info",

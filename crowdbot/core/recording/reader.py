@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.assemble import Collected
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.records import Record, Records
-from crowdbot.core.recording.topics import Topic, is_scan, scan_topic
+from crowdbot.core.recording.topics import Topic, is_cone, is_scan, range_topic, scan_topic
 from crowdbot.core.replay.scan import ReplayScan
 from crowdbot.core.trajectory import Trajectories
 from crowdbot.errors import InputError, UnknownNameError
@@ -123,18 +123,37 @@ def read_scans(
         InputError: no recording of crowdbot.
         UnknownNameError: there is no such lidar.
     """
-    lidars: dict[str, SensorInfo] = {}
+    return _scans(path, lambda header: _lidars(header, sensor), max_rate)
+
+
+def read_cones(path: Path, max_rate: float | None = None) -> list[ReplayScan]:
+    """The readings of all ultrasound and infrared sensors; arguments as for `read_scans`.
+
+    Raises:
+        InputError: no recording of crowdbot.
+    """
+    return _scans(path, _cones, max_rate)
+
+
+def _scans(
+    path: Path,
+    choose: Callable[[RecordingHeader], dict[str, SensorInfo]],
+    max_rate: float | None,
+) -> list[ReplayScan]:
+    """What was recorded on the topics that ``choose`` finds."""
+    chosen: dict[str, SensorInfo] = {}
     found: dict[str, list[tuple[float, Any]]] = {}
     gap = 0 if max_rate is None else round(1e9 / max_rate)
     due: Counter[str] = Counter()
     for record in _with_header(path):
         if record.topic == Topic.HEADER:
-            lidars = _lidars(_header(path, record), sensor)
-        elif record.topic in lidars and record.ns >= due[record.topic]:
+            chosen = choose(_header(path, record))
+        elif record.topic in chosen and record.ns >= due[record.topic]:
             due[record.topic] = record.ns - (record.ns % gap if gap else 0) + gap
-            scan = _decode(path, record)
-            found.setdefault(record.topic, []).append((record.ns / 1e9, scan.ranges))
-    return [_scan(topic, lidars[topic], rows) for topic, rows in found.items()]
+            message = _decode(path, record)
+            ranges = [message.range] if is_cone(chosen[record.topic]) else message.ranges
+            found.setdefault(record.topic, []).append((record.ns / 1e9, ranges))
+    return [_scan(topic, chosen[topic], rows) for topic, rows in found.items()]
 
 
 def recording_info(path: Path) -> RecordingInfo:
@@ -199,13 +218,18 @@ def _lidars(header: RecordingHeader, sensor: str | None) -> dict[str, SensorInfo
     return {scan_topic(n): s for n, s in lidars.items() if sensor in (None, n)}
 
 
+def _cones(header: RecordingHeader) -> dict[str, SensorInfo]:
+    return {range_topic(n): s for n, s in header.sensors.items() if is_cone(s)}
+
+
 def _scan(topic: str, info: SensorInfo, rows: list[tuple[float, Any]]) -> ReplayScan:
-    assert info.angles is not None  # by is_scan
+    assert info.angles is not None  # by is_scan and is_cone
     return ReplayScan(
-        sensor=topic.removesuffix("/scan").removeprefix("/"),
+        sensor=topic.rpartition("/")[0].removeprefix("/"),
         mount=info.mount,
         angles=info.angles,
         range_max=info.range_max,
         t=np.array([t for t, _ in rows]),
         ranges=np.array([r for _, r in rows], np.float64),
+        cone=is_cone(info),
     )

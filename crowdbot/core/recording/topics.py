@@ -52,7 +52,7 @@ def sensor_topics(sensors: Mapping[str, SensorInfo]) -> dict[str, SensorTopic]:
         elif is_scan(info):
             topics[name] = _scan(scan_topic(name), info)
         elif info.ros_type == "sensor_msgs/msg/Range" and info.shape == (1,):
-            topics[name] = _range(f"/{name}/range", info)
+            topics[name] = _range(range_topic(name), info)
         elif is_cloud(info):
             topics[name] = _cloud(f"/{name}/points", info)
         elif info.ros_type == "sensor_msgs/msg/Imu" and info.shape == (6,):
@@ -65,6 +65,17 @@ def sensor_topics(sensors: Mapping[str, SensorInfo]) -> dict[str, SensorTopic]:
 def scan_topic(sensor: str) -> str:
     """Topic of a lidar's scans."""
     return f"/{sensor}/scan"
+
+
+def range_topic(sensor: str) -> str:
+    """Topic of an ultrasound or infrared sensor's readings."""
+    return f"/{sensor}/range"
+
+
+def is_cone(info: SensorInfo) -> bool:
+    """Whether a reading is one distance between two known edges."""
+    known = info.angles is not None and info.angles.shape == (2,)
+    return known and info.ros_type == "sensor_msgs/msg/Range" and info.shape == (1,)
 
 
 def is_scan(info: SensorInfo) -> bool:

@@ -8,7 +8,7 @@ function start(run) {
   const middle = { x: (bounds.x0 + bounds.x1) / 2, y: (bounds.y0 + bounds.y1) / 2 };
   const wide = { canvas: byId("overview"), ...middle, scale: 1 };
   const close = { canvas: byId("closeup"), ...middle, scale: 1 };
-  const state = { time: first, playing: false, follow: Boolean(run.robot), lidar: true, span: 12 };
+  const state = { time: first, playing: false, follow: Boolean(run.robot), lidar: true, sonar: true, span: 12 };
   const count = run.people ? run.people.count : 0;
   const room = () => new Float64Array(count);
   const people = { x: room(), y: room(), speed: room(), heading: room(), person: room(), size: 0 };
@@ -25,6 +25,7 @@ function start(run) {
       robot: run.robot ? robotAt(run, time) : null,
       people: run.people ? peopleAt(run, time, people) : people,
       scans: run.scans.map((s) => scanAt(run, s, time)).filter(Boolean),
+      cones: run.cones.flatMap((group) => conesAt(run, group, time)),
     };
   }
 
@@ -58,8 +59,8 @@ function start(run) {
     aim(frame);
     const [w, h] = [close.canvas.clientWidth / close.scale, close.canvas.clientHeight / close.scale];
     const box = { x: close.x - w / 2, y: close.y - h / 2, w, h };
-    drawView(run, wide, frame, { grid: 1, lidar: state.lidar, frame: box });
-    const { g, height } = drawView(run, close, frame, { grid: 0.5, lidar: state.lidar });
+    drawView(run, wide, frame, { grid: 1, lidar: state.lidar, sonar: false, frame: box });
+    const { g, height } = drawView(run, close, frame, { grid: 0.5, lidar: state.lidar, sonar: state.sonar });
     drawScaleBar(g, close, height);
     drawTimeline(run, byId("timeline"), curve, state.time);
     report(run, frame, curve, last);
@@ -122,6 +123,7 @@ function start(run) {
   byId("forward").onclick = () => step(1);
   byId("follow").onclick = () => toggle("follow");
   byId("lidar").onclick = () => toggle("lidar");
+  byId("sonar").onclick = () => toggle("sonar");
   byId("touch").onclick = nextContact;
   byId("in").onclick = () => zoom(1 / 1.4);
   byId("out").onclick = () => zoom(1.4);
@@ -132,6 +134,7 @@ function start(run) {
     " ": play,
     f: () => run.robot && toggle("follow"),
     l: () => run.scans.length && toggle("lidar"),
+    s: () => run.cones.length && toggle("sonar"),
     c: nextContact,
     "+": () => changeSpeed(1),
     "-": () => changeSpeed(-1),
@@ -174,9 +177,11 @@ function start(run) {
   offer(run, topSpeed, bounds);
   toggle("follow", state.follow);
   toggle("lidar", true);
+  toggle("sonar", true);
   const fragment = new URLSearchParams(location.hash.slice(1));
   if (fragment.has("t")) seek(Number(fragment.get("t")) || first);
   if (fragment.has("span")) state.span = Number(fragment.get("span")) || state.span;
+  for (const name of ["lidar", "sonar"]) if (fragment.get(name) === "0") toggle(name, false);
   if (fragment.get("follow") === "0") toggle("follow", false);
   const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
   setPlaying(!fragment.has("paused") && !still);
@@ -232,12 +237,14 @@ function offer(run, topSpeed, bounds) {
     robot: run.robot,
     people: run.people?.count,
     scans: run.scans.length,
+    cones: run.cones.length,
     contacts: run.contacts.length,
     goal: run.robot && (run.zone.length || run.robot.goal),
   };
   for (const item of document.querySelectorAll("[data-for]")) item.hidden = !has[item.dataset.for];
   byId("follow").hidden = !run.robot;
   byId("lidar").hidden = !run.scans.length;
+  byId("sonar").hidden = !run.cones.length;
   byId("touch").hidden = !run.contacts.length;
   byId("ramp").textContent = `people, 0–${topSpeed.toFixed(1)} m/s`;
   const ratio = (bounds.x1 - bounds.x0) / (bounds.y1 - bounds.y0);
@@ -257,6 +264,11 @@ function report(run, frame, curve, last) {
   }
   const so = run.contacts.filter((c) => c.t0 <= frame.time).length;
   if (run.contacts.length) rows.push(["contacts", `${so} of ${run.contacts.length}`]);
+  const now = run.contacts.findLast((c) => isShown(c, frame.time));
+  if (now) {
+    const force = now.impulse === null ? "" : `, ${now.impulse.toFixed(1)} N s`;
+    rows.push([now.person < 0 ? "touches a wall" : "touches a person", now.side + force]);
+  }
   if (!frame.robot && run.people) rows.push(["people", String(frame.people.size)]);
   const parts = rows.map(([name, text]) => {
     const row = document.createElement("div");

@@ -42,5 +42,8 @@ async function decode() {
   for (const [i, scan] of meta.scans.entries()) {
     scan.ranges = undelta(await inflate(`scan${i}`), scan.angles.length, scan.t.length);
   }
+  for (const [i, group] of meta.cones.entries()) {
+    group.ranges = undelta(await inflate(`cones${i}`), group.sensors.length, group.t.length);
+  }
   return run;
 }

@@ -7,7 +7,7 @@ let colours = {};
 function readColours() {
   const style = getComputedStyle(document.documentElement);
   const names = ["floor", "grid", "grid-strong", "wall", "ink", "muted", "robot", "robot-edge",
-    "goal", "lidar", "contact", "person-edge", "slow", "fast", "accent"];
+    "goal", "lidar", "sonar", "contact", "person-edge", "slow", "fast", "accent"];
   colours = Object.fromEntries(names.map((n) => [n, style.getPropertyValue(`--${n}`).trim()]));
   const channel = (hex, i) => parseInt(hex.slice(1 + 2 * i, 3 + 2 * i), 16);
   colours.ramp = Array.from({ length: BUCKETS }, (_, b) => {
@@ -45,6 +45,7 @@ function drawView(run, view, frame, options) {
   drawGrid(g, view, width, height, options.grid);
   drawGoal(g, run, px);
   if (options.lidar) for (const scan of frame.scans) drawFan(g, scan);
+  if (options.sonar) for (const cone of frame.cones) drawCone(g, cone, px);
   drawWalls(g, run, px);
   if (run.robot) drawTrail(g, run, frame, px);
   if (run.people) drawPeople(g, run, frame, px);
@@ -171,6 +172,27 @@ function drawFan(g, scan) {
   g.globalAlpha = 1;
 }
 
+/** One reading: anywhere on the arc between the edges. */
+function drawCone(g, cone, px) {
+  const arc = () => g.arc(cone.x, cone.y, cone.range, cone.from, cone.to);
+  g.beginPath();
+  g.moveTo(cone.x, cone.y);
+  arc();
+  g.closePath();
+  g.fillStyle = g.strokeStyle = colours.sonar;
+  g.globalAlpha = 0.13;
+  g.fill();
+  g.globalAlpha = 0.4;
+  g.lineWidth = px;
+  g.stroke();
+  g.globalAlpha = 1;
+  g.beginPath();
+  arc();
+  g.lineWidth = Math.max(0.03, 1.6 * px);
+  g.lineCap = "round";
+  g.stroke();
+}
+
 function drawHits(g, scan, px) {
   const d = Math.max(0.03, 1.6 * px);
   g.fillStyle = colours.lidar;
@@ -183,12 +205,10 @@ function drawRobot(g, run, frame, px) {
   g.save();
   g.translate(x, y);
   g.rotate(theta);
-  g.beginPath();
-  g.arc(0, 0, r + 3 * px, 0, 2 * Math.PI);
+  robotPath(g, run.robot, r, 3 * px);
   g.fillStyle = colours.floor;
   g.fill();
-  g.beginPath();
-  g.arc(0, 0, r, 0, 2 * Math.PI);
+  robotPath(g, run.robot, r, 0);
   g.fillStyle = colours.robot;
   g.fill();
   g.lineWidth = 1.5 * px;
@@ -205,11 +225,46 @@ function drawRobot(g, run, frame, px) {
   g.restore();
 }
 
+/** The robot's outline in its own frame, `more` larger: a disc, a capsule or a polygon. */
+function robotPath(g, robot, r, more) {
+  g.beginPath();
+  const corners = robot.outline;
+  if (corners.length === 2) {
+    const [[ax, ay], [bx, by]] = corners;
+    const across = Math.atan2(by - ay, bx - ax) + Math.PI / 2;
+    g.arc(ax, ay, robot.radius + more, across, across + Math.PI);
+    g.arc(bx, by, robot.radius + more, across + Math.PI, across + 2 * Math.PI);
+    g.closePath();
+  } else if (corners.length) {
+    const grow = ([x, y]) => 1 + more / (Math.hypot(x, y) || 1);
+    corners.forEach((c, i) => g[i ? "lineTo" : "moveTo"](c[0] * grow(c), c[1] * grow(c)));
+    g.closePath();
+  } else g.arc(0, 0, r + more, 0, 2 * Math.PI);
+}
+
+/** Whether a contact is shown at this time; the shortest ones are shown a moment longer. */
+function isShown(contact, time) {
+  return time >= contact.t0 && time <= Math.max(contact.t1, contact.t0 + FLASH);
+}
+
+/** Where on the robot it began. */
+function drawTouchedPoint(g, robot, contact, px) {
+  const along = robot.theta + contact.bearing;
+  const [x, y] = [robot.x + contact.reach * Math.cos(along), robot.y + contact.reach * Math.sin(along)];
+  g.beginPath();
+  g.arc(x, y, Math.max(0.045, 4 * px), 0, 2 * Math.PI);
+  g.fillStyle = colours.contact;
+  g.fill();
+  g.lineWidth = 1.5 * px;
+  g.strokeStyle = colours.floor;
+  g.stroke();
+}
+
 /** Rings around those in contact; they widen and fade. */
 function drawContacts(g, run, frame, px) {
   for (const contact of run.contacts) {
+    if (!isShown(contact, frame.time)) continue;
     const end = Math.max(contact.t1, contact.t0 + FLASH);
-    if (frame.time < contact.t0 || frame.time > end) continue;
     const age = (frame.time - contact.t0) / (end - contact.t0);
     let place = frame.robot;
     let radius = run.robot ? run.robot.radius : 0.3;
@@ -228,6 +283,7 @@ function drawContacts(g, run, frame, px) {
       g.stroke();
     }
     g.globalAlpha = 1;
+    if (frame.robot && contact.bearing !== null) drawTouchedPoint(g, frame.robot, contact, px);
   }
 }
 

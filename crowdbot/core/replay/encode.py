@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import base64
 import zlib
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.footprint import body_side, footprint_of
 from crowdbot.core.interfaces import Array
 from crowdbot.core.replay.scan import ReplayScan
 from crowdbot.core.trajectory import AgentTracks, RobotTrack, Trajectories
@@ -25,6 +27,7 @@ JUMP_SPEED = 10.0
 SCAN_RATE = 8.0
 SCAN_BEAMS = 300
 _LARGEST = 32000
+_SIDES = ("front", "left", "right", "rear")
 
 
 def encode(run: Trajectories, scans: Sequence[ReplayScan]) -> tuple[dict[str, Any], dict[str, str]]:
@@ -38,22 +41,27 @@ def encode(run: Trajectories, scans: Sequence[ReplayScan]) -> tuple[dict[str, An
         "robot": None,
         "people": None,
         "scans": [],
+        "cones": [],
     }
     if run.robot is not None:
-        meta["robot"], blobs["robot"] = _robot(run.robot)
+        meta["robot"], blobs["robot"] = _robot(run, run.robot)
     if run.agents is not None:
         meta["people"], blobs["people"] = _people(run.t, run.agents)
     if run.robot is not None:
-        for i, scan in enumerate(s for s in scans if len(s.t)):
+        for i, scan in enumerate(s for s in scans if len(s.t) and not s.cone):
             about, blobs[f"scan{i}"] = _scan(scan)
             meta["scans"].append(about)
+        for i, cones in enumerate(_together([s for s in scans if len(s.t) and s.cone])):
+            about, blobs[f"cones{i}"] = _cones(cones)
+            meta["cones"].append(about)
     return meta, blobs
 
 
-def _robot(robot: RobotTrack) -> tuple[dict[str, Any], str]:
+def _robot(run: Trajectories, robot: RobotTrack) -> tuple[dict[str, Any], str]:
     rows = np.stack((robot.x, robot.y, robot.theta, robot.v)).astype("<f4")
     about = {
         "radius": robot.radius,
+        "outline": _nested(run.robot_footprint),
         "goal": robot.goal,
         "goalRadius": robot.goal_radius,
         "goalTime": robot.goal_time,
@@ -99,9 +107,51 @@ def _contacts(run: Trajectories) -> list[dict[str, Any]]:
             "t1": float(table.t1[i]),
             "person": place.get(int(table.agent[i]), -1),
             "impulse": _number(table.impulse[i]),
+            "bearing": _number(table.bearing[i]),
+            "reach": round(_reach(run, float(table.bearing[i])), 4),
+            "side": body_side(float(table.bearing[i])),
         }
         for i in np.argsort(table.t0, kind="stable")
     ]
+
+
+def _reach(run: Trajectories, bearing: float) -> float:
+    """How far a robot's surface is from its base in some direction, m; 0 where it has none."""
+    if run.robot is None or not np.isfinite(bearing):
+        return 0.0
+    body = footprint_of(run)
+    if body is None:
+        return run.robot.radius
+    steps = np.linspace(0.0, body.reach, 257)
+    covered = body.gap(steps * np.cos(bearing), steps * np.sin(bearing)) <= 0.0
+    return float(steps[covered].max(initial=0.0))
+
+
+def _together(cones: Sequence[ReplayScan]) -> Iterable[Sequence[ReplayScan]]:
+    """Cones that were read at the same times."""
+    groups: dict[bytes, list[ReplayScan]] = {}
+    for cone in cones:
+        groups.setdefault(cone.t.tobytes(), []).append(cone)
+    return groups.values()
+
+
+def _cones(cones: Sequence[ReplayScan]) -> tuple[dict[str, Any], str]:
+    """Readings of several sensors, a row each; 0 stands for nothing that came back."""
+    chosen = _thinned(cones[0].t)
+    ranges = np.stack([cone.ranges[chosen, 0] for cone in cones])
+    ranges = np.where(np.isfinite(ranges), np.maximum(ranges, CENTIMETRE), 0.0)
+    about = {
+        "sensors": [
+            {
+                "sensor": cone.sensor,
+                "mount": list(cone.mount),
+                "edges": [round(float(a), 5) for a in cone.angles],
+            }
+            for cone in cones
+        ],
+        "t": [round(float(t), 6) for t in cones[0].t[chosen]],
+    }
+    return about, _pack(_quantise(ranges, CENTIMETRE))
 
 
 def _scan(scan: ReplayScan) -> tuple[dict[str, Any], str]:
@@ -161,5 +211,8 @@ def summary(run: Trajectories) -> Mapping[str, str]:
     if run.agents is not None:
         facts["People"] = str(len(run.agents.id))
     if run.contacts is not None:
-        facts["Contacts"] = str(len(run.contacts.agent))
+        sides = Counter(map(body_side, run.contacts.bearing.tolist()))
+        told = ", ".join(f"{sides[s]} {s}" for s in _SIDES if sides[s])
+        count = str(len(run.contacts.agent))
+        facts["Contacts"] = f"{count} ({told})" if told else count
     return facts

@@ -90,27 +90,47 @@ function radiusOf(people, p) {
   return people.radius.length > 1 ? people.radius[p] : people.radius[0];
 }
 
-/** Points a lidar saw in its latest scan, in the world; from the robot's pose at that time. */
-function scanAt(run, scan, time) {
+/** Index of the last of some rising times that is not after `time`; -1 before the first. */
+function lastBefore(times, time) {
   let j = -1;
-  let high = scan.t.length;
+  let high = times.length;
   while (high - j > 1) {
     const middle = (j + high) >> 1;
-    if (scan.t[middle] <= time + 1e-9) j = middle;
+    if (times[middle] <= time + 1e-9) j = middle;
     else high = middle;
   }
+  return j;
+}
+
+/** Where a sensor is in the world and where it looks, with the robot at some pose. */
+function mounted(robot, [mx, my, , yaw]) {
+  const [c, s] = [Math.cos(robot.theta), Math.sin(robot.theta)];
+  return { x: robot.x + c * mx - s * my, y: robot.y + s * mx + c * my, yaw: robot.theta + yaw };
+}
+
+/** What a group of cones read last, in the world; only those to which something came back. */
+function conesAt(run, group, time) {
+  const j = lastBefore(group.t, time);
+  if (j < 0) return [];
+  const robot = robotAt(run, group.t[j]);
+  return group.sensors.flatMap(({ mount, edges }, i) => {
+    const range = group.ranges[i * group.t.length + j] * 0.01;
+    if (range <= 0) return [];
+    const { x, y, yaw } = mounted(robot, mount);
+    return [{ x, y, range, from: yaw + Math.min(...edges), to: yaw + Math.max(...edges) }];
+  });
+}
+
+/** Points a lidar saw in its latest scan, in the world; from the robot's pose at that time. */
+function scanAt(run, scan, time) {
+  const j = lastBefore(scan.t, time);
   if (j < 0) return null;
   if (scan.cached?.j === j) return scan.cached;
-  const robot = robotAt(run, scan.t[j]);
-  const [mx, my, , yaw] = scan.mount;
-  const c = Math.cos(robot.theta);
-  const s = Math.sin(robot.theta);
-  const x = robot.x + c * mx - s * my;
-  const y = robot.y + s * mx + c * my;
+  const { x, y, yaw } = mounted(robotAt(run, scan.t[j]), scan.mount);
   const rim = scan.angles.map((angle, i) => {
     const word = scan.ranges[i * scan.t.length + j];
     const range = word > 0 ? word * 0.01 : scan.rangeMax;
-    const along = robot.theta + yaw + angle;
+    const along = yaw + angle;
     return { x: x + range * Math.cos(along), y: y + range * Math.sin(along), hit: word > 0 };
   });
   scan.cached = { j, x, y, rim };
@@ -124,10 +144,30 @@ function clearanceAt(run, k) {
   for (let p = 0; p < count; p++) {
     const i = p * run.n + k;
     if (x[i] === ABSENT) continue;
-    const d = Math.hypot(x[i] * scale - run.robot.x[k], y[i] * scale - run.robot.y[k]);
-    gap = Math.min(gap, d - radiusOf(run.people, p) - run.robot.radius);
+    const [dx, dy] = [x[i] * scale - run.robot.x[k], y[i] * scale - run.robot.y[k]];
+    gap = Math.min(gap, fromRobot(run.robot, k, dx, dy) - radiusOf(run.people, p));
   }
   return gap;
+}
+
+/** Distance of a point beside the robot's base from its surface, m; negative inside. */
+function fromRobot(robot, k, dx, dy) {
+  const corners = robot.outline;
+  if (!corners.length) return Math.hypot(dx, dy) - robot.radius;
+  const [c, s] = [Math.cos(robot.theta[k]), Math.sin(robot.theta[k])];
+  const [x, y] = [c * dx + s * dy, c * dy - s * dx];
+  const capsule = corners.length === 2;
+  let nearest = Infinity;
+  let inside = false;
+  corners.forEach(([ax, ay], i) => {
+    const [bx, by] = corners[(i + 1) % corners.length];
+    const [ex, ey] = [bx - ax, by - ay];
+    const along = ((x - ax) * ex + (y - ay) * ey) / (ex * ex + ey * ey || 1);
+    const f = Math.min(1, Math.max(0, along));
+    nearest = Math.min(nearest, Math.hypot(x - ax - f * ex, y - ay - f * ey));
+    if (ay > y !== by > y && x < ax + ((y - ay) * ex) / ey) inside = !inside;
+  });
+  return capsule ? nearest - robot.radius : inside ? -nearest : nearest;
 }
 
 /** Rectangle that shows all: walls, goal and robot; people too where there are no walls. */

@@ -13,7 +13,7 @@ from crowdbot.core import run_directory as files
 from crowdbot.core.evaluate import Scores, score
 from crowdbot.core.lock import Population, population
 from crowdbot.core.planner_source import resolve_planner, select_sensors
-from crowdbot.core.recording import read_scans, read_trajectories
+from crowdbot.core.recording import read_cones, read_scans, read_trajectories
 from crowdbot.core.registry import Registry
 from crowdbot.core.replay import write_replay
 from crowdbot.core.scores_table import write_scores_csv
@@ -256,11 +256,11 @@ def _write_files(
     scenario = request.scenario
     _write_scenario(folder, scenario, request.registry)
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
-    arrival = record["goal_time"]
+    arrival, recording = record["goal_time"], folder / files.RECORDING
     write_replay(
         folder / files.REPLAY,
         run,
-        read_scans(folder / files.RECORDING, max_rate=_REPLAY_RATE),
+        [*read_scans(recording, max_rate=_REPLAY_RATE), *read_cones(recording, _REPLAY_RATE)],
         scores,
         title=f"{scenario.id} · {request.choice.label}",
         facts={

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from crowdbot.core.footprint import footprint_of_model
 from crowdbot.core.realisation import Realisation
 from crowdbot.core.registry import Registry
 from crowdbot.core.view.scene import RobotView, Scene, Sector
@@ -43,12 +44,14 @@ def _areas(crowd: Crowd) -> dict[str, dict[str, tuple[Point, ...]]]:
 
 def _robot(name: str, robot: Robot, registry: Registry) -> RobotView:
     x, y, yaw = robot.task.start
+    body = footprint_of_model(registry.build(robot.model))
     return RobotView(
         name=name,
         x=x,
         y=y,
         yaw=yaw,
-        radius=registry.build(robot.model).footprint_radius,
+        radius=body.reach,
+        outline=tuple(map(tuple, body.outline(x, y, yaw).tolist())),
         goal=robot.task.goal.zone,
         sensors=tuple(_sectors(robot, x, y, yaw)),
     )

@@ -32,7 +32,11 @@ class Sector:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotView:
-    """A robot at its start: x, y, heading; footprint radius; name of its goal zone."""
+    """A robot at its start: x, y, heading; name of its goal zone.
+
+    ``radius`` reaches round the whole footprint, m; ``outline``, of a robot that is no disc, are
+    points around it, world frame.
+    """
 
     name: str
     x: float
@@ -41,6 +45,7 @@ class RobotView:
     radius: float
     goal: str
     sensors: tuple[Sector, ...] = ()
+    outline: tuple[Point, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -209,7 +214,10 @@ def _robots(scene: Scene, world: Map) -> Iterator[Shape]:
             centre = zone.mean(axis=0)
             yield Disc(centre=world.at(*centre.tolist()), radius=5.0, role="robot-goal")
         at, r = world.at(robot.x, robot.y), robot.radius
-        yield Disc(centre=at, radius=r * world.scale, role="robot", about=robot.name)
+        if robot.outline:
+            yield world.path(robot.outline, "robot", closed=True)
+        else:
+            yield Disc(centre=at, radius=r * world.scale, role="robot", about=robot.name)
         nose = (robot.x + r * math.cos(robot.yaw), robot.y + r * math.sin(robot.yaw))
         yield world.path([(robot.x, robot.y), nose], "robot-nose")
 
