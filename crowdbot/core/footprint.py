@@ -46,7 +46,8 @@ class Footprint:
             arc = self.radius * np.column_stack([np.cos(half), np.sin(half)])
             points = np.concatenate([points[0] + arc, points[1] - arc])
         c, s = math.cos(yaw), math.sin(yaw)
-        return np.array([x, y]) + points @ np.array([[c, s], [-s, c]])
+        placed: Array = np.array([x, y]) + points @ np.array([[c, s], [-s, c]])
+        return placed
 
     def gap(self, x: Array, y: Array) -> Array:
         """Distance of points from the outline, m; negative inside. NaN where unknown."""

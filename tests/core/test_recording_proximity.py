@@ -12,7 +12,13 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
 from crowdbot.core.interfaces import Reading, SensorInfo
-from crowdbot.core.recording import RecordingHeader, RecordingWriter, RobotHeader, read_scans
+from crowdbot.core.recording import (
+    RecordingHeader,
+    RecordingWriter,
+    RobotHeader,
+    read_cones,
+    read_scans,
+)
 from crowdbot.core.recording.reader import recording_info
 from crowdbot.core.registry import discover
 
@@ -100,3 +106,13 @@ def test_the_header_reads_back(path: Path) -> None:
         np.testing.assert_array_equal(sensors[name].angles, info.angles)
         assert (sensors[name].shape, sensors[name].mount) == (info.shape, info.mount)
     assert read_scans(path) == []
+
+
+def test_cones_for_the_replay(path: Path) -> None:
+    found = {cone.sensor: cone for cone in read_cones(path)}
+    assert set(found) == {"us0", "eye"}
+    assert found["us0"].ranges.tolist() == [[1.25], [1.375]]
+    assert found["us0"].t.tolist() == [0.0, 0.125]
+    assert found["us0"].cone
+    np.testing.assert_array_equal(found["eye"].angles, INFOS["eye"].angles)
+    assert len(read_cones(path, max_rate=4.0)[0].t) == 1

@@ -16,6 +16,7 @@ from recording_cases import random_run, write_run
 
 from crowdbot.core.recording import read_scans, read_trajectories
 from crowdbot.core.replay import ReplayScan, write_replay
+from crowdbot.core.replay.encode import encode, summary
 from crowdbot.core.score import Score
 from crowdbot.core.trajectory import Trajectories
 from crowdbot.errors import InputError
@@ -179,6 +180,69 @@ def test_many_beams_are_thinned(tmp_path: Path) -> None:
     assert np.allclose(page.meta["scans"][0]["angles"], angles[::2], atol=1e-5)
     got = page.rows("scan0", 240, 4) * 0.01
     assert np.abs(got - ranges[::2, ::2].T).max() <= 0.01
+
+
+def test_sonars_are_told_together() -> None:
+    """Two that were read at once share their times; one with others has its own."""
+    rng = np.random.default_rng(1)
+    t = np.arange(40) / 16.0
+    ranges = rng.uniform(0.2, 4.5, (3, 40, 1))
+    ranges[0, 4] = np.inf
+    cones = [
+        ReplayScan(
+            sensor=f"us{i}", mount=(0.1 * i, 0.0, 0.2, 0.5), angles=np.array([-0.3, 0.3]),
+            range_max=4.5, t=t + (i == 2) / 32.0, ranges=ranges[i], cone=True,
+        )
+        for i in range(3)
+    ]  # fmt: skip
+    robot = {f"robot_{n}": np.zeros(2) for n in ("x", "y", "theta")}
+    run = Trajectories.from_arrays(t=[0.0, 3.0], robot_radius=0.2, robot_mass=6.3, **robot)  # type: ignore[arg-type]
+    meta, blobs = encode(run, cones)
+    assert meta["scans"] == []
+    assert [[s["sensor"] for s in group["sensors"]] for group in meta["cones"]] == [
+        ["us0", "us1"], ["us2"],
+    ]  # fmt: skip
+    assert meta["cones"][0]["sensors"][1]["mount"] == [0.1, 0.0, 0.2, 0.5]
+    assert meta["cones"][0]["t"] == (np.arange(20) / 8.0).tolist()
+    page = Page.__new__(Page)
+    page.scripts = {f"blob-{name}": text for name, text in blobs.items()}
+    got = page.rows("cones0", 2, 20) * 0.01
+    given = ranges[:2, ::2, 0]
+    assert got[0, 2] == 0.0
+    assert np.abs(got - np.where(np.isfinite(given), given, 0.0)).max() <= 0.0051
+    assert page.rows("cones1", 1, 20).shape == (1, 20)
+
+
+BOX = [[0.4, -0.2], [0.4, 0.2], [-0.3, 0.2], [-0.3, -0.2]]
+
+
+@pytest.mark.parametrize(
+    ("outline", "bearing", "reach", "side"),
+    [
+        (None, 1.0, 0.25, "left"),
+        (BOX, 0.0, 0.4, "front"),
+        (BOX, -0.5 * np.pi, 0.2, "right"),
+        ([[-0.3, 0.0], [0.3, 0.0]], np.pi, 0.55, "rear"),
+        (BOX, np.nan, 0.0, "unknown"),
+    ],
+)
+def test_contacts_lie_on_the_robots_outline(
+    outline: Any, bearing: float, reach: float, side: str
+) -> None:
+    table = {n: [0.5] for n in ("t0", "t1", "impulse", "peak_force", "relative_speed")}
+    robot = {f"robot_{n}": np.zeros(2) for n in ("x", "y", "theta")}
+    run = Trajectories.from_arrays(
+        t=[0.0, 1.0], robot_radius=0.25, robot_mass=6.3, robot_footprint=outline,
+        contacts={**table, "agent": [-1], "bearing": [bearing]}, **robot,  # type: ignore[arg-type]
+    )  # fmt: skip
+    meta, _ = encode(run, [])
+    (contact,) = meta["contacts"]
+    assert contact["reach"] == pytest.approx(reach, abs=5e-3)
+    assert contact["side"] == side
+    assert (contact["bearing"] is None) == np.isnan(bearing)
+    assert meta["robot"]["outline"] == (outline or [])
+    words = "1" if side == "unknown" else f"1 (1 {side})"
+    assert summary(run)["Contacts"] == words
 
 
 def test_contacts_name_people_by_place(page: Page) -> None:

@@ -50,6 +50,7 @@ function drawView(run, view, frame, options) {
   if (run.robot) drawTrail(g, run, frame, px);
   if (run.people) drawPeople(g, run, frame, px);
   if (options.lidar) for (const scan of frame.scans) drawHits(g, scan, px);
+  if (options.sonar) for (const cone of frame.cones) drawEcho(g, cone, px);
   if (run.robot) drawRobot(g, run, frame, px);
   drawContacts(g, run, frame, px);
   if (options.frame) drawFrame(g, options.frame, px);
@@ -172,12 +173,10 @@ function drawFan(g, scan) {
   g.globalAlpha = 1;
 }
 
-/** One reading: anywhere on the arc between the edges. */
 function drawCone(g, cone, px) {
-  const arc = () => g.arc(cone.x, cone.y, cone.range, cone.from, cone.to);
   g.beginPath();
   g.moveTo(cone.x, cone.y);
-  arc();
+  g.arc(cone.x, cone.y, cone.range, cone.from, cone.to);
   g.closePath();
   g.fillStyle = g.strokeStyle = colours.sonar;
   g.globalAlpha = 0.13;
@@ -186,8 +185,13 @@ function drawCone(g, cone, px) {
   g.lineWidth = px;
   g.stroke();
   g.globalAlpha = 1;
+}
+
+/** One reading: anywhere between the edges. */
+function drawEcho(g, cone, px) {
   g.beginPath();
-  arc();
+  g.arc(cone.x, cone.y, cone.range, cone.from, cone.to);
+  g.strokeStyle = colours.sonar;
   g.lineWidth = Math.max(0.03, 1.6 * px);
   g.lineCap = "round";
   g.stroke();
