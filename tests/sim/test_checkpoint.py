@@ -15,6 +15,10 @@ SENSORS = {
     " force_walk: 0.1, mount: {x: 0.056, y: 0.062, z: 0.0202}}",
     "bumper": "{kind: bumper}",
     "tracker": "{kind: people_tracker, miss: 0.1, position_noise: 0.05, velocity_noise: 0.05}",
+    "sonar": "{kind: ultrasound, rate: 16, bits: 8, dropout: 0.05, noise: {error: {kind: gaussian,"
+    " std: 0.01}, spikes: {kind: peak, probability: 0.1}}, mount: {x: 0.17, z: 0.15}}",
+    "eye": "{kind: infrared, rate: 32, noise: {error: {kind: gaussian, std: 0.02}, bias:"
+    " {kind: offset, value: 0.01}}, mount: {x: 0.17, z: 0.2, yaw: 0.5}}",
     "odometry": "{kind: wheel_odometry, noise: 0.05, heading: gyro}",
 }
 WORLD = tuple(f"robots.robot.sensors.{n}={text}" for n, text in SENSORS.items())
