@@ -11,6 +11,7 @@ from sim_worlds import Rig, constant, person, rig, rows, scenario
 
 from crowdbot.core.crowd import engine
 from crowdbot.core.crowd import state as s
+from crowdbot.core.interfaces import DifferentialDrive
 from crowdbot.core.sim import crowd_system, plant
 from crowdbot.core.sim.control import force
 
@@ -44,8 +45,10 @@ def _coasting(v: float, walker: float, gap: float) -> Rig:
     body = drive.plant.GetBodyByName("base_link")
     moving = SpatialVelocity([0.0, 0.0, 0.0], [v, 0.0, 0.0])
     drive.plant.SetFreeBodySpatialVelocity(inner, body, moving)
-    for joint in (drive.robot.drive.left_joint, drive.robot.drive.right_joint):
-        rate = v / drive.robot.drive.command_radius
+    wheels = drive.robot.drive
+    assert isinstance(wheels, DifferentialDrive)
+    for joint in (wheels.left_joint, wheels.right_joint):
+        rate = v / wheels.command_radius
         drive.plant.GetJointByName(joint).set_angular_rate(inner, rate)
     world.simulator.Initialize()
     return world

@@ -148,7 +148,7 @@ def test_two_arcs_are_one(x: float, y: float, yaw: float, v: float, w: float, fi
 def test_nobody_enters_a_wall(yaw: float, way: float, turn: float, gap: float) -> None:
     walls, pillars = np.array([[5.0, -9.0, 5.0, 9.0]]), np.array([[0.0, 3.0, 0.5]])
     x, y = 5.0 - 0.2 - gap, 0.0
-    share = free_share(walls, pillars, np.zeros((0, 2)), 0.2, x, y, yaw, way, turn)
+    share = free_share(walls, pillars, np.zeros((0, 2)), 0.2, x, y, yaw, 0.0, way, turn)
     new_x, _, _ = arc(x, y, yaw, way * share, turn * share, 1.0)
     assert 0.0 <= share <= 1.0
     assert new_x <= 4.8 + 2e-9

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd_run import run_crowd
 from crowdbot.core.crowd_setup import build_crowd
+from crowdbot.core.environments import build_environment
 from crowdbot.core.interfaces import (
-    EnvironmentParts,
+    HolonomicDrive,
     Observation,
     Planner,
     RobotLimits,
@@ -29,7 +30,9 @@ from crowdbot.core.planner_source import PlannerChoice, select_sensors
 from crowdbot.core.realisation import Realisation
 from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter, RobotHeader
 from crowdbot.core.registry import Registry
+from crowdbot.core.robots import build_robot
 from crowdbot.core.run_log import RunLog
+from crowdbot.core.sensing.guard import build_sensor
 from crowdbot.core.sim.diagram import build_diagram, robot_task
 from crowdbot.core.sim.runner import INTERRUPTED, TIMEOUT, Outcome, Progress, run
 from crowdbot.core.sim.start_check import check_start
@@ -65,10 +68,10 @@ def record_robot(setup: RunSetup) -> Outcome:
     """
     scenario, registry = setup.scenario, setup.registry
     ((name, robot),) = scenario.robots.items()
-    parts: EnvironmentParts = registry.build(scenario.environment)
-    model: RobotModel = registry.build(robot.model)
+    parts = build_environment(registry, scenario.environment)
+    model = build_robot(registry, robot)
     engine = build_crowd(scenario, setup.agents, parts, registry)
-    infos = {n: _framed(n, registry.build(x).info()) for n, x in robot.sensors.items()}
+    infos = {n: _framed(n, build_sensor(registry, x).info()) for n, x in robot.sensors.items()}
     choice = setup.choice
     visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
     sensors = set(infos) if setup.record == "all" else {*visible, *_odometry(infos)}
@@ -90,7 +93,8 @@ def record_robot(setup: RunSetup) -> Outcome:
         goal_zone=task.goal_zone,
     )
     with _recording(setup, header) as (writer, ending), _watchdog(setup) as watchdog:
-        log = RunLog(writer, _ids(engine))
+        sideways = isinstance(model.drive, HolonomicDrive)
+        log = RunLog(writer, _ids(engine), sideways=sideways)
         seen = {n: infos[n] for n in visible}
         host = _host(setup, model, task, seen, watchdog, name)
         if engine is not None:
@@ -109,7 +113,7 @@ def record_robot(setup: RunSetup) -> Outcome:
 def record_crowd(setup: RunSetup, duration: float) -> Outcome:
     """Simulate the scenario's people without a robot, and without Drake."""
     scenario, registry = setup.scenario, setup.registry
-    parts: EnvironmentParts = registry.build(scenario.environment)
+    parts = build_environment(registry, scenario.environment)
     engine = build_crowd(scenario, setup.agents, parts, registry)
     if engine is None:
         raise InputError(f"{scenario.id} has no crowd")

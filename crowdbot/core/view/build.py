@@ -8,9 +8,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from crowdbot.core.environments import build_environment
 from crowdbot.core.footprint import footprint_of_model
 from crowdbot.core.realisation import Realisation
 from crowdbot.core.registry import Registry
+from crowdbot.core.robots import build_model
 from crowdbot.core.view.scene import RobotView, Scene, Sector
 from crowdbot.core.view.shapes import Point
 from crowdbot.dsl.areas import Area
@@ -28,7 +30,7 @@ def build_scene(scenario: Scenario, people: Realisation, registry: Registry) -> 
     """
     areas = {} if scenario.crowd is None else _areas(scenario.crowd)
     return Scene(
-        parts=registry.build(scenario.environment),
+        parts=build_environment(registry, scenario.environment),
         people=people,
         robots=tuple(_robot(n, r, registry) for n, r in scenario.robots.items()),
         areas=areas,
@@ -44,7 +46,7 @@ def _areas(crowd: Crowd) -> dict[str, dict[str, tuple[Point, ...]]]:
 
 def _robot(name: str, robot: Robot, registry: Registry) -> RobotView:
     x, y, yaw = robot.task.start
-    body = footprint_of_model(registry.build(robot.model))
+    body = footprint_of_model(build_model(registry, robot.model))
     return RobotView(
         name=name,
         x=x,

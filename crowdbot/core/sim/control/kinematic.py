@@ -1,7 +1,8 @@
 """Kinematic control: the base moves on exact arcs, whatever pushes it; walls stop it.
 
-Between two ticks v and w are constant, so the path is an arc of a circle. Wheel angles are those
-of wheels that roll without slipping, so that odometry works as in the other modes.
+Between two ticks v, vy and w are constant, so the path is an arc of a circle; that of a robot which
+goes sideways too begins at an angle to where it looks. Wheel angles are those of wheels that roll
+without slipping, so that odometry works as in the other modes.
 """
 
 from __future__ import annotations
@@ -20,7 +21,13 @@ from pydrake.systems.framework import (
 )
 
 from crowdbot.core.footprint import footprint_of_model
-from crowdbot.core.interfaces import EnvironmentParts, Pose, RobotModel, RobotState
+from crowdbot.core.interfaces import (
+    DifferentialDrive,
+    EnvironmentParts,
+    Pose,
+    RobotModel,
+    RobotState,
+)
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control.controlled import ControlledRobot, Push
 from crowdbot.core.sim.outline_gap import outline_gap
@@ -34,13 +41,14 @@ _ROUNDING = 1e-13  # m; must not hold a robot that drives along a wall
 
 
 class KinematicBase(LeafSystem):
-    """Input: v, w. Output: `ports.ROBOT_STATE`, which is the whole state."""
+    """Input: v, w, vy. Output: `ports.ROBOT_STATE`, which is the whole state."""
 
     def __init__(self, parts: EnvironmentParts, robot: RobotModel) -> None:
         super().__init__()
         self._robot, self._body = robot, footprint_of_model(robot)
+        self._wheel = _wheel_radius(robot)
         self._walls, self._pillars = obstacles(parts, robot.height)
-        self._port = self.DeclareVectorInputPort(ports.DESIRED_STATE, 2)
+        self._port = self.DeclareVectorInputPort(ports.DESIRED_STATE, 3)
         index = self.DeclareDiscreteState(ports.ROBOT_STATE_SIZE)
         self.DeclareStateOutputPort(ports.ROBOT_STATE, index)
         self._index = DiscreteStateIndex(index)
@@ -49,36 +57,43 @@ class KinematicBase(LeafSystem):
     def _update(self, context: Context, values: DiscreteValues) -> None:
         state = values.get_mutable_value(self._index)
         now = RobotState(*state.tolist())
-        v, w = self._port.Eval(context).tolist()
-        x, y, yaw = arc(now.x, now.y, now.yaw, v, w, TICK)
-        share = self._free(now.x, now.y, now.yaw, v, w)
+        v, w, vy = self._port.Eval(context).tolist()
+        speed, crab = (v, 0.0) if vy == 0.0 else (math.hypot(v, vy), math.atan2(vy, v))
+        way = now.yaw + crab
+        x, y, _ = arc(now.x, now.y, way, speed, w, TICK)
+        yaw = math.remainder(now.yaw + w * TICK, 2.0 * math.pi)
+        share = self._free(now.x, now.y, now.yaw, crab, speed, w)
         if share < 1.0:  # stopped by a wall; turning on the spot goes on
-            x, y, turned = arc(now.x, now.y, now.yaw, v * share, w * share, TICK)
-            v *= share
+            x, y, _ = arc(now.x, now.y, way, speed * share, w * share, TICK)
+            v, vy, speed = v * share, vy * share, speed * share
             if len(self._body.corners):  # as far as corners may
-                w *= share + (1.0 - share) * self._free(x, y, turned, 0.0, (1.0 - share) * w)
+                turned = now.yaw + w * share * TICK
+                rest = (1.0 - share) * w
+                w = w * share + rest * self._free(x, y, turned, 0.0, 0.0, rest)
                 yaw = math.remainder(now.yaw + w * TICK, 2.0 * math.pi)
-        drive = self._robot.drive
-        across = 0.5 * drive.track * w
+        across = 0.5 * self._robot.drive.track * w
         state[:] = RobotState(
             x=x,
             y=y,
             yaw=yaw,
-            vx=v * math.cos(yaw),
-            vy=v * math.sin(yaw),
+            vx=speed * math.cos(yaw + crab),
+            vy=speed * math.sin(yaw + crab),
             w=w,
             tilt=0.0,
             z=now.z,
-            left_angle=now.left_angle + (v - across) * TICK / drive.command_radius,
-            right_angle=now.right_angle + (v + across) * TICK / drive.command_radius,
+            left_angle=now.left_angle + (v - across) * TICK / self._wheel,
+            right_angle=now.right_angle + (v + across) * TICK / self._wheel,
+            side_angle=now.side_angle + vy * TICK / self._wheel,
         )
 
-    def _free(self, x: float, y: float, yaw: float, v: float, w: float) -> float:
+    def _free(self, x: float, y: float, yaw: float, crab: float, speed: float, w: float) -> float:
         body, radius = self._body, max(self._body.radius, _SKIN)
-        way, turn = v * TICK, w * TICK
         return float(
-            free_share(self._walls, self._pillars, body.corners, radius, x, y, yaw, way, turn)
-        )
+            free_share(
+                self._walls, self._pillars, body.corners, radius,
+                x, y, yaw, crab, speed * TICK, w * TICK,
+            )
+        )  # fmt: skip
 
     def place(self, context: object, start: Pose) -> None:
         """Put the robot, at rest, at a pose."""
@@ -86,6 +101,11 @@ class KinematicBase(LeafSystem):
         mine.get_mutable_discrete_state_vector().get_mutable_value()[:] = RobotState(
             start.x, start.y, start.yaw, 0.0, 0.0, 0.0, 0.0, self._robot.base_height, 0.0, 0.0
         )
+
+
+def _wheel_radius(robot: RobotModel) -> float:
+    drive = robot.drive
+    return drive.command_radius if isinstance(drive, DifferentialDrive) else drive.wheel_radius
 
 
 def obstacles(parts: EnvironmentParts, height: float) -> tuple[Array, Array]:
@@ -120,13 +140,17 @@ def _gap_on_arc(
     x: float,
     y: float,
     yaw: float,
+    crab: float,
     way: float,
     turn: float,
 ) -> float:
-    """Gap of the outline after an arc of length ``way`` (m) that turns by ``turn`` (rad)."""
+    """Gap of the outline after an arc of length ``way`` (m) that turns by ``turn`` (rad).
+
+    It goes in the direction ``yaw`` + ``crab`` and faces along ``yaw``.
+    """
     half = 0.5 * turn
     chord = way * (math.sin(half) / half if half != 0.0 else 1.0)
-    middle = yaw + half
+    middle = yaw + crab + half
     x, y = x + chord * math.cos(middle), y + chord * math.sin(middle)
     return float(outline_gap(walls, pillars, outline, x, y, yaw + turn))
 
@@ -140,6 +164,7 @@ def free_share(
     x: float,
     y: float,
     yaw: float,
+    crab: float,
     way: float,
     turn: float,
 ) -> float:
@@ -150,12 +175,13 @@ def free_share(
     """
     gap = outline_gap(walls, pillars, outline, x, y, yaw)
     least = min(radius - _TOUCHING, gap - _ROUNDING)
-    if _gap_on_arc(walls, pillars, outline, x, y, yaw, way, turn) >= least:
+    if _gap_on_arc(walls, pillars, outline, x, y, yaw, crab, way, turn) >= least:
         return 1.0
     free, blocked = 0.0, 1.0
     for _ in range(_HALVINGS):
         share = 0.5 * (free + blocked)
-        if _gap_on_arc(walls, pillars, outline, x, y, yaw, share * way, share * turn) >= least:
+        gone, turned = share * way, share * turn
+        if _gap_on_arc(walls, pillars, outline, x, y, yaw, crab, gone, turned) >= least:
             free = share
         else:
             blocked = share
@@ -170,8 +196,8 @@ def add_kinematic(
     return ControlledRobot(
         state=base,
         desired=base.GetInputPort(ports.DESIRED_STATE),
-        desire=lambda v, w: (v, w),
-        desired_size=2,
+        desire=lambda v, w, vy: (v, w, vy),
+        desired_size=3,
         push=Push(2, None, 0.0),
         push_port=None,
         place=base.place,
