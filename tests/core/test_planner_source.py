@@ -41,6 +41,11 @@ class Built:
     def __init__(self, spec: PlannerSpec) -> None:
         self.spec = spec
 
+    def reset(self, *given: object) -> None: ...
+
+    def step(self, obs: object) -> tuple[float, float]:
+        return 0.0, 0.0
+
 
 def build(spec: PlannerSpec) -> Built:
     return Built(spec)
