@@ -57,7 +57,8 @@ def find_plugins(
     names = None if allow is None else tuple(n for n in (a.strip() for a in allow) if n)
     given = [entry for path in extra for entry in entries_at(path)]
     own = {(e.plugin.name, e.plugin.file) for e in given if e.plugin.file}
-    wanted, excluded = [], []
+    wanted: list[Entry] = []
+    excluded: list[Entry] = []
     for entry in _installed():
         ours = entry.plugin.name == BUILTIN
         if (entry.plugin.name, entry.plugin.file) in own or not (entry_points or ours):
@@ -94,7 +95,7 @@ def _installed() -> list[Entry]:
         key = re.sub(r"[-_.]+", "-", title).lower()
         if key not in seen:
             seen.add(key)
-            found += _entries(distribution, text, f"{title} {version}", ours=key == _OURS)
+            found += _entries(distribution, f"{title} {version}", ours=key == _OURS)
     return sorted(found, key=lambda e: (e.plugin.name, e.plugin.distribution, e.plugin.file))
 
 
@@ -110,7 +111,7 @@ def _title(distribution: metadata.Distribution) -> tuple[str, str]:
     try:
         name, version = distribution.metadata["Name"], distribution.metadata["Version"]
     except Exception:
-        name = version = None
+        return _folder(distribution) or "unknown", "?"
     return str(name or _folder(distribution) or "unknown"), str(version or "?")
 
 
@@ -119,9 +120,7 @@ def _folder(distribution: metadata.Distribution) -> str:
     return str(path) if path else ""
 
 
-def _entries(
-    distribution: metadata.Distribution, text: str, title: str, *, ours: bool
-) -> Iterator[Entry]:
+def _entries(distribution: metadata.Distribution, title: str, *, ours: bool) -> Iterator[Entry]:
     """The entries of one distribution, or one that failed where they cannot be read."""
     try:
         listed = {(e.name, e.value): e for e in distribution.entry_points if e.group == GROUP}

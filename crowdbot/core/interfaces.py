@@ -309,7 +309,7 @@ class Observation:
         twist: forward speed (m/s) and yaw rate (rad/s) by wheel odometry.
         goal, goal_zone: in the same frame as ``pose``.
         readings: latest reading of each sensor that was asked for.
-        log: ``log(name, value)`` records a named signal of the run; a finite number.
+        log: ``log(name, value)`` records a named signal of the run, a number.
         truth: None, but for a planner that is privileged.
     """
 

@@ -167,8 +167,10 @@ def _check_component(plugin: Plugin, hook: str, category: str, component: Any) -
         _check_model(component)
     if not isinstance(component.build, str) or component.build.count(":") != 1:
         raise PluginError(
-            f"{kind}: build must be text, \"package.module:function\", not {component.build!r}"
+            f'{kind}: build must be text, "package.module:function", not {component.build!r}'
         )
+    if category == "metric" and not hasattr(component, "label"):
+        raise PluginError(f"metric '{kind}' has no label: it must be a MetricComponent")
     if category == "metric" and not component.has_card():
         place = component.card_place or "the component's 'card'"
         raise PluginError(f"metric '{kind}' has no card; it is looked for in {place}")
@@ -178,7 +180,9 @@ def _literal_kind(component: Component[Any]) -> str:
     """The kind of a component whose spec says it the way it must be said."""
     spec = component.spec
     if not (inspect.isclass(spec) and issubclass(spec, ComponentSpec)):
-        raise PluginError(f"{_shown(spec)} is no spec: it must derive from one of crowdbot.dsl.base")
+        raise PluginError(
+            f"{_shown(spec)} is no spec: it must derive from one of crowdbot.dsl.base"
+        )
     field = spec.model_fields.get("kind")
     values = get_args(field.annotation) if field else ()
     literal = field is not None and get_origin(field.annotation) is Literal

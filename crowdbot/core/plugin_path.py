@@ -140,7 +140,7 @@ def _project(path: Path) -> tuple[Path, Mapping[str, str]] | None:
         if not declared:
             raise PluginError(
                 f"{path / 'pyproject.toml'} declares no plugin; it needs "
-                f"[project.entry-points.{GROUP}] with NAME = \"MODULE\""
+                f'[project.entry-points.{GROUP}] with NAME = "MODULE"'
             )
         return path, declared
     folder = path.resolve()

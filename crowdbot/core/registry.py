@@ -71,9 +71,8 @@ class Registry:
                 return f"plugin '{plugin}' ({p.distribution}) failed: {p.error}"
         for p in self.excluded:
             if p.name == plugin:
-                return f"plugin '{plugin}' ({p.distribution}) is installed but not allowed" + (
-                    f": {ALLOW}={','.join(self.allowed)}" if self.allowed else ""
-                )
+                why = f"{ALLOW}={','.join(self.allowed)}" if self.allowed else "--no-plugins"
+                return f"plugin '{plugin}' ({p.distribution}) is installed but not allowed: {why}"
         return ""
 
     def unknown_allowed(self) -> list[str]:

@@ -43,8 +43,7 @@ class Built:
 
     def reset(self, *given: object) -> None: ...
 
-    def step(self, obs: object) -> tuple[float, float]:
-        return 0.0, 0.0
+    def step(self, *given: object) -> None: ...
 
 
 def build(spec: PlannerSpec) -> Built:

@@ -126,7 +126,7 @@ def build_diagram(
     )  # fmt: skip
     if privileged:
         builder.Connect(robot_state, planner.GetInputPort(ports.ROBOT_STATE))
-        if crowd is not None and size:
+        if crowd is not None and engine is not None and len(engine.agents):
             builder.Connect(
                 crowd.GetOutputPort(ports.CROWD_STATE), planner.GetInputPort(ports.CROWD_STATE)
             )
