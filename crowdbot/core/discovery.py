@@ -76,8 +76,8 @@ def _load(entries: Sequence[Entry]) -> Iterator[Plugin]:
     """Plugins that share a name are not even imported: all of them will be disabled."""
     names = Counter(e.plugin.name for e in entries if not e.plugin.error)
     for entry in entries:
-        alone = names[entry.plugin.name] == 1
-        yield load_plugin(entry.plugin, entry.load) if alone else entry.plugin
+        wanted = names[entry.plugin.name] == 1 and not entry.plugin.error
+        yield load_plugin(entry.plugin, entry.load) if wanted else entry.plugin
 
 
 def _installed() -> list[Entry]:
@@ -121,14 +121,8 @@ def _folder(distribution: metadata.Distribution) -> str:
 
 
 def _entries(distribution: metadata.Distribution, title: str, *, ours: bool) -> Iterator[Entry]:
-    """The entries of one distribution, or one that failed where they cannot be read."""
-    try:
-        listed = {(e.name, e.value): e for e in distribution.entry_points if e.group == GROUP}
-    except Exception as error:
-        plugin = Plugin(name="?", distribution=title, file=_folder(distribution))
-        wrong = PluginError(f"entry_points.txt cannot be read: {error or type(error).__name__}")
-        yield Entry(plugin=failed(plugin, wrong), load=lambda: None)
-        return
+    """The entries of one distribution; one that is written twice is one."""
+    listed = {(e.name, e.value): e for e in distribution.entry_points if e.group == GROUP}
     for (name, value), entry in listed.items():
         plugin = Plugin(name=name, distribution=title, file=_file(distribution, value))
         if name == BUILTIN and not ours:
