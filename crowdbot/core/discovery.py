@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib import metadata
+from importlib.util import find_spec
 from pathlib import Path
 
 from crowdbot.core.loading import failed, load_plugin
@@ -138,13 +139,15 @@ def _import(entry: metadata.EntryPoint) -> object:
 
 
 def _file(distribution: metadata.Distribution, value: str) -> str:
-    """The file of a module that belongs to a distribution, without importing anything."""
-    module = value.partition(":")[0].strip().replace(".", "/")
-    for name in (f"{module}/__init__.py", f"{module}.py"):
-        try:
-            file = Path(str(distribution.locate_file(name)))
-            if file.is_file():
-                return str(file.resolve())
-        except OSError:
-            break
-    return ""
+    """The file of the module that an entry point names, without importing anything."""
+    names = value.partition(":")[0].strip().split(".")
+    try:
+        roots = [Path(str(distribution.locate_file("")))]
+        spec = find_spec(names[0])  # an editable installation keeps its modules elsewhere
+    except (ImportError, OSError, ValueError):
+        return ""
+    if spec is not None and spec.origin:
+        roots.append(Path(spec.origin).parents[1 if spec.submodule_search_locations else 0])
+    places = [root.joinpath(*names) for root in roots]
+    files = [f for p in places for f in (p / "__init__.py", p.with_name(f"{p.name}.py"))]
+    return next((str(f.resolve()) for f in files if f.is_file()), "")

@@ -78,9 +78,13 @@ FAILING = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("source", [file_options, plugin_file])
-@pytest.mark.parametrize("case", FAILING)
-def test_a_planner_that_fails(case: str, source: Any, shell: Shell, tmp_path: Path) -> None:
+CASES = [(plugin_file, case) for case in FAILING] + [
+    (file_options, case) for case in ("interrupts", "interrupts init", "changes the zone")
+]
+
+
+@pytest.mark.parametrize(("source", "case"), CASES)
+def test_a_planner_that_fails(source: Any, case: str, shell: Shell, tmp_path: Path) -> None:
     code, text = FAILING[case]
     answer = shell(*source(tmp_path, **code), *QUIET, "--json")
     assert answer.code == 3
