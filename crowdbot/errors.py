@@ -48,12 +48,12 @@ class SpecError(InputError):
 
 
 class UnknownNameError(InputError):
-    """A name that nothing answers to; the message ends with the nearest names."""
+    """A name that nothing answers to; the message ends with why, or with the nearest names."""
 
-    def __init__(self, what: str, name: str, known: Iterable[str]) -> None:
+    def __init__(self, what: str, name: str, known: Iterable[str], why: str = "") -> None:
         names = sorted(known)
         self.what, self.name, self.near = what, name, nearest(name, names)
-        hint = did_you_mean(self.near)
+        hint = f"; {why}" if why else did_you_mean(self.near)
         if not hint and 0 < len(names) <= _FEW:
             hint = f"; there are: {', '.join(names)}"
         super().__init__(f"unknown {what} '{name}'{hint}")

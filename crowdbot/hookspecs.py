@@ -27,8 +27,10 @@ if TYPE_CHECKING:
         SensorSpec,
     )
 
-#: Version of this file. A plugin module may say ``CROWDBOT_API = 1``.
+#: Version of this file. A plugin module says ``CROWDBOT_API = 1``.
 API_VERSION = 1
+#: The oldest version that this crowdbot still speaks.
+OLDEST_API = 1
 
 hookspec = pluggy.HookspecMarker("crowdbot")
 hookimpl = pluggy.HookimplMarker("crowdbot")

@@ -101,8 +101,9 @@ def _load(name: str) -> Any:
         found = app
     command = get_command(found)
     command.name = name
-    taken = {text for param in command.params for text in param.opts}
-    command.params += [p for p in _verbosity_params() if not taken & set(p.opts)]
+    for one in (command, *getattr(command, "commands", {}).values()):
+        taken = {text for param in one.params for text in param.opts}
+        one.params += [p for p in _verbosity_params() if not taken & set(p.opts)]
     return command
 
 

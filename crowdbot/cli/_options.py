@@ -1,13 +1,59 @@
-"""Options that several commands have."""
+"""Options that several commands have, and what they make of the installation."""
 
 from __future__ import annotations
 
+import logging
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+if TYPE_CHECKING:
+    from crowdbot.core.registry import Registry
+
 Plugins = Annotated[
     list[Path] | None,
-    typer.Option("--plugin", metavar="DIR", help="A plugin that is not installed; repeatable."),
+    typer.Option(
+        "--plugin",
+        metavar="PATH",
+        help="A plugin that is not installed: file, package or project; repeatable.",
+    ),
 ]
+NoPlugins = Annotated[
+    bool, typer.Option("--no-plugins", help="Only crowdbot's own, and those of --plugin.")
+]
+
+
+def installed(
+    plugin: Sequence[Path] | None, no_plugins: bool = False, *, strict: bool = True
+) -> Registry:
+    """The registry that a command works with.
+
+    Args:
+        plugin: paths given by hand.
+        no_plugins: leave out all that are installed.
+        strict: refuse a plugin given by hand that failed; otherwise it is listed as such.
+
+    Raises:
+        InputError: there is nothing at a path.
+        PluginError: a plugin given by hand failed.
+    """
+    from crowdbot.core.chatter import chatter_to_stderr
+    from crowdbot.core.registry import discover
+    from crowdbot.errors import InputError, PluginError
+
+    paths = list(plugin or ())
+    for path in paths:
+        if not path.exists():
+            raise InputError(f"--plugin {path}: no such file or folder")
+    with chatter_to_stderr():
+        registry = discover(extra=paths, allow=() if no_plugins else None)
+    log = logging.getLogger("crowdbot")
+    for line in registry.unknown_allowed():
+        log.warning(line)
+    for found in registry.plugins:
+        if strict and found.error and not found.pinned:
+            log.debug(found.traceback)
+            raise PluginError(f"--plugin {found.distribution}: {found.error}")
+    return registry

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crowdbot.cli._options import Plugins
+from crowdbot.cli._options import NoPlugins, Plugins, installed
 
 if TYPE_CHECKING:
     from crowdbot.core.comparand import Comparand
@@ -26,6 +26,7 @@ def diff(
         typer.Option("--set", metavar="KEY=VALUE", help="Change B first; repeatable."),
     ] = None,
     plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
     """Compare two scenarios or two runs; exit 0 when equal, 1 when not.
@@ -34,9 +35,8 @@ def diff(
     """
     from crowdbot.core.comparand import read_comparand
     from crowdbot.core.diff import differences
-    from crowdbot.core.registry import discover
 
-    registry = discover(extra=plugin or ())
+    registry = installed(plugin, no_plugins)
     first = read_comparand(a, registry)
     second = read_comparand(b, registry, overrides or ())
     found = {"scenario": list(differences(first.scenario, second.scenario))}

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli._options import NoPlugins, Plugins, installed
 from crowdbot.errors import UnknownNameError, UsageError
 
 if TYPE_CHECKING:
@@ -84,6 +85,8 @@ def evaluate(
     questionnaires: _Answers = None,
     jobs: _Jobs = 1,
     out: _Out = None,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
     as_json: _Json = False,
 ) -> None:
     """Score recorded runs. Nothing is simulated; run directories stay as they are.
@@ -92,11 +95,10 @@ def evaluate(
     """
     from crowdbot.core.recording.rescore import Request, available_cores, rescore
     from crowdbot.core.recording.source import expand_paths
-    from crowdbot.core.registry import discover
 
     paths: list[Path | None] = [*expand_paths(runs or [])] or [None]
     _check_usage(len(paths), paths[0], out, (commands, questionnaires), user_topic)
-    registry = discover()
+    registry = installed(plugin, no_plugins)
     chosen = _chosen(registry, metrics, variant, experimental)
     requests = [
         Request(
@@ -111,6 +113,8 @@ def evaluate(
             questionnaires=questionnaires,
             metrics=chosen,
             variants=variant,
+            plugins=tuple(plugin or ()),
+            allow=registry.allowed,
         )
         for path in paths
     ]

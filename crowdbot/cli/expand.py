@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli._options import Plugins
+from crowdbot.cli._options import NoPlugins, Plugins, installed
 
 if TYPE_CHECKING:
     from crowdbot.core.registry import Registry
@@ -28,6 +28,7 @@ def expand(
     ] = False,
     count: Annotated[bool, typer.Option("--count", help="Print only how many there are.")] = False,
     plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
     overrides: Annotated[
         list[str] | None,
@@ -39,11 +40,10 @@ def expand(
     Example: crowdbot expand challenge-2020 --only 'counter-*-c50-*'
     """
     from crowdbot.core.library import open_spec
-    from crowdbot.core.registry import discover
 
     if explain and one is None:
         raise typer.BadParameter("--explain goes with --one ID")
-    registry = discover(extra=plugin or ())
+    registry = installed(plugin, no_plugins)
     expansion = open_spec(spec, registry, overrides or ())
     if one is not None:
         typer.echo(_one(expansion, one, registry, as_json=as_json, explain=explain), nl=False)

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli._options import NoPlugins, Plugins, installed
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -28,17 +30,18 @@ def export_urdf(
     out: Annotated[
         Path | None, typer.Option("--out", help="File to write; default: standard output.")
     ] = None,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
 ) -> None:
     """Write a robot as URDF, with a frame for each sensor.
 
     Example: crowdbot export-urdf robot --spec challenge-2020 --out turtlebot2.urdf
     """
     from crowdbot.core.aside import write_aside
-    from crowdbot.core.registry import discover
     from crowdbot.core.robots import build_model
     from crowdbot.core.urdf import to_urdf
 
-    registry = discover()
+    registry = installed(plugin, no_plugins)
     sensors: Mapping[str, SensorInfo] = {}
     if spec is None:
         model = build_model(registry, registry.find("robot", robot).spec(kind=robot))

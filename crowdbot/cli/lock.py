@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli._options import Plugins
+from crowdbot.cli._options import NoPlugins, Plugins, installed
 
 if TYPE_CHECKING:
     from crowdbot.core.registry import Registry
@@ -24,6 +24,7 @@ def lock(
         bool, typer.Option("--redraw", help="Draw all agents anew, also those that need not be.")
     ] = False,
     plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
     """Draw the agents of a suite once and freeze them, with the hashes of its scenarios.
@@ -34,11 +35,10 @@ def lock(
     Example: crowdbot lock my_suite.yaml; crowdbot lock challenge-2020 --check
     """
     from crowdbot.core.library import open_suite
-    from crowdbot.core.registry import discover
 
     if check and redraw:
         raise typer.BadParameter("--check writes nothing, --redraw writes; give one of them")
-    registry = discover(extra=plugin or ())
+    registry = installed(plugin, no_plugins)
     expansion, files = open_suite(spec, registry)
     if check:
         _check(expansion, files, registry, as_json=as_json)

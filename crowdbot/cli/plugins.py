@@ -1,170 +1,127 @@
-"""``crowdbot plugins``: what is installed, and what a component can be told."""
+"""``crowdbot plugins``: what is installed, what it can be told, whether it keeps its promises."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any
+import logging
+from pathlib import Path
+from typing import Annotated
 
 import typer
 
-if TYPE_CHECKING:
-    from crowdbot.core.component import Component
-    from crowdbot.core.registry import Plugin, Registry
+from crowdbot.cli._options import NoPlugins, Plugins, installed
 
 plugins = typer.Typer(
     add_completion=False, context_settings={"help_option_names": ["-h", "--help"]}
 )
 _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
-_FEW = 6
-_HEAD = ["plugin", "distribution", "api", "state", "provides"]
+_LOG = logging.getLogger("crowdbot")
 
 
 @plugins.callback(invoke_without_command=True)
-def listing(context: typer.Context, as_json: _Json = False) -> None:
-    """List plugins, healthy or not, and what they provide.
+def listing(
+    context: typer.Context,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: _Json = False,
+) -> None:
+    """List plugins, healthy or not, and what they provide; -v shows tracebacks.
 
     Example: crowdbot plugins show lidar2d
     """
     if context.invoked_subcommand is not None:
+        if plugin or no_plugins or as_json:
+            context.fail(f"options of '{context.invoked_subcommand}' stand behind it")
         return
-    from crowdbot.core.registry import discover
+    from crowdbot.cli._plugin_table import as_dicts, as_text, tracebacks
 
-    found = discover().plugins
+    registry = installed(plugin, no_plugins, strict=False)
     if as_json:
-        typer.echo(json.dumps([_as_dict(p) for p in found], indent=2))
-    else:
-        typer.echo(_table([_HEAD, *map(_row, found)]))
+        typer.echo(json.dumps(as_dicts(registry), indent=2))
+        return
+    typer.echo(as_text(registry))
+    if _LOG.isEnabledFor(logging.DEBUG):
+        for text in tracebacks(registry):
+            typer.echo(text, err=True)
 
 
 @plugins.command()
 def show(
     kind: Annotated[str, typer.Argument(metavar="KIND", help="Name of a component.")],
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
     as_json: _Json = False,
 ) -> None:
-    """Show a component: summary, fields, an example, where it is built.
+    """Show a component: summary, fields, an example, where it is described and built.
 
     Example: crowdbot plugins show ttca_dca
     """
-    from crowdbot.core.registry import discover
+    from crowdbot.cli._component_page import as_dict, as_text
     from crowdbot.errors import UnknownNameError
 
-    registry = discover()
+    registry = installed(plugin, no_plugins)
     everything = [c for p in registry.plugins for c in p.components]
     found = [c for c in everything if c.kind == kind]
     if not found:
-        raise UnknownNameError("kind", kind, {c.kind for c in everything})
+        known = {c.kind for c in everything}
+        raise UnknownNameError("kind", kind, known, registry.why_absent(kind))
     if as_json:
-        typer.echo(json.dumps([_component_dict(c, registry) for c in found], indent=2))
+        typer.echo(json.dumps([as_dict(c, registry) for c in found], indent=2))
     else:
-        typer.echo("\n\n".join(_component_text(c, registry) for c in found))
+        typer.echo("\n\n".join(as_text(c, registry) for c in found))
 
 
-def _row(plugin: Plugin) -> list[str]:
-    from crowdbot.hookspecs import API_VERSION
+@plugins.command()
+def check(
+    name: Annotated[
+        str | None, typer.Argument(metavar="[NAME]", help="A plugin, or the kind of a component.")
+    ] = None,
+    plugin: Plugins = None,
+    as_json: _Json = False,
+) -> None:
+    """Hold components to what crowdbot promises about them; exit code 1 when a check fails.
 
-    if plugin.error:
-        return [plugin.name, plugin.distribution, "–", "failed", " ".join(plugin.error.split())]
-    provides = "  ".join(f"{c}: {_few(kinds)}" for c, kinds in _provided(plugin).items())
-    return [plugin.name, plugin.distribution, str(API_VERSION), "ok", provides]
+    Without NAME, the plugins given by --plugin are checked.
 
+    Example: crowdbot plugins check goal_seek
+    """
+    from crowdbot.cli._check import Result, as_table, chosen, failed_plugins, run_checks
+    from crowdbot.core.chatter import chatter_to_stderr
 
-def _few(kinds: list[str]) -> str:
-    return " ".join(kinds) if len(kinds) <= _FEW else str(len(kinds))
-
-
-def _provided(plugin: Plugin) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = {}
-    for component in plugin.components:
-        found.setdefault(component.category, []).append(component.kind)
-    return found
-
-
-def _as_dict(plugin: Plugin) -> dict[str, Any]:
-    return {
-        "name": plugin.name,
-        "distribution": plugin.distribution,
-        "pinned": plugin.pinned,
-        "state": "failed" if plugin.error else "ok",
-        "error": plugin.error,
-        "provides": _provided(plugin),
-    }
-
-
-def _table(rows: list[list[str]]) -> str:
-    """Columns as wide as their widest cell; the last one is free."""
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]) - 1)]
-    lines = []
-    for row in rows:
-        cells = [f"{cell:<{width}}" for cell, width in zip(row, widths, strict=False)]
-        lines.append("  ".join([*cells, row[-1]]).rstrip())
-    return "\n".join(lines)
+    if name is None and not plugin:
+        raise typer.BadParameter("name a plugin or a kind, or give one by --plugin")
+    registry = installed(plugin, strict=False)
+    results: list[Result] = failed_plugins(registry, name)
+    if not results:
+        components = chosen(registry, name)
+        with chatter_to_stderr():
+            results = [r for c in components for r in run_checks(c, registry)]
+    if as_json:
+        typer.echo(json.dumps([r.as_dict() for r in results], indent=2))
+    else:
+        chatty, all_lines = (_LOG.isEnabledFor(n) for n in (logging.INFO, logging.DEBUG))
+        typer.echo(as_table(results, passed=chatty, all_lines=all_lines))
+    raise typer.Exit(1 if any(r.bad for r in results) else 0)
 
 
-def _component_dict(component: Component[Any], registry: Registry) -> dict[str, Any]:
-    owner = registry.owner(component)
-    names = ("field", "type", "unit", "default", "description")
-    return {
-        "kind": component.kind,
-        "category": component.category,
-        "summary": component.summary,
-        "spec_version": component.spec_version,
-        "build": component.build,
-        "plugin": owner.name,
-        "distribution": owner.distribution,
-        "fields": [dict(zip(names, row, strict=True)) for row in _fields(component.spec)],
-        "example": {"kind": component.kind, **component.examples[0]} if component.examples else {},
-    }
+@plugins.command()
+def new(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Of the plugin: a word such as acme.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Folder to write; default: crowdbot-NAME.")
+    ] = None,
+) -> None:
+    """Write a package with one component of each kind, a suite and tests, to start from.
 
+    Example: crowdbot plugins new acme
+    """
+    from crowdbot.cli._new import write_package
 
-def _component_text(component: Component[Any], registry: Registry) -> str:
-    from crowdbot.dsl.canonical import to_yaml
-
-    about = _component_dict(component, registry)
-    head = ["field", "type", "unit", "default", "description"]
-    return "\n".join(
-        [
-            f"{component.kind}: {component.category}, {component.summary}",
-            f"from {about['distribution']}, spec version {component.spec_version}, "
-            f"built by {component.build}",
-            "",
-            _table([head, *_fields(component.spec)]),
-            "",
-            "example:",
-            *(f"  {line}" for line in to_yaml(about["example"]).splitlines()),
-        ]
-    )
-
-
-def _fields(model: Any, prefix: str = "") -> Iterator[list[str]]:
-    """Rows of name, type, unit, default and description; maps of fields are followed."""
-    from crowdbot.dsl.quantities import Quantity
-    from crowdbot.dsl.validation import nested_model
-
-    for name, info in model.model_fields.items():
-        if name == "kind":
-            continue
-        unit = next((m.si_unit for m in info.metadata if isinstance(m, Quantity)), "")
-        inner = nested_model(info.annotation)
-        if inner is not None:
-            yield from _fields(inner, f"{prefix}{name}.")
-            continue
-        default = "required" if info.is_required() else _short(info.default)
-        kind = "number" if info.annotation is float else _type_name(info.annotation)
-        yield [f"{prefix}{name}", kind, unit, default, info.description or ""]
-
-
-def _type_name(annotation: Any) -> str:
-    if getattr(annotation, "__origin__", None) is dict:
-        return "map of names"
-    text = getattr(annotation, "__name__", "") if not hasattr(annotation, "__args__") else ""
-    words = {"int": "integer", "str": "text", "bool": "true/false"}
-    return words.get(text, text) or str(annotation).replace("typing.", "").replace(
-        "crowdbot.dsl.base.", ""
-    )
-
-
-def _short(value: Any) -> str:
-    if isinstance(value, float):
-        return f"{value:.6g}"
-    return str(value).lower() if isinstance(value, bool) else str(value)
+    folder = write_package(name, out, installed(None))
+    typer.echo(f"{folder}: plugin '{name}'; next:", err=True)
+    typer.echo(f"  pip install -e {folder}", err=True)
+    typer.echo(f"  crowdbot plugins check {name}", err=True)
+    typer.echo(f"  crowdbot simulate {name}:first strolling --planner {name}.wander", err=True)
+    typer.echo(str(folder))

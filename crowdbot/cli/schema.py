@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crowdbot.cli._options import Plugins
+from crowdbot.cli._options import NoPlugins, Plugins, installed
 from crowdbot.core.aside import write_aside
 from crowdbot.errors import UsageError
 
@@ -38,19 +38,18 @@ def schema(
         Path | None, typer.Option(metavar="FILE", help="Write there instead of stdout.")
     ] = None,
     plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
 ) -> None:
     """Print the JSON Schema of a document, for editors; plugins' components are in it.
 
     Example: crowdbot schema suite --out suite.schema.json
     """
-    from crowdbot.core.registry import discover
-
     if canonical and document not in (Document.SCENARIO, Document.PLANNER):
         raise UsageError(
             f"a {document} has no canonical form; 'crowdbot schema scenario --canonical' is that "
             "of its scenarios"
         )
-    text = to_text(build(document, discover(extra=plugin or ()), canonical=canonical))
+    text = to_text(build(document, installed(plugin, no_plugins), canonical=canonical))
     if out is None:
         typer.echo(text, nl=False)
     else:

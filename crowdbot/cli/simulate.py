@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli._options import Plugins
+from crowdbot.cli._options import NoPlugins, Plugins, installed
 
 if TYPE_CHECKING:
     from crowdbot.core.sim.request import Run
@@ -54,7 +54,12 @@ def simulate(
         bool, typer.Option(help="Run robot_alone and crowd_alone where they are missing.")
     ] = True,
     force: Annotated[bool, typer.Option("--force", help="Run again what is complete.")] = False,
+    step_budget: Annotated[
+        float | None,
+        typer.Option(metavar="SECONDS", help="Wall time that a planner step may take."),
+    ] = None,
     plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
     """Simulate one scenario with one planner; record, score and replay it.
@@ -62,30 +67,32 @@ def simulate(
     Example: crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
     """
     from crowdbot.cli._progress import show_progress
+    from crowdbot.core.chatter import chatter_to_stderr
     from crowdbot.core.library import open_spec, pick
-    from crowdbot.core.registry import discover
 
-    registry = discover(extra=plugin or ())
-    expansion = open_spec(spec, registry, overrides or ())
-    chosen = pick(expansion, scenario)
-    simulate_it = _import_simulate()
-    with _interruptible() as stop, show_progress() as progress:
-        run = simulate_it(
-            chosen,
-            registry,
-            planner=planner,
-            planner_settings=planner_set or (),
-            seed=seed,
-            out=out,
-            suite="scenarios" if expansion.single else expansion.suite_id,
-            metrics=expansion.metrics,
-            record=record.value,
-            references=references,
-            force=force,
-            progress=progress,
-            stop=stop,
-            on_hang=_end_hung_process,
-        )
+    with chatter_to_stderr():
+        registry = installed(plugin, no_plugins)
+        expansion = open_spec(spec, registry, overrides or ())
+        chosen = pick(expansion, scenario)
+        simulate_it = _import_simulate()
+        with _interruptible() as stop, show_progress() as progress:
+            run = simulate_it(
+                chosen,
+                registry,
+                planner=planner,
+                planner_settings=planner_set or (),
+                seed=seed,
+                out=out,
+                suite="scenarios" if expansion.single else expansion.suite_id,
+                metrics=expansion.metrics,
+                record=record.value,
+                references=references,
+                force=force,
+                progress=progress,
+                stop=stop,
+                on_hang=_end_hung_process,
+                step_budget=step_budget,
+            )
     _print(run, as_json=as_json)
     if run.status == "planner_failed":
         raise typer.Exit(3)
@@ -111,6 +118,10 @@ def _import_simulate() -> Callable[..., Run]:
     return simulate_it
 
 
+class _Pressed(KeyboardInterrupt):
+    """Ctrl-C, as opposed to a plugin that raises KeyboardInterrupt itself."""
+
+
 @contextmanager
 def _interruptible() -> Iterator[Callable[[], bool]]:
     """The first Ctrl-C asks the run to end and keep its recording; the second one insists.
@@ -123,7 +134,7 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
         nonlocal asked
         del number, frame
         if asked or not running:
-            raise KeyboardInterrupt
+            raise _Pressed
         asked = True
 
     def stop() -> bool:
@@ -189,6 +200,8 @@ def _print(run: Run, *, as_json: bool) -> None:
 
 
 def _summary(run: Run) -> str:
+    from crowdbot.core.provenance import remarks
+
     record = run.record
     ending = {
         "arrived": "arrived after {:.1f} s",
@@ -198,4 +211,5 @@ def _summary(run: Run) -> str:
     speed = f"{record['real_time_factor']:.1f} times real time"
     note = "; was complete already, --force runs it again" if run.reused else f" ({speed})"
     who = f"{record['scenario']} · {record['planner']['name']} · seed {record['seed']}"
-    return f"{who}: {ending}{note}"
+    flags = "".join(f"; {flag.lower()}" for flag in remarks(record))
+    return f"{who}: {ending}{note}{flags}"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli._options import Plugins
+from crowdbot.cli._options import NoPlugins, Plugins, installed
 from crowdbot.errors import SpecError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -35,15 +35,14 @@ def validate(
         Format, typer.Option("--format", help="text on stderr; json or github on stdout.")
     ] = Format.TEXT,
     plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="Same as --format json.")] = False,
 ) -> None:
     """Check suites and scenarios; report every error with its place.
 
     Example: crowdbot validate challenge-2020 my_suite.yaml
     """
-    from crowdbot.core.registry import discover
-
-    registry = discover(extra=plugin or ())
+    registry = installed(plugin, no_plugins)
     results = {spec: _check(spec, registry) for spec in dict.fromkeys(specs)}
     errors = [d for _, found in results.values() for d in found]
     if as_json or format_ is Format.JSON:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli._options import Plugins
+from crowdbot.cli._options import NoPlugins, Plugins, installed
 from crowdbot.core.aside import write_aside
 from crowdbot.errors import InputError, UsageError
 
@@ -36,21 +36,20 @@ def view(
         typer.Option("--set", metavar="KEY=VALUE", help="Change the scenario; repeatable."),
     ] = None,
     plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="Path and facts as JSON.")] = False,
 ) -> None:
     """Draw a scenario from above, or find the replay page of a run. Nothing is simulated.
 
     Example: crowdbot view challenge-2020 counter-d0500-fast-c20-r05 --out scenario.png
     """
-    from crowdbot.core.registry import discover
-
     facts: dict[str, str] = {}
     if Path(spec).is_dir():
         if scenario is not None or out is not None or overrides:
             raise UsageError(f"{spec} is a run, whose page is there already: no ID, --out or --set")
         path = _replay(Path(spec))
     else:
-        path, facts = _draw(discover(extra=plugin or ()), spec, scenario, out, overrides or [])
+        path, facts = _draw(installed(plugin, no_plugins), spec, scenario, out, overrides or [])
     if as_json:
         typer.echo(json.dumps({"path": str(path), "facts": facts}, indent=2, ensure_ascii=False))
     else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import sys
 from collections.abc import Callable, Mapping
@@ -10,6 +11,7 @@ from importlib.resources import files
 from importlib.resources.abc import Traversable
 from typing import Any, Generic, TypeVar
 
+from crowdbot.core.fault import described
 from crowdbot.dsl.base import ComponentSpec
 from crowdbot.errors import PluginError
 
@@ -57,13 +59,19 @@ class Component(Generic[S_co]):
         """Import the build function.
 
         Raises:
-            PluginError: the reference does not resolve.
+            PluginError: the reference does not resolve, or names something that is no function.
         """
         module, _, name = self.build.partition(":")
         try:
-            function = getattr(importlib.import_module(module), name)
+            with contextlib.redirect_stdout(sys.stderr):
+                function = getattr(importlib.import_module(module), name)
         except (ImportError, AttributeError) as error:
             raise PluginError(f"{self.kind}: build '{self.build}' not found: {error}") from error
+        except (Exception, SystemExit) as error:
+            text = f"{self.kind}: build '{self.build}' cannot be imported: {described(error)}"
+            raise PluginError(text) from error
+        if not callable(function):
+            raise PluginError(f"{self.kind}: build '{self.build}' is no function")
         return function  # type: ignore[no-any-return]
 
     @property

@@ -4,24 +4,29 @@ from __future__ import annotations
 
 import atexit
 import os
+import re
 import shutil
 import tempfile
 from collections.abc import Sequence
+from dataclasses import replace
 from fnmatch import fnmatchcase
 from functools import cache, cached_property, partial
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from crowdbot.core.registry import Registry
+from crowdbot.dsl.diagnostics import Diagnostic
 from crowdbot.dsl.expand import Expansion, expand_document, load_document
 from crowdbot.dsl.installed import Installed
 from crowdbot.dsl.lock import Locked, LockFiles
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.dsl.suite import Suite
-from crowdbot.errors import InputError, UnknownNameError
+from crowdbot.errors import InputError, SpecError, UnknownNameError
 
 _BUILTIN = "builtin"
 _UNPACKED = "crowdbot-unpacked-"
+#: Errors about something that no plugin has: kind, metric, file.
+_UNKNOWN = ("E120", "E121", "E201")
 
 
 def open_spec(spec: str, registry: Registry, overrides: Sequence[str] = ()) -> Expansion:
@@ -45,13 +50,25 @@ def open_suite(
 ) -> tuple[Expansion, LockFiles]:
     """As `open_spec`, with the files of the lock, which need not exist."""
     roots = _folders(registry)
-    path, name = _find(spec, roots)
-    suite = load_document(path, roots, name=name, installed=installed(registry))
-    expansion = expand_document(suite, registry.scenario_model, overrides)
+    path, name = _find(spec, roots, registry)
+    try:
+        suite = load_document(path, roots, name=name, installed=installed(registry))
+        expansion = expand_document(suite, registry.scenario_model, overrides)
+    except SpecError as error:
+        raise SpecError([_with_reason(d, registry) for d in error.diagnostics]) from None
     files = LockFiles(path, spec)
     if files.lock_path.exists():
         _attach(expansion, files, _Origins(suite, registry, expansion, overrides))
     return expansion, files
+
+
+def _with_reason(diagnostic: Diagnostic, registry: Registry) -> Diagnostic:
+    """An error about something of a plugin that failed, or is not allowed, says so."""
+    if diagnostic.code not in _UNKNOWN:
+        return diagnostic
+    quoted = re.search(r"'([^']+)'", diagnostic.message)
+    why = registry.why_absent(quoted[1]) if quoted else ""
+    return replace(diagnostic, hint=why) if why else diagnostic
 
 
 def check_writable(files: LockFiles) -> None:
@@ -152,7 +169,7 @@ def _only(expansion: Expansion, found: Sequence[Scenario], why: str) -> Scenario
     )
 
 
-def _find(spec: str, roots: dict[str, list[Path]]) -> tuple[Path, str]:
+def _find(spec: str, roots: dict[str, list[Path]], registry: Registry) -> tuple[Path, str]:
     """The file that a SPEC means, and what messages call it."""
     path, packaged = Path(spec), _packaged(roots)
     looks_like_path = path.suffix in (".yaml", ".yml") or os.sep in spec or "/" in spec
@@ -160,7 +177,8 @@ def _find(spec: str, roots: dict[str, list[Path]]) -> tuple[Path, str]:
         return packaged[spec], _shown(packaged[spec], spec)
     if looks_like_path or os.path.lexists(spec):
         return path, spec
-    raise UnknownNameError("suite", spec, packaged)
+    why = registry.why_absent(spec) if ":" in spec else ""
+    raise UnknownNameError("suite", spec, packaged, why)
 
 
 def _packaged(roots: dict[str, list[Path]]) -> dict[str, Path]:

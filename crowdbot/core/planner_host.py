@@ -6,32 +6,31 @@ import contextlib
 import inspect
 import math
 import sys
-import sysconfig
 import time
-import traceback
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from numbers import Real
-from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple, NoReturn, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.fault import described, is_users
 from crowdbot.core.interfaces import (
     Command,
     NoValidCommand,
     Observation,
     Planner,
+    Reading,
     RobotLimits,
     SensorInfo,
     Task,
 )
 from crowdbot.core.watchdog import Watchdog
-from crowdbot.errors import Interrupted, PlannerError, PlannerHungError
+from crowdbot.errors import PlannerError, PlannerHungError
 
-Array = NDArray[np.float64]
+T = TypeVar("T", bound=np.generic)
 
 STOP = Command(0.0, 0.0)
 #: Seconds that ``reset`` may take under a watchdog: models are loaded and compiled there.
@@ -57,6 +56,7 @@ class PlannerHost:
         limits: box into which commands are clamped.
         budget: seconds of wall time that a step may take; None is no budget.
         watchdog: ends a step that never returns; None waits for ever.
+        origin: the distribution that the planner comes from, for messages; empty for a file.
 
     Attributes:
         steps: steps so far.
@@ -72,8 +72,10 @@ class PlannerHost:
         *,
         budget: float | None = None,
         watchdog: Watchdog | None = None,
+        origin: str = "",
     ) -> None:
-        self._planner, self._name, self._limits = planner, name, limits
+        self._planner, self._limits = planner, limits
+        self._title = f"planner '{name}'" + (f" ({origin})" if origin else "")
         self._budget, self._watchdog = budget, watchdog
         self.steps = self.clamped = self.stops = 0
 
@@ -86,7 +88,7 @@ class PlannerHost:
         """
         self.steps = self.clamped = self.stops = 0
         task = replace(task, goal_zone=_read_only(task.goal_zone))
-        sensors = MappingProxyType(dict(sensors))
+        sensors = MappingProxyType({n: _constant(i) for n, i in sensors.items()})
         patience = self._watchdog.patience(RESET_LIMIT) if self._watchdog else None
         with patience or contextlib.nullcontext():
             self._guarded("reset", lambda: self._planner.reset(task, self._limits, sensors, seed))
@@ -125,16 +127,13 @@ class PlannerHost:
         except PlannerHungError:
             limit = self._watchdog.limit if self._watchdog else math.nan
             raise PlannerHungError(
-                f"planner '{self._name}' did not return from {method} within {limit:g} s"
+                f"{self._title} did not return from {method} within {limit:g} s"
             ) from None
-        except (KeyboardInterrupt, Interrupted):
-            raise
         except BaseException as error:
-            if isinstance(error, NoValidCommand) and method == "step":
+            if is_users(error) or (isinstance(error, NoValidCommand) and method == "step"):
                 raise
-            kind, where = type(error).__name__, _where(error, self._planner)
-            text = f"{kind}: {error}" if str(error) else kind
-            raise PlannerError(f"planner '{self._name}': {method}: {text}{where}") from error
+            text = described(error, _sources(self._planner))
+            raise PlannerError(f"{self._title}: {method}: {text}") from error
 
     def _checked(self, answer: Any) -> Command:
         """The answer as a command of finite floats."""
@@ -159,18 +158,27 @@ class PlannerHost:
         return inside, excess > _ROUNDING
 
     def _fail(self, text: str) -> NoReturn:
-        raise PlannerError(f"planner '{self._name}': {text}")
+        raise PlannerError(f"{self._title}: {text}")
 
 
-def _read_only(array: Array) -> Array:
+def _read_only(array: NDArray[T]) -> NDArray[T]:
     copy = np.array(array)
     copy.setflags(write=False)
     return copy
 
 
+def _constant(info: SensorInfo) -> SensorInfo:
+    return info if info.angles is None else replace(info, angles=_read_only(info.angles))
+
+
+def _private(reading: Reading) -> Reading:
+    colour = None if reading.colour is None else _read_only(reading.colour)
+    return Reading(reading.stamp, _read_only(reading.values), colour)
+
+
 def _protected(obs: Observation) -> Observation:
     """Copies, since the simulation may go on changing the arrays that a planner keeps."""
-    readings = {n: r._replace(values=_read_only(r.values)) for n, r in obs.readings.items()}
+    readings = {n: _private(r) for n, r in obs.readings.items()}
     return Observation(
         t=obs.t,
         pose=obs.pose,
@@ -180,6 +188,7 @@ def _protected(obs: Observation) -> Observation:
         goal_zone=_read_only(obs.goal_zone),
         readings=MappingProxyType(readings),
         log=obs.log,
+        truth=obs.truth and obs.truth.copy(),
     )
 
 
@@ -192,30 +201,10 @@ def _shown(value: Any) -> str:
     return f"{text} ({type(value).__name__})"
 
 
-def _where(error: BaseException, planner: object) -> str:
-    """`` (file:line)`` of the innermost frame of the user's own code, or nothing."""
-    frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename != __file__]
-    if not frames:
-        return ""
-    own = [f for f in frames if _is_own(f.filename, _sources(planner))]
-    frame = (own or frames)[-1]
-    return f" ({frame.filename}:{frame.lineno})"
-
-
-def _sources(planner: object) -> tuple[str, ...]:
+def _sources(planner: object) -> frozenset[str]:
     """Files in which the planner's class and its bases are written."""
-    return tuple(_files(type(planner)))
-
-
-def _files(kind: type) -> Iterator[str]:
-    for base in kind.__mro__[:-1]:
+    found = set()
+    for base in type(planner).__mro__[:-1]:
         with contextlib.suppress(TypeError, OSError):
-            yield inspect.getfile(base)
-
-
-def _is_own(file: str, sources: tuple[str, ...]) -> bool:
-    """A planner's file, a file beside it, or any file that is no installed library."""
-    if file in sources or Path(file).parent in {Path(s).parent for s in sources}:
-        return True
-    libraries = {sysconfig.get_path(p) for p in ("stdlib", "platstdlib", "purelib", "platlib")}
-    return not file.startswith("<") and not any(file.startswith(p) for p in libraries if p)
+            found.add(inspect.getfile(base))
+    return frozenset(found)

@@ -9,7 +9,6 @@ import importlib.util
 import inspect
 import json
 import sys
-import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,7 +20,9 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from crowdbot.core.component import Component
+from crowdbot.core.fault import described, is_users
 from crowdbot.core.interfaces import Planner, SensorInfo
+from crowdbot.core.plugin import BUILTIN
 from crowdbot.core.registry import Registry
 from crowdbot.dsl.base import PlannerSpec
 from crowdbot.errors import (
@@ -48,6 +49,7 @@ class PlannerChoice:
         label: ``name``, with ``+`` and four hex digits when parameters are not the defaults, and
             with ``+privileged`` where that holds: scores carry it.
         privileged: whether it may read what no sensor of a real robot could tell.
+        origin: the distribution that it comes from; empty for crowdbot's own and for files.
     """
 
     name: str
@@ -57,6 +59,7 @@ class PlannerChoice:
     needs: tuple[str, ...] | None
     label: str
     privileged: bool = False
+    origin: str = ""
 
 
 def resolve_planner(text: str, registry: Registry, settings: Sequence[str] = ()) -> PlannerChoice:
@@ -129,13 +132,22 @@ def _from_kind(
     try:
         component = registry.find("planner", kind)
     except UnknownNameError as error:
-        raise UnknownNameError(f"{where}planner", kind, registry.components("planner")) from error
+        known, why = registry.components("planner"), registry.why_absent(kind)
+        raise UnknownNameError(f"{where}planner", kind, known, why) from error
     spec = _validated(component, parameters, where)
+    make, owner = component.load_build(), registry.owner(component)
+    whose = "" if owner.name == BUILTIN else owner.distribution
+
+    def build() -> Planner:
+        made: Planner = _made(kind, lambda: make(spec), whose)
+        return made
+
     return PlannerChoice(
         name=kind,
         spec_dump=spec.model_dump(mode="json"),
-        build=lambda: component.load_build()(spec),
-        pinned=registry.owner(component).pinned,
+        build=build,
+        pinned=owner.pinned,
+        origin=whose,
         needs=_needs(component.spec),
         label=_label(
             kind if _is_default(component, spec) else f"{kind}+{_digest(spec)}", component.spec
@@ -240,12 +252,7 @@ def _from_class(path: Path, name: str, parameters: Mapping[str, Any]) -> Planner
     _check_parameters(kind, parameters, f"{path}:{name}")
 
     def build() -> Planner:
-        try:
-            with contextlib.redirect_stdout(sys.stderr):
-                made: Planner = kind(**parameters)
-        except (Exception, SystemExit) as error:
-            text = f"{type(error).__name__}: {error}"
-            raise PlannerError(f"planner '{name}' cannot be made: {text}{_line(error)}") from error
+        made: Planner = _made(name, lambda: kind(**parameters), "")
         return made
 
     return PlannerChoice(
@@ -257,6 +264,27 @@ def _from_class(path: Path, name: str, parameters: Mapping[str, Any]) -> Planner
         label=_label(f"{name}+{_digest(dict(parameters))}" if parameters else name, kind),
         privileged=_is_privileged(kind),
     )
+
+
+def _made(name: str, make: Callable[[], Any], whose: str) -> Any:
+    """A new planner, and all that it needs to be one.
+
+    Raises:
+        PlannerError: it cannot be made, or is no planner.
+    """
+    title = f"planner '{name}'" + (f" ({whose})" if whose else "")
+    try:
+        with contextlib.redirect_stdout(sys.stderr):
+            planner = make()
+    except BaseException as error:
+        if is_users(error):
+            raise
+        raise PlannerError(f"{title} cannot be made: {described(error)}") from error
+    missing = [m for m in _METHODS if not callable(getattr(planner, m, None))]
+    if missing:
+        what = type(planner).__name__
+        raise PlannerError(f"{title}: what was built, a {what}, has no {' and no '.join(missing)}")
+    return planner
 
 
 def _class(path: Path, name: str) -> type[Any]:
@@ -287,17 +315,12 @@ def _import(path: Path) -> ModuleType:
     try:
         with contextlib.redirect_stdout(sys.stderr):
             spec.loader.exec_module(module)
-    except (Exception, SystemExit) as error:
+    except BaseException as error:
         del sys.modules[unique]
-        text = f"{type(error).__name__}: {error}"
-        raise PlannerError(f"{path}: cannot be imported: {text}{_line(error)}") from error
+        if is_users(error):
+            raise
+        raise PlannerError(f"{path}: cannot be imported: {described(error)}") from error
     return module
-
-
-def _line(error: BaseException) -> str:
-    frames = traceback.extract_tb(error.__traceback__)
-    own = [f for f in frames if f.filename != __file__ and not f.filename.startswith("<")]
-    return f" ({own[-1].filename}:{own[-1].lineno})" if own else ""
 
 
 def _check_parameters(kind: type[Any], parameters: Mapping[str, Any], where: str) -> None:

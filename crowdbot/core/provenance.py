@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.core.plugin import BUILTIN
 from crowdbot.core.registry import Registry
 from crowdbot.core.trajectory import Trajectories
 
@@ -56,12 +57,40 @@ def versions() -> dict[str, str]:
 
 
 def plugins(registry: Registry) -> list[dict[str, Any]]:
-    """The plugins that were loaded."""
+    """The plugins that were loaded; of those that are not installed, the hash of their files."""
     return [
-        {"name": p.name, "distribution": p.distribution, "pinned": p.pinned}
+        {
+            "name": p.name,
+            "distribution": p.distribution,
+            "pinned": p.pinned,
+            **({} if p.pinned else {"sha256": p.sha256}),
+        }
         for p in registry.plugins
         if not p.error
     ]
+
+
+def third_parties(registry: Registry) -> dict[str, Any]:
+    """What decides what a reference run does, beside crowdbot itself; nothing without plugins."""
+    others = [p for p in plugins(registry) if p["name"] != BUILTIN]
+    return {"plugins": others} if others else {}
+
+
+def remarks(record: Mapping[str, Any]) -> dict[str, str]:
+    """What a reader of scores must know of where they come from, if there is anything.
+
+    Args:
+        record: ``run.json``, or what will be.
+    """
+    found = {}
+    if record.get("privileged"):
+        found["Privileged"] = "the planner sees the truth"
+    if not record.get("pinned", True):
+        loose = [p["distribution"] for p in record.get("plugins", ()) if not p["pinned"]]
+        if "sha256" in record["planner"]:
+            loose.append(record["planner"]["kind"])
+        found["Not pinned"] = f"{', '.join(loose)}: not from an installed distribution"
+    return found
 
 
 def machine() -> dict[str, str]:

@@ -7,60 +7,42 @@ kind, are all disabled, and the error names them.
 
 from __future__ import annotations
 
-import importlib.util
-import os
-import sys
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
-from importlib import metadata
+from functools import cached_property
 from pathlib import Path
-from types import ModuleType
 from typing import Annotated, Any, Union
 
-import pluggy
 from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
-from crowdbot import hookspecs
 from crowdbot.core.component import Component
+from crowdbot.core.discovery import ALLOW, find_plugins
+from crowdbot.core.fault import described
+from crowdbot.core.plugin import BUILTIN, Plugin
 from crowdbot.dsl.base import CATEGORIES, ComponentSpec
 from crowdbot.dsl.components import components
 from crowdbot.dsl.proximity import ProximitySpec, noise_map
 from crowdbot.dsl.scenario import Crowd, NamedPolicy, Robot, Scenario
-from crowdbot.errors import PluginError, UnknownNameError
+from crowdbot.errors import CrowdbotError, PluginError, UnknownNameError, did_you_mean, nearest
 
-GROUP = "crowdbot"
-_HOOKS = {
-    "crowdbot_environments": "environment",
-    "crowdbot_robots": "robot",
-    "crowdbot_sensors": "sensor",
-    "crowdbot_noise_generators": "noise",
-    "crowdbot_planners": "planner",
-    "crowdbot_crowd_policies": "crowd policy",
-    "crowdbot_cost_functions": "cost function",
-    "crowdbot_metrics": "metric",
-}
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Plugin:
-    """One installed plugin, healthy or not."""
-
-    name: str
-    distribution: str
-    pinned: bool = True
-    components: tuple[Component[Any], ...] = ()
-    scenario_dirs: tuple[Any, ...] = ()
-    error: str = ""
+__all__ = ["Plugin", "Registry", "assemble", "discover"]
 
 
 @dataclass(frozen=True)
 class Registry:
-    """All plugins, and the healthy ones' components by category and kind."""
+    """All plugins, and the healthy ones' components by category and kind.
+
+    Attributes:
+        plugins: all that were found and may be loaded; some may have failed.
+        excluded: installed plugins that are not on the allow-list; nothing of them was imported.
+        allowed: the allow-list; None allows all.
+    """
 
     plugins: tuple[Plugin, ...]
     _by_category: Mapping[str, Mapping[str, Component[Any]]] = field(repr=False)
+    excluded: tuple[Plugin, ...] = ()
+    allowed: tuple[str, ...] | None = None
 
     def components(self, category: str) -> Mapping[str, Component[Any]]:
         """Kind -> component, sorted by kind."""
@@ -74,8 +56,33 @@ class Registry:
         """
         known = self._by_category[category]
         if kind not in known:
-            raise UnknownNameError(category, kind, known)
+            raise UnknownNameError(category, kind, known, self.why_absent(kind))
         return known[kind]
+
+    def why_absent(self, name: str) -> str:
+        """Why nothing of a plugin's is here; empty where there is nothing to say.
+
+        Args:
+            name: a plugin, or the kind of a component or the name of a suite of one.
+        """
+        plugin = name.replace(":", ".").partition(".")[0]
+        for p in self.plugins:
+            if p.name == plugin and p.error and plugin != BUILTIN:
+                return f"plugin '{plugin}' ({p.distribution}) failed: {p.error}"
+        for p in self.excluded:
+            if p.name == plugin:
+                why = f"{ALLOW}={','.join(self.allowed)}" if self.allowed else "--no-plugins"
+                return f"plugin '{plugin}' ({p.distribution}) is installed but not allowed: {why}"
+        return ""
+
+    def unknown_allowed(self) -> list[str]:
+        """One line for each name on the allow-list that no plugin has."""
+        known = {p.name for p in (*self.plugins, *self.excluded)}
+        return [
+            f"{ALLOW}: no plugin '{name}' is installed{did_you_mean(nearest(name, known)[:1])}"
+            for name in self.allowed or ()
+            if name not in known
+        ]
 
     def owner(self, component: Component[Any]) -> Plugin:
         """The plugin that provides a component."""
@@ -85,10 +92,22 @@ class Registry:
         """Turn a spec into deeds through its component's build function.
 
         That of a proximity sensor also gets its noise generators, built, in the order of names.
+
+        Raises:
+            PluginError: the build function cannot be imported, or raised.
         """
         if isinstance(spec, ProximitySpec):
             args = ([self.build(spec.noise[name]) for name in sorted(spec.noise)], *args)
-        return self.find(spec.category, spec.kind).load_build()(spec, *args)
+        component = self.find(spec.category, spec.kind)
+        build = component.load_build()
+        try:
+            return build(spec, *args)
+        except CrowdbotError:
+            raise
+        except (Exception, SystemExit) as error:
+            whose = self.owner(component).distribution
+            text = f"{spec.category} '{spec.kind}' ({whose}) cannot be built: {described(error)}"
+            raise PluginError(text) from error
 
     @cached_property
     def scenario_model(self) -> type[Scenario]:
@@ -159,25 +178,15 @@ class Registry:
 def discover(
     *, extra: Sequence[Path] = (), allow: Iterable[str] | None = None, entry_points: bool = True
 ) -> Registry:
-    """Build the registry from entry points and from folders or files given by hand.
+    """Build the registry from what is installed and from paths given by hand.
 
     Args:
         extra: paths of plugins that are not installed (``--plugin DIR``).
         allow: only these plugin names; default: ``CROWDBOT_PLUGINS``, else all.
         entry_points: False reads no entry points except crowdbot's own.
     """
-    if allow is None and os.environ.get("CROWDBOT_PLUGINS"):
-        allow = os.environ["CROWDBOT_PLUGINS"].split(",")
-    wanted = None if allow is None else {"builtin", *(a.strip() for a in allow)}
-    found = [
-        _load(e.name, _distribution(e), e.load)
-        for e in sorted(metadata.entry_points(group=GROUP), key=lambda e: (e.name, e.value))
-        if (entry_points or e.name == "builtin") and (wanted is None or e.name in wanted)
-    ]
-    found += [
-        replace(_load(p.resolve().stem, str(p), partial(load_path, p)), pinned=False) for p in extra
-    ]
-    return assemble(found)
+    found = find_plugins(extra=extra, allow=allow, entry_points=entry_points)
+    return replace(assemble(found.plugins), excluded=found.excluded, allowed=found.allowed)
 
 
 def assemble(found: Sequence[Plugin]) -> Registry:
@@ -191,97 +200,18 @@ def assemble(found: Sequence[Plugin]) -> Registry:
     return Registry(tuple(plugins), {k: dict(sorted(v.items())) for k, v in by_category.items()})
 
 
-def load_path(path: Path) -> ModuleType:
-    """Import a Python file or a package folder under its own name, without installing it.
-
-    Raises:
-        PluginError: there is no such file, its name is taken, or it cannot be imported.
-    """
-    file = (path / "__init__.py" if path.is_dir() else path).resolve()
-    name = path.resolve().stem
-    if not file.is_file():
-        raise PluginError(f"{path}: no Python file or package")
-    taken = sys.modules.get(name)
-    if taken is not None and getattr(taken, "__file__", None) == str(file):
-        return taken
-    if taken is not None or importlib.util.find_spec(name) is not None:
-        raise PluginError(f"{path}: a module named '{name}' exists already; rename the plugin")
-    return _import_file(name, file, package=path.is_dir())
-
-
-def _import_file(name: str, file: Path, *, package: bool) -> ModuleType:
-    folders = [str(file.parent)] if package else None
-    spec = importlib.util.spec_from_file_location(name, file, submodule_search_locations=folders)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module  # build references name it
-    try:
-        spec.loader.exec_module(module)
-    except BaseException:
-        del sys.modules[name]
-        raise
-    return module
-
-
-def _distribution(entry: metadata.EntryPoint) -> str:
-    return f"{entry.dist.name} {entry.dist.version}" if entry.dist else entry.value
-
-
-def _load(name: str, distribution: str, load: Any) -> Plugin:
-    """One plugin in its own manager, so that an error stays its own."""
-    try:
-        module = load()
-        _check_api(module, distribution)
-        manager = pluggy.PluginManager("crowdbot")
-        manager.add_hookspecs(hookspecs)
-        manager.register(module, name)
-        manager.check_pending()
-        listed = [(h, c) for h in _HOOKS for cs in getattr(manager.hook, h)() for c in cs]
-        for hook, component in listed:
-            _check_component(name, hook, component)
-        dirs = [d for ds in manager.hook.crowdbot_scenario_dirs() for d in ds]
-    except Exception as error:
-        text = f"{type(error).__name__}: {error}"
-        return Plugin(name=name, distribution=distribution, error=text)
-    return Plugin(
-        name=name,
-        distribution=distribution,
-        components=tuple(c for _, c in listed),
-        scenario_dirs=tuple(dirs),
-    )
-
-
-def _check_api(module: ModuleType, distribution: str) -> None:
-    version = getattr(module, "CROWDBOT_API", hookspecs.API_VERSION)
-    if version != hookspecs.API_VERSION:
-        raise PluginError(
-            f"{distribution} was written for plugin API {version}; "
-            f"this crowdbot speaks {hookspecs.API_VERSION}"
-        )
-
-
-def _check_component(plugin: str, hook: str, component: Component[Any]) -> None:
-    if component.category != _HOOKS[hook]:
-        raise PluginError(f"{hook} returned {component.kind}, a {component.category}")
-    if plugin != "builtin" and not component.kind.startswith(f"{plugin}."):
-        raise PluginError(f"kind '{component.kind}' must start with '{plugin}.'")
-    if component.category == "metric" and not component.has_card():
-        place = component.card_place or "the component's 'card'"
-        raise PluginError(f"metric '{component.kind}' has no card; it is looked for in {place}")
-
-
 def _name_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
-    twice = {n for n, k in Counter(p.name for p in plugins).items() if k > 1}
+    """The name of crowdbot's own plugin is refused to others before."""
+    names = Counter(p.name for p in plugins if not p.error)
     return {
-        i: f"E301 plugin name '{p.name}' is claimed by {_names(plugins, p.name)}"
+        i: f"E301 plugin name '{p.name}' is claimed by {_origins(plugins, p.name)}"
         for i, p in enumerate(plugins)
-        if p.name in twice
+        if names[p.name] > 1 and not p.error
     }
 
 
-def _names(plugins: Sequence[Plugin], name: str) -> str:
-    return " and ".join(p.distribution for p in plugins if p.name == name)
+def _origins(plugins: Sequence[Plugin], name: str) -> str:
+    return " and ".join(p.origin for p in plugins if p.name == name and not p.error)
 
 
 def _kind_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
@@ -292,7 +222,7 @@ def _kind_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
     errors = {}
     for (category, kind), indices in owners.items():
         if len(indices) > 1:
-            who = " and ".join(plugins[i].distribution for i in indices)
+            who = " and ".join(plugins[i].origin for i in indices)
             errors.update(dict.fromkeys(indices, f"E301 {category} '{kind}' is provided by {who}"))
     return errors
 

@@ -22,6 +22,8 @@ from crowdbot.errors import PlannerHungError
 
 #: Looks at the deadline so often, s.
 POLL = 0.1
+#: After so many seconds a step has hung.
+STEP_LIMIT = 10.0
 _SIGNAL: int | None = getattr(signal, "SIGUSR2", None)
 
 
@@ -37,7 +39,7 @@ class Watchdog:
 
     def __init__(
         self,
-        limit: float = 10.0,
+        limit: float = STEP_LIMIT,
         grace: float = 2.0,
         on_hang: Callable[[], object] | None = None,
     ) -> None:

@@ -41,6 +41,10 @@ class Built:
     def __init__(self, spec: PlannerSpec) -> None:
         self.spec = spec
 
+    def reset(self, *given: object) -> None: ...
+
+    def step(self, *given: object) -> None: ...
+
 
 def build(spec: PlannerSpec) -> Built:
     return Built(spec)

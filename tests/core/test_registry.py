@@ -93,7 +93,7 @@ def test_an_unknown_kind_names_near_ones() -> None:
         ("import no_such_module", "no_such_module"),
         ("raise SystemError('boo')", "boo"),
         ("def (", "SyntaxError"),
-        ("CROWDBOT_API = 2", "plugin API 2; this crowdbot speaks 1"),
+        ("CROWDBOT_API = 2", "plugin API 2; this crowdbot 0.1.0 speaks 1"),
     ],
 )
 def test_a_broken_plugin_hurts_only_itself(text: str, message: str, tmp_path: Path) -> None:

@@ -34,6 +34,7 @@ class Request:
         commands, commands_baseline: CSV files, or recordings with the two topics.
         limits: largest speed (m/s) and yaw rate (rad/s) that can be commanded.
         questionnaires: CSV file.
+        plugins, allow: what a process of its own has to load: paths, and the allow-list.
     """
 
     path: Path | None
@@ -47,6 +48,8 @@ class Request:
     questionnaires: Path | None = None
     metrics: tuple[str, ...] = ("*",)
     variants: str = "all"
+    plugins: tuple[Path, ...] = ()
+    allow: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,7 +107,7 @@ def rescore_all(requests: Sequence[Request], registry: Registry, jobs: int) -> I
 
 def _guarded(request: Request, registry: Registry | None = None) -> Rescored:
     try:
-        return rescore(request, registry or _own_registry())
+        return rescore(request, registry or _own_registry(request.plugins, request.allow))
     except CrowdbotError as error:
         text = str(error)
         path = request.path or Path()
@@ -115,8 +118,8 @@ def _guarded(request: Request, registry: Registry | None = None) -> Rescored:
 
 
 @cache
-def _own_registry() -> Registry:
-    return discover()
+def _own_registry(plugins: tuple[Path, ...], allow: tuple[str, ...] | None) -> Registry:
+    return discover(extra=plugins, allow=allow)
 
 
 def _commands(request: Request, file: Path | None, source: Source | None) -> Commands | None:

@@ -21,7 +21,7 @@ from crowdbot.core.sim.control import ControlledRobot, add_robot
 from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.images import Painter
 from crowdbot.core.sim.metric_logger import MetricLogger
-from crowdbot.core.sim.planner_system import PlannerSystem
+from crowdbot.core.sim.planner_system import People, PlannerSystem
 from crowdbot.core.sim.recorder import Recorder
 from crowdbot.core.sim.sensor_bank import SensorBank
 from crowdbot.core.sim.wall_contact import WallContacts
@@ -66,12 +66,14 @@ def build_diagram(
     run_seed: int,
     sensors: Collection[str],
     visible: Collection[str],
+    privileged: bool = False,
 ) -> Blocks:
     """Wire one run.
 
     Args:
         sensors: names of the sensors to simulate; readings do not depend on which others run.
         visible: names of those that the planner asked for.
+        privileged: whether the planner sees the truth.
     """
     robot = scenario.robots[robot_name]
     task = robot_task(robot, parts)
@@ -119,8 +121,15 @@ def build_diagram(
             host, bank, body, model.limits, task,
             rate=scenario.rates.planner, visible=dict.fromkeys(visible),
             on_step=on_step, on_signal=log.writer.signal,
+            people=_people(engine) if privileged else None,
         ),
     )  # fmt: skip
+    if privileged:
+        builder.Connect(robot_state, planner.GetInputPort(ports.ROBOT_STATE))
+        if crowd is not None and engine is not None and len(engine.agents):
+            builder.Connect(
+                crowd.GetOutputPort(ports.CROWD_STATE), planner.GetInputPort(ports.CROWD_STATE)
+            )
     builder.Connect(bank.GetOutputPort(ports.READINGS), planner.GetInputPort(ports.READINGS))
     builder.Connect(planner.GetOutputPort(ports.DESIRED_STATE), body.desired)
 
@@ -151,6 +160,12 @@ def build_diagram(
         walls=walls,
         crowd=crowd,
     )
+
+
+def _people(engine: CrowdEngine | None) -> People:
+    if engine is None:
+        return People(np.zeros(0, np.int64), np.zeros(0))
+    return People(engine.agents.id, engine.agents.radius)
 
 
 def _painters(sensors: Mapping[str, SensorInfo], scene: Scene) -> dict[str, Painter]:

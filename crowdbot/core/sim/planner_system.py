@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from pydrake.systems.framework import Context, DiscreteStateIndex, DiscreteValues, LeafSystem
 
-from crowdbot.core.interfaces import Observation, Pose, RobotLimits, Task
+from crowdbot.core.crowd import state as crowd_state
+from crowdbot.core.interfaces import Observation, Pose, RobotLimits, RobotState, Task, Truth
 from crowdbot.core.planner_host import HostedCommand, PlannerHost
 from crowdbot.core.recording.topics import is_odometry
 from crowdbot.core.sim import ports
@@ -23,8 +25,41 @@ from crowdbot.core.ticks import TICK, TICKS_PER_SECOND, ticks
 Array = NDArray[np.float64]
 
 
+@dataclass(frozen=True, slots=True)
+class People:
+    """Who may be met: number and radius of everybody, also of those who are not there yet."""
+
+    id: NDArray[np.int64]
+    radius: Array
+
+    def truth(self, robot: RobotState, crowd: Array) -> Truth:
+        """The robot and all who are present.
+
+        Args:
+            robot: its state.
+            crowd: the flat state of the crowd; empty where there is none.
+        """
+        rows = np.zeros((0, 4))
+        there = np.zeros(len(self.id), dtype=bool)
+        if len(self.id):
+            _, people = crowd_state.view(crowd)
+            there = people[:, crowd_state.WAITING] == crowd_state.PRESENT
+            rows = people[there, crowd_state.X : crowd_state.VY + 1]
+        return Truth(
+            pose=Pose(robot.x, robot.y, robot.yaw),
+            velocity=(robot.vx, robot.vy, robot.w),
+            people=rows[:, :2],
+            people_velocity=rows[:, 2:],
+            people_radius=self.radius[there],
+            people_id=self.id[there],
+        )
+
+
 class PlannerSystem(LeafSystem):
-    """Input: readings. Outputs: command and what the control mode makes of it."""
+    """Input: readings; robot and crowd for a privileged planner. Outputs: command, desired state.
+
+    The command is the planner's; the desired state is what the control mode makes of it.
+    """
 
     def __init__(
         self,
@@ -38,7 +73,9 @@ class PlannerSystem(LeafSystem):
         visible: Mapping[str, None],
         on_step: Callable[[float, HostedCommand], None],
         on_signal: Callable[[float, str, float], None],
+        people: People | None = None,
     ) -> None:
+        """``people``: who they are, for a planner that may know; None hides the truth."""
         super().__init__()
         self._host, self._desire, self._task = host, robot.desire, task
         self._dv, self._dw = limits.a_max * TICK, limits.alpha_max * TICK
@@ -52,6 +89,13 @@ class PlannerSystem(LeafSystem):
         self._port = self.DeclareVectorInputPort(
             ports.READINGS, bank.GetOutputPort(ports.READINGS).size()
         )
+        self._people = people
+        self._robot = self._crowd = None
+        if people is not None:
+            self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
+            if len(people.id):
+                size = crowd_state.size(len(people.id))
+                self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, size)
         command = self.DeclareDiscreteState(ports.COMMAND_SIZE)
         desired = self.DeclareDiscreteState(robot.desired_size)
         self.DeclareStateOutputPort(ports.COMMAND, command)
@@ -71,7 +115,9 @@ class PlannerSystem(LeafSystem):
             return
         if due:
             t = tick * TICK
-            hosted = self._host.step(self._observe(self._port.Eval(context), t))
+            hosted = self._host.step(
+                self._observe(self._port.Eval(context), t, self._truth(context))
+            )
             v, w, vy = hosted.command
             self._on_step(t, hosted)
         slewed_v, slewed_vy = _slew_planar(slewed_v, slewed_vy, v, vy, self._dv)
@@ -79,7 +125,15 @@ class PlannerSystem(LeafSystem):
         state[:] = (tick + 1.0, v, w, vy, slewed_v, slewed_w, slewed_vy)
         values.get_mutable_value(self._desired)[:] = self._desire(slewed_v, slewed_w, slewed_vy)
 
-    def _observe(self, bank: Array, t: float) -> Observation:
+    def _truth(self, context: Context) -> Truth | None:
+        """What is at this instant, if the planner may know."""
+        if self._people is None or self._robot is None:
+            return None
+        robot = RobotState(*self._robot.Eval(context).tolist())
+        crowd = np.zeros(0) if self._crowd is None else self._crowd.Eval(context)
+        return self._people.truth(robot, crowd)
+
+    def _observe(self, bank: Array, t: float, truth: Truth | None) -> Observation:
         pose, twist, sideways = self._task.start, (0.0, 0.0), [0.0]
         if self._odometry is not None:
             x, y, yaw, v, w, *sideways = bank[self._odometry.values].tolist()
@@ -96,8 +150,20 @@ class PlannerSystem(LeafSystem):
                 for n, s in self._slots.items()
                 if bank[s.stamp] >= 0.0
             },
-            log=lambda name, value: self._on_signal(t, name, value),
+            log=lambda name, value: self._on_signal(t, *_signal(name, value)),
+            truth=truth,
         )
+
+
+def _signal(name: str, value: float) -> tuple[str, float]:
+    """A signal that can be recorded.
+
+    Raises:
+        TypeError, ValueError: what the planner wants to log is no named number.
+    """
+    if not isinstance(name, str) or not name:
+        raise TypeError(f"log: the name of a signal is text, not {name!r}")
+    return name, float(value)
 
 
 def _slew_planar(

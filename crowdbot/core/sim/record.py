@@ -57,6 +57,7 @@ class RunSetup:
     progress: Callable[[Progress], None] | None
     stop: Callable[[], bool]
     on_hang: Callable[[], object] | None
+    step_budget: float | None = None
 
 
 def record_robot(setup: RunSetup) -> Outcome:
@@ -102,6 +103,7 @@ def record_robot(setup: RunSetup) -> Outcome:
         blocks = build_diagram(
             scenario, name, parts, model, engine, host, log, registry,
             run_seed=setup.seed, sensors=sensors, visible=visible,
+            privileged=choice.privileged,
         )  # fmt: skip
         outcome = run(
             blocks, task, log, stage=setup.stage, progress=setup.progress, stop=setup.stop
@@ -182,7 +184,10 @@ def _host(
     choice = setup.choice
     try:
         planner = _build(choice, watchdog)
-        host = PlannerHost(planner, choice.name, model.limits, watchdog=watchdog)
+        host = PlannerHost(
+            planner, choice.name, model.limits,
+            budget=setup.step_budget, watchdog=watchdog, origin=choice.origin,
+        )  # fmt: skip
         # Halved, so that planners may hand the seed to generators of signed integers.
         host.reset(task, sensors, stream_seed(setup.seed, robot, "planner") >> 1)
     except PlannerError as error:

@@ -64,6 +64,7 @@ class Request:
         metrics: patterns of the metrics to score; None is all.
         stop: asked several times a simulated second; True ends the run as interrupted.
         on_hang: called when a planner cannot be interrupted; should end the process.
+        step_budget: seconds of wall time that a planner step may take; None is no budget.
     """
 
     scenario: Scenario
@@ -79,6 +80,12 @@ class Request:
     progress: Callable[[Progress], None] | None = None
     stop: Callable[[], bool] = lambda: False
     on_hang: Callable[[], object] | None = None
+    step_budget: float | None = None
+
+    @property
+    def pinned(self) -> bool:
+        """Whether planner and plugins all come from installed distributions."""
+        return self.choice.pinned and all(p.pinned for p in self.registry.plugins if not p.error)
 
     @property
     def directory(self) -> Path:

@@ -24,6 +24,7 @@ from crowdbot.core.sim.record import RunSetup, record_crowd, record_robot
 from crowdbot.core.sim.request import Request, Run, read_references
 from crowdbot.core.sim.runner import INTERRUPTED, PLANNER_FAILED, Outcome
 from crowdbot.core.trajectory import Trajectories
+from crowdbot.core.watchdog import STEP_LIMIT
 from crowdbot.dsl.canonical import content_hash, dump_scenario_yaml
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError, Interrupted, PlannerHungError
@@ -60,6 +61,7 @@ def simulate(
         Interrupted: ``stop`` said so; a ``.partial`` directory is left.
     """
     choice = resolve_planner(planner, registry, planner_settings)
+    _check_budget(options.get("step_budget"))
     keep = None
     if out is None:
         keep = tempfile.TemporaryDirectory(prefix="crowdbot-")
@@ -81,6 +83,14 @@ def simulate(
     references = _references(request, people) if _wants_references(request) else {}
     record = _record_run(request, identity, people, references)
     return Run(request.directory, record, _keep=keep)
+
+
+def _check_budget(seconds: float | None) -> None:
+    if seconds is not None and not 0.0 < seconds < STEP_LIMIT:
+        raise InputError(
+            f"the budget of a step must be above 0 and below {STEP_LIMIT:g} s, "
+            f"after which it counts as hung; not {seconds:g}"
+        )
 
 
 def _check_needs(request: Request) -> None:
@@ -121,6 +131,7 @@ def _identity(request: Request, people: Population) -> dict[str, Any]:
             "name": request.choice.name,
             "label": request.choice.label,
         },
+        **_budget(request),
         "seed": request.seed,
         "hashes": {
             "spec": content_hash(scenario, registry.spec_versions(scenario)),
@@ -129,6 +140,10 @@ def _identity(request: Request, people: Population) -> dict[str, Any]:
         "versions": provenance.versions(),
         "plugins": provenance.plugins(registry),
     }
+
+
+def _budget(request: Request) -> dict[str, float]:
+    return {} if request.step_budget is None else {"step_budget": request.step_budget}
 
 
 def _reusable(request: Request, identity: Mapping[str, Any]) -> bool:
@@ -157,7 +172,7 @@ def _references(request: Request, people: Population) -> dict[str, Path]:
             "robot_alone",
             alone,
             nobody,
-            {"planner": request.choice.spec_dump, "seed": request.seed},
+            {"planner": request.choice.spec_dump, "seed": request.seed, **_budget(request)},
             lambda setup: record_robot(setup),
         ),
         "crowd_alone": _reference(
@@ -181,7 +196,8 @@ def _reference(
 ) -> Path:
     """The recording of one reference, computed once for all runs that depend on the same."""
     spec = content_hash(scenario, request.registry.spec_versions(scenario))
-    key = {"spec": spec, "versions": provenance.versions(), **depends_on}
+    others = provenance.third_parties(request.registry)
+    key = {"spec": spec, "versions": provenance.versions(), **others, **depends_on}
     run_id = provenance.digest({"reference": name, **key})
     short = run_id.removeprefix("cb1-sha256:")[:16]
     final = request.out / "references" / f"{name}-{short}"
@@ -247,7 +263,9 @@ def _run_record(
         "run_id": provenance.digest(identity),
         **identity,
         "hashes": hashes,
-        "pinned": request.choice.pinned,
+        "pinned": request.pinned,
+        "privileged": request.choice.privileged,
+        "allowed_plugins": request.registry.allowed,
         "recorded": request.record,
         **_ending(outcome),
         "references": {
@@ -274,6 +292,7 @@ def _write_files(
             "Suite": request.suite,
             "Scenario": scenario.id,
             "Planner": request.choice.label,
+            **provenance.remarks(record),
             "Seed": str(request.seed),
             "Status": record["status"],
             "Arrived at": "—" if arrival is None else f"{arrival:.2f} s",
@@ -298,6 +317,7 @@ def _setup(
         progress=request.progress,
         stop=request.stop,
         on_hang=request.on_hang,
+        step_budget=request.step_budget,
     )
 
 

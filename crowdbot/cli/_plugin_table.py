@@ -1,0 +1,97 @@
+"""The listing of plugins, for people and for machines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from crowdbot.core.component import Component
+from crowdbot.core.discovery import ALLOW
+from crowdbot.core.plugin import Plugin
+from crowdbot.core.registry import Registry
+
+_HEAD = ["plugin", "distribution", "api", "state", "provides"]
+_FEW = 6
+
+
+def as_text(registry: Registry) -> str:
+    """One row for each plugin; those that are not allowed come last."""
+    rows = [_row(p) for p in registry.plugins]
+    why = f"not on the list {ALLOW}" if registry.allowed else "--no-plugins"
+    rows += [[p.name, p.distribution, "–", "off", why] for p in registry.excluded]
+    text = table([_HEAD, *rows])
+    if any(p.error and p.traceback for p in registry.plugins):
+        text += "\n-v shows tracebacks"
+    return text
+
+
+def as_dicts(registry: Registry) -> list[dict[str, Any]]:
+    """The same as JSON, with all components."""
+    found = [_as_dict(p, "failed" if p.error else "ok") for p in registry.plugins]
+    return found + [_as_dict(p, "off") for p in registry.excluded]
+
+
+def tracebacks(registry: Registry) -> Iterator[str]:
+    """What is known of the plugins that failed."""
+    for plugin in registry.plugins:
+        if plugin.error:
+            yield f"\n{plugin.name} ({plugin.origin}):\n{plugin.traceback or plugin.error}".rstrip()
+
+
+def table(rows: Sequence[Sequence[str]]) -> str:
+    """Columns as wide as their widest cell; the last one is free."""
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]) - 1)]
+    lines = []
+    for row in rows:
+        cells = [f"{cell:<{width}}" for cell, width in zip(row, widths, strict=False)]
+        lines.append("  ".join([*cells, row[-1]]).rstrip())
+    return "\n".join(lines)
+
+
+def _row(plugin: Plugin) -> list[str]:
+    api = "–" if plugin.api is None else str(plugin.api)
+    head = [plugin.name, plugin.distribution, api]
+    if plugin.error:
+        return [*head, "failed", " ".join(plugin.error.split())]
+    provides = [f"{c}: {_few(kinds)}" for c, kinds in _provided(plugin).items()]
+    provides += ["suites"] * bool(plugin.scenario_dirs)
+    return [*head, "ok", "  ".join(provides) or "nothing"]
+
+
+def _few(kinds: list[str]) -> str:
+    return " ".join(kinds) if len(kinds) <= _FEW else str(len(kinds))
+
+
+def _provided(plugin: Plugin) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for component in plugin.components:
+        found.setdefault(component.category, []).append(component.kind)
+    return found
+
+
+def _as_dict(plugin: Plugin, state: str) -> dict[str, Any]:
+    return {
+        "name": plugin.name,
+        "distribution": plugin.distribution,
+        "pinned": plugin.pinned,
+        "file": plugin.file,
+        "api": plugin.api,
+        "state": state,
+        "error": plugin.error,
+        "traceback": plugin.traceback,
+        "provides": _provided(plugin),
+        "components": [_component(c) for c in plugin.components],
+        "scenario_dirs": [str(folder) for folder in plugin.scenario_dirs],
+    }
+
+
+def _component(component: Component[Any]) -> dict[str, Any]:
+    return {
+        "kind": component.kind,
+        "category": component.category,
+        "summary": component.summary,
+        "spec": f"{component.spec.__module__}:{component.spec.__qualname__}",
+        "build": component.build,
+        "spec_version": component.spec_version,
+        "experimental": component.experimental,
+    }
