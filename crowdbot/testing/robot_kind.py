@@ -1,0 +1,5 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+
+CHECKS: tuple[Callable[..., None], ...] = ()
