@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 from unittest import SkipTest
 
@@ -35,6 +35,7 @@ Array = NDArray[np.float64]
 RATE = 16.0  # steps per second
 LIMITS = RobotLimits(v_min=-0.65, v_max=0.65, w_max=3.14, a_max=1.0, alpha_max=2.0)
 SLOW = RobotLimits(v_min=0.0, v_max=0.2, w_max=0.5, a_max=0.3, alpha_max=0.5)
+_ORIGIN = Pose(0.0, 0.0, 0.0)
 _ROOM = [[-2, -3, 10, -3], [10, -3, 10, 3], [10, 3, -2, 3], [-2, 3, -2, -3]]
 _CELL = [[6, -1, 8, -1], [8, -1, 8, 1], [8, 1, 6, 1], [6, 1, 6, -1]]
 #: x, y, vx, vy of people who walk on through walls and robots.
@@ -53,10 +54,10 @@ class Course:
         limits: of the robot.
     """
 
-    start: Pose = Pose(0.0, 0.0, 0.0)
+    start: Pose = _ORIGIN
     goal: tuple[float, float] = (7.0, 0.0)
     walls: Sequence[Sequence[float]] = ()
-    people: Array = _PEOPLE
+    people: Array = field(default_factory=lambda: _PEOPLE)
     limits: RobotLimits = LIMITS
 
     @property

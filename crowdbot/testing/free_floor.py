@@ -77,7 +77,8 @@ class Grid:
         """The point with most room around it that lies within the walls."""
         centres, _ = self.cells()
         inside = np.all((centres > self._low) & (centres < self._high), axis=1)
-        gap = np.where(inside, np.minimum(self.clearance(centres), 1e9), -np.inf)
+        border = np.minimum(centres - self._low, self._high - centres).min(axis=1)
+        gap = np.where(inside, np.minimum(self.clearance(centres), border), -np.inf)
         x, y = centres[int(np.argmax(gap))].tolist()
         return x, y
 

@@ -19,7 +19,7 @@ from crowdbot.core.score_label import MetricComponent
 from crowdbot.core.trajectory import Trajectories
 from crowdbot.testing import degenerate
 from crowdbot.testing.card import check_card_examples_run, check_card_says_what_the_scores_say
-from crowdbot.testing.scored import Scored, laws_of, scores_of, variants_of
+from crowdbot.testing.scored import Scored, laws_of, scores_of, signalled, variants_of
 from crowdbot.testing.views import (
     COMMAND_VIEWS,
     VIEWS,
@@ -62,7 +62,7 @@ def check_scores_are_well_formed(component: Component[Any]) -> None:
     instead of NaN, infinity or an exception; or correct ``least``, ``most`` and ``whole``.
     """
     for seed in _SEEDS:
-        world = random_world(seed)
+        world = signalled(component, random_world(seed))
         for part in (world, replace(world, robot_alone=None, crowd_alone=None)):
             _assert_well_formed(component, scores_of(component, part))
 
@@ -75,6 +75,7 @@ def check_degenerate_runs(component: Component[Any]) -> None:
     for name, world in degenerate.worlds().items():
         try:
             _assert_well_formed(component, scores_of(component, world))
+            _assert_well_formed(component, scores_of(component, signalled(component, world)))
         except Exception as error:
             raise AssertionError(f"{name}: {error}") from error
 
@@ -85,7 +86,7 @@ def check_pure(component: Component[Any]) -> None:
     If this fails, copy before you change an array, and keep nothing between two calls.
     """
     for seed in _SEEDS:
-        world = random_world(seed)
+        world = signalled(component, random_world(seed))
         open_world = writable(world)
         before = arrays_of(open_world)
         first = scores_of(component, open_world)
@@ -102,7 +103,7 @@ def check_point_of_view(component: Component[Any]) -> None:
     zero; or name the view in ``Laws(exceptions=...)`` and say why.
     """
     for seed in _SEEDS:
-        world = random_world(seed)
+        world = signalled(component, random_world(seed))
         found = scores_of(component, world)
         for name, view in VIEWS.items():
             seen = _each_command(_each_run(world, view), COMMAND_VIEWS.get(name))
@@ -116,7 +117,7 @@ def check_itself(component: Component[Any]) -> None:
     If this fails, numerator and denominator are not computed alike.
     """
     for seed in _SEEDS:
-        run = random_world(seed).run
+        run = signalled(component, random_world(seed)).run
         found = scores_of(component, World(run=run, robot_alone=run, crowd_alone=run))
         for variant, one in found.items():
             expected = laws_of(component, variant).itself
@@ -130,8 +131,8 @@ def check_sampling(component: Component[Any]) -> None:
     If this fails, a sum over samples lacks its dt, or has one too many.
     """
     for seed in range(4):
-        coarse = scores_of(component, straight_world(seed, 32.0))
-        fine = scores_of(component, straight_world(seed, 64.0))
+        coarse = scores_of(component, signalled(component, straight_world(seed, 32.0)))
+        fine = scores_of(component, signalled(component, straight_world(seed, 64.0)))
         for variant, one in coarse.items():
             _assert_sampled(variant, laws_of(component, variant).finer, one, fine[variant])
 
@@ -146,7 +147,7 @@ def check_more_people(component: Component[Any]) -> None:
         return
 
     for seed in _SEEDS:
-        world = random_world(seed)
+        world = signalled(component, random_world(seed))
         assert world.run.agents is not None
         columns = range(len(world.run.agents.id))
         more = scores_of(component, world)
@@ -162,7 +163,7 @@ def check_masses(component: Component[Any]) -> None:
     If this fails, masses enter where they should not, or not where they should.
     """
     for seed in _SEEDS:
-        world = random_world(seed)
+        world = signalled(component, random_world(seed))
         light = scores_of(component, world)
         heavy = scores_of(component, _each_run(world, lambda run: heavier(run, 4.0)))
         for variant, one in light.items():
@@ -179,8 +180,8 @@ def check_teleports_add_nothing(component: Component[Any]) -> None:
     ``teleport`` in ``Laws(exceptions=...)`` only where places themselves are compared.
     """
     for seed in range(4):
-        walked = scores_of(component, portal_world(seed, through=False))
-        jumped = scores_of(component, portal_world(seed, through=True))
+        walked = scores_of(component, signalled(component, portal_world(seed, through=False)))
+        jumped = scores_of(component, signalled(component, portal_world(seed, through=True)))
         _assert_same(component, walked, jumped, "teleport")
 
 
@@ -190,7 +191,7 @@ def check_rounding(component: Component[Any]) -> None:
     If this fails, compare with a tolerance instead of with equality.
     """
     for seed in _SEEDS:
-        _assert_robust(component, random_world(seed), seed)
+        _assert_robust(component, signalled(component, random_world(seed)), seed)
     for name, world in degenerate.on_thresholds().items():
         for seed in range(3):
             try:

@@ -31,11 +31,12 @@ def tiny_scenario(registry: Registry, **changes: Any) -> Scenario:
     Args:
         registry: the installed components.
         changes: ``environment``, ``robot`` (the model), ``sensors``, ``control``, ``start``,
-            ``zone``, ``time_limit`` or ``crowd`` as in a document.
+            ``zone``, ``time_limit``, ``crowd`` or ``rates`` as in a document.
     """
+    control = {"control": changes["control"]} if "control" in changes else {}
     robot = {
+        **control,
         "model": changes.get("robot", {"kind": "turtlebot2"}),
-        "control": changes.get("control", "differential_drive"),
         "sensors": changes.get("sensors", {"odometry": {"kind": "wheel_odometry"}}),
         "task": {
             "start": changes.get("start", START),
@@ -47,6 +48,7 @@ def tiny_scenario(registry: Registry, **changes: Any) -> Scenario:
         "id": "tiny",
         "environment": changes.get("environment", ROOM),
         "crowd": changes.get("crowd"),
+        "rates": changes.get("rates", {}),
         "robots": {"robot": robot},
     }
     return registry.scenario_model.model_validate(document)
