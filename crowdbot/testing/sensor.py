@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -243,10 +243,7 @@ def _same_info(one: SensorInfo, two: SensorInfo) -> bool:
 
 
 def _copy_of(info: SensorInfo) -> SensorInfo:
-    values = {f.name: getattr(info, f.name) for f in fields(SensorInfo)}
-    return SensorInfo(
-        **{n: v.copy() if isinstance(v, np.ndarray) else v for n, v in values.items()}
-    )
+    return replace(info, angles=None if info.angles is None else info.angles.copy())
 
 
 def _assert_reading(name: str, info: SensorInfo, values: Array) -> None:
