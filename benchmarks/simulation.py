@@ -25,7 +25,7 @@ from crowdbot.api import registry
 from crowdbot.core.library import open_spec, pick
 from crowdbot.core.lock import population
 from crowdbot.core.planner_source import resolve_planner
-from crowdbot.core.sim.control.differential_drive import WHEEL_GAINS
+from crowdbot.core.sim.control.differential_drive import wheel_gains
 from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.diagram import robot_task
 from crowdbot.core.sim.metric_logger import MetricLogger
@@ -82,7 +82,7 @@ def plant_alone(world: Scenario, seconds: float) -> float:
     (robot,) = world.robots.values()
     builder = DiagramBuilder()
     parts = registry().build(world.environment)
-    rig = add_plant(builder, parts, registry().build(robot.model), WHEEL_GAINS)
+    rig = add_plant(builder, parts, registry().build(robot.model), wheel_gains(6.3, 0.0352))
     wheels = builder.AddSystem(ConstantVectorSource([0.0, 0.0, 10.0, 10.0]))
     desired = rig.plant.get_desired_state_input_port(rig.model)
     builder.Connect(wheels.get_output_port(), desired)

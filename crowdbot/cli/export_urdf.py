@@ -35,15 +35,16 @@ def export_urdf(
     """
     from crowdbot.core.aside import write_aside
     from crowdbot.core.registry import discover
+    from crowdbot.core.robots import build_model
     from crowdbot.core.urdf import to_urdf
 
     registry = discover()
     sensors: Mapping[str, SensorInfo] = {}
     if spec is None:
-        model = registry.build(registry.find("robot", robot).spec(kind=robot))
+        model = build_model(registry, registry.find("robot", robot).spec(kind=robot))
     else:
         found = _robot(registry, robot, spec, id_)
-        model, sensors = registry.build(found.model), _sensors(registry, found)
+        model, sensors = build_model(registry, found.model), _sensors(registry, found)
     text = to_urdf(model, sensors, robot)
     if out is None:
         typer.echo(text, nl=False)

@@ -34,7 +34,10 @@ class Pose(NamedTuple):
 
 
 class Command(NamedTuple):
-    """Body velocity: v forward (m/s), w counter-clockwise (rad/s), vy to the left (m/s)."""
+    """Body velocity: v forward (m/s), w counter-clockwise (rad/s), vy to the left (m/s).
+
+    Only a holonomic drive can give vy; for all others it is clamped to 0.
+    """
 
     v: float
     w: float
@@ -80,7 +83,9 @@ class EnvironmentParts:
 class RobotLimits:
     """A box of velocities and slew limits: m/s, rad/s, m/s^2, rad/s^2.
 
-    A robot that gets no command for ``command_timeout`` seconds brakes to a stop.
+    |vy| is at most ``vy_max``, which is 0 where the drive does not go sideways. ``a_max`` limits
+    the change of the vector (v, vy), in the robot's frame. A robot that gets no command for
+    ``command_timeout`` seconds brakes to a stop.
     """
 
     v_min: float
@@ -89,11 +94,12 @@ class RobotLimits:
     a_max: float
     alpha_max: float
     command_timeout: float = math.inf
+    vy_max: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DifferentialDrive:
-    """Two driven wheels. ``command_radius`` turns commands into wheel rates."""
+    """Two driven wheels on one axis. ``command_radius`` turns commands into wheel rates."""
 
     left_joint: str
     right_joint: str
@@ -102,12 +108,35 @@ class DifferentialDrive:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class HolonomicDrive:
+    """A base that goes in every direction, such as one on omni wheels.
+
+    The wheels themselves are not simulated: a force moves the base (control ``force``), or the
+    command does (``kinematic``). What touches the floor must slide without friction.
+
+    Attributes:
+        max_force: the largest horizontal force, N, in any direction.
+        max_torque: the largest torque about the vertical, N m.
+        wheel_radius: of the measuring wheels that odometry counts, m: two that roll forward,
+            ``track`` apart, and one under the base's frame that rolls to the left.
+        track: m.
+    """
+
+    max_force: float
+    max_torque: float
+    wheel_radius: float = 0.035
+    track: float = 0.23
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RobotModel:
     """A robot's body and drive.
 
     Attributes:
-        sdf: SDFormat text of one model, base frame on the drive axis' vertical.
-        base: name of the base link; its origin is ``base_height`` above the floor.
+        description: one robot in SDFormat or URDF. Joints with limits are held at zero; others
+            roll freely, but for the driven wheels. `crowdbot.core.robot_description` reads it.
+        base: name of the base link, which sensors are mounted on: x ahead, on the vertical of the
+            drive axis, ``base_height`` above the floor.
         footprint_radius: radius of the physical disc, m; of a capsule with ``footprint``.
         footprint: outline of a robot that is no disc, in its own frame, m: (2, 2) is the segment
             of a capsule, (K, 2) with K > 2 a convex polygon, counter-clockwise.
@@ -115,10 +144,10 @@ class RobotModel:
         force_height: height above the floor at which people push, m.
     """
 
-    sdf: str
+    description: str
     base: str
     base_height: float
-    drive: DifferentialDrive
+    drive: DifferentialDrive | HolonomicDrive
     limits: RobotLimits
     footprint_radius: float
     height: float
@@ -128,7 +157,11 @@ class RobotModel:
 
 
 class RobotState(NamedTuple):
-    """What everything downstream of the robot reads; world frame, SI."""
+    """What everything downstream of the robot reads; world frame, SI.
+
+    The last three are angles of wheels, driven or measuring: left, right, and one that rolls to
+    the left, which only a robot with a holonomic drive has.
+    """
 
     x: float
     y: float
@@ -140,6 +173,7 @@ class RobotState(NamedTuple):
     z: float
     left_angle: float
     right_angle: float
+    side_angle: float = 0.0
 
 
 # --------------------------------------------------------------------- sensor
@@ -279,6 +313,7 @@ class Observation:
         t: simulated time, s.
         pose: pose by wheel odometry (x, y, yaw).
         twist: forward speed (m/s) and yaw rate (rad/s) by wheel odometry.
+        vy: speed to the left (m/s) by odometry that measures it (``holonomic_odometry``).
         goal, goal_zone: in the same frame as ``pose``.
         readings: latest reading of each sensor that was asked for.
         log: ``log(name, value)`` records a named signal of the run.
@@ -289,6 +324,7 @@ class Observation:
     twist: tuple[float, float]
     goal: tuple[float, float]
     goal_zone: Array
+    vy: float = 0.0
     readings: Mapping[str, Reading] = field(default_factory=lambda: MappingProxyType({}))
     log: Callable[[str, float], None] = _ignore
 

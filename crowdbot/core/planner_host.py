@@ -150,11 +150,11 @@ class PlannerHost:
         return command
 
     def _clamp(self, command: Command) -> tuple[Command, bool]:
-        """Into the limits; a robot without sideways drive is told vy = 0."""
+        """Into the limits; that of vy is 0 for a robot without sideways drive."""
         limits = self._limits
         v = min(max(command.v, limits.v_min), limits.v_max)
         w = min(max(command.w, -limits.w_max), limits.w_max)
-        inside = Command(v, w)
+        inside = Command(v, w, min(max(command.vy, -limits.vy_max), limits.vy_max))
         excess = max(abs(a - b) for a, b in zip(command, inside, strict=True))
         return inside, excess > _ROUNDING
 
@@ -175,6 +175,7 @@ def _protected(obs: Observation) -> Observation:
         t=obs.t,
         pose=obs.pose,
         twist=obs.twist,
+        vy=obs.vy,
         goal=obs.goal,
         goal_zone=_read_only(obs.goal_zone),
         readings=MappingProxyType(readings),

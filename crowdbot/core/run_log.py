@@ -19,8 +19,12 @@ from crowdbot.core.recording import RecordingWriter
 class RunLog:
     """Books each event of the crowd once, in the order of agents."""
 
-    def __init__(self, writer: RecordingWriter, agent_id: NDArray[np.int64]) -> None:
+    def __init__(
+        self, writer: RecordingWriter, agent_id: NDArray[np.int64], *, sideways: bool = False
+    ) -> None:
+        """``sideways``: whether the robot's velocity may point elsewhere than it looks."""
         self.writer = writer
+        self._sideways = sideways
         self._id = agent_id
         self._jumps = np.zeros(len(agent_id))  # at the latest sample
         self._arrivals = np.zeros(len(agent_id))  # what is booked already
@@ -40,7 +44,7 @@ class RunLog:
             agents[:, people[:, s.WAITING] != s.PRESENT] = np.nan
             jump = people[:, s.JUMPS] != self._jumps
             self._jumps = people[:, s.JUMPS].copy()
-        self.writer.state(t, None if robot is None else _robot_row(robot), agents, jump)
+        self.writer.state(t, None if robot is None else self._row(robot), agents, jump)
 
     @property
     def events(self) -> int:
@@ -86,6 +90,12 @@ class RunLog:
             self._contact(people, i)
             self.contacts += 1
 
+    def _row(self, robot: RobotState) -> tuple[float, ...]:
+        forward = robot.vx * math.cos(robot.yaw) + robot.vy * math.sin(robot.yaw)
+        row = (robot.x, robot.y, robot.yaw, forward, robot.w)
+        velocity = (robot.vx, robot.vy) if self._sideways else ()
+        return tuple(float(number) for number in (*row, *velocity))
+
     def _book_trips(self, people: Array) -> None:
         """At most one arrival per agent lies between two ticks."""
         for i in np.flatnonzero(people[:, s.ARRIVALS] != self._arrivals):
@@ -103,8 +113,3 @@ class RunLog:
             peak_force=float(row[s.TOUCH_PEAK]),
             relative_speed=float(row[s.TOUCH_SPEED]),
         )
-
-
-def _robot_row(robot: RobotState) -> tuple[float, ...]:
-    forward = robot.vx * math.cos(robot.yaw) + robot.vy * math.sin(robot.yaw)
-    return (float(robot.x), float(robot.y), float(robot.yaw), float(forward), float(robot.w))

@@ -1,7 +1,7 @@
 """Robots as URDF, for the tools of ROS: the body, and a frame for each sensor.
 
-A robot is described in SDFormat or URDF (`RobotModel.sdf`). Both write poses as x, y, z, roll,
-pitch, yaw about fixed axes; they differ in where joints stand: a URDF joint is its child's frame.
+A robot is described in SDFormat or URDF (`RobotModel.description`). They differ in where joints
+stand: a URDF joint is its child's frame.
 """
 
 from __future__ import annotations
@@ -15,10 +15,13 @@ from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import RobotModel, SensorInfo
 from crowdbot.core.optical import OPTICAL_RPY, optical
+from crowdbot.core.robots import Description, read_description
+from crowdbot.core.robots.xml import matrix, name_of, pose_of
 from crowdbot.errors import InputError
 
 Array = NDArray[np.float64]
-FOOTPRINT = "base_footprint"
+FOOTPRINT, BASE = "base_footprint", "base_link"
+_SAME = 1e-3  # m, and of the entries of a rotation
 LEVEL = (0.0, 0.0, 0.0)
 _SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
 
@@ -33,22 +36,50 @@ def to_urdf(robot: RobotModel, sensors: Mapping[str, SensorInfo], name: str) -> 
     Raises:
         InputError: the description holds something that URDF cannot say.
     """
-    source = Xml.fromstring(robot.sdf)
-    document = source if source.tag == "robot" else _from_sdf(source)
+    described = read_description(robot.description)
+    document = described.model if described.format == "urdf" else _from_sdf(described)
     document.set("name", name)
-    _frame(
-        document, FOOTPRINT, robot.base, "base_footprint_joint", (0, 0, robot.base_height), LEVEL
-    )
+    _ground(document, robot, described)
     for sensor, info in sensors.items():
         if info.category == "odometry":
             continue
         x, y, z, yaw = info.mount
-        _frame(document, "base_link", sensor, f"{sensor}_joint", (x, y, z), (0.0, 0.0, yaw))
+        if sensor in described.links:
+            _check_same(sensor, info, described, robot.base)
+        else:
+            _frame(document, BASE, sensor, f"{sensor}_joint", (x, y, z), (0.0, 0.0, yaw))
         if info.camera is not None:
             eye = optical(sensor)
             _frame(document, sensor, eye, f"{eye}_joint", (0.0, 0.0, 0.0), OPTICAL_RPY)
     Xml.indent(document)
     return '<?xml version="1.0"?>\n' + Xml.tostring(document, encoding="unicode") + "\n"
+
+
+def _ground(document: Xml.Element, robot: RobotModel, described: Description) -> None:
+    """The frames that every recording has: ``base_link``, and ``base_footprint`` on the floor."""
+    if robot.base != BASE:
+        _frame(document, robot.base, BASE, f"{BASE}_joint", (0.0, 0.0, 0.0), LEVEL)
+    if FOOTPRINT in described.links:
+        height = float(described.pose(robot.base, FOOTPRINT)[2, 3])
+        if not math.isclose(height, robot.base_height, abs_tol=_SAME):
+            raise InputError(
+                f"'{FOOTPRINT}' is {height:g} m below '{robot.base}', whose base_height is "
+                f"{robot.base_height:g} m"
+            )
+        return
+    rise = float(described.pose(robot.base, described.root)[2, 3])
+    at = (0.0, 0.0, robot.base_height - rise)
+    _frame(document, FOOTPRINT, described.root, f"{FOOTPRINT}_joint", at, LEVEL)
+
+
+def _check_same(sensor: str, info: SensorInfo, described: Description, base: str) -> None:
+    """A link that has a sensor's name stands for it, where it is where the sensor is."""
+    x, y, z, yaw = info.mount
+    if not np.allclose(described.pose(sensor, base), matrix([x, y, z, 0.0, 0.0, yaw]), atol=_SAME):
+        raise InputError(
+            f"sensor '{sensor}' has the name of a link of the robot, and is mounted elsewhere: "
+            f"give it another name, or the link's mount"
+        )
 
 
 def _frame(
@@ -76,21 +107,13 @@ def _origin(parent: Xml.Element, pose: list[float]) -> None:
 
 
 # ---------------------------------------------------------------------------- SDFormat
-def _from_sdf(source: Xml.Element) -> Xml.Element:
-    model = source if source.tag == "model" else source.find("model")
-    if model is None:
-        raise InputError("the robot's description has no model")
+def _from_sdf(described: Description) -> Xml.Element:
     document = Xml.Element("robot")
-    links = {_name(link): link for link in model.findall("link")}
-    for name, link in links.items():
+    for name, link in described.links.items():
         _link(Xml.SubElement(document, "link", name=name), link)
-    for joint in model.findall("joint"):
-        _joint(document, joint, links)
+    for joint in described.model.findall("joint"):
+        _joint(document, joint, described)
     return document
-
-
-def _name(element: Xml.Element) -> str:
-    return element.get("name", "")
 
 
 def _link(link: Xml.Element, source: Xml.Element) -> None:
@@ -99,14 +122,14 @@ def _link(link: Xml.Element, source: Xml.Element) -> None:
         _inertial(Xml.SubElement(link, "inertial"), inertial)
     for kind in ("visual", "collision"):
         for item in source.findall(kind):
-            part = Xml.SubElement(link, kind, name=_name(item))
-            _origin(part, _pose(item))
+            part = Xml.SubElement(link, kind, name=name_of(item))
+            _origin(part, pose_of(item))
             _shape(Xml.SubElement(part, "geometry"), item)
             _material(part, item)
 
 
 def _inertial(inertial: Xml.Element, source: Xml.Element) -> None:
-    _origin(inertial, _pose(source))
+    _origin(inertial, pose_of(source))
     Xml.SubElement(inertial, "mass", value=source.findtext("mass", "0").strip())
     moments = {k: source.findtext(f"inertia/{k}", "0").strip() for k in _MOMENTS}
     Xml.SubElement(inertial, "inertia", moments)
@@ -119,28 +142,30 @@ def _shape(geometry: Xml.Element, source: Xml.Element) -> None:
     for shape in _SHAPES:
         found = source.find(f"geometry/{shape}")
         if found is not None:
-            Xml.SubElement(geometry, shape, {c.tag: (c.text or "").strip() for c in found})
+            numbers = {c.tag: (c.text or "").strip() for c in found}
+            if "uri" in numbers:
+                numbers["filename"] = numbers.pop("uri")
+            Xml.SubElement(geometry, shape, numbers)
             return
-    raise InputError(f"URDF has no shape like that of '{_name(source)}'")
+    raise InputError(f"URDF has no shape like that of '{name_of(source)}'")
 
 
 def _material(part: Xml.Element, source: Xml.Element) -> None:
     colour = source.findtext("material/diffuse")
     if part.tag == "visual" and colour is not None:
-        material = Xml.SubElement(part, "material", name=f"{_name(source)}_material")
+        material = Xml.SubElement(part, "material", name=f"{name_of(source)}_material")
         Xml.SubElement(material, "color", rgba=colour.strip())
 
 
-def _joint(document: Xml.Element, source: Xml.Element, links: Mapping[str, Xml.Element]) -> None:
-    name, kind = _name(source), source.get("type", "fixed")
-    parent, child = source.findtext("parent", "").strip(), source.findtext("child", "").strip()
-    if any(_pose(source)):
+def _joint(document: Xml.Element, source: Xml.Element, described: Description) -> None:
+    found = described.joints[name_of(source)]
+    name, kind = found.name, "continuous" if found.free else found.kind
+    if any(pose_of(source)):
         raise InputError(f"joint '{name}' stands beside its child's frame, as URDF joints cannot")
     joint = Xml.SubElement(document, "joint", name=name, type=kind)
-    Xml.SubElement(joint, "parent", link=parent)
-    Xml.SubElement(joint, "child", link=child)
-    there = np.linalg.inv(_in_model(links, parent)) @ _in_model(links, child)
-    _origin(joint, _numbers(there))
+    Xml.SubElement(joint, "parent", link=found.parent)
+    Xml.SubElement(joint, "child", link=found.child)
+    _origin(joint, _six(described.pose(found.child, found.parent)))
     axis = source.findtext("axis/xyz")
     if axis is not None:
         Xml.SubElement(joint, "axis", xyz=axis.strip())
@@ -153,37 +178,7 @@ def _joint(document: Xml.Element, source: Xml.Element, links: Mapping[str, Xml.E
         Xml.SubElement(joint, "limit", {"effort": "0", "velocity": "0", **limits})
 
 
-def _pose(element: Xml.Element) -> list[float]:
-    numbers = [float(v) for v in (element.findtext("pose") or "0 0 0 0 0 0").split()]
-    if len(numbers) != 6:
-        raise InputError(f"the pose of '{_name(element)}' has {len(numbers)} numbers, not 6")
-    return numbers
-
-
-def _in_model(links: Mapping[str, Xml.Element], name: str) -> Array:
-    """Pose of a link in the model's frame, 4 x 4."""
-    if name not in links:
-        raise InputError(f"the robot's description has no link '{name}'")
-    own = _matrix(_pose(links[name]))
-    pose = links[name].find("pose")
-    base = pose.get("relative_to") if pose is not None else None
-    return _in_model(links, base) @ own if base else own
-
-
-def _matrix(pose: list[float]) -> Array:
-    x, y, z, roll, pitch, yaw = pose
-    cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin))
-    return np.array(
-        [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, x],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr, y],
-            [-sp, cp * sr, cp * cr, z],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )
-
-
-def _numbers(matrix: Array) -> list[float]:
+def _six(matrix: Array) -> list[float]:
     """x, y, z, roll, pitch, yaw of a 4 x 4 pose."""
     flat = math.hypot(matrix[0, 0], matrix[1, 0])
     pitch = math.atan2(-matrix[2, 0], flat)

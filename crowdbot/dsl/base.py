@@ -114,6 +114,9 @@ class RobotSpec(ComponentSpec):
     """Abstract: a robot's body, drive and limits."""
 
     category: ClassVar[str] = "robot"
+    #: Control modes that fit the drive; the first is the default. A holonomic robot says
+    #: ``("force", "kinematic")``.
+    controls: ClassVar[tuple[str, ...]] = ("differential_drive", "force", "kinematic")
 
 
 class SensorSpec(ComponentSpec):

@@ -10,7 +10,14 @@ from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le, Lt
-from pydantic import Field, PrivateAttr, SerializeAsAny, field_validator, model_validator
+from pydantic import (
+    Field,
+    PrivateAttr,
+    SerializeAsAny,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from crowdbot.dsl.areas import GoalArea
 from crowdbot.dsl.base import (
@@ -186,10 +193,26 @@ class Robot(Spec):
 
     model: SerializeAsAny[RobotSpec]
     control: Literal["kinematic", "force", "differential_drive"] = Field(
-        default="differential_drive", description="How commands become motion."
+        default="differential_drive",
+        validate_default=False,  # where it does not fit, another one takes its place
+        description="How commands become motion. Default of a holonomic robot: force.",
     )
     sensors: dict[str, SerializeAsAny[SensorSpec]] = Field(default={}, description="Named sensors.")
     task: Task
+
+    @field_validator("control")
+    @classmethod
+    def _fits_the_drive(cls, value: str, info: ValidationInfo) -> str:
+        model = info.data.get("model")
+        if model is not None and value not in model.controls:
+            raise ValueError(f"does not fit {model.kind}; what does: {', '.join(model.controls)}")
+        return value
+
+    @model_validator(mode="after")
+    def _default_that_fits(self) -> Robot:
+        if "control" not in self.model_fields_set:
+            object.__setattr__(self, "control", self.model.controls[0])
+        return self
 
 
 class Contact(Spec):

@@ -14,7 +14,7 @@ from crowdbot.core.aside import write_aside
 from crowdbot.core.interfaces import RobotModel
 from crowdbot.core.registry import discover
 from crowdbot.core.urdf import to_urdf
-from crowdbot.errors import InputError
+from crowdbot.errors import CrowdbotError, InputError
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")
@@ -58,7 +58,7 @@ def test_masses_are_those_of_the_plant(capsys: pytest.CaptureFixture[str]) -> No
 
     model: RobotModel = discover().build(discover().find("robot", "turtlebot2").spec())
     assert main(["export-urdf", "turtlebot2"]) == 0
-    texts = {"sdf": model.sdf, "urdf": capsys.readouterr().out}
+    texts = {"sdf": model.description, "urdf": capsys.readouterr().out}
     found = {}
     for kind, text in texts.items():
         plant = MultibodyPlant(0.0)
@@ -97,7 +97,7 @@ def _model(sdf: str) -> RobotModel:
 
     registry = discover()
     built: RobotModel = registry.build(registry.find("robot", "turtlebot2").spec())
-    return replace(built, sdf=sdf)
+    return replace(built, description=sdf)
 
 
 NESTED = """<sdf version="1.9"><model name="m">
@@ -140,7 +140,7 @@ def test_poses_are_taken_to_the_joints_parent() -> None:
     ],
 )  # fmt: skip
 def test_what_urdf_cannot_say(old: str, new: str, message: str) -> None:
-    with pytest.raises(InputError, match=message):
+    with pytest.raises(CrowdbotError, match=message):
         to_urdf(_model(NESTED.replace(old, new)), {}, "m")
 
 

@@ -11,15 +11,20 @@ from numpy.typing import NDArray
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
-from crowdbot.core.interfaces import RobotModel
+from crowdbot.core.interfaces import DifferentialDrive, RobotModel
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec
 from crowdbot.plugins.robots.turtlebot2_build import build
 from crowdbot.plugins.robots.turtlebot2_parts import Part, parts
 
 
+def _drive(model: RobotModel) -> DifferentialDrive:
+    assert isinstance(model.drive, DifferentialDrive)
+    return model.drive
+
+
 def _plant(model: RobotModel) -> Any:
     plant: Any = MultibodyPlant(1.0 / 128.0)
-    Parser(plant).AddModelsFromString(model.sdf, "sdf")
+    Parser(plant).AddModelsFromString(model.description, "sdf")
     plant.Finalize()
     return plant
 
@@ -83,17 +88,18 @@ def test_parts_weigh_what_the_data_sheets_say_and_stay_within_the_disc() -> None
 def test_wheels_turn_forward_together() -> None:
     """Both wheels at the same positive rate drive along +x; the right one faster turns left."""
     model = build(Turtlebot2Spec())
+    drive = _drive(model)
     plant = _plant(model)
     assert plant.num_actuators() == 2
     context = plant.CreateDefaultContext()
-    for name, side in ((model.drive.left_joint, 1.0), (model.drive.right_joint, -1.0)):
+    for name, side in ((drive.left_joint, 1.0), (drive.right_joint, -1.0)):
         joint = plant.GetJointByName(name)
         axis = joint.frame_on_parent().CalcPoseInWorld(context).rotation() @ joint.revolute_axis()
         assert axis == pytest.approx([0.0, 1.0, 0.0], abs=1e-9)
         wheel = plant.EvalBodyPoseInWorld(context, joint.child_body()).translation()
         base = plant.EvalBodyPoseInWorld(context, plant.GetBodyByName(model.base)).translation()
-        assert (wheel - base)[1] == pytest.approx(side * 0.5 * model.drive.track)
-        assert (wheel - base)[2] + model.base_height == pytest.approx(model.drive.command_radius)
+        assert (wheel - base)[1] == pytest.approx(side * 0.5 * drive.track)
+        assert (wheel - base)[2] + model.base_height == pytest.approx(drive.command_radius)
 
 
 def test_limits_are_those_of_the_spec() -> None:
@@ -112,4 +118,4 @@ def test_limits_are_those_of_the_spec() -> None:
         2.0,
     )
     assert math.isclose(build(Turtlebot2Spec()).footprint_radius, 0.178)
-    assert np.isclose(build(Turtlebot2Spec()).drive.command_radius, 0.0352)
+    assert np.isclose(_drive(build(Turtlebot2Spec())).command_radius, 0.0352)

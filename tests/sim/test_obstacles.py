@@ -11,7 +11,7 @@ from sim_worlds import registry, scenario
 
 from crowdbot.core.interfaces import EnvironmentParts, Pose
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.core.sim.control.differential_drive import WHEEL_GAINS
+from crowdbot.core.sim.control.differential_drive import wheel_gains
 from crowdbot.core.sim.plant import add_plant, place_robot
 from crowdbot.core.sim.robot_state import RobotStateSystem
 from crowdbot.plugins.environments.floor import FloorSpec
@@ -24,7 +24,7 @@ def _drive(parts: EnvironmentParts, start: Pose, seconds: float) -> tuple[float,
     """Where a robot gets that drives straight on at about 0.4 m/s."""
     (robot,) = scenario().robots.values()
     builder = DiagramBuilder()
-    rig = add_plant(builder, parts, registry().build(robot.model), WHEEL_GAINS)
+    rig = add_plant(builder, parts, registry().build(robot.model), wheel_gains(6.3, 0.0352))
     wheels = builder.AddSystem(ConstantVectorSource([0.0, 0.0, 11.0, 11.0]))
     builder.Connect(wheels.get_output_port(), rig.plant.get_desired_state_input_port(rig.model))
     state = builder.AddSystem(RobotStateSystem(rig))

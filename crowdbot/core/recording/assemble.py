@@ -15,6 +15,8 @@ from crowdbot.core.recording.topics import Topic
 from crowdbot.core.trajectory import Trajectories
 from crowdbot.errors import InputError
 
+#: The last two are recorded of a robot that goes sideways.
+_ROBOT = ("x", "y", "theta", "v", "w", "vx", "vy")
 _CONTACT = ("t0", "t1", "agent", "impulse", "peak_force", "relative_speed")
 
 
@@ -70,11 +72,11 @@ class Collected:
         robot = header.robot
         if robot is None:
             return {}
-        rows = _rows(self._by_topic[Topic.STATE], "robot", 5)
+        names = _ROBOT if len(self._by_topic[Topic.STATE][0].robot) == len(_ROBOT) else _ROBOT[:5]
+        rows = _rows(self._by_topic[Topic.STATE], "robot", len(names))
         ends = self._by_topic[Topic.END]
-        names = ("robot_x", "robot_y", "robot_theta", "robot_v", "robot_w")
         return {
-            **dict(zip(names, rows.T, strict=True)),
+            **{f"robot_{name}": column for name, column in zip(names, rows.T, strict=True)},
             "robot_radius": robot.radius,
             "robot_mass": robot.mass,
             "robot_goal_time": ends[0].goal_time if ends and ends[0].arrived else None,

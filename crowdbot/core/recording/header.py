@@ -15,7 +15,7 @@ from crowdbot.errors import InputError
 
 #: Raised when the meaning of a ``/crowdbot/...`` message changes.
 VERSION = 1
-_LIMITS = ("v_min", "v_max", "w_max", "a_max", "alpha_max")
+_LIMITS = ("v_min", "v_max", "w_max", "a_max", "alpha_max", "vy_max")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,7 +107,7 @@ class RecordingHeader:
 
 
 def _robot_message(robot: RobotHeader) -> Any:
-    limits = None if robot.limits is None else [getattr(robot.limits, n) for n in _LIMITS]
+    limits = None if robot.limits is None else _limit_numbers(robot.limits)
     return ros.new(
         "crowdbot_msgs/RobotInfo",
         radius=robot.radius,
@@ -120,8 +120,16 @@ def _robot_message(robot: RobotHeader) -> Any:
     )
 
 
+def _limit_numbers(limits: RobotLimits) -> list[float]:
+    """The last one, of a robot that goes sideways, came later and is left out where it is 0."""
+    numbers = [getattr(limits, name) for name in _LIMITS]
+    return numbers if limits.vy_max else numbers[:-1]
+
+
 def _robot(message: Any) -> RobotHeader:
     goal, limits = ros.from_table(message.goal), ros.from_table(message.limits)
+    if limits is not None and len(limits) not in (len(_LIMITS) - 1, len(_LIMITS)):
+        raise ValueError(f"{len(limits)} limits of the robot")
     return RobotHeader(
         radius=message.radius,
         mass=message.mass,
@@ -130,7 +138,7 @@ def _robot(message: Any) -> RobotHeader:
         base_height=message.base_height,
         limits=None
         if limits is None
-        else RobotLimits(**dict(zip(_LIMITS, limits.tolist(), strict=True))),
+        else RobotLimits(**dict(zip(_LIMITS, limits.tolist(), strict=False))),
         footprint=ros.from_table(message.footprint),
     )
 

@@ -128,11 +128,12 @@ def transforms(items: Iterable[Any]) -> Any:
 
 
 def odometry(ns: int, child: str, values: Array) -> Any:
-    """What the robot believes: x, y, yaw, v, w in the frame ``odom``."""
-    x, y, yaw, v, w = values.tolist()
+    """What the robot believes: x, y, yaw, v, w, and perhaps vy, in the frame ``odom``."""
+    x, y, yaw, v, w, *aside = values.tolist()
+    vy = aside[0] if aside else 0.0
     pose = new("geometry_msgs/PoseWithCovariance", pose=_pose(x, y, yaw), covariance=_NO_COVARIANCE)
     speed = new(
-        "geometry_msgs/TwistWithCovariance", twist=twist(v, 0.0, w), covariance=_NO_COVARIANCE
+        "geometry_msgs/TwistWithCovariance", twist=twist(v, vy, w), covariance=_NO_COVARIANCE
     )
     return new(
         "nav_msgs/Odometry",

@@ -19,7 +19,7 @@ _STAMP = Struct("<iI")
 _ONE, _TWO = Struct("<d"), Struct("<2d")
 #: A stamp that stands for any other, and numbers that do.
 _NS = 0x11223344 * 10**9 + 0x12345678
-_A, _B, _C, _D, _E = 1.0625, 2.125, 3.1875, 4.25, 5.3125
+_A, _B, _C, _D, _E, _F = 1.0625, 2.125, 3.1875, 4.25, 5.3125, 6.375
 
 one, two = _ONE.pack, _TWO.pack
 
@@ -94,9 +94,9 @@ def transform(parent: str, child: str) -> Template:
 
 
 def odometry(child: str) -> Template:
-    """Places: stamp; x and y; turn; v; w."""
-    message = ros.odometry(_NS, child, np.array([_A, _B, _C, _D, _E]))
-    return Template(message, stamp(_NS), two(_A, _B), turn(_C), one(_D), one(_E))
+    """Places: stamp; x and y; turn; v and vy; w."""
+    message = ros.odometry(_NS, child, np.array([_A, _B, _C, _D, _E, _F]))
+    return Template(message, stamp(_NS), two(_A, _B), turn(_C), two(_D, _F), one(_E))
 
 
 def laser_scan(info: SensorInfo, angles: Array) -> Template:

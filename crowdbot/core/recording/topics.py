@@ -44,7 +44,7 @@ class SensorTopic(NamedTuple):
 def sensor_topics(sensors: Mapping[str, SensorInfo]) -> dict[str, SensorTopic]:
     """Sensor name -> topic. The first odometry has ``/odom`` for itself."""
     topics: dict[str, SensorTopic] = {}
-    odometry = [n for n, s in sensors.items() if s.category == "odometry" and s.shape == (5,)]
+    odometry = [n for n, s in sensors.items() if is_odometry(s)]
     for name, info in sensors.items():
         if name in odometry:
             topic = "/odom" if name == odometry[0] else f"/{name}/odom"
@@ -76,6 +76,11 @@ def is_scan(info: SensorInfo) -> bool:
     return bool(angles.ndim == 1 and np.ptp(steps) < 1e-6) if steps.size else True
 
 
+def is_odometry(info: SensorInfo) -> bool:
+    """Whether readings are x, y, yaw, v, w, and perhaps vy."""
+    return info.category == "odometry" and info.shape in ((5,), (6,))
+
+
 def is_cloud(info: SensorInfo) -> bool:
     """Whether readings are the ranges of beams (L, C) whose azimuths and elevations are known."""
     known = info.angles is not None and info.angles.shape == (*info.shape, 2)
@@ -86,9 +91,10 @@ def _odometry(topic: str) -> SensorTopic:
     blank = template.odometry("base_footprint")
 
     def message(ns: int, values: Array) -> bytes:
-        x, y, yaw, v, w = values.tolist()
-        turn, one = template.turn(yaw), template.one
-        return blank.fill(template.stamp(ns), template.two(x, y), turn, one(v), one(w))
+        x, y, yaw, v, w, *aside = values.tolist()
+        turn, two = template.turn(yaw), template.two
+        speed = two(v, aside[0] if aside else 0.0)
+        return blank.fill(template.stamp(ns), two(x, y), turn, speed, template.one(w))
 
     return SensorTopic(topic, blank.msgtype, message)
 

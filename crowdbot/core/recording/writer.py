@@ -82,7 +82,8 @@ class RecordingWriter:
 
         Args:
             t: time, s.
-            robot: x, y, theta, v, w; m, rad, m/s, rad/s; world frame.
+            robot: x, y, theta, v, w; m, rad, m/s, rad/s; world frame. Of a robot that goes
+                sideways also vx, vy, m/s.
             agents: (4, M) x, y, vx, vy; NaN where somebody is absent.
             jump: (M,) who was teleported since the previous sample.
             signals: name -> value at this time.

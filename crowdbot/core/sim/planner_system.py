@@ -14,6 +14,7 @@ from pydrake.systems.framework import Context, DiscreteStateIndex, DiscreteValue
 
 from crowdbot.core.interfaces import Observation, Pose, RobotLimits, Task
 from crowdbot.core.planner_host import HostedCommand, PlannerHost
+from crowdbot.core.recording.topics import is_odometry
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.sensor_bank import SensorBank
@@ -42,12 +43,11 @@ class PlannerSystem(LeafSystem):
         self._host, self._desire, self._task = host, robot.desire, task
         self._dv, self._dw = limits.a_max * TICK, limits.alpha_max * TICK
         self._ticks = ticks(rate)
-        self._timeout = math.ceil(limits.command_timeout * TICKS_PER_SECOND)
+        patience = limits.command_timeout * TICKS_PER_SECOND
+        self._timeout = math.ceil(patience) if math.isfinite(patience) else -1
         self._bank = bank
         self._slots = {n: s for n, s in bank.slots.items() if n in visible}
-        self._odometry = next(
-            (s for s in bank.slots.values() if s.info.category == "odometry"), None
-        )
+        self._odometry = next((s for s in bank.slots.values() if is_odometry(s.info)), None)
         self._on_step, self._on_signal = on_step, on_signal
         self._port = self.DeclareVectorInputPort(
             ports.READINGS, bank.GetOutputPort(ports.READINGS).size()
@@ -61,33 +61,34 @@ class PlannerSystem(LeafSystem):
 
     def _update(self, context: Context, values: DiscreteValues) -> None:
         state = values.get_mutable_value(self._command)
-        tick, v, w, slewed_v, slewed_w = state.tolist()
+        tick, v, w, vy, slewed_v, slewed_w, slewed_vy = state.tolist()
         since = int(tick) % self._ticks
         due = since == 0
         if since == self._timeout:  # a driver that hears nothing stops the robot
-            v = w = 0.0
-        if not due and slewed_v == v and slewed_w == w:
+            v = w = vy = 0.0
+        if not due and slewed_v == v and slewed_w == w and slewed_vy == vy:
             state[0] = tick + 1.0  # all the rest stays as it is
             return
         if due:
             t = tick * TICK
             hosted = self._host.step(self._observe(self._port.Eval(context), t))
-            v, w = hosted.command.v, hosted.command.w
+            v, w, vy = hosted.command
             self._on_step(t, hosted)
-        slewed_v, slewed_w = _slew(slewed_v, v, self._dv), _slew(slewed_w, w, self._dw)
-        state[:] = (tick + 1.0, v, w, slewed_v, slewed_w)
-        values.get_mutable_value(self._desired)[:] = self._desire(slewed_v, slewed_w)
+        slewed_v, slewed_vy = _slew_planar(slewed_v, slewed_vy, v, vy, self._dv)
+        slewed_w = _slew(slewed_w, w, self._dw)
+        state[:] = (tick + 1.0, v, w, vy, slewed_v, slewed_w, slewed_vy)
+        values.get_mutable_value(self._desired)[:] = self._desire(slewed_v, slewed_w, slewed_vy)
 
     def _observe(self, bank: Array, t: float) -> Observation:
-        if self._odometry is None:
-            pose, twist = self._task.start, (0.0, 0.0)
-        else:
-            x, y, yaw, v, w = bank[self._odometry.values].tolist()
+        pose, twist, sideways = self._task.start, (0.0, 0.0), [0.0]
+        if self._odometry is not None:
+            x, y, yaw, v, w, *sideways = bank[self._odometry.values].tolist()
             pose, twist = Pose(x, y, yaw), (v, w)
         return Observation(
             t=t,
             pose=pose,
             twist=twist,
+            vy=sideways[0] if sideways else 0.0,
             goal=self._task.goal,
             goal_zone=self._task.goal_zone,
             readings={
@@ -97,6 +98,19 @@ class PlannerSystem(LeafSystem):
             },
             log=lambda name, value: self._on_signal(t, name, value),
         )
+
+
+def _slew_planar(
+    v: float, vy: float, wanted_v: float, wanted_vy: float, step: float
+) -> tuple[float, float]:
+    """One step of a vector towards another, no longer than ``step``."""
+    if vy == wanted_vy:
+        return _slew(v, wanted_v, step), vy
+    ahead, aside = wanted_v - v, wanted_vy - vy
+    length = math.hypot(ahead, aside)
+    if length <= step:
+        return wanted_v, wanted_vy
+    return v + ahead * step / length, vy + aside * step / length
 
 
 def _slew(now: float, wanted: float, step: float) -> float:

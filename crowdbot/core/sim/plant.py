@@ -15,11 +15,20 @@ from pydrake.multibody.plant import (
     MultibodyPlant,
     MultibodyPlantConfig,
 )
-from pydrake.multibody.tree import ModelInstanceIndex, PdControllerGains
+from pydrake.multibody.tree import (
+    Joint,
+    JointActuator,
+    ModelInstanceIndex,
+    PdControllerGains,
+    RigidBody,
+)
 from pydrake.systems.framework import DiagramBuilder
 
-from crowdbot.core.interfaces import EnvironmentParts, Pose, RobotModel
+from crowdbot.core.interfaces import DifferentialDrive, EnvironmentParts, Pose, RobotModel
+from crowdbot.core.robots import Description, read_description
+from crowdbot.core.robots.simplify import simplified
 from crowdbot.core.ticks import TICK
+from crowdbot.errors import PluginError
 
 _FLOOR = CoulombFriction(1.0, 1.0)
 _WALL = CoulombFriction(0.3, 0.3)
@@ -28,11 +37,20 @@ _WALL_THICKNESS = 0.2  # m
 
 @dataclass(frozen=True, slots=True)
 class RobotPlant:
-    """The finished plant and its one robot."""
+    """The finished plant and its one robot.
+
+    Attributes:
+        root: the body that floats; the base hangs from it.
+        rise: height of the base's frame above the root's, m.
+        wheels: the driven joints, left and right; none of a holonomic drive.
+    """
 
     plant: MultibodyPlant
     model: ModelInstanceIndex
     robot: RobotModel
+    root: RigidBody
+    rise: float
+    wheels: tuple[Joint, ...]
 
 
 def add_plant(
@@ -41,12 +59,20 @@ def add_plant(
     robot: RobotModel,
     gains: PdControllerGains | None,
 ) -> RobotPlant:
-    """Add the plant to a diagram, ready to be wired; without gains the wheels roll freely."""
+    """Add the plant to a diagram, ready to be wired; without gains the wheels roll freely.
+
+    Raises:
+        PluginError: Drake cannot make a robot of its description.
+    """
     config = MultibodyPlantConfig(
         time_step=TICK, discrete_contact_approximation="lagged", contact_model="point"
     )
     plant, _ = AddMultibodyPlant(config, builder)
-    (model,) = Parser(plant).AddModelsFromString(robot.sdf, "sdf")
+    described = read_description(robot.description)
+    drive = robot.drive
+    driven = (drive.left_joint, drive.right_joint) if isinstance(drive, DifferentialDrive) else ()
+    model = _parse(plant, described, driven)
+    wheels = _motorised(plant, model, described, driven)
     world = plant.world_body()
     plant.RegisterCollisionGeometry(
         world, RigidTransform([0.0, 0.0, -1.0]), Box(1e3, 1e3, 2.0), "floor", _FLOOR
@@ -63,12 +89,54 @@ def add_plant(
         pillar = Cylinder(radius, high - low)
         plant.RegisterCollisionGeometry(world, pose, pillar, f"pillar{p}", _WALL)
     if gains is not None:
-        for joint in (robot.drive.left_joint, robot.drive.right_joint):
-            plant.GetJointActuatorByName(joint).set_controller_gains(gains)
+        for joint in wheels:
+            motor_of(plant, joint).set_controller_gains(gains)
     # With sampled ports the crowd would see the plant already advanced: action != reaction.
     plant.SetUseSampledOutputPorts(False)
-    plant.Finalize()
-    return RobotPlant(plant, model, robot)
+    try:
+        plant.Finalize()
+    except RuntimeError as error:
+        raise PluginError(f"the robot cannot be simulated: {error}") from error
+    rise = float(described.pose(robot.base, described.root)[2, 3])
+    root = plant.GetBodyByName(described.root, model)
+    return RobotPlant(plant, model, robot, root, rise, wheels)
+
+
+def _parse(
+    plant: MultibodyPlant, described: Description, driven: tuple[str, ...]
+) -> ModelInstanceIndex:
+    try:
+        text = simplified(described, driven)
+        (model,) = Parser(plant).AddModelsFromString(text, described.format)
+    except (RuntimeError, ValueError) as error:
+        raise PluginError(f"the robot's description cannot be read by Drake: {error}") from error
+    return model
+
+
+def _motorised(
+    plant: MultibodyPlant,
+    model: ModelInstanceIndex,
+    described: Description,
+    names: tuple[str, ...],
+) -> tuple[Joint, ...]:
+    """The driven wheels' joints; there is a motor on each of them, and on nothing else."""
+    joints = tuple(plant.GetJointByName(name, model) for name in names)
+    moved = set()
+    for index in plant.GetJointActuatorIndices():  # that of one model is empty here
+        motor = plant.get_joint_actuator(index)
+        moved.add(motor.joint().name())
+        if motor.joint().name() not in names:
+            plant.RemoveJointActuator(motor)
+    for name, joint in zip(names, joints, strict=True):
+        if name not in moved:
+            plant.AddJointActuator(name, joint, described.joint(name).effort)
+    return joints
+
+
+def motor_of(plant: MultibodyPlant, joint: Joint) -> JointActuator:
+    """The actuator of a driven wheel's joint."""
+    motors = (plant.get_joint_actuator(i) for i in plant.GetJointActuatorIndices())
+    return next(m for m in motors if m.joint().index() == joint.index())
 
 
 def wall_box(
@@ -93,8 +161,6 @@ def solid_prism(outline: NDArray[np.float64], heights: NDArray[np.float64], name
 
 def place_robot(rig: RobotPlant, context: object, start: Pose) -> None:
     """Put the robot on the floor at its start pose, at rest."""
-    base = rig.plant.GetBodyByName(rig.robot.base, rig.model)
-    pose = RigidTransform(
-        RollPitchYaw(0.0, 0.0, start.yaw), [start.x, start.y, rig.robot.base_height]
-    )
-    rig.plant.SetFreeBodyPose(context, base, pose)
+    height = rig.robot.base_height - rig.rise
+    pose = RigidTransform(RollPitchYaw(0.0, 0.0, start.yaw), [start.x, start.y, height])
+    rig.plant.SetFreeBodyPose(context, rig.root, pose)

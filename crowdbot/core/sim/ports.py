@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-#: x, y, yaw, vx, vy, w, tilt, z, left and right wheel angle; world frame, SI.
-ROBOT_STATE, ROBOT_STATE_SIZE = "robot_state", 10
+#: The fields of `RobotState`; world frame, SI.
+ROBOT_STATE, ROBOT_STATE_SIZE = "robot_state", 11
 #: The flat vector of `crowdbot.core.crowd.state`.
 CROWD_STATE = "crowd_state"
 #: Number of trips, and of contacts with the robot, that have ended.
@@ -14,7 +14,7 @@ ROBOT_FORCE = "robot_force"
 READINGS = "readings"
 #: What the control mode makes of a command.
 DESIRED_STATE = "desired_state"
-#: Tick, the planner's command v (m/s) and w (rad/s), the same two after slew limits.
-COMMAND, COMMAND_SIZE = "command", 5
+#: Tick, the planner's command v (m/s), w (rad/s), vy (m/s), the same three after slew limits.
+COMMAND, COMMAND_SIZE = "command", 7
 #: Drake's contact results of the plant.
 FORCES = "forces"

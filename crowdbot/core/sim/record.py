@@ -17,6 +17,7 @@ from crowdbot.core.crowd_run import run_crowd
 from crowdbot.core.crowd_setup import build_crowd
 from crowdbot.core.interfaces import (
     EnvironmentParts,
+    HolonomicDrive,
     Observation,
     Planner,
     RobotLimits,
@@ -29,6 +30,7 @@ from crowdbot.core.planner_source import PlannerChoice, select_sensors
 from crowdbot.core.realisation import Realisation
 from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter, RobotHeader
 from crowdbot.core.registry import Registry
+from crowdbot.core.robots import build_robot
 from crowdbot.core.run_log import RunLog
 from crowdbot.core.sim.diagram import build_diagram, robot_task
 from crowdbot.core.sim.runner import INTERRUPTED, TIMEOUT, Outcome, Progress, run
@@ -64,7 +66,7 @@ def record_robot(setup: RunSetup) -> Outcome:
     scenario, registry = setup.scenario, setup.registry
     ((name, robot),) = scenario.robots.items()
     parts: EnvironmentParts = registry.build(scenario.environment)
-    model: RobotModel = registry.build(robot.model)
+    model = build_robot(registry, robot)
     engine = build_crowd(scenario, setup.agents, parts, registry)
     infos = {n: _framed(n, registry.build(x).info()) for n, x in robot.sensors.items()}
     choice = setup.choice
@@ -86,7 +88,8 @@ def record_robot(setup: RunSetup) -> Outcome:
         goal_zone=task.goal_zone,
     )
     with _recording(setup, header) as (writer, ending), _watchdog(setup) as watchdog:
-        log = RunLog(writer, _ids(engine))
+        sideways = isinstance(model.drive, HolonomicDrive)
+        log = RunLog(writer, _ids(engine), sideways=sideways)
         seen = {n: infos[n] for n in visible}
         host = _host(setup, model, task, seen, watchdog, name)
         if engine is not None:

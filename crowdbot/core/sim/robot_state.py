@@ -6,11 +6,20 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, LeafSystem
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    DependencyTicket,
+    DiagramBuilder,
+    DiscreteStateIndex,
+    DiscreteValues,
+    LeafSystem,
+)
 
-from crowdbot.core.interfaces import RobotState
+from crowdbot.core.interfaces import HolonomicDrive, Pose, RobotState
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.plant import RobotPlant
+from crowdbot.core.ticks import TICK
 
 Array = NDArray[np.float64]
 
@@ -20,20 +29,22 @@ class RobotStateSystem(LeafSystem):
 
     def __init__(self, rig: RobotPlant) -> None:
         super().__init__()
-        plant, drive = rig.plant, rig.robot.drive
+        plant, self._rise = rig.plant, rig.rise
         size = plant.num_positions(rig.model) + plant.num_velocities(rig.model)
-        joints = [plant.GetJointByName(j) for j in (drive.left_joint, drive.right_joint)]
-        base = plant.GetBodyByName(rig.robot.base, rig.model)
-        self._quaternion = base.floating_positions_start()
-        self._angular = base.floating_velocities_start_in_v() + plant.num_positions(rig.model)
-        self._wheels = [j.position_start() for j in joints]
+        self._quaternion = rig.root.floating_positions_start()
+        self._angular = rig.root.floating_velocities_start_in_v() + plant.num_positions(rig.model)
+        self._wheels = [j.position_start() for j in rig.wheels]
         self._port = self.DeclareVectorInputPort("plant_state", size)
         self.DeclareVectorOutputPort(
             ports.ROBOT_STATE,
             ports.ROBOT_STATE_SIZE,
             self._calc,
-            prerequisites_of_calc={self._port.ticket()},
+            prerequisites_of_calc={self._port.ticket(), *self._kept()},
         )
+
+    def _kept(self) -> set[DependencyTicket]:
+        """What else the output depends on."""
+        return set()
 
     def _calc(self, context: Context, output: BasicVector) -> None:
         output.get_mutable_value()[:] = self.convert(self._port.Eval(context))
@@ -44,6 +55,7 @@ class RobotStateSystem(LeafSystem):
         w, x, y, z, px, py, pz = values[self._quaternion : self._quaternion + 7]
         _, _, wz, vx, vy, _ = values[self._angular : self._angular + 6]
         up = 1.0 - 2.0 * (x * x + y * y)  # cosine of the angle between body and world z
+        left, right = (values[k] for k in self._wheels) if self._wheels else (0.0, 0.0)
         return RobotState(
             x=px,
             y=py,
@@ -52,15 +64,59 @@ class RobotStateSystem(LeafSystem):
             vy=vy,
             w=wz,
             tilt=math.acos(min(1.0, max(-1.0, up))),
-            z=pz,
-            left_angle=values[self._wheels[0]],
-            right_angle=values[self._wheels[1]],
+            z=pz + self._rise,
+            left_angle=left,
+            right_angle=right,
+        )
+
+
+class MeasuredRobotState(RobotStateSystem):
+    """The same for a base without driven wheels: three measuring wheels roll along with it.
+
+    State: pose at the last tick, and the three angles then.
+    """
+
+    def __init__(self, rig: RobotPlant) -> None:
+        drive = rig.robot.drive
+        assert isinstance(drive, HolonomicDrive)
+        self._drive = drive
+        super().__init__(rig)
+        self.DeclarePeriodicDiscreteUpdateEvent(TICK, 0.0, self._update)
+
+    def _kept(self) -> set[DependencyTicket]:
+        self._memory = DiscreteStateIndex(self.DeclareDiscreteState(6))
+        return {self.discrete_state_ticket(self._memory)}
+
+    def place(self, context: object, start: Pose) -> None:
+        """Let the wheels begin to count at a pose."""
+        mine = self.GetMyMutableContextFromRoot(context)
+        mine.SetDiscreteState(self._memory, [*start, 0.0, 0.0, 0.0])
+
+    def _calc(self, context: Context, output: BasicVector) -> None:
+        output.get_mutable_value()[:] = self._measured(context)
+
+    def _update(self, context: Context, values: DiscreteValues) -> None:
+        now = self._measured(context)
+        values.get_mutable_value(self._memory)[:] = (*now[:3], *now[-3:])
+
+    def _measured(self, context: Context) -> RobotState:
+        now = self.convert(self._port.Eval(context))
+        x, y, yaw, left, right, side = context.get_discrete_state(self._memory).value().tolist()
+        turn = math.remainder(now.yaw - yaw, 2.0 * math.pi)
+        c, s = math.cos(yaw + 0.5 * turn), math.sin(yaw + 0.5 * turn)
+        dx, dy = now.x - x, now.y - y
+        ahead, across = c * dx + s * dy, 0.5 * self._drive.track * turn
+        radius = self._drive.wheel_radius
+        return now._replace(
+            left_angle=left + (ahead - across) / radius,
+            right_angle=right + (ahead + across) / radius,
+            side_angle=side + (c * dy - s * dx) / radius,
         )
 
 
 def add_robot_state(builder: DiagramBuilder, rig: RobotPlant) -> RobotStateSystem:
     """Add the adaptor to a diagram and connect it to the plant."""
-    state = RobotStateSystem(rig)
+    state = RobotStateSystem(rig) if rig.wheels else MeasuredRobotState(rig)
     builder.AddNamedSystem("robot_state", state)
     builder.Connect(rig.plant.get_state_output_port(rig.model), state.GetInputPort("plant_state"))
     return state

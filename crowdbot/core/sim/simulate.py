@@ -16,6 +16,7 @@ from crowdbot.core.planner_source import resolve_planner, select_sensors
 from crowdbot.core.recording import read_scans, read_trajectories
 from crowdbot.core.registry import Registry
 from crowdbot.core.replay import write_replay
+from crowdbot.core.robots import build_robot
 from crowdbot.core.scores_table import write_scores_csv
 from crowdbot.core.sim.record import RunSetup, record_crowd, record_robot
 from crowdbot.core.sim.request import Request, Run, read_references
@@ -84,10 +85,13 @@ def _check_needs(request: Request) -> None:
     """Refuse what this robot, or this machine, cannot give before anything is written.
 
     Raises:
-        InputError: the robot lacks a sensor that the planner needs.
+        InputError: the robot lacks a sensor that the planner needs, or its control mode does not
+            fit its drive.
+        PluginError: the robot cannot be built.
         MissingLibraryError: colour images are wanted where they cannot be drawn.
     """
     (robot,) = request.scenario.robots.values()
+    build_robot(request.registry, robot)
     infos = {n: request.registry.build(x).info() for n, x in robot.sensors.items()}
     choice = request.choice
     visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)

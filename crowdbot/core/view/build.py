@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 from crowdbot.core.realisation import Realisation
 from crowdbot.core.registry import Registry
+from crowdbot.core.robots import build_model
 from crowdbot.core.view.scene import RobotView, Scene, Sector
 from crowdbot.core.view.shapes import Point
 from crowdbot.dsl.areas import Area
@@ -48,7 +49,7 @@ def _robot(name: str, robot: Robot, registry: Registry) -> RobotView:
         x=x,
         y=y,
         yaw=yaw,
-        radius=registry.build(robot.model).footprint_radius,
+        radius=build_model(registry, robot.model).footprint_radius,
         goal=robot.task.goal.zone,
         sensors=tuple(_sectors(robot, x, y, yaw)),
     )

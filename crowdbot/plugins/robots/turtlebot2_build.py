@@ -27,7 +27,7 @@ def build(spec: Turtlebot2Spec) -> RobotModel:
     (_, _, z), _ = balance(parts(body))
     centre = (body * (z + BASE_HEIGHT) + 2.0 * WHEEL_MASS * WHEEL_RADIUS) / spec.mass
     return RobotModel(
-        sdf=_sdf(spec.mass),
+        description=_sdf(spec.mass),
         base="base_link",
         base_height=BASE_HEIGHT,
         drive=DifferentialDrive(

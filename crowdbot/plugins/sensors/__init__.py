@@ -8,7 +8,7 @@ from crowdbot.plugins.sensors.lidar3d import LIDAR3D
 from crowdbot.plugins.sensors.people_tracker import PEOPLE_TRACKER
 from crowdbot.plugins.sensors.rgbd_camera import RGBD_CAMERA
 from crowdbot.plugins.sensors.ultrasound import ULTRASOUND
-from crowdbot.plugins.sensors.wheel_odometry import WHEEL_ODOMETRY
+from crowdbot.plugins.sensors.wheel_odometry import HOLONOMIC_ODOMETRY, WHEEL_ODOMETRY
 
 COMPONENTS = (
     LIDAR2D,
@@ -17,6 +17,7 @@ COMPONENTS = (
     INFRARED,
     RGBD_CAMERA,
     WHEEL_ODOMETRY,
+    HOLONOMIC_ODOMETRY,
     IMU,
     BUMPER,
     PEOPLE_TRACKER,

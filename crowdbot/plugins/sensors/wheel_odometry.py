@@ -12,10 +12,9 @@ from crowdbot.dsl.base import SensorSpec
 from crowdbot.dsl.quantities import PositiveFrequency, PositiveLength
 
 
-class WheelOdometrySpec(SensorSpec):
-    """Reading: x, y (m), yaw (rad), v (m/s), w (rad/s); starts at the task's start pose."""
+class OdometrySpec(SensorSpec):
+    """What odometry by wheels of either sort is told."""
 
-    kind: Literal["wheel_odometry"] = "wheel_odometry"
     rate: PositiveFrequency = Field(default=64.0, le=128, description="Readings per second, Hz.")
     wheel_radius: PositiveLength = Field(
         default=0.035, description="Radius the firmware believes in, m."
@@ -36,8 +35,29 @@ class WheelOdometrySpec(SensorSpec):
     )
 
 
+class WheelOdometrySpec(OdometrySpec):
+    """Reading: x, y (m), yaw (rad), v (m/s), w (rad/s); starts at the task's start pose."""
+
+    kind: Literal["wheel_odometry"] = "wheel_odometry"
+
+
+class HolonomicOdometrySpec(OdometrySpec):
+    """Reading: x, y (m), yaw (rad), v (m/s), w (rad/s), vy (m/s); starts at the start pose.
+
+    A third wheel, under the robot's frame, rolls to the left.
+    """
+
+    kind: Literal["holonomic_odometry"] = "holonomic_odometry"
+
+
 WHEEL_ODOMETRY = Component(
     spec=WheelOdometrySpec,
     build="crowdbot.plugins.sensors.wheel_odometry_build:build",
     summary="pose and twist integrated from quantised wheel encoders, or encoders and gyro",
+)
+
+HOLONOMIC_ODOMETRY = Component(
+    spec=HolonomicOdometrySpec,
+    build="crowdbot.plugins.sensors.wheel_odometry_build:build",
+    summary="the same for a robot that goes sideways: three measuring wheels, and vy",
 )

@@ -22,7 +22,7 @@ class Push:
     Attributes:
         size: length of the vector.
         at: first of the five entries torque x, y, z, force x, y; None: force x, y alone.
-        lever: height of the force above the base frame, m.
+        lever: height of the force above the frame of the body that floats, m.
     """
 
     size: int
@@ -45,7 +45,7 @@ class ControlledRobot:
     Attributes:
         state: the system with the port ``robot_state``, which everything downstream reads.
         desired: port for what `desire` makes of a command.
-        desire: v (m/s), w (rad/s), after slew limits -> values for ``desired``.
+        desire: v (m/s), w (rad/s), vy (m/s), after slew limits -> values for ``desired``.
         desired_size: their number.
         push: layout of the force that people exert.
         push_port: takes that force; None: nothing pushes the robot off its way.
@@ -55,7 +55,7 @@ class ControlledRobot:
 
     state: LeafSystem
     desired: InputPort
-    desire: Callable[[float, float], tuple[float, ...]]
+    desire: Callable[[float, float, float], tuple[float, ...]]
     desired_size: int
     push: Push
     push_port: InputPort | None
@@ -65,6 +65,5 @@ class ControlledRobot:
 
 def push_on(rig: RobotPlant) -> Push:
     """The push as a generalised force on a plant's velocities."""
-    base = rig.plant.GetBodyByName(rig.robot.base, rig.model)
-    lever = rig.robot.force_height - rig.robot.base_height
-    return Push(rig.plant.num_velocities(), base.floating_velocities_start_in_v(), lever)
+    lever = rig.robot.force_height - rig.robot.base_height + rig.rise
+    return Push(rig.plant.num_velocities(), rig.root.floating_velocities_start_in_v(), lever)

@@ -5,25 +5,38 @@ from __future__ import annotations
 from pydrake.multibody.tree import PdControllerGains
 from pydrake.systems.framework import DiagramBuilder
 
-from crowdbot.core.interfaces import EnvironmentParts, RobotModel
+from crowdbot.core.interfaces import DifferentialDrive, EnvironmentParts, RobotModel
 from crowdbot.core.sim.control.controlled import ControlledRobot, push_on
-from crowdbot.core.sim.plant import add_plant, place_robot
+from crowdbot.core.sim.plant import add_plant, motor_of, place_robot
 from crowdbot.core.sim.robot_state import add_robot_state
 
-# Implicit velocity gain, N m s; stable from 0.1 to 50 (docs/decisions/0004).
-WHEEL_GAINS = PdControllerGains(p=0.0, d=1.0)
+# Implicit velocity gain of a TurtleBot2's wheels, N m s; stable from 0.1 to 50 there
+# (docs/decisions/0004). To be as quick, heavier robots on larger wheels need more: d ~ m r^2.
+_GAIN, _MASS, _RADIUS = 1.0, 6.3, 0.0352
+
+
+def wheel_gains(mass: float, radius: float) -> PdControllerGains:
+    """Gains of each wheel's motor, for a robot's mass (kg) and its wheels' radius (m)."""
+    return PdControllerGains(p=0.0, d=_GAIN * (mass * radius**2) / (_MASS * _RADIUS**2))
 
 
 def add_differential_drive(
     builder: DiagramBuilder, parts: EnvironmentParts, model: RobotModel
 ) -> ControlledRobot:
     """Wheels under velocity control, up to their effort limit."""
-    rig = add_plant(builder, parts, model, WHEEL_GAINS)
-    plant, drive = rig.plant, model.drive
+    drive = model.drive
+    assert isinstance(drive, DifferentialDrive)  # by build_robot
+    radius = drive.command_radius
+    rig = add_plant(builder, parts, model, wheel_gains(model.mass, radius))
+    plant = rig.plant
+    left_motor, right_motor = (motor_of(plant, joint) for joint in rig.wheels)
+    left_first = left_motor.index() < right_motor.index()
 
-    def desire(v: float, w: float) -> tuple[float, ...]:
+    def desire(v: float, w: float, vy: float) -> tuple[float, ...]:
+        del vy
         across = 0.5 * drive.track * w
-        return 0.0, 0.0, (v - across) / drive.command_radius, (v + across) / drive.command_radius
+        left, right = (v - across) / radius, (v + across) / radius
+        return (0.0, 0.0, left, right) if left_first else (0.0, 0.0, right, left)
 
     return ControlledRobot(
         state=add_robot_state(builder, rig),

@@ -1,7 +1,8 @@
-"""Force control: F = m dv/dt on the base, no more than the wheels could give.
+"""Force control: F = m dv/dt on the base, no more than the drive could give.
 
 Source: CrowdBot D7.3, section 1.1 (control modes). Mass and inertia are those that a force at the
-base has to move, rolling wheels among them.
+base has to move, driven wheels among them. A holonomic drive is pushed sideways too; the wheels of
+a differential one hold it on its track.
 """
 
 from __future__ import annotations
@@ -11,16 +12,22 @@ import math
 import numpy as np
 from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, LeafSystem
 
-from crowdbot.core.interfaces import EnvironmentParts, RobotModel
+from crowdbot.core.interfaces import (
+    DifferentialDrive,
+    EnvironmentParts,
+    HolonomicDrive,
+    Pose,
+    RobotModel,
+)
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control.controlled import ControlledRobot, push_on
-from crowdbot.core.sim.plant import RobotPlant, add_plant, place_robot
-from crowdbot.core.sim.robot_state import add_robot_state
+from crowdbot.core.sim.plant import RobotPlant, add_plant, motor_of, place_robot
+from crowdbot.core.sim.robot_state import MeasuredRobotState, add_robot_state
 from crowdbot.core.ticks import TICK
 
 
 class ForceDrive(LeafSystem):
-    """Inputs: robot state, wanted v and w, push by people. Output: generalised force.
+    """Inputs: robot state, wanted v, w and vy, push by people. Output: generalised force.
 
     The output follows the state directly: one tick late, a gain of one would oscillate.
     """
@@ -32,7 +39,8 @@ class ForceDrive(LeafSystem):
         self._mass, self._inertia = moved(rig)
         self._most, self._most_torque = strongest(rig)
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
-        self._desired = self.DeclareVectorInputPort(ports.DESIRED_STATE, 2)
+        self._sideways = isinstance(rig.robot.drive, HolonomicDrive)
+        self._desired = self.DeclareVectorInputPort(ports.DESIRED_STATE, 3)
         self._push = self.DeclareVectorInputPort(ports.ROBOT_FORCE, size)
         self.DeclareVectorOutputPort(
             "force",
@@ -43,14 +51,20 @@ class ForceDrive(LeafSystem):
 
     def _calc(self, context: Context, output: BasicVector) -> None:
         _, _, yaw, vx, vy, w, *_ = self._robot.Eval(context).tolist()
-        wanted_v, wanted_w = self._desired.Eval(context).tolist()
+        wanted_v, wanted_w, wanted_vy = self._desired.Eval(context).tolist()
         c, s = math.cos(yaw), math.sin(yaw)
-        force = _clamp(self._mass * (wanted_v - (c * vx + s * vy)) / TICK, self._most)
+        force, aside = self._mass * (wanted_v - (c * vx + s * vy)) / TICK, 0.0
+        if self._sideways:
+            aside = self._mass * (wanted_vy - (c * vy - s * vx)) / TICK
+            size = math.hypot(force, aside)
+            share = min(1.0, self._most / size) if size else 1.0
+            force, aside = share * force, share * aside
+        force = _clamp(force, self._most)
         torque = _clamp(self._inertia * (wanted_w - w) / TICK, self._most_torque)
         values = output.get_mutable_value()
         values[:] = self._push.Eval(context) if self._push.HasValue(context) else 0.0
         i = self._start
-        values[i + 2 : i + 5] += torque, c * force, s * force
+        values[i + 2 : i + 5] += torque, c * force - s * aside, s * force + c * aside
 
 
 def _clamp(value: float, most: float) -> float:
@@ -58,24 +72,24 @@ def _clamp(value: float, most: float) -> float:
 
 
 def moved(rig: RobotPlant) -> tuple[float, float]:
-    """Mass (kg) and yaw inertia (kg m^2) that a push at the base moves, wheels rolling."""
+    """Mass (kg) and yaw inertia (kg m^2) that a push at the base moves, driven wheels rolling."""
     plant, drive = rig.plant, rig.robot.drive
     matrix = plant.CalcMassMatrix(plant.CreateDefaultContext())
-    start = plant.GetBodyByName(rig.robot.base, rig.model).floating_velocities_start_in_v()
-    joints = [plant.GetJointByName(j) for j in (drive.left_joint, drive.right_joint)]
-    rolling = sum(float(matrix[j.velocity_start(), j.velocity_start()]) for j in joints)
-    rolling /= drive.command_radius**2
-    mass = float(matrix[start + 3, start + 3]) + rolling
-    return mass, float(matrix[start + 2, start + 2]) + rolling * (0.5 * drive.track) ** 2
+    start = rig.root.floating_velocities_start_in_v()
+    mass, inertia = float(matrix[start + 3, start + 3]), float(matrix[start + 2, start + 2])
+    if isinstance(drive, DifferentialDrive):
+        turned = (j.velocity_start() for j in rig.wheels)
+        rolling = sum(float(matrix[k, k]) for k in turned) / drive.command_radius**2
+        return mass + rolling, inertia + rolling * (0.5 * drive.track) ** 2
+    return mass, inertia
 
 
 def strongest(rig: RobotPlant) -> tuple[float, float]:
-    """The largest force (N) and torque (N m) that both wheel motors give together."""
+    """The largest force (N) and torque (N m) that the drive gives: both motors together."""
     drive = rig.robot.drive
-    efforts = [
-        rig.plant.GetJointActuatorByName(j).effort_limit()
-        for j in (drive.left_joint, drive.right_joint)
-    ]
+    if isinstance(drive, HolonomicDrive):
+        return drive.max_force, drive.max_torque
+    efforts = [motor_of(rig.plant, joint).effort_limit() for joint in rig.wheels]
     force = float(np.sum(efforts)) / drive.command_radius
     return force, force * 0.5 * drive.track
 
@@ -90,15 +104,19 @@ def add_force(
     drive = builder.AddNamedSystem("force_drive", ForceDrive(rig))
     builder.Connect(state.GetOutputPort(ports.ROBOT_STATE), drive.GetInputPort(ports.ROBOT_STATE))
     builder.Connect(drive.GetOutputPort("force"), plant.get_applied_generalized_force_input_port())
+
+    def place(context: object, start: Pose) -> None:
+        place_robot(rig, plant.GetMyMutableContextFromRoot(context), start)
+        if isinstance(state, MeasuredRobotState):
+            state.place(context, start)
+
     return ControlledRobot(
         state=state,
         desired=drive.GetInputPort(ports.DESIRED_STATE),
-        desire=lambda v, w: (v, w),
-        desired_size=2,
+        desire=lambda v, w, vy: (v, w, vy),
+        desired_size=3,
         push=push_on(rig),
         push_port=drive.GetInputPort(ports.ROBOT_FORCE),
-        place=lambda context, start: place_robot(
-            rig, plant.GetMyMutableContextFromRoot(context), start
-        ),
+        place=place,
         rig=rig,
     )

@@ -1,7 +1,8 @@
 """Kinematic control: the base moves on exact arcs, whatever pushes it; walls stop it.
 
-Between two ticks v and w are constant, so the path is an arc of a circle. Wheel angles are those
-of wheels that roll without slipping, so that odometry works as in the other modes.
+Between two ticks v, vy and w are constant, so the path is an arc of a circle; that of a robot which
+goes sideways too begins at an angle to where it looks. Wheel angles are those of wheels that roll
+without slipping, so that odometry works as in the other modes.
 """
 
 from __future__ import annotations
@@ -19,7 +20,13 @@ from pydrake.systems.framework import (
     LeafSystem,
 )
 
-from crowdbot.core.interfaces import EnvironmentParts, Pose, RobotModel, RobotState
+from crowdbot.core.interfaces import (
+    DifferentialDrive,
+    EnvironmentParts,
+    Pose,
+    RobotModel,
+    RobotState,
+)
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control.controlled import ControlledRobot, Push
 from crowdbot.core.ticks import TICK
@@ -31,13 +38,14 @@ _ROUNDING = 1e-13  # m; must not hold a robot that drives along a wall
 
 
 class KinematicBase(LeafSystem):
-    """Input: v, w. Output: `ports.ROBOT_STATE`, which is the whole state."""
+    """Input: v, w, vy. Output: `ports.ROBOT_STATE`, which is the whole state."""
 
     def __init__(self, parts: EnvironmentParts, robot: RobotModel) -> None:
         super().__init__()
         self._robot = robot
+        self._wheel = _wheel_radius(robot)
         self._walls, self._pillars = obstacles(parts, robot.height)
-        self._port = self.DeclareVectorInputPort(ports.DESIRED_STATE, 2)
+        self._port = self.DeclareVectorInputPort(ports.DESIRED_STATE, 3)
         index = self.DeclareDiscreteState(ports.ROBOT_STATE_SIZE)
         self.DeclareStateOutputPort(ports.ROBOT_STATE, index)
         self._index = DiscreteStateIndex(index)
@@ -46,28 +54,31 @@ class KinematicBase(LeafSystem):
     def _update(self, context: Context, values: DiscreteValues) -> None:
         state = values.get_mutable_value(self._index)
         now = RobotState(*state.tolist())
-        v, w = self._port.Eval(context).tolist()
-        x, y, yaw = arc(now.x, now.y, now.yaw, v, w, TICK)
+        v, w, vy = self._port.Eval(context).tolist()
+        speed, crab = (v, 0.0) if vy == 0.0 else (math.hypot(v, vy), math.atan2(vy, v))
+        way = now.yaw + crab
+        x, y, _ = arc(now.x, now.y, way, speed, w, TICK)
         share = free_share(
             self._walls, self._pillars, self._robot.footprint_radius,
-            now.x, now.y, now.yaw, v * TICK, w * TICK,
+            now.x, now.y, way, speed * TICK, w * TICK,
         )  # fmt: skip
         if share < 1.0:  # stopped by a wall; turning on the spot goes on
-            x, y, _ = arc(now.x, now.y, now.yaw, v * share, w * share, TICK)
-            v *= share
-        drive = self._robot.drive
-        across = 0.5 * drive.track * w
+            x, y, _ = arc(now.x, now.y, way, speed * share, w * share, TICK)
+            v, vy, speed = v * share, vy * share, speed * share
+        yaw = math.remainder(now.yaw + w * TICK, 2.0 * math.pi)
+        across = 0.5 * self._robot.drive.track * w
         state[:] = RobotState(
             x=x,
             y=y,
             yaw=yaw,
-            vx=v * math.cos(yaw),
-            vy=v * math.sin(yaw),
+            vx=speed * math.cos(yaw + crab),
+            vy=speed * math.sin(yaw + crab),
             w=w,
             tilt=0.0,
             z=now.z,
-            left_angle=now.left_angle + (v - across) * TICK / drive.command_radius,
-            right_angle=now.right_angle + (v + across) * TICK / drive.command_radius,
+            left_angle=now.left_angle + (v - across) * TICK / self._wheel,
+            right_angle=now.right_angle + (v + across) * TICK / self._wheel,
+            side_angle=now.side_angle + vy * TICK / self._wheel,
         )
 
     def place(self, context: object, start: Pose) -> None:
@@ -76,6 +87,11 @@ class KinematicBase(LeafSystem):
         mine.get_mutable_discrete_state_vector().get_mutable_value()[:] = RobotState(
             start.x, start.y, start.yaw, 0.0, 0.0, 0.0, 0.0, self._robot.base_height, 0.0, 0.0
         )
+
+
+def _wheel_radius(robot: RobotModel) -> float:
+    drive = robot.drive
+    return drive.command_radius if isinstance(drive, DifferentialDrive) else drive.wheel_radius
 
 
 def obstacles(parts: EnvironmentParts, height: float) -> tuple[Array, Array]:
@@ -168,8 +184,8 @@ def add_kinematic(
     return ControlledRobot(
         state=base,
         desired=base.GetInputPort(ports.DESIRED_STATE),
-        desire=lambda v, w: (v, w),
-        desired_size=2,
+        desire=lambda v, w, vy: (v, w, vy),
+        desired_size=3,
         push=Push(2, None, 0.0),
         push_port=None,
         place=base.place,

@@ -1,0 +1,52 @@
+"""Builds robots from scenarios."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from crowdbot.core.interfaces import DifferentialDrive, HolonomicDrive, RobotModel
+from crowdbot.core.registry import Registry
+from crowdbot.core.robots.check import check_model
+from crowdbot.dsl.base import RobotSpec
+from crowdbot.dsl.scenario import Robot
+from crowdbot.errors import CrowdbotError, InputError, PluginError
+
+#: Drive -> control modes that fit it.
+MODES: Mapping[type, tuple[str, ...]] = {
+    DifferentialDrive: ("differential_drive", "force", "kinematic"),
+    HolonomicDrive: ("force", "kinematic"),
+}
+
+
+def build_model(registry: Registry, spec: RobotSpec) -> RobotModel:
+    """The model that a robot's spec describes.
+
+    Raises:
+        PluginError: it cannot be built, or its parts do not fit each other.
+    """
+    try:
+        return check_model(registry.build(spec))
+    except CrowdbotError as error:
+        text = str(error)
+        named = text if spec.kind in text else f"{spec.kind}: {text}"
+        raise PluginError(named) from error
+    except Exception as error:
+        raise PluginError(f"{spec.kind}: {type(error).__name__}: {error}") from error
+
+
+def build_robot(registry: Registry, robot: Robot) -> RobotModel:
+    """The model of a scenario's robot.
+
+    Raises:
+        PluginError: as `build_model`.
+        InputError: its control mode does not fit its drive.
+    """
+    model = build_model(registry, robot.model)
+    fitting = MODES[type(model.drive)]
+    if robot.control not in fitting:
+        raise InputError(
+            f"control '{robot.control}' does not fit {robot.model.kind}, whose drive is "
+            f"{'holonomic' if isinstance(model.drive, HolonomicDrive) else 'differential'}; "
+            f"what does: {', '.join(fitting)}"
+        )
+    return model

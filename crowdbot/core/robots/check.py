@@ -1,0 +1,134 @@
+"""Checks what a robot's build function returned, before anything is simulated with it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from crowdbot.core.interfaces import DifferentialDrive, HolonomicDrive, RobotModel
+from crowdbot.core.robots.description import Description, read_description
+from crowdbot.core.robots.xml import Array
+from crowdbot.errors import PluginError
+
+_LENGTH = 1e-3  # m; what two statements about one length may differ by
+_FLOOR = 5e-3  # m; what a wheel may hang or sink before it is set down
+_SHARE = 0.01  # of a mass or a length
+_ALONG = 0.999  # cosine of the angle between two directions that are one
+
+
+def check_model(model: object) -> RobotModel:
+    """What a build function returned, if it is a robot whose parts fit each other.
+
+    Raises:
+        PluginError: it is not; the message says what to change.
+    """
+    if not isinstance(model, RobotModel):
+        raise PluginError(f"a RobotModel is wanted, not {type(model).__name__}")
+    _check_numbers(model)
+    described = read_description(model.description)
+    _check_base(model, described)
+    if abs(described.mass - model.mass) > _SHARE * model.mass:
+        raise PluginError(f"mass is {model.mass:g} kg; the links weigh {described.mass:g} kg")
+    drive = model.drive
+    if isinstance(drive, DifferentialDrive):
+        _check_wheels(model, drive, described)
+    return model
+
+
+def _check_numbers(model: RobotModel) -> None:
+    limits, drive = model.limits, model.drive
+    positive = {
+        n: getattr(model, n) for n in ("footprint_radius", "height", "force_height", "mass")
+    }
+    positive |= {f"limits.{n}": getattr(limits, n) for n in ("a_max", "alpha_max")}
+    names: Sequence[str] = ()
+    if isinstance(drive, DifferentialDrive):
+        names = ("command_radius", "track")
+    elif isinstance(drive, HolonomicDrive):
+        names = ("max_force", "max_torque", "wheel_radius", "track")
+    else:
+        raise PluginError(
+            f"drive is a {type(drive).__name__}; a DifferentialDrive or HolonomicDrive is wanted"
+        )
+    positive |= {f"drive.{n}": getattr(drive, n) for n in names}
+    for name, value in positive.items():
+        if not (math.isfinite(value) and value > 0.0):
+            raise PluginError(f"{name} is {value}; it must be positive")
+    if not (math.isfinite(model.base_height) and model.base_height >= 0.0):
+        raise PluginError(f"base_height is {model.base_height}; it must not be negative")
+    if not (-math.inf < limits.v_min <= 0.0 <= limits.v_max < math.inf):
+        raise PluginError(f"limits: 0 must be within v_min {limits.v_min} and v_max {limits.v_max}")
+    if not (0.0 <= limits.w_max < math.inf and 0.0 <= limits.vy_max < math.inf):
+        raise PluginError("limits: w_max and vy_max must be finite and not negative")
+    if not limits.command_timeout > 0.0:
+        raise PluginError(f"limits: command_timeout is {limits.command_timeout}")
+    if limits.vy_max and not isinstance(drive, HolonomicDrive):
+        raise PluginError("limits: vy_max is for a HolonomicDrive; two wheels do not go sideways")
+
+
+def _check_base(model: RobotModel, described: Description) -> None:
+    described.link(model.base)
+    if "base_link" in described.links and model.base != "base_link":
+        raise PluginError(
+            f"base is '{model.base}'; sensors are mounted on base_link, and the robot has a link "
+            "of that name: let it be the base"
+        )
+    pose = described.pose(model.base, described.root)
+    if np.linalg.norm(pose[:2, 3]) > _LENGTH or np.trace(pose[:3, :3]) < 3.0 * _ALONG:
+        raise PluginError(
+            f"'{model.base}' is not straight above or below the root link '{described.root}'; "
+            "the base's frame is where the robot turns"
+        )
+
+
+def _check_wheels(model: RobotModel, drive: DifferentialDrive, described: Description) -> None:
+    sides = []
+    for name, side in ((drive.left_joint, 1.0), (drive.right_joint, -1.0)):
+        joint = described.joint(name)
+        if not joint.free:
+            raise PluginError(f"joint '{name}' is {joint.kind}; a wheel's is continuous")
+        if joint.effort is None or not joint.effort > 0.0:
+            raise PluginError(
+                f"joint '{name}' has no motor: say its torque, <limit effort=\"…\"/>"
+                if described.format == "urdf"
+                else f"joint '{name}' has no motor: say its torque, <limit><effort>…"
+            )
+        if not math.isclose(described.wheel_radius(name), drive.command_radius, rel_tol=0.1):
+            raise PluginError(
+                f"the wheel on '{name}' has radius {described.wheel_radius(name):g} m; "
+                f"command_radius is {drive.command_radius:g} m"
+            )
+        pose = described.pose(joint.child, model.base)
+        _check_place(name, pose, model.base, model.base_height - drive.command_radius)
+        if side * pose[1, 3] <= 0.0:
+            raise PluginError(f"the wheel on '{name}' is on the other side of the robot")
+        if (pose[:3, :3] @ joint.axis)[1] < _ALONG:
+            raise PluginError(
+                f"joint '{name}' does not drive ahead: its axis must point to the left of "
+                f"'{model.base}', and is {np.round(pose[:3, :3] @ joint.axis, 3).tolist()} there"
+            )
+        sides.append(pose[1, 3])
+    track = sides[0] - sides[1]
+    if not math.isclose(track, drive.track, rel_tol=_SHARE):
+        raise PluginError(f"track is {drive.track:g} m; the wheels are {track:g} m apart")
+    if drive.left_joint == drive.right_joint:
+        raise PluginError(f"both wheels are '{drive.left_joint}'")
+
+
+def _check_place(name: str, pose: Array, base: str, fitting: float) -> None:
+    """``fitting``: height of the base above the axle of a wheel that stands on the floor."""
+    x, _, z = pose[:3, 3].tolist()
+    if abs(x) > _LENGTH:
+        raise PluginError(
+            f"the wheel on '{name}' is {abs(x):g} m {'ahead of' if x > 0.0 else 'behind'} '{base}',"
+            " whose frame must be on the drive axis' vertical, where the robot turns: move the "
+            "links, so that it is"
+        )
+    if abs(z + fitting) > _FLOOR:
+        raise PluginError(
+            f"the wheel on '{name}' ends {abs(z + fitting):g} m "
+            f"{'above' if z + fitting > 0.0 else 'below'} the floor: base_height and "
+            "command_radius do not fit the description"
+        )

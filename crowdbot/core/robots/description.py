@@ -1,0 +1,250 @@
+"""Reads a robot's description, SDFormat or URDF, far enough to check it and to take from it.
+
+Nothing here needs Drake.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Literal
+from xml.etree import ElementTree as Xml
+
+import numpy as np
+
+from crowdbot.core.interfaces import DifferentialDrive
+from crowdbot.core.robots.joint import KNOWN, Joint, child_of, sdf_joint, urdf_joint
+from crowdbot.core.robots.xml import Array, matrix, name_of, number, pose_of
+from crowdbot.errors import PluginError, did_you_mean, nearest
+
+Format = Literal["sdf", "urdf"]
+_ROUND = ("sphere", "cylinder")
+
+
+@dataclass(frozen=True)
+class Description:
+    """A robot's description.
+
+    Attributes:
+        text: as it was read.
+        model: its ``robot`` or ``model`` element.
+        version: of SDFormat.
+    """
+
+    text: str
+    format: Format
+    model: Xml.Element
+    version: str = "1.9"
+
+    @cached_property
+    def links(self) -> Mapping[str, Xml.Element]:
+        """The links by name."""
+        return {name_of(link): link for link in self.model.findall("link")}
+
+    @cached_property
+    def joints(self) -> Mapping[str, Joint]:
+        """The joints by name."""
+        read = urdf_joint if self.format == "urdf" else sdf_joint
+        return {name_of(joint): read(joint) for joint in self.model.findall("joint")}
+
+    @cached_property
+    def mass(self) -> float:
+        """Mass of all links together, kg."""
+        return sum(_mass(link, self.format) for link in self.links.values())
+
+    @cached_property
+    def root(self) -> str:
+        """The one link that hangs from no other.
+
+        Raises:
+            PluginError: there is none, or there are several.
+        """
+        children = {joint.child for joint in self.joints.values()}
+        roots = [name for name in self.links if name not in children]
+        if len(roots) != 1:
+            found = ", ".join(f"'{r}'" for r in roots) or "none"
+            raise PluginError(f"a robot hangs from one link, its root; here: {found}")
+        return roots[0]
+
+    def link(self, name: str) -> Xml.Element:
+        """The link of a name.
+
+        Raises:
+            PluginError: there is none; the message names the nearest.
+        """
+        if name not in self.links:
+            raise PluginError(_unknown("link", name, self.links))
+        return self.links[name]
+
+    def joint(self, name: str) -> Joint:
+        """The joint of a name.
+
+        Raises:
+            PluginError: there is none; the message names the nearest.
+        """
+        if name not in self.joints:
+            raise PluginError(_unknown("joint", name, self.joints))
+        return self.joints[name]
+
+    def pose(self, link: str, seen_from: str) -> Array:
+        """Pose of a link in the frame of another, all joints at zero, 4 x 4.
+
+        Raises:
+            PluginError: there is no such link, or its pose is relative to what is no link.
+        """
+        of = self._from_root if self.format == "urdf" else self._in_model
+        pose: Array = np.linalg.inv(of(seen_from, ())) @ of(link, ())
+        return pose
+
+    def wheel_radius(self, joint: str) -> float:
+        """Radius of the collision shape that a joint turns, m.
+
+        Raises:
+            PluginError: there is no such joint, or no sphere or cylinder on it.
+        """
+        wheel = self.joint(joint).child
+        found = [_radius(shape) for shape in collisions(self.link(wheel)) if shape.tag in _ROUND]
+        if not found:
+            raise PluginError(
+                f"wheel '{wheel}' has no collision shape that can roll: a sphere or a cylinder"
+            )
+        return max(found)
+
+    def differential_drive(
+        self, left_joint: str, right_joint: str, *, base: str = "base_link"
+    ) -> DifferentialDrive:
+        """The drive of two wheels, with radius and track as described.
+
+        Raises:
+            PluginError: there are no such joints, or no wheels on them.
+        """
+        left, right = (
+            self.pose(self.joint(name).child, base)[:3, 3] for name in (left_joint, right_joint)
+        )
+        return DifferentialDrive(
+            left_joint=left_joint,
+            right_joint=right_joint,
+            command_radius=self.wheel_radius(left_joint),
+            track=float(left[1] - right[1]),
+        )
+
+    def base_height(self, drive: DifferentialDrive, *, base: str = "base_link") -> float:
+        """Height of the base link above the floor on which the driven wheels stand, m."""
+        wheel = self.joint(drive.left_joint).child
+        return drive.command_radius - float(self.pose(wheel, base)[2, 3])
+
+    def _from_root(self, link: str, below: tuple[str, ...]) -> Array:
+        """Pose of a link of a URDF in its root's frame."""
+        self.link(link)
+        _check_circle(link, below)
+        joint = next((j for j in self.model.findall("joint") if child_of(j) == link), None)
+        if joint is None:
+            return np.eye(4)
+        parent = self.joints[name_of(joint)].parent
+        return self._from_root(parent, (*below, link)) @ matrix(pose_of(joint))
+
+    def _in_model(self, link: str, below: tuple[str, ...]) -> Array:
+        """Pose of a link of an SDFormat model in the model's frame."""
+        _check_circle(link, below)
+        element = self.link(link)
+        pose = element.find("pose")
+        seen_from = pose.get("relative_to") if pose is not None else None
+        own = matrix(pose_of(element))
+        if not seen_from or seen_from == "__model__":
+            return own
+        return self._in_model(seen_from, (*below, link)) @ own
+
+
+def read_description(source: str | Path | Traversable) -> Description:
+    """A robot's description from its text, or from a file.
+
+    Args:
+        source: text that begins with ``<``, or a path: of a file beside the scenario
+            (``spec.body.file`` of an ``Asset``) or one of a package
+            (``importlib.resources.files("my_package") / "robot.urdf"``).
+
+    Raises:
+        PluginError: it cannot be read, is not well-formed, or describes no robot.
+    """
+    if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
+        return _parsed(source)
+    file = Path(source) if isinstance(source, str) else source
+    try:
+        return _parsed(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise PluginError(f"robot description {file} cannot be read: {error}") from error
+    except PluginError as error:
+        raise PluginError(f"{file}: {error}") from error
+
+
+def _parsed(text: str) -> Description:
+    try:
+        top = Xml.fromstring(text.lstrip("\ufeff \t\r\n"))
+    except Xml.ParseError as error:
+        raise PluginError(f"the robot's description is not well-formed XML: {error}") from error
+    if any(isinstance(e.tag, str) and "ros.org/wiki/xacro" in e.tag for e in top.iter()):
+        raise PluginError("the robot's description has xacro macros; expand them: xacro FILE")
+    if top.tag == "robot":
+        return _checked(Description(text, "urdf", top))
+    model = top if top.tag == "model" else top.find("model")
+    if top.tag not in ("sdf", "model") or model is None:
+        raise PluginError(
+            f"the robot's description is neither URDF (<robot>) nor SDFormat (<sdf><model>): "
+            f"<{top.tag}>"
+        )
+    for tag in ("model", "include"):
+        if model.find(tag) is not None:
+            raise PluginError(f"the robot's model has a <{tag}> inside; write it out")
+    return _checked(Description(text, "sdf", model, top.get("version", "1.9")))
+
+
+def _checked(described: Description) -> Description:
+    if not described.links:
+        raise PluginError("the robot's description has no link")
+    for joint in described.joints.values():
+        if joint.kind not in KNOWN:
+            raise PluginError(
+                f"joint '{joint.name}' is {joint.kind}; the joints of a mobile base are "
+                f"{', '.join(KNOWN)}"
+            )
+        described.link(joint.parent)
+        described.link(joint.child)
+    for name, link in described.links.items():
+        if any(shape.tag == "mesh" for shape in collisions(link)):
+            raise PluginError(
+                f"link '{name}' collides as a mesh; use box, cylinder, sphere or capsule"
+            )
+    return described
+
+
+def _unknown(what: str, name: str, known: Mapping[str, object]) -> str:
+    hint = did_you_mean(nearest(name, known)) or f"; there are: {', '.join(known) or 'none'}"
+    return f"the robot's description has no {what} '{name}'{hint}"
+
+
+def _check_circle(link: str, below: tuple[str, ...]) -> None:
+    if link in below:
+        raise PluginError(f"link '{link}' hangs from itself")
+
+
+def _mass(link: Xml.Element, kind: Format) -> float:
+    """Mass of a link, kg; that of SDFormat is 1 kg where it does not say."""
+    mass = link.find("inertial/mass")
+    if mass is None:
+        return 0.0 if kind == "urdf" else 1.0
+    text = mass.get("value", "") if kind == "urdf" else mass.text or ""
+    return number(text, f"the mass of '{name_of(link)}'")
+
+
+def collisions(link: Xml.Element) -> Iterator[Xml.Element]:
+    """The shapes of a link that collide."""
+    for collision in link.findall("collision"):
+        yield from collision.findall("geometry/*")
+
+
+def _radius(shape: Xml.Element) -> float:
+    text = shape.get("radius") or shape.findtext("radius") or ""
+    return number(text, f"the radius of a {shape.tag}")

@@ -1,0 +1,91 @@
+"""The joints of a robot's description."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from xml.etree import ElementTree as Xml
+
+import numpy as np
+
+from crowdbot.core.robots.xml import Array, matrix, name_of, number, numbers, pose_of
+from crowdbot.errors import PluginError
+
+#: Joints that a mobile base may have.
+KNOWN = ("fixed", "continuous", "revolute", "prismatic")
+#: From here on SDFormat takes a limit as none.
+_UNLIMITED = 1e16
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """One joint.
+
+    Attributes:
+        kind: as SDFormat or URDF call it.
+        axis: (3,) in the frame of the child.
+        effort: largest force or torque, N or N m; None where the description does not say.
+        free: whether it turns without end.
+    """
+
+    name: str
+    kind: str
+    parent: str
+    child: str
+    axis: Array
+    effort: float | None
+    free: bool
+
+
+def child_of(joint: Xml.Element) -> str:
+    """Name of the link that a joint holds."""
+    child = joint.find("child")
+    return "" if child is None else child.get("link") or (child.text or "").strip()
+
+
+def _axis(text: str, name: str) -> Array:
+    axis = np.array(numbers(text, f"the axis of joint '{name}'"))
+    length = float(np.linalg.norm(axis))
+    if axis.shape != (3,) or length == 0.0:
+        raise PluginError(f"the axis of joint '{name}' is no direction: '{text}'")
+    return axis / length
+
+
+def urdf_joint(joint: Xml.Element) -> Joint:
+    """A joint of a URDF, whose frame is its child's."""
+    name, kind = name_of(joint), joint.get("type", "")
+    parent, limit = joint.find("parent"), joint.find("limit")
+    axis = joint.find("axis")
+    effort = None if limit is None else limit.get("effort")
+    return Joint(
+        name=name,
+        kind=kind,
+        parent="" if parent is None else parent.get("link", ""),
+        child=child_of(joint),
+        axis=_axis("1 0 0" if axis is None else axis.get("xyz", "1 0 0"), name),
+        effort=None if effort is None else number(effort, f"the effort of joint '{name}'"),
+        free=kind == "continuous",
+    )
+
+
+def sdf_joint(joint: Xml.Element) -> Joint:
+    """A joint of an SDFormat model; its frame may be turned against its child's."""
+    name, kind = name_of(joint), joint.get("type", "")
+    axis, effort = joint.find("axis/xyz"), joint.findtext("axis/limit/effort")
+    pose = joint.find("pose")
+    if axis is not None and axis.get("expressed_in"):
+        raise PluginError(f"joint '{name}': write its axis in its own frame, not 'expressed_in'")
+    if pose is not None and pose.get("relative_to"):
+        raise PluginError(f"joint '{name}': write its pose relative to its child")
+    turned = matrix(pose_of(joint))[:3, :3]
+    bounds = [joint.findtext(f"axis/limit/{side}") for side in ("lower", "upper")]
+    limits = [number(t, f"a limit of joint '{name}'") for t in bounds if t is not None]
+    bounded = any(abs(limit) < _UNLIMITED for limit in limits)
+    return Joint(
+        name=name,
+        kind=kind,
+        parent=joint.findtext("parent", "").strip(),
+        child=child_of(joint),
+        axis=turned @ _axis("0 0 1" if axis is None else axis.text or "", name),
+        effort=None if effort is None else number(effort, f"the effort of joint '{name}'"),
+        free=kind == "continuous" or (kind == "revolute" and not bounded),
+    )

@@ -1,0 +1,86 @@
+"""A robot's description as the simulation takes it: a body, and wheels that roll.
+
+- Joints with limits (arms, pan and tilt heads) are held at zero.
+- Wheels are spheres to the floor: a cylinder's contact point jumps between its rims
+  (docs/decisions/0004).
+- What does not say how it rubs slides without friction, as casters and omni wheels do, but for the
+  driven wheels, which grip.
+- What is only seen, and motors, but for those of the driven wheels, are left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from copy import deepcopy
+from xml.etree import ElementTree as Xml
+
+from crowdbot.core.robots.description import Description, Format
+from crowdbot.core.robots.xml import name_of
+
+_DRAKE = "{http://drake.mit.edu}"
+Xml.register_namespace("drake", "http://drake.mit.edu")  # else it would become ns0
+
+
+def simplified(described: Description, driven: Collection[str]) -> str:
+    """The text for Drake's parser, in the format of the description.
+
+    Args:
+        driven: names of the joints of the driven wheels.
+    """
+    model = deepcopy(described.model)
+    for motor in model.findall("transmission"):
+        model.remove(motor)
+    for joint in model.findall("joint"):
+        if not described.joints[name_of(joint)].free:
+            _hold(joint)
+    wheels = {joint.child for joint in described.joints.values() if joint.free}
+    gripping = {described.joint(name).child for name in driven}
+    for link in model.findall("link"):
+        for visual in link.findall("visual"):
+            link.remove(visual)
+        for collision in link.findall("collision"):
+            if name_of(link) in wheels:
+                _round(collision)
+            if name_of(link) not in gripping:
+                _let_slide(collision, described.format)
+    return Xml.tostring(_whole(model, described), encoding="unicode")
+
+
+def _whole(model: Xml.Element, described: Description) -> Xml.Element:
+    if described.format == "urdf":
+        return model
+    document = Xml.Element("sdf", version=described.version)
+    document.append(model)
+    return document
+
+
+def _hold(joint: Xml.Element) -> None:
+    joint.set("type", "fixed")
+    for tag in ("axis", "limit", "mimic", "dynamics"):
+        for part in joint.findall(tag):
+            joint.remove(part)
+
+
+def _round(collision: Xml.Element) -> None:
+    geometry = collision.find("geometry")
+    cylinder = None if geometry is None else geometry.find("cylinder")
+    if geometry is None or cylinder is None:
+        return
+    geometry.remove(cylinder)
+    sphere = Xml.SubElement(geometry, "sphere")
+    if "radius" in cylinder.attrib:
+        sphere.set("radius", cylinder.attrib["radius"])
+    sphere.extend(cylinder.findall("radius"))
+
+
+def _let_slide(collision: Xml.Element, kind: Format) -> None:
+    rubs = (f"{_DRAKE}proximity_properties", "surface/friction")
+    if any(collision.find(tag) is not None for tag in rubs):
+        return
+    properties = Xml.SubElement(collision, rubs[0])
+    for name in ("mu_dynamic", "mu_static"):
+        number = Xml.SubElement(properties, f"{_DRAKE}{name}")
+        if kind == "urdf":
+            number.set("value", "0")
+        else:
+            number.text = "0"

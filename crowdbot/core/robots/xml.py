@@ -1,0 +1,79 @@
+"""Names, poses and numbers in the XML of a robot's description.
+
+SDFormat and URDF both write poses as x, y, z, roll, pitch, yaw about fixed axes.
+"""
+
+from __future__ import annotations
+
+import math
+from xml.etree import ElementTree as Xml
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.errors import PluginError
+
+Array = NDArray[np.float64]
+
+
+def name_of(element: Xml.Element) -> str:
+    """The attribute ``name``."""
+    return element.get("name", "")
+
+
+def pose_of(element: Xml.Element) -> list[float]:
+    """x, y, z, roll, pitch, yaw of an element of SDFormat (``pose``) or URDF (``origin``).
+
+    Raises:
+        PluginError: they are not six numbers.
+    """
+    origin = element.find("origin")
+    if origin is not None:
+        text = f"{origin.get('xyz', '0 0 0')} {origin.get('rpy', '0 0 0')}"
+    else:
+        text = element.findtext("pose") or "0 0 0 0 0 0"
+    pose = numbers(text, f"the pose of '{name_of(element)}'")
+    if len(pose) != 6:
+        raise PluginError(f"the pose of '{name_of(element)}' has {len(pose)} numbers, not 6")
+    return pose
+
+
+def numbers(text: str, what: str) -> list[float]:
+    """The numbers in a text.
+
+    Raises:
+        PluginError: a word is no number, or not finite.
+    """
+    try:
+        found = [float(word) for word in text.split()]
+    except ValueError as error:
+        raise PluginError(f"{what}: {error}") from error
+    if not all(math.isfinite(n) for n in found):
+        raise PluginError(f"{what} is not finite")
+    return found
+
+
+def number(text: str, what: str) -> float:
+    """The one number in a text.
+
+    Raises:
+        PluginError: it is none, or not finite.
+    """
+    found = numbers(text, what)
+    if len(found) != 1:
+        raise PluginError(f"{what} is {len(found)} numbers, not one")
+    return found[0]
+
+
+def matrix(pose: list[float]) -> Array:
+    """x, y, z, roll, pitch, yaw as a 4 x 4 pose."""
+    x, y, z, roll, pitch, yaw = pose
+    cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin))
+    return np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, x],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr, y],
+            [-sp, cp * sr, cp * cr, z],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
