@@ -186,6 +186,7 @@ class Driven:
             t=k / RATE,
             pose=pose,
             twist=(twist.v, twist.w),
+            vy=twist.vy,
             goal=task.goal,
             goal_zone=task.goal_zone,
             readings=dict(readings),
