@@ -6,7 +6,7 @@ import contextlib
 import importlib
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from typing import Any, Generic, TypeVar
@@ -33,6 +33,7 @@ class Component(Generic[S_co]):
         card: what a metric's numbers mean; Markdown, or ``"package:folder/name.md"``, a file of
             a package. Default: ``cards/NAME.md`` beside the spec's module, where NAME is the kind
             without the plugin's name. A metric without a card is refused.
+        exceptions: conformance check -> why this component cannot pass it; then it must fail.
     """
 
     spec: type[S_co]
@@ -43,6 +44,7 @@ class Component(Generic[S_co]):
     experimental: bool = False
     successor: str = ""
     card: str = ""
+    exceptions: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def kind(self) -> str:

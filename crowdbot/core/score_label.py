@@ -92,7 +92,9 @@ class MetricComponent(Component[S_co]):
 
     Attributes:
         laws: variant -> what it promises; a variant that is not listed keeps to the defaults.
+        signals: names of the signals that it reads; the worlds of the conformance kit have them.
     """
 
     label: ScoreLabel
     laws: Mapping[str, Laws] = field(default_factory=dict)
+    signals: tuple[str, ...] = ()

@@ -8,9 +8,11 @@
     def test_conformance(check):
         check()
 
-Needs pytest and hypothesis: ``pip install crowdbot[testing]``.
+``parametrize_with_checks`` needs pytest, `crowdbot.testing.strategies` hypothesis:
+``pip install crowdbot[testing]``. `checks_for` needs neither.
 """
 
-from crowdbot.testing.parametrize import checks_of, parametrize_with_checks
+from crowdbot.testing.checks import checks_for, checks_of
+from crowdbot.testing.parametrize import parametrize_with_checks
 
-__all__ = ["checks_of", "parametrize_with_checks"]
+__all__ = ["checks_for", "checks_of", "parametrize_with_checks"]

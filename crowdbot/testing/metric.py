@@ -11,8 +11,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from hypothesis import Phase, given, settings
-from hypothesis import strategies as st
 
 from crowdbot.core.commands import Commands
 from crowdbot.core.component import Component
@@ -21,7 +19,7 @@ from crowdbot.core.score_label import MetricComponent
 from crowdbot.core.trajectory import Trajectories
 from crowdbot.testing import degenerate
 from crowdbot.testing.card import check_card_examples_run, check_card_says_what_the_scores_say
-from crowdbot.testing.scored import Scored, laws_of, scores_of, variants_of
+from crowdbot.testing.scored import Scored, laws_of, scores_of, signalled, variants_of
 from crowdbot.testing.views import (
     COMMAND_VIEWS,
     VIEWS,
@@ -33,11 +31,8 @@ from crowdbot.testing.views import (
 )
 from crowdbot.testing.worlds import World, portal_world, random_world, straight_world
 
-# a seed does not become simpler by being smaller: no shrinking
-_few = settings(
-    max_examples=10, deadline=None, derandomize=True, database=None, phases=(Phase.generate,)
-)
-_SEEDS = st.integers(0, 2**32 - 1)
+#: Random worlds that each check looks at.
+_SEEDS = range(10)
 _DIRECTIONS = ("higher", "lower", "reference", "none")
 
 
@@ -66,15 +61,10 @@ def check_scores_are_well_formed(component: Component[Any]) -> None:
     If this fails, return one score a variant, made by the label, with a status and a reason
     instead of NaN, infinity or an exception; or correct ``least``, ``most`` and ``whole``.
     """
-
-    @given(seed=_SEEDS)
-    @_few
-    def holds(seed: int) -> None:
-        world = random_world(seed)
+    for seed in _SEEDS:
+        world = signalled(component, random_world(seed))
         for part in (world, replace(world, robot_alone=None, crowd_alone=None)):
             _assert_well_formed(component, scores_of(component, part))
-
-    holds()
 
 
 def check_degenerate_runs(component: Component[Any]) -> None:
@@ -85,6 +75,7 @@ def check_degenerate_runs(component: Component[Any]) -> None:
     for name, world in degenerate.worlds().items():
         try:
             _assert_well_formed(component, scores_of(component, world))
+            _assert_well_formed(component, scores_of(component, signalled(component, world)))
         except Exception as error:
             raise AssertionError(f"{name}: {error}") from error
 
@@ -94,11 +85,8 @@ def check_pure(component: Component[Any]) -> None:
 
     If this fails, copy before you change an array, and keep nothing between two calls.
     """
-
-    @given(seed=_SEEDS)
-    @_few
-    def holds(seed: int) -> None:
-        world = random_world(seed)
+    for seed in _SEEDS:
+        world = signalled(component, random_world(seed))
         open_world = writable(world)
         before = arrays_of(open_world)
         first = scores_of(component, open_world)
@@ -107,8 +95,6 @@ def check_pure(component: Component[Any]) -> None:
         assert scores_of(component, writable(world)) == first, "the same run scored differently"
         assert scores_of(component, world) == first, "the same run scored differently"
 
-    holds()
-
 
 def check_point_of_view(component: Component[Any]) -> None:
     """Translation, rotation, reflection, a later start and another order of people change nothing.
@@ -116,18 +102,13 @@ def check_point_of_view(component: Component[Any]) -> None:
     If this fails, an angle is not wrapped, a coordinate is used for itself, or time counts from
     zero; or name the view in ``Laws(exceptions=...)`` and say why.
     """
-
-    @given(seed=_SEEDS)
-    @_few
-    def holds(seed: int) -> None:
-        world = random_world(seed)
+    for seed in _SEEDS:
+        world = signalled(component, random_world(seed))
         found = scores_of(component, world)
         for name, view in VIEWS.items():
             seen = _each_command(_each_run(world, view), COMMAND_VIEWS.get(name))
             again = scores_of(component, seen)
             _assert_same(component, found, again, name)
-
-    holds()
 
 
 def check_itself(component: Component[Any]) -> None:
@@ -135,18 +116,13 @@ def check_itself(component: Component[Any]) -> None:
 
     If this fails, numerator and denominator are not computed alike.
     """
-
-    @given(seed=_SEEDS)
-    @_few
-    def holds(seed: int) -> None:
-        run = random_world(seed).run
+    for seed in _SEEDS:
+        run = signalled(component, random_world(seed)).run
         found = scores_of(component, World(run=run, robot_alone=run, crowd_alone=run))
         for variant, one in found.items():
             expected = laws_of(component, variant).itself
             if expected is not None and one.value is not None:
                 assert _near(one.value, expected), f"{variant}: {one.value}, not {expected}"
-
-    holds()
 
 
 def check_sampling(component: Component[Any]) -> None:
@@ -155,8 +131,8 @@ def check_sampling(component: Component[Any]) -> None:
     If this fails, a sum over samples lacks its dt, or has one too many.
     """
     for seed in range(4):
-        coarse = scores_of(component, straight_world(seed, 32.0))
-        fine = scores_of(component, straight_world(seed, 64.0))
+        coarse = scores_of(component, signalled(component, straight_world(seed, 32.0)))
+        fine = scores_of(component, signalled(component, straight_world(seed, 64.0)))
         for variant, one in coarse.items():
             _assert_sampled(variant, laws_of(component, variant).finer, one, fine[variant])
 
@@ -170,10 +146,8 @@ def check_more_people(component: Component[Any]) -> None:
     if set(promised.values()) == {"free"}:
         return
 
-    @given(seed=_SEEDS)
-    @_few
-    def holds(seed: int) -> None:
-        world = random_world(seed)
+    for seed in _SEEDS:
+        world = signalled(component, random_world(seed))
         assert world.run.agents is not None
         columns = range(len(world.run.agents.id))
         more = scores_of(component, world)
@@ -182,19 +156,14 @@ def check_more_people(component: Component[Any]) -> None:
             for variant, one in scores_of(component, replace(world, run=fewer)).items():
                 _assert_ordered(variant, promised[variant], one, more[variant])
 
-    holds()
-
 
 def check_masses(component: Component[Any]) -> None:
     """All masses times c multiply the value by c to the power ``Laws(mass=...)``.
 
     If this fails, masses enter where they should not, or not where they should.
     """
-
-    @given(seed=_SEEDS)
-    @_few
-    def holds(seed: int) -> None:
-        world = random_world(seed)
+    for seed in _SEEDS:
+        world = signalled(component, random_world(seed))
         light = scores_of(component, world)
         heavy = scores_of(component, _each_run(world, lambda run: heavier(run, 4.0)))
         for variant, one in light.items():
@@ -202,8 +171,6 @@ def check_masses(component: Component[Any]) -> None:
             if one.value is not None:
                 expected = one.value * 4.0 ** laws_of(component, variant).mass
                 assert _near(heavy[variant].value, expected), f"{variant}: {heavy[variant]}"
-
-    holds()
 
 
 def check_teleports_add_nothing(component: Component[Any]) -> None:
@@ -213,8 +180,8 @@ def check_teleports_add_nothing(component: Component[Any]) -> None:
     ``teleport`` in ``Laws(exceptions=...)`` only where places themselves are compared.
     """
     for seed in range(4):
-        walked = scores_of(component, portal_world(seed, through=False))
-        jumped = scores_of(component, portal_world(seed, through=True))
+        walked = scores_of(component, signalled(component, portal_world(seed, through=False)))
+        jumped = scores_of(component, signalled(component, portal_world(seed, through=True)))
         _assert_same(component, walked, jumped, "teleport")
 
 
@@ -223,13 +190,8 @@ def check_rounding(component: Component[Any]) -> None:
 
     If this fails, compare with a tolerance instead of with equality.
     """
-
-    @given(seed=_SEEDS)
-    @_few
-    def holds(seed: int) -> None:
-        _assert_robust(component, random_world(seed), seed)
-
-    holds()
+    for seed in _SEEDS:
+        _assert_robust(component, signalled(component, random_world(seed)), seed)
     for name, world in degenerate.on_thresholds().items():
         for seed in range(3):
             try:

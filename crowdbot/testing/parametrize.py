@@ -1,25 +1,15 @@
-"""Chooses the checks of a component by its category, and makes tests of them."""
+"""Makes pytest's tests of the checks of components."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from functools import partial
-from typing import Any
-
-import pytest
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 from crowdbot.core.component import Component
-from crowdbot.testing import all_kinds, metric
+from crowdbot.testing.checks import bind, checks_of
 
-Check = Callable[[Component[Any]], None]
-
-#: Category -> its own checks. Those of `all_kinds` hold for every category.
-BY_CATEGORY: Mapping[str, tuple[Check, ...]] = {"metric": metric.CHECKS}
-
-
-def checks_of(component: Component[Any]) -> tuple[Check, ...]:
-    """All checks that a component has to pass."""
-    return (*all_kinds.CHECKS, *BY_CATEGORY.get(component.category, ()))
+if TYPE_CHECKING:
+    import pytest
 
 
 def parametrize_with_checks(
@@ -31,23 +21,36 @@ def parametrize_with_checks(
 
     Args:
         components: what to check; test ids are ``kind-check_name``.
-        expected_failures: check name, or whole test id -> reason. Such a test must fail.
+        expected_failures: check name, or whole test id -> reason. Such a test must fail. Those
+            that a component declares itself (``Component(exceptions=...)``) are added.
 
     Raises:
         ValueError: an expected failure names no test, or no component was given.
     """
+    import pytest
+
     reasons, used = dict(expected_failures or {}), set()
     params = []
     for component in components:
+        _assert_known(component)
         for check in checks_of(component):
             name = check.__name__
             test_id = f"{component.kind}-{name}"
             known = [key for key in (test_id, name) if key in reasons]
             used.update(known)
-            marks = [pytest.mark.xfail(reason=reasons[k], strict=True) for k in known[:1]]
-            params.append(pytest.param(partial(check, component), id=test_id, marks=marks))
+            why = [reasons[k] for k in known] + [
+                r for n, r in component.exceptions.items() if n == name
+            ]
+            marks = [pytest.mark.xfail(reason=reason, strict=True) for reason in why[:1]]
+            params.append(pytest.param(bind(check, component, None), id=test_id, marks=marks))
     if not params:
         raise ValueError("parametrize_with_checks: no component was given")
     if unknown := sorted(set(reasons) - used):
         raise ValueError(f"expected_failures: no such check: {', '.join(unknown)}")
     return pytest.mark.parametrize("check", params)
+
+
+def _assert_known(component: Component[Any]) -> None:
+    names = {check.__name__ for check in checks_of(component)}
+    if unknown := sorted(set(component.exceptions) - names):
+        raise ValueError(f"{component.kind}: exceptions: no such check: {', '.join(unknown)}")

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 from crowdbot.core.component import Component
 from crowdbot.core.evaluate import score
@@ -14,6 +17,22 @@ from crowdbot.core.score_label import MetricComponent
 from crowdbot.testing.worlds import World
 
 Scored = Mapping[str, Score]
+
+
+def signalled(component: Component[Any], world: World) -> World:
+    """A world in which the run has the signals that a metric says it reads.
+
+    They are smooth in time, the same at every sampling rate, and between 0 and 1.
+    """
+    names = getattr(component, "signals", ())
+    if not names or not len(world.run.t):
+        return world
+    t = world.run.t
+    signals = {
+        name: np.column_stack([t, 0.5 + 0.5 * np.sin((k + 1.0) * (t - t[0]))])
+        for k, name in enumerate(names)
+    }
+    return replace(world, run=replace(world.run, signals={**world.run.signals, **signals}))
 
 
 def scores_of(component: Component[Any], world: World) -> dict[str, Score]:

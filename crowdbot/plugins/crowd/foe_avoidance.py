@@ -27,4 +27,5 @@ FOE_AVOIDANCE = Component(
     spec=FoeAvoidanceSpec,
     build="crowdbot.plugins.crowd.foe_avoidance_build:build",
     summary="focus of expansion of the optical flow (López et al. 2019)",
+    exceptions={"check_gradient": "the model has a rule of its own for turning and braking"},
 )

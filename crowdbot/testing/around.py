@@ -1,0 +1,89 @@
+"""A component among others: the registry that checks build it from, and its examples as specs."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+from unittest import SkipTest
+
+from crowdbot.core.component import Component
+from crowdbot.core.registry import Plugin, Registry, assemble, discover
+from crowdbot.dsl.base import ComponentSpec, CrowdPolicySpec
+from crowdbot.errors import PluginError
+
+#: People of the kit's worlds, for policies that follow a record.
+RECORDED = 12
+
+
+@cache
+def installed() -> Registry:
+    """What is installed, looked up once."""
+    return discover()
+
+
+def around(component: Component[Any], registry: Registry | None = None) -> Registry:
+    """A registry with a component in it, in place of what has its kind.
+
+    Args:
+        registry: the others; by default what is installed.
+    """
+    known = registry or installed()
+    if any(c is component for p in known.plugins for c in p.components):
+        return known
+    kind = (component.category, component.kind)
+    others = [
+        replace(p, components=tuple(c for c in p.components if (c.category, c.kind) != kind))
+        for p in known.plugins
+        if not p.error
+    ]
+    checked = Plugin(name="the one checked", distribution="checked", components=(component,))
+    return assemble([*others, checked])
+
+
+def specs_of(component: Component[Any], registry: Registry) -> list[ComponentSpec]:
+    """The component's examples, validated."""
+    model = registry.spec_model(component.category, component.kind)
+    return [
+        _with_record(model.model_validate({"kind": component.kind, **example}))
+        for example in component.examples
+    ]
+
+
+def built(registry: Registry, spec: ComponentSpec, *args: Any) -> Any:
+    """What the component's build function makes of a spec.
+
+    Raises:
+        SkipTest: it says that an optional library is not installed.
+    """
+    try:
+        return registry.build(spec, *args)
+    except PluginError as error:
+        if isinstance(error.__cause__, ImportError):
+            raise SkipTest(str(error)) from error
+        raise
+
+
+def _with_record(spec: ComponentSpec) -> ComponentSpec:
+    """The spec, with a record that has the kit's people where it wants one."""
+    record = spec.record if isinstance(spec, CrowdPolicySpec) else None
+    if record is None:
+        return spec
+    (name,) = (n for n in type(spec).model_fields if getattr(spec, n) == record)
+    return spec.model_copy(update={name: type(record)(path=str(_record()))})
+
+
+@cache
+def _record() -> Path:
+    """A record of `RECORDED` people who walk straight on for a minute."""
+    folder = tempfile.TemporaryDirectory(prefix="crowdbot-kit-")
+    _KEPT.append(folder)  # lives as long as the process
+    rows = [f"{t},{i},{0.5 * i + t},{0.3 * i}" for i in range(RECORDED) for t in (0.0, 60.0)]
+    path = Path(folder.name) / "people.csv"
+    path.write_text("\n".join(["t,id,x,y", *rows, ""]), encoding="utf-8")
+    return path
+
+
+_KEPT: list[tempfile.TemporaryDirectory[str]] = []

@@ -1,0 +1,80 @@
+"""Which checks a component has to pass. Needs neither pytest nor hypothesis."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+from unittest import SkipTest
+
+from crowdbot.core.component import Component
+from crowdbot.core.registry import Registry
+from crowdbot.testing import (
+    all_kinds,
+    cost_function,
+    crowd_policy,
+    environment,
+    metric,
+    noise,
+    planner,
+    robot_kind,
+    sensor,
+)
+
+Check = Callable[..., None]
+
+#: Category -> its own checks. Those of `all_kinds` hold for every category.
+BY_CATEGORY: Mapping[str, tuple[Check, ...]] = {
+    "cost function": cost_function.CHECKS,
+    "crowd policy": crowd_policy.CHECKS,
+    "environment": environment.CHECKS,
+    "metric": metric.CHECKS,
+    "noise": noise.CHECKS,
+    "planner": planner.CHECKS,
+    "robot": robot_kind.CHECKS,
+    "sensor": sensor.CHECKS,
+}
+
+
+def checks_of(component: Component[Any]) -> tuple[Check, ...]:
+    """All checks that a component has to pass, as functions of the component."""
+    return (*all_kinds.CHECKS, *BY_CATEGORY.get(component.category, ()))
+
+
+def checks_for(
+    component: Component[Any], registry: Registry | None = None
+) -> list[tuple[str, Callable[[], None]]]:
+    """Names and checks of a component, ready to be called.
+
+    A check returns, or raises `AssertionError` with what is wrong, `unittest.SkipTest` where an
+    optional library is missing, or whatever the component itself raised. One that the component
+    declares as an exception passes when it fails.
+
+    Args:
+        registry: what else is installed; by default it is looked up.
+    """
+    found = []
+    for check in checks_of(component):
+        bound = bind(check, component, registry)
+        reason = component.exceptions.get(check.__name__)
+        found.append((check.__name__, bound if reason is None else partial(_fails, bound, reason)))
+    return found
+
+
+def bind(check: Check, component: Component[Any], registry: Registry | None) -> Callable[[], None]:
+    """A check of one component; the registry goes to those who ask for it."""
+    if "registry" in inspect.signature(check).parameters:
+        return partial(check, component, registry)
+    return partial(check, component)
+
+
+def _fails(check: Callable[[], None], reason: str) -> None:
+    """Pass if the check fails, as the component declares."""
+    try:
+        check()
+    except SkipTest:
+        raise
+    except Exception:
+        return
+    raise AssertionError(f"passes, but Component(exceptions=...) says that it fails: {reason}")

@@ -1,0 +1,275 @@
+"""What every cost function must keep to, compiled or not."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numba.core.errors import NumbaError
+from numpy.typing import NDArray
+
+from crowdbot.core.component import Component
+from crowdbot.core.crowd import CrowdView
+from crowdbot.core.crowd.calls import address_of
+from crowdbot.core.crowd.cost import (
+    BASE,
+    EXCESS,
+    GRADIENT,
+    OPTIMUM,
+    PREPARE,
+    CompiledCost,
+    NumpyCost,
+)
+from crowdbot.core.crowd.evaluate import Evaluator
+from crowdbot.core.crowd.gradient import Descent
+from crowdbot.core.crowd.mix import Mix
+from crowdbot.core.registry import Registry
+from crowdbot.testing.around import around, built, specs_of
+from crowdbot.testing.cost_parts import bases_of, stops_at_budget
+from crowdbot.testing.crowd_views import (
+    SEEDS,
+    arrays_of,
+    moved,
+    odd_views,
+    random_view,
+    turn,
+    turned,
+)
+
+Array = NDArray[np.float64]
+Cost = CompiledCost | NumpyCost
+
+_SIGNATURES = {
+    "base": BASE,
+    "prepare": PREPARE,
+    "excess": EXCESS,
+    "gradient": GRADIENT,
+    "optimum": OPTIMUM,
+}
+_TURN = 0.7  # rad
+
+
+def check_signatures(component: Component[Any], registry: Registry | None = None) -> None:
+    """Compiled functions have the signatures of ``crowdbot.core.crowd.cost``; weight and range fit.
+
+    If this fails, write ``@njit(EXCESS, cache=True, error_model="numpy")`` before the function
+    that is named, and begin ``params`` with the range and 0.0 or 1.0.
+    """
+    for cost in _costs(component, registry):
+        assert isinstance(cost, CompiledCost | NumpyCost), f"build returned a {type(cost).__name__}"
+        assert math.isfinite(cost.weight), f"the weight is {cost.weight}"
+        assert cost.weight >= 0.0, f"the weight is {cost.weight}"
+        if isinstance(cost, NumpyCost):
+            assert cost.range >= 0.0, f"the range is {cost.range}"
+            continue
+        for name, signature in _SIGNATURES.items():
+            _assert_compiled(name, getattr(cost, name), signature)
+        assert cost.params.dtype == np.float64, f"params are {cost.params.dtype}"
+        assert cost.params.ndim == 1, f"params have {cost.params.ndim} dimensions"
+        assert len(cost.params) >= 2, "params do not begin with the range and how it is measured"
+        assert cost.params[0] >= 0.0, f"the range is {cost.params[0]}"
+        assert cost.params[1] in (0.0, 1.0), f"params[1] is {cost.params[1]}, not 0.0 or 1.0"
+
+
+def check_costs_are_numbers(component: Component[Any], registry: Registry | None = None) -> None:
+    """A cost is finite, or inf for what is forbidden: never NaN, never -inf.
+
+    If this fails, look at the crowd that is named: people who stand, overlap or touch a wall, and
+    candidates of speed zero, divide by zero.
+    """
+    views = odd_views() | {f"crowd {seed}": random_view(seed) for seed in SEEDS}
+    for cost in _costs(component, registry):
+        for name, view in views.items():
+            _assert_numbers(name, _total(cost, view, _candidates(view)))
+
+
+def check_excess_is_not_negative(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """What neighbours and walls add is at least zero, so that the base is a lower bound.
+
+    If this fails, move what lowers the cost into ``base``, or add a constant: candidates whose
+    base alone is above the best cost are never looked at. A vectorised function has no base; its
+    costs are at least zero.
+    """
+    for cost in _costs(component, registry):
+        for seed in SEEDS:
+            view = random_view(seed)
+            velocities = _candidates(view)
+            total = _total(cost, view, velocities)
+            least = bases_of(cost, view, velocities) if isinstance(cost, CompiledCost) else 0.0
+            with np.errstate(invalid="ignore"):
+                below = total < least - 1e-9 * (1.0 + np.abs(least))
+            assert not np.any(below), f"{np.count_nonzero(below)} costs are below their base"
+
+
+def check_candidates_are_independent(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """The cost of a candidate does not depend on which others are asked for, or asked before.
+
+    If this fails, ``excess`` writes into ``work``, or ``evaluate`` compares candidates with each
+    other. A function that draws random numbers says so: ``CompiledCost(ordered=True)``.
+    """
+    for cost in _costs(component, registry):
+        if isinstance(cost, CompiledCost) and cost.ordered:
+            continue
+        for seed in SEEDS:
+            view = random_view(seed)
+            velocities = _candidates(view)
+            total = _total(cost, view, velocities)
+            again = _total(cost, view, np.ascontiguousarray(velocities[:, ::-1]))[:, ::-1]
+            few = _total(cost, view, np.ascontiguousarray(velocities[:, :3]))
+            assert _near(total, again), "in another order candidates cost something else"
+            assert _near(total[:, :3], few), "without the others candidates cost something else"
+
+
+def check_excess_stops_above_budget(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """With a budget, ``excess`` is what it is without, or both are above the budget.
+
+    If this fails, it stops too early: return only once the sum is above ``budget``.
+    """
+    for cost in _costs(component, registry):
+        if isinstance(cost, CompiledCost) and not cost.ordered:
+            for seed in SEEDS:
+                view = random_view(seed)
+                wrong = stops_at_budget(cost, view, _candidates(view))
+                assert not wrong, wrong
+
+
+def check_gradient(component: Component[Any], registry: Registry | None = None) -> None:
+    """Where there is a ``gradient``, it is that of base plus excess, but at kinks.
+
+    If this fails, compare with differences of the cost over 0.0001 m/s at the velocity named. A
+    function whose source defines another slope says so: ``exceptions={"check_gradient": "why"}``.
+    """
+    for cost in _costs(component, registry):
+        if isinstance(cost, CompiledCost) and cost.gradient is not None:
+            _assert_gradient(cost)
+
+
+def check_input_is_not_changed(component: Component[Any], registry: Registry | None = None) -> None:
+    """No array of the crowd, and none of the parameters, is written to.
+
+    If this fails, write into ``work`` only, or copy.
+    """
+    for cost in _costs(component, registry):
+        view = random_view(0)
+        velocities = _candidates(view)
+        params = cost.params.copy() if isinstance(cost, CompiledCost) else np.zeros(0)
+        before, asked = arrays_of(view), velocities.copy()
+        _total(cost, view, velocities)
+        assert arrays_of(view) == before, "changed the crowd"
+        assert np.array_equal(velocities, asked), "changed the candidates"
+        if isinstance(cost, CompiledCost):
+            assert np.array_equal(cost.params, params), "changed its parameters"
+
+
+def check_translation_invariant(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """The same crowd elsewhere costs the same.
+
+    If this fails, a coordinate is used for itself: everything that functions are given of others
+    is relative. A function that knows places says so in ``Component(exceptions=...)``.
+    """
+    for cost in _costs(component, registry):
+        for seed in SEEDS:
+            view = random_view(seed)
+            velocities = _candidates(view)
+            there = moved(view, np.array([16.0, -8.0]))
+            same = _near(_total(cost, view, velocities), _total(cost, there, velocities))
+            assert same, "16 m along x, -8 m along y velocities cost something else"
+
+
+def check_rotation_invariant(component: Component[Any], registry: Registry | None = None) -> None:
+    """The same crowd, turned, costs the same for velocities turned alike.
+
+    If this fails, the axes are not treated alike; the base is given candidates in the frame of
+    the preferred velocity. A function that knows directions says so in its ``exceptions``.
+    """
+    for cost in _costs(component, registry):
+        for seed in SEEDS:
+            view = random_view(seed)
+            velocities = _candidates(view)
+            again = _total(cost, turned(view, _TURN), turn(velocities, _TURN))
+            same = _near(_total(cost, view, velocities), again)
+            assert same, f"turned by {_TURN} rad velocities cost something else"
+
+
+CHECKS: tuple[Callable[..., None], ...] = (
+    check_signatures,
+    check_costs_are_numbers,
+    check_excess_is_not_negative,
+    check_candidates_are_independent,
+    check_excess_stops_above_budget,
+    check_gradient,
+    check_input_is_not_changed,
+    check_translation_invariant,
+    check_rotation_invariant,
+)
+
+
+def _costs(component: Component[Any], registry: Registry | None) -> Iterator[Cost]:
+    known = around(component, registry)
+    for spec in specs_of(component, known):
+        yield built(known, spec)
+
+
+def _candidates(view: CrowdView) -> Array:
+    """Velocities (N, S, 2): standing, a fan up to 1.9 m/s, the present one; m/s."""
+    angles = np.linspace(0.1, 2.0 * math.pi, 9, endpoint=False)
+    fan = [s * np.column_stack([np.cos(angles), np.sin(angles)]) for s in (0.4, 1.1, 1.9)]
+    common = np.concatenate([np.zeros((1, 2)), *fan])
+    everybody = np.broadcast_to(common, (len(view.agents), *common.shape))
+    return np.ascontiguousarray(np.concatenate([everybody, view.velocity[:, None]], axis=1))
+
+
+def _total(cost: Cost, view: CrowdView, velocities: Array) -> Array:
+    """Costs (N, S) without their weight, of a mix of this function alone."""
+    mix = Mix([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
+    return Evaluator(mix).total(view, velocities)
+
+
+def _assert_compiled(name: str, function: Any, signature: Any) -> None:
+    if function is None and name in ("gradient", "optimum"):
+        return
+    assert hasattr(function, "nopython_signatures"), f"{name} is no compiled function"
+    try:
+        address_of(function, signature)
+    except (KeyError, TypeError, NumbaError, AttributeError) as error:
+        found = "; ".join(str(s) for s in function.nopython_signatures) or "none"
+        raise AssertionError(f"{name} is compiled for {found}, not for {signature}") from error
+
+
+def _assert_numbers(name: str, total: Array) -> None:
+    assert not np.any(np.isnan(total)), f"{name}: {np.count_nonzero(np.isnan(total))} costs are NaN"
+    assert not np.any(total == -np.inf), f"{name}: a cost is -inf"
+
+
+def _assert_gradient(cost: CompiledCost) -> None:
+    """Nine in ten slopes must agree; kinks within a step are nobody's fault."""
+    step, right, count, worst = 1e-5, 0, 0, ""
+    around_it = step * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
+    alone = replace(cost, weight=1.0)
+    for seed in range(3 * len(SEEDS)):
+        view = random_view(seed)
+        found = -Descent(Mix([alone], view.agents, relaxation_time=0.5)).accelerations(view)
+        total = _total(cost, view, view.velocity[:, None] + around_it)
+        with np.errstate(invalid="ignore"):
+            slope = (total[:, 1::2] - total[:, ::2]) / (2.0 * step)
+        usable = np.all(np.isfinite(total), axis=1)
+        close = np.isclose(found, slope, rtol=1e-3, atol=1e-3).all(axis=1)
+        right, count = right + int(np.sum(close & usable)), count + int(np.sum(usable))
+        for i in np.flatnonzero(usable & ~close)[:1]:
+            worst = f"at {view.velocity[i]} it is {found[i]}, differences give {slope[i]}"
+    assert right >= 0.9 * count, f"{count - right} of {count} gradients are wrong; {worst}"
+
+
+def _near(one: Array, two: Array) -> bool:
+    return bool(np.allclose(one, two, rtol=1e-6, atol=1e-6, equal_nan=True))

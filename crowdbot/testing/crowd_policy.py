@@ -1,0 +1,207 @@
+"""What every crowd policy must keep to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.component import Component
+from crowdbot.core.crowd import Agents, CrowdEngine, CrowdPolicy, CrowdView, CrowdWorld
+from crowdbot.core.crowd.willed import willed
+from crowdbot.core.registry import Registry
+from crowdbot.testing.around import around, built, specs_of
+from crowdbot.testing.crowd_views import (
+    SEEDS,
+    arrays_of,
+    moved,
+    odd_views,
+    permuted,
+    random_view,
+    turn,
+    turned,
+)
+
+Array = NDArray[np.float64]
+#: Makes the policy of a set of agents anew.
+Factory = Callable[[Agents], CrowdPolicy]
+
+#: Two results that differ by less are one: sums are added in another order, m/s or m/s^2.
+_ROUNDING = 1e-6
+_TURN = 0.7  # rad
+
+
+def check_answer_is_numbers(component: Component[Any], registry: Registry | None = None) -> None:
+    """The answer is float64 (N, 2), finite for everybody who decides.
+
+    If this fails, the policy returns something else for the crowd that is named: divisions by
+    the distance of who stands on one spot, or by the speed of who stands still, are suspects.
+    """
+    for make in _factories(component, registry):
+        for seed in SEEDS:
+            _assert_answer(f"crowd {seed}", make, random_view(seed))
+
+
+def check_nobody_and_one(component: Component[Any], registry: Registry | None = None) -> None:
+    """Nobody, one person, people who are absent, stand, overlap or have arrived: numbers, always.
+
+    If this fails, the policy took something for granted about the crowd that is named.
+    """
+    for make in _factories(component, registry):
+        for name, view in odd_views().items():
+            _assert_answer(name, make, view)
+
+
+def check_input_is_not_changed(component: Component[Any], registry: Registry | None = None) -> None:
+    """No array of the view is written to.
+
+    If this fails, copy before you change: everybody decides on the same view.
+    """
+    for make in _factories(component, registry):
+        for seed in SEEDS:
+            view = random_view(seed)
+            before = arrays_of(view)
+            _answer(make(view.agents), view)
+            changed = [name for name, data in arrays_of(view).items() if before[name] != data]
+            assert not changed, f"changed {', '.join(changed)}"
+
+
+def check_same_view_twice(component: Component[Any], registry: Registry | None = None) -> None:
+    """Two policies of the same words give the same answers to the same views, to the bit.
+
+    If this fails, the policy draws from a generator that is not its own, or depends on the time.
+    """
+    for make in _factories(component, registry):
+        views = [random_view(0)] * 3
+        one, two = make(views[0].agents), make(views[0].agents)
+        for view in views:
+            same = np.array_equal(_answer(one, view), _answer(two, view))
+            assert same, "the same views were answered differently"
+
+
+def check_permutation_equivariant(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """The same people in another order get the same answers, in that order.
+
+    If this fails, people decide on what others have just decided, or are told apart by their row
+    instead of their id.
+    """
+    for make in _factories(component, registry):
+        for seed in SEEDS:
+            view = random_view(seed)
+            order = np.random.default_rng(seed).permutation(len(view.agents))
+            again = permuted(view, order)
+            _assert_same(_will(make, view)[order], _will(make, again), "another order")
+
+
+def check_translation_invariant(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """The same crowd elsewhere decides alike.
+
+    If this fails, a coordinate is used for itself. A policy that knows places says so:
+    ``Component(exceptions={"check_translation_invariant": "why"})``.
+    """
+    for make in _factories(component, registry):
+        for seed in SEEDS:
+            view = random_view(seed)
+            there = moved(view, np.array([16.0, -8.0]))
+            _assert_same(_will(make, view), _will(make, there), "16 m along x, -8 m along y")
+
+
+def check_rotation_equivariant(component: Component[Any], registry: Registry | None = None) -> None:
+    """The same crowd turned decides alike, turned.
+
+    If this fails, the axes are not treated alike. A policy that knows directions says so:
+    ``Component(exceptions={"check_rotation_equivariant": "why"})``.
+    """
+    for make in _factories(component, registry):
+        for seed in SEEDS:
+            view = random_view(seed)
+            found = _will(make, turned(view, _TURN))
+            _assert_same(turn(_will(make, view), _TURN), found, f"turned by {_TURN} rad")
+
+
+def check_time_step_is_no_unit(component: Component[Any], registry: Registry | None = None) -> None:
+    """People who decide twice as often get about as far.
+
+    If this fails, the answer is a step instead of a velocity, or a velocity instead of an
+    acceleration: it must not shrink or grow with ``dt``.
+    """
+    for make in _factories(component, registry):
+        seldom, often = (_walked(make, rate) for rate in (16.0, 32.0))
+        way = np.hypot(*(seldom[-1] - seldom[0]).T)
+        apart = np.hypot(*(often[-1] - seldom[-1]).T)
+        limit = 0.25 * float(way.max()) + 0.05
+        assert np.all(apart < limit), (
+            f"with decisions twice as often people are {apart.max():.2f} m elsewhere after "
+            f"{way.max():.2f} m"
+        )
+
+
+CHECKS: tuple[Callable[..., None], ...] = (
+    check_answer_is_numbers,
+    check_nobody_and_one,
+    check_input_is_not_changed,
+    check_same_view_twice,
+    check_permutation_equivariant,
+    check_translation_invariant,
+    check_rotation_equivariant,
+    check_time_step_is_no_unit,
+)
+
+
+def _factories(component: Component[Any], registry: Registry | None) -> Iterator[Factory]:
+    """One for each example; policies that are nothing without costs get ``ttca_dca``."""
+    known = around(component, registry)
+    for spec in specs_of(component, known):
+        costs = []
+        if getattr(spec, "needs_costs", False):
+            (words,) = specs_of(known.find("cost function", "ttca_dca"), known)
+            costs = [known.build(words)]
+
+        def make(agents: Agents, spec: Any = spec, costs: Any = costs) -> CrowdPolicy:
+            policy: CrowdPolicy = built(known, spec, costs, agents)
+            return policy
+
+        yield make
+
+
+def _answer(policy: CrowdPolicy, view: CrowdView) -> Array:
+    if hasattr(policy, "accelerations"):
+        return policy.accelerations(view)
+    return policy.velocities(view, view.dt)
+
+
+def _assert_answer(name: str, make: Factory, view: CrowdView) -> None:
+    found = _answer(make(view.agents), view)
+    assert isinstance(found, np.ndarray), f"{name}: returned a {type(found).__name__}"
+    assert found.dtype == np.float64, f"{name}: returned {found.dtype}"
+    assert found.shape == view.position.shape, f"{name}: {found.shape} for {view.position.shape}"
+    assert np.all(np.isfinite(found[view.present])), f"{name}: {found.tolist()}"
+
+
+def _will(make: Factory, view: CrowdView) -> Array:
+    """Accelerations (N, 2), m/s^2, of a policy made anew."""
+    return willed(make(view.agents), view)
+
+
+def _assert_same(one: Array, two: Array, change: str) -> None:
+    off = float(np.max(np.abs(one - two), initial=0.0))
+    assert off < _ROUNDING, f"{change}: answers differ by {off:.3g} m/s^2"
+
+
+def _walked(make: Factory, rate: float) -> Array:
+    """Positions (T, N, 2) of three people in 1.5 s who hardly meet, m."""
+    agents = Agents.of(
+        x=[0.0, 0.5, 1.0],
+        y=[0.0, 3.0, 6.0],
+        id=[0, 1, 2],
+        routes=[[(12.0, 0.0)], [(12.5, 3.0)], [(13.0, 6.0)]],
+    )
+    engine = CrowdEngine(agents, CrowdWorld(decision_rate=rate), make)
+    _, positions = engine.run(1.5)
+    return positions

@@ -1,0 +1,169 @@
+"""What every environment must keep to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.component import Component
+from crowdbot.core.interfaces import EnvironmentParts
+from crowdbot.core.registry import Registry
+from crowdbot.testing.around import around, built, specs_of
+from crowdbot.testing.free_floor import Grid, seen_sides, viewpoints
+
+Array = NDArray[np.float64]
+
+
+def check_parts(component: Component[Any], registry: Registry | None = None) -> None:
+    """Walls, pillars, solids and heights are finite arrays of the declared shapes.
+
+    If this fails, look at `EnvironmentParts`: one row of heights a wall, bottom below top.
+    """
+    for parts in _parts(component, registry):
+        assert isinstance(parts, EnvironmentParts), f"build returned a {type(parts).__name__}"
+        _assert_table("walls", parts.walls, (-1, 4))
+        count, pillars, solids = len(parts.walls), len(parts.pillars), len(parts.solids)
+        _assert_heights("wall_heights", parts.wall_heights, count)
+        for name in ("stops_robot", "stops_crowd"):
+            flags = getattr(parts, name)
+            assert flags.dtype == np.bool_, f"{name} is {flags.dtype}"
+            assert flags.shape == (count,), f"{name} has shape {flags.shape} for {count} walls"
+        lengths = np.hypot(*(parts.walls[:, 2:] - parts.walls[:, :2]).T)
+        assert np.all(lengths > 0.0), "a wall has no length"
+        _assert_table("pillars", parts.pillars, (-1, 3))
+        _assert_heights("pillar_heights", parts.pillar_heights, pillars)
+        assert np.all(parts.pillars[:, 2] > 0.0), "a pillar has no radius"
+        _assert_heights("solid_heights", parts.solid_heights, solids)
+        for outline in parts.solids:
+            _assert_outline("a solid", outline)
+
+
+def check_zones_and_portals(component: Component[Any], registry: Registry | None = None) -> None:
+    """Zones are counter-clockwise polygons and portals boxes; all that the words name are there.
+
+    If this fails, hand on ``spec.zones`` (``zone.polygon``) and ``spec.portals`` (x, then y).
+    """
+    known = around(component, registry)
+    for spec in specs_of(component, known):
+        parts: EnvironmentParts = built(known, spec)
+        assert set(parts.zones) >= set(getattr(spec, "zones", {})), "a zone of the words is missing"
+        assert set(parts.portals) >= set(getattr(spec, "portals", {})), "a portal is missing"
+        for name, zone in parts.zones.items():
+            _assert_outline(f"zone '{name}'", zone)
+        for name, (x0, x1, y0, y1) in parts.portals.items():
+            assert x0 < x1, f"portal '{name}' is not (x0, x1, y0, y1)"
+            assert y0 < y1, f"portal '{name}' is not (x0, x1, y0, y1)"
+
+
+def check_zones_are_on_the_floor(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """The centre of every zone is free: within the walls, in no pillar and in no solid.
+
+    If this fails, a zone lies outside of the place, or something stands in the middle of it.
+    """
+    for parts in _parts(component, registry):
+        grid = Grid(parts)
+        for name, zone in parts.zones.items():
+            centre = zone.mean(axis=0)
+            assert grid.is_free(centre), f"zone '{name}' has something in its centre {centre}"
+            assert grid.holds(centre), f"zone '{name}' lies outside of the walls"
+
+
+def check_free_side_is_on_the_left(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """Who stands in a zone, or in the middle of the floor, sees the left side of every wall.
+
+    If this fails, swap the ends of the wall that is named: sensors do not mind, but the robot and
+    people are kept on its left.
+    """
+    for parts in _parts(component, registry):
+        for x, y in viewpoints(parts):
+            wrong = [s for s, left in seen_sides(parts, x, y).items() if not left]
+            assert not wrong, (
+                f"from ({x:g}, {y:g}) the right side of wall {parts.walls[wrong[0]]} is seen"
+            )
+
+
+def check_is_closed(component: Component[Any], registry: Registry | None = None) -> None:
+    """A robot cannot drive out between the walls, unless there are none or the floor is a torus.
+
+    If this fails, there is a gap of more than 0.2 m. A place that is meant to be open says so:
+    ``Component(exceptions={"check_is_closed": "why"})``.
+    """
+    for parts in _parts(component, registry):
+        if parts.torus is not None or not np.any(parts.stops_robot):
+            continue
+        grid = Grid(parts)
+        for x, y in viewpoints(parts):
+            out = grid.way_out(x, y)
+            assert out is None, f"from ({x:g}, {y:g}) a robot gets out at {out}"
+
+
+def check_same_words_same_place(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """Built twice from the same words it is the same place.
+
+    If this fails, something is drawn at random: put the numbers, or a seed, into the spec.
+    """
+    pairs = zip(_parts(component, registry), _parts(component, registry), strict=True)
+    for one, two in pairs:
+        for name in ("walls", "wall_heights", "stops_robot", "stops_crowd", "pillars"):
+            assert np.array_equal(getattr(one, name), getattr(two, name)), f"other {name}"
+
+
+def check_runs(component: Component[Any], registry: Registry | None = None) -> None:
+    """A robot drives in it for a second, twice alike, and the simulator warns of nothing.
+
+    If this fails, the simulator says what it does not like about the geometry.
+    """
+    from crowdbot.testing.tiny import assert_runs, scenario_in
+
+    known = around(component, registry)
+    for spec in specs_of(component, known):
+        parts: EnvironmentParts = built(known, spec)
+        x, y = viewpoints(parts)[0]
+        assert_runs(scenario_in(known, spec, (x, y)), known)
+
+
+CHECKS: tuple[Callable[..., None], ...] = (
+    check_parts,
+    check_zones_and_portals,
+    check_zones_are_on_the_floor,
+    check_free_side_is_on_the_left,
+    check_is_closed,
+    check_same_words_same_place,
+    check_runs,
+)
+
+
+def _parts(component: Component[Any], registry: Registry | None) -> Iterator[EnvironmentParts]:
+    known = around(component, registry)
+    for spec in specs_of(component, known):
+        yield built(known, spec)
+
+
+def _assert_table(name: str, table: Array, shape: tuple[int, int]) -> None:
+    assert table.dtype == np.float64, f"{name} is {table.dtype}"
+    assert table.ndim == 2, f"{name} has shape {table.shape}"
+    assert table.shape[1] == shape[1], f"{name} has shape {table.shape}"
+    assert np.all(np.isfinite(table)), f"{name} is not finite"
+
+
+def _assert_heights(name: str, table: Array, count: int) -> None:
+    _assert_table(name, table, (count, 2))
+    assert len(table) == count, f"{len(table)} {name} for {count}"
+    assert np.all(table[:, 0] < table[:, 1]), f"{name}: the bottom must be below the top"
+
+
+def _assert_outline(name: str, corners: Array) -> None:
+    _assert_table(name, corners, (-1, 2))
+    assert len(corners) >= 3, f"{name} has {len(corners)} corners"
+    x, y = corners.T
+    area = 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+    assert area > 0.0, f"the corners of {name} are not counter-clockwise"

@@ -1,0 +1,126 @@
+"""What every noise generator must keep to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.component import Component
+from crowdbot.core.interfaces import NoiseGenerator
+from crowdbot.core.registry import Registry
+from crowdbot.testing.around import around, built, specs_of
+
+Array = NDArray[np.float64]
+
+#: Distances as sensors hand them over: hits near and far, nothing hit, nobody looked.
+_DISTANCES = (
+    np.array([0.0, 0.02, 0.5, 1.0, 4.4, 100.0]),
+    np.full(6, np.inf),
+    np.array([np.inf, 1.0, np.inf, 2.0, 3.0, np.inf]),
+    np.zeros(6),
+)
+
+
+def check_errors_are_numbers(component: Component[Any], registry: Registry | None = None) -> None:
+    """Errors are as many finite float64 as there are distances, also for beams that hit nothing.
+
+    If this fails, return ``np.zeros(len(distance))`` plus what you add; inf - inf is NaN.
+    """
+    for generator in _generators(component, registry):
+        for distance in (*_DISTANCES, np.zeros(0), np.array([2.0])):
+            errors = generator.errors(distance.copy(), _rng())
+            assert isinstance(errors, np.ndarray), f"returned a {type(errors).__name__}"
+            assert errors.dtype == np.float64, f"returned {errors.dtype}"
+            assert errors.shape == distance.shape, f"{errors.shape} for {distance.shape}"
+            assert np.all(np.isfinite(errors)), f"{errors} for distances {distance}"
+
+
+def check_distances_are_unchanged(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """The distances that are handed over stay as they are.
+
+    If this fails, return what is to be added instead of adding it.
+    """
+    for generator in _generators(component, registry):
+        for distance in _DISTANCES:
+            given = distance.copy()
+            generator.errors(given, _rng())
+            assert np.array_equal(given, distance), f"changed {distance} into {given}"
+
+
+def check_draws_do_not_depend_on_distances(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """As many random numbers are drawn whatever the distances are.
+
+    If this fails, draw for every beam, also for those that need none: else what one beam hits
+    changes the noise of the others.
+    """
+    for generator in _generators(component, registry):
+        states = []
+        for distance in _DISTANCES:
+            rng = _rng()
+            generator.errors(distance.copy(), rng)
+            states.append(_state(rng))
+        assert all(s == states[0] for s in states), "the number of draws depends on the distances"
+
+
+def check_random_says_whether_it_draws(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """The attribute ``random`` is true if and only if random numbers are drawn.
+
+    If this fails, correct ``random``: where it is false, the sensor hands over a generator that
+    others use too.
+    """
+    for generator in _generators(component, registry):
+        assert isinstance(generator.random, bool), "'random' must be True or False"
+        rng = _rng()
+        for distance in _DISTANCES:
+            generator.errors(distance.copy(), rng)
+        drew = _state(rng) != _state(_rng())
+        assert drew == generator.random, f"random is {generator.random}, numbers drawn: {drew}"
+
+
+def check_equal_draws_give_equal_errors(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """Equal distances and equal random numbers give equal errors, whatever came before.
+
+    If this fails, the generator keeps something between two readings, or draws from elsewhere.
+    """
+    for one, two in zip(
+        _generators(component, registry), _generators(component, registry), strict=True
+    ):
+        first = [one.errors(d.copy(), _rng()) for d in _DISTANCES]
+        again = [two.errors(d.copy(), _rng()) for d in reversed(_DISTANCES)][::-1]
+        assert all(np.array_equal(a, b) for a, b in zip(first, again, strict=True)), (
+            "the same reading got another error"
+        )
+
+
+CHECKS: tuple[Callable[..., None], ...] = (
+    check_errors_are_numbers,
+    check_distances_are_unchanged,
+    check_draws_do_not_depend_on_distances,
+    check_random_says_whether_it_draws,
+    check_equal_draws_give_equal_errors,
+)
+
+
+def _generators(component: Component[Any], registry: Registry | None) -> Iterator[NoiseGenerator]:
+    known = around(component, registry)
+    for spec in specs_of(component, known):
+        yield built(known, spec)
+
+
+def _rng() -> np.random.Generator:
+    return np.random.Generator(np.random.Philox(key=7))
+
+
+def _state(rng: np.random.Generator) -> str:
+    return repr(rng.bit_generator.state)

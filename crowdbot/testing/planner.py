@@ -1,0 +1,124 @@
+"""What every planner must keep to, on courses without a simulator (`crowdbot.testing.drive`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from crowdbot.core.component import Component
+from crowdbot.core.registry import Registry
+from crowdbot.dsl.base import ComponentSpec
+from crowdbot.errors import PlannerError
+from crowdbot.testing.around import around, built, specs_of
+from crowdbot.testing.drive import AT_GOAL, COURSES, UNREACHABLE, Course, Driven, sensors_for
+
+_STEPS = 24
+
+
+def check_commands_are_numbers(component: Component[Any], registry: Registry | None = None) -> None:
+    """On every course ``step`` returns finite commands, or raises ``NoValidCommand``.
+
+    If this fails, the message names the course and what was returned or raised. Readings are inf
+    where nothing is in reach.
+    """
+    for driver in _drivers(component, registry):
+        for name, course in COURSES.items():
+            _drive(name, driver(course))
+
+
+def check_commands_are_within_limits(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """No command is beyond the ``RobotLimits`` that ``reset`` was given.
+
+    If this fails, clamp to ``limits`` yourself: the host clamps too, and counts it against you.
+    """
+    for driver in _drivers(component, registry):
+        for name, course in COURSES.items():
+            driven = driver(course)
+            _drive(name, driven)
+            count = driven.host.clamped
+            assert count == 0, f"{name}: {count} of {_STEPS} commands were beyond the limits"
+
+
+def check_reset_is_deterministic(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """Two planners of the same words and seed give the same commands.
+
+    If this fails, draw from ``np.random.default_rng(seed)``, made in ``reset``; ask no clock.
+    """
+    for driver in _drivers(component, registry):
+        course = COURSES["people in a room"]
+        one, two = (_drive("people in a room", driver(course)) for _ in range(2))
+        _assert_same(one, two, "two planners of the same words")
+
+
+def check_runs_are_independent(component: Component[Any], registry: Registry | None = None) -> None:
+    """``reset`` forgets everything: a second run in the same object is like the first.
+
+    If this fails, set in ``reset`` all that ``step`` changes.
+    """
+    for driver in _drivers(component, registry):
+        driven = driver(COURSES["people in a room"])
+        one = list(_drive("first run", driven))
+        two = list(_drive("second run", driven))
+        _assert_same(one, two, "the second run of one planner")
+
+
+def check_unreachable_goal(component: Component[Any], registry: Registry | None = None) -> None:
+    """A goal behind walls: a command or ``NoValidCommand``, never NaN, never another exception.
+
+    If this fails, a search finds no way and its result is used all the same.
+    """
+    for driver in _drivers(component, registry):
+        _drive("a goal behind walls", driver(UNREACHABLE))
+
+
+def check_goal_reached_at_start(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """A robot that starts on its goal gets numbers.
+
+    If this fails, something is divided by the distance to the goal.
+    """
+    for driver in _drivers(component, registry):
+        _drive("the goal reached at the start", driver(AT_GOAL))
+
+
+CHECKS: tuple[Callable[..., None], ...] = (
+    check_commands_are_numbers,
+    check_commands_are_within_limits,
+    check_reset_is_deterministic,
+    check_runs_are_independent,
+    check_unreachable_goal,
+    check_goal_reached_at_start,
+)
+
+
+def _drivers(
+    component: Component[Any], registry: Registry | None
+) -> Iterator[Callable[[Course], Driven]]:
+    """For each example: a function that puts a new planner on a course."""
+    known = around(component, registry)
+    sensors = sensors_for(getattr(component.spec, "needs", None), known)
+    for spec in specs_of(component, known):
+        yield _driver(component.kind, spec, known, sensors)
+
+
+def _driver(
+    kind: str, spec: ComponentSpec, known: Registry, sensors: Mapping[str, Any]
+) -> Callable[[Course], Driven]:
+    return lambda course: Driven(built(known, spec), kind, course, sensors)
+
+
+def _drive(name: str, driven: Driven) -> list[Any]:
+    try:
+        return driven.run(_STEPS)
+    except PlannerError as error:
+        raise AssertionError(f"{name}: {error}") from error
+
+
+def _assert_same(one: list[Any], two: list[Any], what: str) -> None:
+    for k, (a, b) in enumerate(zip(one, two, strict=True)):
+        assert a == b, f"{what}: step {k} gave {tuple(b)} instead of {tuple(a)}"

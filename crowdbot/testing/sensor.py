@@ -1,0 +1,253 @@
+"""What every sensor must keep to."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.component import Component
+from crowdbot.core.interfaces import SensorInfo
+from crowdbot.core.registry import Registry
+from crowdbot.core.sensing.noise import sensor_rng
+from crowdbot.core.sensing.scene import Scene
+from crowdbot.dsl.proximity import ProximitySpec
+from crowdbot.testing.around import around, built, specs_of
+from crowdbot.testing.sensor_scenes import POSES, crowded, empty, in_front, pose_of, robot_at
+
+Array = NDArray[np.float64]
+_ROS_TYPE = re.compile(r"[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*")
+#: Categories whose values are distances of what stands there, inf for nothing.
+_DISTANCES = ("infrared", "lidar", "ultrasound")
+
+
+class Probe:
+    """A sensor with the memory that core keeps for it."""
+
+    def __init__(self, sensor: Any) -> None:
+        self.sensor, self.info = sensor, sensor.info()
+        self.memory = np.zeros(self.info.memory)
+
+    def __call__(self, scene: Scene, k: int, rng: np.random.Generator | None = None) -> Array:
+        """Reading number k of a drive; its robot is where `POSES` says."""
+        rng = rng or sensor_rng(0, "robot", "sensor", k)
+        args = (scene, pose_of(k), k / self.info.rate, rng)
+        if self.info.memory:
+            return np.asarray(self.sensor.read(*args, self.memory))
+        return np.asarray(self.sensor.read(*args))
+
+
+def check_info(component: Component[Any], registry: Registry | None = None) -> None:
+    """``info`` is constant and makes sense: rate, shape, ranges, mount, ROS type.
+
+    If this fails, make `SensorInfo` once, in the constructor. A rate is above 0 and at most
+    128 Hz, a ROS type is like ``sensor_msgs/msg/LaserScan``, angles are those of all beams.
+    """
+    for sensor in _sensors(component, registry):
+        info = sensor.info()
+        _assert_info(info)
+        assert _same_info(info, sensor.info()), "info() changes"
+        before = _copy_of(info)
+        Probe(sensor)(crowded(), 0)
+        assert _same_info(before, sensor.info()), "info() changes when the sensor is read"
+
+
+def check_reading_is_numbers(component: Component[Any], registry: Registry | None = None) -> None:
+    """A reading has the shape of ``info().shape``, is float64 (float32 of a camera), never NaN.
+
+    If this fails, nothing in reach is inf, not NaN; and an array of another shape cannot be kept.
+    """
+    for sensor in _sensors(component, registry):
+        for name, scene in {"empty": empty(), "crowded": crowded()}.items():
+            probe = Probe(sensor)
+            for k in range(len(POSES)):
+                _assert_reading(name, probe.info, probe(_shown(scene, k), k))
+
+
+def check_readings_are_new(component: Component[Any], registry: Registry | None = None) -> None:
+    """Each reading is a new array, and none of the scene's arrays is written to.
+
+    If this fails, return a copy of what you keep, and change nothing that the scene hands out.
+    """
+    for sensor in _sensors(component, registry):
+        probe, scene = Probe(sensor), crowded()
+        first = probe(_shown(scene, 0), 0)
+        kept, people = first.copy(), scene.people.copy()
+        for k in range(1, len(POSES)):
+            probe(_shown(scene, k), k)
+        assert np.array_equal(first, kept), "a later reading changed an earlier one"
+        assert np.array_equal(scene.people, people), "reading changed the people of the scene"
+
+
+def check_equal_draws_give_equal_readings(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """Two sensors of the same words read the same from the same scenes and random numbers.
+
+    If this fails, something is drawn from another generator than ``rng``, or from the clock.
+    """
+    pairs = zip(_sensors(component, registry), _sensors(component, registry), strict=True)
+    for one, two in (tuple(map(Probe, pair)) for pair in pairs):
+        scene = crowded()
+        for k in range(len(POSES)):
+            same = np.array_equal(one(_shown(scene, k), k), two(_shown(scene, k), k))
+            assert same, f"reading {k} differs between two sensors of the same words"
+
+
+def check_random_says_whether_it_draws(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """``info().random`` is true if and only if random numbers are drawn.
+
+    If this fails, correct ``random``: where it is false, the generator handed over is not its
+    own.
+    """
+    for sensor in _sensors(component, registry):
+        drew = _draws(sensor)
+        says = sensor.info().random
+        assert drew == says, f"random is {says}, numbers drawn: {drew}"
+
+
+def check_exact_without_noise(component: Component[Any], registry: Registry | None = None) -> None:
+    """A sensor of distances without noise and dropouts draws no random numbers.
+
+    If this fails, draw nothing for a noise of zero; a sensor that is random by its principle says
+    so: ``Component(exceptions={"check_exact_without_noise": "why"})``.
+    """
+    known = around(component, registry)
+    for spec in specs_of(component, known):
+        if isinstance(spec, ProximitySpec) and not spec.noise and not spec.dropout:
+            assert not _draws(built(known, spec)), "draws random numbers without noise"
+
+
+def check_memory_is_all_it_keeps(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """A new sensor that is handed the memory goes on as the old one would have.
+
+    If this fails, the object keeps something: ``info().memory`` numbers are all that survives.
+    """
+    pairs = zip(_sensors(component, registry), _sensors(component, registry), strict=True)
+    for one, two in (tuple(map(Probe, pair)) for pair in pairs):
+        scene, half = crowded(), len(POSES) // 2
+        for k in range(half):
+            one(_shown(scene, k), k)
+        two.memory[:] = one.memory
+        for k in range(half, len(POSES)):
+            same = np.array_equal(one(_shown(scene, k), k), two(_shown(scene, k), k))
+            assert same, f"reading {k} depends on something that is not in the memory"
+
+
+def check_sees_people(component: Component[Any], registry: Registry | None = None) -> None:
+    """``info().sees`` is true if and only if somebody in front of the robot changes a reading.
+
+    If this fails, correct ``sees``: where it is false, the people of the scene are not up to
+    date.
+    """
+    for sensor in _sensors(component, registry):
+        info = sensor.info()
+        alone = Probe(sensor)(empty(), 0)
+        changed = any(
+            not np.array_equal(alone, Probe(sensor)(scene, 0))
+            for scenes in in_front(info).values()
+            for scene in scenes
+        )
+        assert changed == info.sees, f"sees is {info.sees}; a person changes readings: {changed}"
+
+
+def check_distances_are_true(component: Component[Any], registry: Registry | None = None) -> None:
+    """Of a sensor of distances: an empty world gives inf, a person in front about the distance.
+
+    If this fails, the sensor sees the robot itself, or measures to somewhere else. Categories are
+    ``lidar``, ``ultrasound`` and ``infrared``; others are not looked at.
+    """
+    for sensor in _sensors(component, registry):
+        info = sensor.info()
+        if info.category not in _DISTANCES:
+            continue
+        alone = Probe(sensor)(empty(), 0)
+        assert np.all(np.isinf(alone)), f"in an empty world the nearest thing is {alone.min()} m"
+        for distance, scenes in in_front(info).items():
+            if not info.range_min + 0.6 < distance < info.range_max - 0.5:
+                continue
+            nearest = min(float(Probe(sensor)(scene, 0).min()) for scene in scenes)
+            assert abs(nearest - distance) < 0.6, (
+                f"a person whose centre is {distance:.2f} m ahead reads {nearest:.2f} m"
+            )
+
+
+CHECKS: tuple[Callable[..., None], ...] = (
+    check_info,
+    check_reading_is_numbers,
+    check_readings_are_new,
+    check_equal_draws_give_equal_readings,
+    check_random_says_whether_it_draws,
+    check_exact_without_noise,
+    check_memory_is_all_it_keeps,
+    check_sees_people,
+    check_distances_are_true,
+)
+
+
+def _sensors(component: Component[Any], registry: Registry | None) -> Iterator[Any]:
+    known = around(component, registry)
+    for spec in specs_of(component, known):
+        yield built(known, spec)
+
+
+def _draws(sensor: Any) -> bool:
+    """Whether a drive takes random numbers."""
+    probe, scene, drew = Probe(sensor), crowded(), False
+    for k in range(len(POSES)):
+        rng, untouched = (sensor_rng(0, "robot", "sensor", k) for _ in range(2))
+        probe(_shown(scene, k), k, rng)
+        drew = drew or repr(rng.bit_generator.state) != repr(untouched.bit_generator.state)
+    return drew
+
+
+def _shown(scene: Scene, k: int) -> Scene:
+    """The scene with the robot where it is at reading k."""
+    scene.move_robot(robot_at(k))
+    return scene
+
+
+def _assert_info(info: SensorInfo) -> None:
+    assert isinstance(info, SensorInfo), f"info() is a {type(info).__name__}"
+    assert info.category.strip(), "no category"
+    assert 0.0 < info.rate <= 128.0, f"the rate is {info.rate} Hz"
+    assert all(isinstance(n, int) and n > 0 for n in info.shape), f"the shape is {info.shape}"
+    assert len(info.mount) == 4, f"the mount is {info.mount}"
+    assert all(math.isfinite(x) for x in info.mount), f"the mount is {info.mount}"
+    assert 0.0 <= info.range_min <= info.range_max, f"{info.range_min} to {info.range_max} m"
+    assert _ROS_TYPE.fullmatch(info.ros_type), f"'{info.ros_type}' is no ROS type"
+    assert isinstance(info.memory, int), f"memory is {info.memory}"
+    assert info.memory >= 0, f"memory is {info.memory}"
+    if info.angles is not None:
+        assert np.all(np.isfinite(info.angles)), "angles are not finite"
+    if info.category == "lidar":
+        assert info.angles is not None, "a lidar without angles"
+        assert info.angles.shape == info.shape, f"{info.angles.shape} angles for {info.shape}"
+    if info.camera is not None:
+        assert info.shape == (info.camera.height, info.camera.width), f"shape {info.shape}"
+        assert info.memory == 0, "a camera has no memory"
+
+
+def _same_info(one: SensorInfo, two: SensorInfo) -> bool:
+    pairs = [(getattr(one, f.name), getattr(two, f.name)) for f in fields(SensorInfo)]
+    return all(np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b for a, b in pairs)
+
+
+def _copy_of(info: SensorInfo) -> SensorInfo:
+    return replace(info, angles=None if info.angles is None else info.angles.copy())
+
+
+def _assert_reading(name: str, info: SensorInfo, values: Array) -> None:
+    wanted = np.float32 if info.camera is not None else np.float64
+    assert values.dtype == wanted, f"{name}: returned {values.dtype}"
+    assert values.shape == info.shape, f"{name}: {values.shape}, info says {info.shape}"
+    assert not np.any(np.isnan(values)), f"{name}: {np.count_nonzero(np.isnan(values))} are NaN"

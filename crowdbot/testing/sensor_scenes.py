@@ -1,0 +1,74 @@
+"""Scenes that sensors look at, and a drive through them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crowdbot.core.interfaces import Pose, RobotState, SensorInfo
+from crowdbot.core.sensing.scene import Scene
+
+#: A robot that drives on an arc; x, y (m), yaw (rad), one for each reading.
+POSES = tuple(Pose(0.05 * k, 0.01 * k * k, 0.2 * k) for k in range(6))
+_RADIUS, _HEIGHT = 0.25, 1.75
+#: Largest distance of the centre of the person in front, m.
+_FAR = 12.0
+
+
+def robot_at(k: int) -> RobotState:
+    """The robot at reading k."""
+    x, y, yaw = POSES[k]
+    return RobotState(
+        x=x, y=y, yaw=yaw, vx=0.4 * math.cos(yaw), vy=0.4 * math.sin(yaw), w=0.5,
+        tilt=0.0, z=0.0102, left_angle=1.0 * k, right_angle=1.3 * k,
+    )  # fmt: skip
+
+
+def pose_of(k: int) -> Pose:
+    """Pose of base_link at reading k."""
+    return POSES[k]
+
+
+def empty() -> Scene:
+    """Nothing but the robot."""
+    return _scene(np.zeros((0, 4)), np.zeros((0, 4)))
+
+
+def crowded() -> Scene:
+    """Walls on all sides and people among them, one of them absent."""
+    walls = np.array([[-4, -3, 6, -3], [6, -3, 6, 3], [6, 3, -4, 3], [-4, 3, -4, -3]], np.float64)
+    people = np.array(
+        [[1.5, 0.2, -0.5, 0.0], [2.5, -1.0, 0.0, 1.0], [-1.0, 1.5, 0.0, 0.0], [0.9, 0.9, 1.0, 0.0]]
+    )
+    return _scene(walls, people, present=np.array([True, True, True, False]))
+
+
+def in_front(info: SensorInfo) -> dict[float, list[Scene]]:
+    """One person ahead of the sensor, by distance from it (m): on its axis and a little beside.
+
+    A narrow beam may pass between the legs; a bumper feels only what touches the robot.
+    """
+    x, y, _, yaw = info.mount
+    c, s = math.cos(yaw), math.sin(yaw)
+    distances = np.concatenate([np.linspace(0.2, 1.0, 33), np.geomspace(1.1, _FAR, 10)])
+    return {
+        d: [_one(x + d * c - side * s, y + d * s + side * c) for side in (0.0, -0.12, 0.12)]
+        for d in distances.tolist()
+    }
+
+
+def _one(x: float, y: float) -> Scene:
+    return _scene(np.zeros((0, 4)), np.array([[x, y, -0.5, 0.0]]))
+
+
+def _scene(
+    walls: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
+    people: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
+    present: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] | None = None,
+) -> Scene:
+    count = len(people)
+    scene = Scene(walls, [0.0, 2.5], np.full(count, _RADIUS), np.full(count, _HEIGHT))
+    here = np.ones(count, np.bool_) if present is None else present
+    scene.update(robot_at(0), people, here)
+    return scene
