@@ -114,6 +114,9 @@ class _Outlined:
         built = registry().build(spec, *more)
         return replace(built, footprint=self._outline) if isinstance(built, RobotModel) else built
 
+    def __getattr__(self, name: str) -> Any:
+        return getattr(registry(), name)
+
 
 def test_the_outline_is_recorded(tmp_path: Path) -> None:
     world = scenario("robots.robot.task.time_limit=0.25")
