@@ -42,8 +42,13 @@ class CrowdSystem(LeafSystem):
         self._robot[0, :4] = x, y, vx, vy
         values = state.get_mutable_discrete_state()
         crowd = values.get_mutable_value(self._crowd)
+        before = crowd[: s.HEADER_SIZE].tolist()
         self._engine.advance(crowd, self._robot)
         header = crowd[: s.HEADER_SIZE].tolist()
-        force = values.get_mutable_value(self._force)
-        self._push.write(force, header[s.ROBOT_FX], header[s.ROBOT_FY])
-        values.get_mutable_value(self._events)[0] = header[s.CONTACTS] + header[s.TRIPS]
+        # At most ticks nobody touches the robot and nothing ends: the rest stays as it is.
+        force = header[s.ROBOT_FX], header[s.ROBOT_FY]
+        if force != (before[s.ROBOT_FX], before[s.ROBOT_FY]):
+            self._push.write(values.get_mutable_value(self._force), *force)
+        events = header[s.CONTACTS] + header[s.TRIPS]
+        if events != before[s.CONTACTS] + before[s.TRIPS]:
+            values.get_mutable_value(self._events)[0] = events
