@@ -14,6 +14,7 @@ from crowdbot.plugins.planners.dwa_points_build import (
     apparent_velocity,
     choose_direction,
     free_time,
+    minimum,
     nearest_per_sector,
 )
 
@@ -121,6 +122,25 @@ def test_hits_still_and_moving_points() -> None:
     hit = roll(ahead, points((-1.0, 0.0)), p, 1.0, 0.0, 1.0, 0.0)[3]
     assert hit == pytest.approx(0.625, abs=rollout.STEP)
     assert roll(ahead, points((1.0, 0.0)), p, 1.0, 0.0, 1.0, 0.0)[3] == 2.5
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(-0.3, 1.0), st.floats(0.0, 1.0), st.integers(2, 9), st.integers(3, 9))
+def test_candidates_are_every_speed_with_every_rate(
+    low: float, more: float, speeds: int, rates: int
+) -> None:
+    high = low + more
+    v = np.unique(np.append(np.linspace(low, high, speeds), max(low, min(0.0, high))))
+    w = np.append(np.linspace(-1.5, 0.7, rates), (0.3, 0.0))
+    found = rollout.candidates(low, high, speeds, -1.5, 0.7, rates, 0.3)
+    np.testing.assert_array_equal(found[:, 0], np.repeat(v, len(w)))
+    np.testing.assert_array_equal(found[:, 1], np.tile(w, len(v)))
+
+
+@settings(deadline=None)
+@given(st.lists(st.floats(allow_nan=False)))
+def test_minimum(values: list[float]) -> None:
+    assert minimum(np.array(values, dtype=np.float64)) == min(values, default=math.inf)
 
 
 @settings(max_examples=60, deadline=None)

@@ -7,13 +7,14 @@ A run hands over some hundreds of messages per simulated second, so a message be
 from __future__ import annotations
 
 import zlib
+from collections.abc import Iterable
 from struct import Struct, pack
 from typing import NamedTuple
 
 import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, ChunkIndex, Schema
+from mcap.records import Channel, Chunk, ChunkIndex, McapRecord, Schema
 
 _COMPRESSION, _LEVEL = "zstd", 1
 _MESSAGE = Struct("<BQHIQQ")  # opcode and length of a record; channel, sequence, both times
@@ -25,7 +26,16 @@ class PackedChunk(NamedTuple):
     """A finished chunk with the indices that follow it, and what the summary says of both."""
 
     data: bytes
-    index: ChunkIndex
+    entry: ChunkIndex
+
+
+def serialised(records: Iterable[McapRecord]) -> bytes:
+    """Records one after another."""
+    builder = RecordBuilder()
+    for record in records:
+        record.write(builder)
+    data: bytes = builder.end()  # type: ignore[no-untyped-call]
+    return data
 
 
 class OpenChunk:
@@ -50,9 +60,7 @@ class OpenChunk:
 
     def define(self, record: Schema | Channel) -> None:
         """Add what messages refer to."""
-        builder = RecordBuilder()
-        record.write(builder)
-        data = builder.end()
+        data = serialised([record])
         self._parts.append(data)
         self.size += len(data)
 
@@ -84,25 +92,25 @@ class OpenChunk:
             uncompressed_crc=zlib.crc32(plain),
             uncompressed_size=len(plain),
         )
-        builder = RecordBuilder()
-        chunk.write(builder)
-        length, offsets = builder.count, {}
+        data = serialised([chunk])
+        end, offsets, indices = at + len(data), dict[int, int](), list[bytes]()
         for channel, entries in self._entries.items():
-            offsets[channel] = at + builder.count
-            builder.write(_index(channel, entries))
-        index = ChunkIndex(
+            offsets[channel] = end
+            indices.append(_index(channel, entries))
+            end += len(indices[-1])
+        entry = ChunkIndex(
             chunk_start_offset=at,
-            chunk_length=length,
+            chunk_length=len(data),
             message_start_time=chunk.message_start_time,
             message_end_time=chunk.message_end_time,
             message_index_offsets=offsets,
-            message_index_length=builder.count - length,
+            message_index_length=end - at - len(data),
             compression=_COMPRESSION,
             compressed_size=len(chunk.data),
             uncompressed_size=chunk.uncompressed_size,
         )
         self._clear()
-        return PackedChunk(builder.end(), index)
+        return PackedChunk(b"".join([data, *indices]), entry)
 
 
 def _index(channel: int, entries: list[int]) -> bytes:

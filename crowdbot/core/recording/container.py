@@ -14,7 +14,6 @@ from pathlib import Path
 from struct import pack
 from typing import Any
 
-from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import (
     Channel,
@@ -29,7 +28,7 @@ from mcap.records import (
 )
 from mcap.writer import MCAP0_MAGIC
 
-from crowdbot.core.recording.chunk import OpenChunk
+from crowdbot.core.recording.chunk import OpenChunk, serialised
 from crowdbot.core.recording.messages import definition, to_cdr
 from crowdbot.errors import InputError
 
@@ -77,7 +76,7 @@ class McapFile:
         self._schemas: dict[str, Schema] = {}
         self._topics: dict[str, _Topic] = {}
         self._chunk, self._chunks = OpenChunk(), list[ChunkIndex]()
-        self._stream.write(MCAP0_MAGIC + _packed([Header(profile="ros2", library="crowdbot")]))
+        self._stream.write(MCAP0_MAGIC + serialised([Header(profile="ros2", library="crowdbot")]))
 
     def put(self, topic: str, ns: int, message: Any, *, latched: bool = False) -> None:
         """Append one message, logged at ``ns`` nanoseconds of simulated time."""
@@ -103,7 +102,7 @@ class McapFile:
     def close(self) -> None:
         """Write index and footer; when this returns the disk has it all."""
         self._finish_chunk()
-        self._stream.write(_packed([DataEnd(data_section_crc=0)]))
+        self._stream.write(serialised([DataEnd(data_section_crc=0)]))
         self._stream.write(self._summary(self._stream.tell()) + MCAP0_MAGIC)
         self._stream.flush()
         os.fsync(self._stream.fileno())
@@ -134,7 +133,7 @@ class McapFile:
         if len(self._chunk):
             packed = self._chunk.pack(self._stream.tell())
             self._stream.write(packed.data)
-            self._chunks.append(packed.index)
+            self._chunks.append(packed.entry)
 
     def _summary(self, at: int) -> bytes:
         """Everything after the data but the closing magic; ``at``: where it begins."""
@@ -146,13 +145,13 @@ class McapFile:
         }
         data, offsets = b"", []
         for opcode, records in groups.items():
-            group = _packed(records)
+            group = serialised(records)
             offsets.append(SummaryOffset(opcode, at + len(data), len(group)))
             data += group
         footer = Footer(summary_start=at, summary_offset_start=at + len(data), summary_crc=0)
-        data += _packed(offsets)
+        data += serialised(offsets)
         # The checksum is that of the summary and of the footer up to the checksum itself.
-        begun = _packed([footer])[:-4]
+        begun = serialised([footer])[:-4]
         return data + begun + pack("<I", zlib.crc32(data + begun))
 
     def _statistics(self) -> Statistics:
@@ -168,10 +167,3 @@ class McapFile:
             message_end_time=max((c.message_end_time for c in self._chunks), default=0),
             channel_message_counts=counts,
         )
-
-
-def _packed(records: Iterable[McapRecord]) -> bytes:
-    builder = RecordBuilder()
-    for record in records:
-        record.write(builder)
-    return builder.end()

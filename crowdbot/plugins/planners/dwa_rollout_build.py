@@ -125,7 +125,7 @@ def roll(
 def _closeness(gap: float, t: float, p: Array) -> float:
     """How much a gap (m) at a time (s) counts; falls as the gap grows."""
     doubt = 1.0 - (gap - p[GROWTH] * t) / p[COMFORT]
-    return min(1.0, doubt) * (1.0 - 0.5 * t / p[HORIZON])
+    return float(min(1.0, doubt) * (1.0 - 0.5 * t / p[HORIZON]))
 
 
 @numba.njit(cache=True, error_model="numpy")
