@@ -1,21 +1,25 @@
 """How fast is the simulation, and where does the time go?
 
-Runs the challenge's corridor with several numbers of people, recording on, and, interleaved with
-it, the multibody plant alone: the floor that Drake sets. Prints CPU time per simulated second.
+Runs the challenge's corridor with several numbers of people, without camera, with a depth camera
+and, where EGL is there, with colour images, recording on; and, interleaved with it, the multibody
+plant alone: the floor that Drake sets. Prints CPU time per simulated second.
 
-    python benchmarks/simulation.py --agents 0,50,100,200 --seconds 20 --planner dwa
+    python benchmarks/simulation.py
+    python benchmarks/simulation.py --planner dwa --record used --agents 100
 """
 
 from __future__ import annotations
 
 import argparse
+import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
@@ -33,15 +37,24 @@ from crowdbot.core.sim.planner_system import PlannerSystem
 from crowdbot.core.sim.plant import add_plant, place_robot
 from crowdbot.core.sim.record import RunSetup, record_robot
 from crowdbot.core.sim.recorder import Recorder
+from crowdbot.core.sim.rendering import check_egl
 from crowdbot.core.sim.robot_state import RobotStateSystem
 from crowdbot.core.sim.sensor_bank import SensorBank
 from crowdbot.dsl.scenario import Scenario
+from crowdbot.errors import MissingLibraryError
 
+#: What is laid over the robot's camera, by what is to be measured.
+CAMERAS = {
+    "none": "robots.robot.sensors.camera=null",
+    "depth": "robots.robot.sensors.camera.colour=false",
+    "colour": "robots.robot.sensors.camera.colour=true",
+}
 DENSITY = {50: "d0125", 100: "d0250", 200: "d0500"}
 #: Each block's event. Writing a row to the recording counts for the block that hands it over.
 EVENTS: dict[str, tuple[type[Any], str]] = {
     "crowd": (CrowdSystem, "_update"),
     "sensors": (SensorBank, "_update"),
+    "camera": (SensorBank, "_photograph"),
     "planner": (PlannerSystem, "_update"),
     "logger": (MetricLogger, "_publish"),
     "recorder": (Recorder, "_publish"),
@@ -49,25 +62,37 @@ EVENTS: dict[str, tuple[type[Any], str]] = {
 }
 
 
-def scenario(agents: int, seconds: float) -> Scenario:
-    name = f"counter-{DENSITY.get(agents, 'd0125')}-dispersed-c20-r05"
-    suite = open_spec("challenge-2020", registry(), [f"robots.robot.task.time_limit={seconds}"])
-    found = pick(suite, name)
-    return found if agents else found.model_copy(update={"crowd": None})
+@dataclass(frozen=True, slots=True)
+class Case:
+    """What is run: people, camera, planner, what is recorded, and for how long (s)."""
+
+    agents: int
+    camera: str
+    planner: str
+    record: Literal["all", "used", "none"]
+    seconds: float
+
+    def scenario(self) -> Scenario:
+        """The cell of the challenge, with or without people."""
+        limit = f"robots.robot.task.time_limit={self.seconds}"
+        suite = open_spec("challenge-2020", registry(), [limit, CAMERAS[self.camera]])
+        found = pick(suite, f"counter-{DENSITY.get(self.agents, 'd0125')}-dispersed-c20-r05")
+        return found if self.agents else found.model_copy(update={"crowd": None})
 
 
-def whole(world: Scenario, planner: str) -> float:
+def whole(case: Case) -> float:
     """CPU ms per simulated second of a recorded run."""
+    world = case.scenario()
     with tempfile.TemporaryDirectory() as folder:
         outcome = record_robot(
             RunSetup(
                 scenario=world,
                 agents=population(world, registry()).agents,
                 registry=registry(),
-                choice=resolve_planner(planner, registry()),
+                choice=resolve_planner(case.planner, registry()),
                 seed=0,
                 recording=Path(folder) / "run.mcap",
-                record="all",
+                record=case.record,
                 stage="benchmark",
                 progress=None,
                 stop=lambda: False,
@@ -110,44 +135,72 @@ def profiled(spent: Counter[str]) -> Iterator[None]:
 
 def _timed(name: str, event: Callable[..., Any], spent: Counter[str]) -> Callable[..., Any]:
     def timed(*args: Any) -> Any:
-        begin, inner = time.thread_time_ns(), spent.total()
+        begin, inner = time.process_time_ns(), spent.total()
         answer = event(*args)
         # What another block computed meanwhile is that block's.
-        spent[name] += time.thread_time_ns() - begin - (spent.total() - inner)
+        spent[name] += time.process_time_ns() - begin - (spent.total() - inner)
         return answer
 
     return timed
 
 
-def measure(world: Scenario, planner: str, seconds: float) -> list[float]:
+def measure(case: Case) -> list[float]:
     """The run, the plant alone, then each block in another run; CPU ms per simulated second."""
-    total, floor = whole(world, planner), plant_alone(world, seconds)
+    total, floor = whole(case), plant_alone(case.scenario(), case.seconds)
     spent: Counter[str] = Counter()
     with profiled(spent):
-        whole(world, planner)
-    return [total, floor, *(spent[name] / 1e6 / seconds for name in EVENTS)]
+        whole(case)
+    return [total, floor, *(spent[name] / 1e6 / case.seconds for name in EVENTS)]
+
+
+def row(case: Case, best: Sequence[float]) -> list[float]:
+    """What is printed of the best numbers: the last is CPU time per image, ms."""
+    total, floor, *parts = best
+    camera = case.scenario().robots["robot"].sensors.get("camera")
+    rate = 0.0 if camera is None else float(getattr(camera, "rate", 0.0))
+    image = parts[list(EVENTS).index("camera")] / rate if rate else 0.0
+    return [total, 1e3 / total, floor, total / floor, *parts, image]
+
+
+def cameras() -> list[str]:
+    """What can be measured here."""
+    try:
+        check_egl()
+    except MissingLibraryError as error:
+        print(f"no colour: {error}", file=sys.stderr)
+        return ["none", "depth"]
+    return list(CAMERAS)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--agents", default="0,50,100,200")
+    parser.add_argument("--cameras", help=f"some of {','.join(CAMERAS)}; default: all there are")
     parser.add_argument("--seconds", type=float, default=20.0)
-    parser.add_argument("--planner", default="dwa")
+    parser.add_argument("--planner", default="goal_seek")
+    parser.add_argument("--record", choices=("all", "used", "none"), default="all")
     parser.add_argument("--repeat", type=int, default=3, help="the best of so many counts")
     given = parser.parse_args()
     counts = [int(n) for n in given.agents.split(",")]
     if not set(counts) <= {0, *DENSITY}:
         parser.error(f"--agents: the challenge has 0, {', '.join(map(str, DENSITY))}")
+    kinds = given.cameras.split(",") if given.cameras else cameras()
+    if not set(kinds) <= set(CAMERAS):
+        parser.error(f"--cameras: {', '.join(CAMERAS)}")
 
-    columns = ("agents", "ms/s", "x real time", "plant alone", "ratio", *EVENTS)
-    print(" ".join(f"{column:>11}" for column in columns))
+    columns = ("ms/s", "x real time", "plant alone", "ratio", *EVENTS, "ms/image")
+    print(f"{'agents':>6} {'camera':>6}", " ".join(f"{column:>11}" for column in columns))
     for agents in counts:
-        world = scenario(agents, given.seconds)
-        whole(scenario(agents, 1.0), given.planner)  # compiles
-        runs = [measure(world, given.planner, given.seconds) for _ in range(given.repeat)]
-        total, floor, *parts = (min(column) for column in zip(*runs, strict=True))
-        row = (total, 1e3 / total, floor, total / floor, *parts)
-        print(f"{agents:11}", " ".join(f"{number:11.1f}" for number in row), flush=True)
+        cases = [Case(agents, kind, given.planner, given.record, given.seconds) for kind in kinds]
+        runs: dict[Case, list[list[float]]] = {case: [] for case in cases}
+        for case in cases:
+            whole(replace(case, seconds=1.0))  # compiles
+        for _ in range(given.repeat):
+            for case in cases:  # interleaved: the machine may have other work to do
+                runs[case].append(measure(case))
+        for case, measured in runs.items():
+            numbers = row(case, [min(column) for column in zip(*measured, strict=True)])
+            print(f"{agents:6} {case.camera:>6}", " ".join(f"{n:11.1f}" for n in numbers))
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ from crowdbot.plugins.planners.dwa_points_build import (
     apparent_velocity,
     choose_direction,
     free_time,
+    minimum,
     nearest_per_sector,
 )
 
@@ -26,6 +27,7 @@ def points(*where: tuple[float, float]) -> Array:
 
 
 # ---------------------------------------------------------------------------- points
+@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_thinning_keeps_the_nearest_of_each_sector(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -83,6 +85,17 @@ def parameters(**changed: float) -> Array:
     return p
 
 
+def roll(
+    cloud: Array, speeds: Array, p: Array, v: float, w: float, vt: float, wt: float
+) -> tuple[float, float, float, float, float]:
+    ahead = rollout.foreseen(cloud, speeds, p)
+    known, scratch = rollout.rollouts(ahead)
+    rolled: tuple[float, float, float, float, float] = rollout.roll(
+        ahead, p, v, w, vt, wt, known, scratch
+    )
+    return rolled
+
+
 def test_every_parameter_has_its_own_place() -> None:
     places = sorted(v for k, v in vars(rollout).items() if k.isupper() and type(v) is int)
     assert places == [*range(rollout.PARAMETERS), rollout.PARAMETERS]
@@ -90,25 +103,57 @@ def test_every_parameter_has_its_own_place() -> None:
 
 def test_a_straight_rollout_with_a_ramp() -> None:
     """From rest at 1 m/s^2 to 0.5 m/s: 0.125 m in 0.5 s, then 2 s at 0.5 m/s."""
-    x, y, angle, hit, close = rollout.roll(NOTHING, NOTHING, parameters(), 0.0, 0.0, 0.5, 0.0)
+    x, y, angle, hit, close = roll(NOTHING, NOTHING, parameters(), 0.0, 0.0, 0.5, 0.0)
     assert (x, y, angle, hit, close) == pytest.approx((1.125, 0.0, 0.0, 2.5, 0.0))
 
 
 def test_an_arc_turns_for_the_turning_time() -> None:
-    angle = rollout.roll(NOTHING, NOTHING, parameters(), 0.5, 1.0, 0.5, 1.0)[2]
+    angle = roll(NOTHING, NOTHING, parameters(), 0.5, 1.0, 0.5, 1.0)[2]
     assert angle == pytest.approx(1.0 + 0.25)  # 1 s at 1 rad/s, then half a second to stop
-    x, y = rollout.roll(NOTHING, NOTHING, parameters(TURN_TIME=9.0), 0.5, 1.0, 0.5, 1.0)[:2]
+    x, y = roll(NOTHING, NOTHING, parameters(TURN_TIME=9.0), 0.5, 1.0, 0.5, 1.0)[:2]
     assert x == pytest.approx(0.5 * math.sin(2.5), abs=2e-3)
     assert y == pytest.approx(0.5 * (1 - math.cos(2.5)), abs=2e-3)
 
 
 def test_hits_still_and_moving_points() -> None:
     p, ahead = parameters(), points((1.5, 0.0))
-    hit = rollout.roll(ahead, np.zeros((1, 2)), p, 1.0, 0.0, 1.0, 0.0)[3]
+    hit = roll(ahead, np.zeros((1, 2)), p, 1.0, 0.0, 1.0, 0.0)[3]
     assert hit == pytest.approx(1.25, abs=rollout.STEP)
-    hit = rollout.roll(ahead, points((-1.0, 0.0)), p, 1.0, 0.0, 1.0, 0.0)[3]
+    hit = roll(ahead, points((-1.0, 0.0)), p, 1.0, 0.0, 1.0, 0.0)[3]
     assert hit == pytest.approx(0.625, abs=rollout.STEP)
-    assert rollout.roll(ahead, points((1.0, 0.0)), p, 1.0, 0.0, 1.0, 0.0)[3] == 2.5
+    assert roll(ahead, points((1.0, 0.0)), p, 1.0, 0.0, 1.0, 0.0)[3] == 2.5
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(-0.3, 1.0), st.floats(0.0, 1.0), st.integers(2, 9), st.integers(3, 9))
+def test_candidates_are_every_speed_with_every_rate(
+    low: float, more: float, speeds: int, rates: int
+) -> None:
+    high = low + more
+    v = np.unique(np.append(np.linspace(low, high, speeds), max(low, min(0.0, high))))
+    w = np.append(np.linspace(-1.5, 0.7, rates), (0.3, 0.0))
+    found = rollout.candidates(low, high, speeds, -1.5, 0.7, rates, 0.3)
+    np.testing.assert_array_equal(found[:, 0], np.repeat(v, len(w)))
+    np.testing.assert_array_equal(found[:, 1], np.tile(w, len(v)))
+
+
+@settings(deadline=None)
+@given(st.lists(st.floats(allow_nan=False)))
+def test_minimum(values: list[float]) -> None:
+    assert minimum(np.array(values, dtype=np.float64)) == min(values, default=math.inf)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 40), st.integers(0, 2**32 - 1))
+def test_what_rollouts_know_of_each_other_changes_none(count: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    cloud, speeds = rng.uniform(-2.0, 2.0, (count, 2)), rng.uniform(-1.0, 1.0, (count, 2))
+    p = parameters(GROWTH=0.05)
+    ahead = rollout.foreseen(cloud, speeds, p)
+    known, scratch = rollout.rollouts(ahead)
+    for vt, wt in rng.uniform(-1.0, 1.0, (30, 2)):
+        shared = rollout.roll(ahead, p, 0.3, 0.1, vt, wt, known, scratch)
+        assert shared == roll(cloud, speeds, p, 0.3, 0.1, vt, wt)
 
 
 @settings(max_examples=60, deadline=None)

@@ -1,9 +1,11 @@
 """Counter-based noise."""
 
+import hashlib
+
 import numpy as np
 import pytest
 
-from crowdbot.core.sensing.noise import sensor_rng
+from crowdbot.core.sensing.noise import SensorStream, sensor_rng
 
 
 def test_same_arguments_same_numbers() -> None:
@@ -48,3 +50,13 @@ def test_normal_over_ticks() -> None:
 
 
 PINNED = [4532195993042903387, 7171273591752941206]
+
+
+def test_a_stream_may_be_read_in_any_order() -> None:
+    stream = SensorStream(3, "robot", "front")
+    key = np.frombuffer(hashlib.sha256(b"3\0robot\0front").digest()[:16], "<u8")
+    stream.at(9).random(3, dtype=np.float32)  # half a word is left over
+    for tick in (17, 2**40, 0, 17):
+        new = np.random.Philox(key=key, counter=np.array([0, tick, 0, 0], np.uint64))
+        expected = np.random.Generator(new).standard_normal(7)
+        np.testing.assert_array_equal(stream.at(tick).standard_normal(7), expected)

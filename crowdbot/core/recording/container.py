@@ -1,18 +1,34 @@
 """An MCAP file of ROS 2 messages, written in a deterministic way.
 
 No wall clock and no library version enters the file: log time is simulated time, so that equal
-runs give equal bytes.
+runs give equal bytes. Layout: https://mcap.dev/spec.
 """
 
 from __future__ import annotations
 
 import os
+import zlib
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from struct import pack
 from typing import Any
 
-from mcap.writer import CompressionType, Writer
+from mcap.opcode import Opcode
+from mcap.records import (
+    Channel,
+    ChunkIndex,
+    DataEnd,
+    Footer,
+    Header,
+    McapRecord,
+    Schema,
+    Statistics,
+    SummaryOffset,
+)
+from mcap.writer import MCAP0_MAGIC
 
+from crowdbot.core.recording.chunk import OpenChunk, serialised
 from crowdbot.core.recording.messages import definition, to_cdr
 from crowdbot.errors import InputError
 
@@ -39,8 +55,8 @@ def _qos(*, latched: bool) -> str:
 
 
 @dataclass(slots=True)
-class _Channel:
-    id: int
+class _Topic:
+    channel: Channel
     messages: int = 0
 
 
@@ -57,10 +73,10 @@ class McapFile:
             self._stream = path.open("wb")
         except OSError as error:
             raise InputError(f"{path}: cannot be written: {error.strerror}") from error
-        self._writer = Writer(self._stream, chunk_size=CHUNK_SIZE, compression=CompressionType.ZSTD)
-        self._writer.start(profile="ros2", library="crowdbot")
-        self._schemas: dict[str, int] = {}
-        self._channels: dict[str, _Channel] = {}
+        self._schemas: dict[str, Schema] = {}
+        self._topics: dict[str, _Topic] = {}
+        self._chunk, self._chunks = OpenChunk(), list[ChunkIndex]()
+        self._stream.write(MCAP0_MAGIC + serialised([Header(profile="ros2", library="crowdbot")]))
 
     def put(self, topic: str, ns: int, message: Any, *, latched: bool = False) -> None:
         """Append one message, logged at ``ns`` nanoseconds of simulated time."""
@@ -70,27 +86,84 @@ class McapFile:
         self, topic: str, ns: int, msgtype: str, data: bytes, *, latched: bool = False
     ) -> None:
         """Append one message that is already serialised."""
-        channel = self._channels.get(topic)
-        if channel is None:
-            channel = self._channels[topic] = _Channel(self._open(topic, msgtype, latched))
-        self._writer.add_message(channel.id, ns, data, ns, channel.messages)
-        channel.messages += 1
+        opened = self._topics.get(topic)
+        if opened is None:
+            opened = self._topics[topic] = _Topic(self._open(topic, msgtype, latched))
+        self._chunk.add(opened.channel.id, opened.messages, ns, data)
+        opened.messages += 1
+        if self._chunk.size >= CHUNK_SIZE:
+            self._finish_chunk()
 
     def flush(self) -> None:
         """Finish the open chunk and hand all bytes to the operating system."""
-        self._writer.flush()  # type: ignore[no-untyped-call]
+        self._finish_chunk()
+        self._stream.flush()
 
     def close(self) -> None:
         """Write index and footer; when this returns the disk has it all."""
-        self._writer.finish()  # type: ignore[no-untyped-call]
+        self._finish_chunk()
+        self._stream.write(serialised([DataEnd(data_section_crc=0)]))
+        self._stream.write(self._summary(self._stream.tell()) + MCAP0_MAGIC)
         self._stream.flush()
         os.fsync(self._stream.fileno())
         self._stream.close()
 
-    def _open(self, topic: str, msgtype: str, latched: bool) -> int:
+    def _open(self, topic: str, msgtype: str, latched: bool) -> Channel:
         schema = self._schemas.get(msgtype)
         if schema is None:
-            schema = self._writer.register_schema(msgtype, "ros2msg", definition(msgtype))
+            schema = Schema(
+                id=len(self._schemas) + 1,
+                name=msgtype,
+                encoding="ros2msg",
+                data=definition(msgtype),
+            )
             self._schemas[msgtype] = schema
-        metadata = {"offered_qos_profiles": _qos(latched=latched)}
-        return self._writer.register_channel(topic, "cdr", schema, metadata)
+            self._chunk.define(schema)
+        channel = Channel(
+            id=len(self._topics) + 1,
+            topic=topic,
+            message_encoding="cdr",
+            metadata={"offered_qos_profiles": _qos(latched=latched)},
+            schema_id=schema.id,
+        )
+        self._chunk.define(channel)
+        return channel
+
+    def _finish_chunk(self) -> None:
+        if len(self._chunk):
+            packed = self._chunk.pack(self._stream.tell())
+            self._stream.write(packed.data)
+            self._chunks.append(packed.entry)
+
+    def _summary(self, at: int) -> bytes:
+        """Everything after the data but the closing magic; ``at``: where it begins."""
+        groups: dict[Opcode, Iterable[McapRecord]] = {
+            Opcode.SCHEMA: self._schemas.values(),
+            Opcode.CHANNEL: [t.channel for t in self._topics.values()],
+            Opcode.STATISTICS: [self._statistics()],
+            Opcode.CHUNK_INDEX: self._chunks,
+        }
+        data, offsets = b"", []
+        for opcode, records in groups.items():
+            group = serialised(records)
+            offsets.append(SummaryOffset(opcode, at + len(data), len(group)))
+            data += group
+        footer = Footer(summary_start=at, summary_offset_start=at + len(data), summary_crc=0)
+        data += serialised(offsets)
+        # The checksum is that of the summary and of the footer up to the checksum itself.
+        begun = serialised([footer])[:-4]
+        return data + begun + pack("<I", zlib.crc32(data + begun))
+
+    def _statistics(self) -> Statistics:
+        counts = {t.channel.id: t.messages for t in self._topics.values()}
+        return Statistics(
+            message_count=sum(counts.values()),
+            schema_count=len(self._schemas),
+            channel_count=len(self._topics),
+            attachment_count=0,
+            metadata_count=0,
+            chunk_count=len(self._chunks),
+            message_start_time=min((c.message_start_time for c in self._chunks), default=0),
+            message_end_time=max((c.message_end_time for c in self._chunks), default=0),
+            channel_message_counts=counts,
+        )

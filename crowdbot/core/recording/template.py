@@ -17,8 +17,8 @@ from crowdbot.core.recording import messages as ros
 
 _STAMP = Struct("<iI")
 _ONE, _TWO = Struct("<d"), Struct("<2d")
-#: A stamp that stands for any other, and numbers that do.
-_NS = 0x11223344 * 10**9 + 0x12345678
+#: A time (ns) that stands for any other, and numbers that do.
+ANY_TIME = 0x11223344 * 10**9 + 0x12345678
 _A, _B, _C, _D, _E, _F = 1.0625, 2.125, 3.1875, 4.25, 5.3125, 6.375
 
 one, two = _ONE.pack, _TWO.pack
@@ -32,6 +32,10 @@ def stamp(ns: int) -> bytes:
 def turn(yaw: float) -> bytes:
     """The last two numbers of a quaternion about z."""
     return two(*ros.half_turn(yaw))
+
+
+#: `ANY_TIME` as it is serialised.
+ANY_STAMP = stamp(ANY_TIME)
 
 
 class Template:
@@ -73,7 +77,7 @@ class Template:
 
 def clock() -> Template:
     """Place: stamp."""
-    return Template(ros.clock(_NS), stamp(_NS))
+    return Template(ros.clock(ANY_TIME), ANY_STAMP)
 
 
 def twist() -> Template:
@@ -83,45 +87,45 @@ def twist() -> Template:
 
 def pose_stamped(frame: str) -> Template:
     """Places: stamp; x and y; turn."""
-    message = ros.pose_stamped(_NS, frame, Pose(_A, _B, _C))
-    return Template(message, stamp(_NS), two(_A, _B), turn(_C))
+    message = ros.pose_stamped(ANY_TIME, frame, Pose(_A, _B, _C))
+    return Template(message, ANY_STAMP, two(_A, _B), turn(_C))
 
 
 def transform(parent: str, child: str) -> Template:
     """One transform on the floor. Places: stamp; x and y; turn."""
-    message = ros.transforms([ros.transform(_NS, parent, child, (_A, _B, 0.0), _C)])
-    return Template(message, stamp(_NS), two(_A, _B), turn(_C))
+    message = ros.transforms([ros.transform(ANY_TIME, parent, child, (_A, _B, 0.0), _C)])
+    return Template(message, ANY_STAMP, two(_A, _B), turn(_C))
 
 
 def odometry(child: str) -> Template:
     """Places: stamp; x and y; turn; v and vy; w."""
-    message = ros.odometry(_NS, child, np.array([_A, _B, _C, _D, _E, _F]))
-    return Template(message, stamp(_NS), two(_A, _B), turn(_C), two(_D, _F), one(_E))
+    message = ros.odometry(ANY_TIME, child, np.array([_A, _B, _C, _D, _E, _F]))
+    return Template(message, ANY_STAMP, two(_A, _B), turn(_C), two(_D, _F), one(_E))
 
 
 def laser_scan(info: SensorInfo, angles: Array) -> Template:
     """Places: stamp; ranges as float32."""
     ranges = np.full(len(angles), _A)
     mark = ranges.astype(np.float32).tobytes()
-    return Template(ros.laser_scan(_NS, info, angles, ranges), stamp(_NS), mark)
+    return Template(ros.laser_scan(ANY_TIME, info, angles, ranges), ANY_STAMP, mark)
 
 
 def range_reading(info: SensorInfo) -> Template:
     """Places: stamp; range as float32."""
-    return Template(ros.range_reading(_NS, info, _A), stamp(_NS), np.float32(_A).tobytes())
+    return Template(ros.range_reading(ANY_TIME, info, _A), ANY_STAMP, np.float32(_A).tobytes())
 
 
 def point_cloud(info: SensorInfo) -> Template:
     """Places: stamp; x, y, z of every point as float32."""
     points = np.full((*info.shape, 3), _A, np.float32)
-    return Template(ros.point_cloud(_NS, info, points), stamp(_NS), points.tobytes())
+    return Template(ros.point_cloud(ANY_TIME, info, points), ANY_STAMP, points.tobytes())
 
 
 def imu(frame: str) -> Template:
     """Places: stamp; angular rate; specific force; three float64 each."""
     values = np.array([_A, _B, _C, _C, _D, _E])
     marks = values[:3].tobytes(), values[3:].tobytes()
-    return Template(ros.imu(_NS, frame, values), stamp(_NS), *marks)
+    return Template(ros.imu(ANY_TIME, frame, values), ANY_STAMP, *marks)
 
 
 def numbers(shape: tuple[int, ...]) -> Template:
@@ -154,7 +158,7 @@ def pedestrians(count: int) -> Template:
     names = ("x", "y", "vx", "vy", "heading", "radius")
     columns = {n: np.full(count, k, np.float32) for k, n in enumerate(names, 1)}
     ids = np.full(count, 0x1122334455667788, np.int64)
-    head = ros.header(_NS, "map")
+    head = ros.header(ANY_TIME, "map")
     message = ros.new("crowdbot_msgs/Pedestrians", header=head, id=ids, **columns)
     marks = [c.tobytes() for c in columns.values()]
-    return Template(message, stamp(_NS), ids.tobytes(), *marks)
+    return Template(message, ANY_STAMP, ids.tobytes(), *marks)

@@ -19,7 +19,7 @@ from crowdbot.core.interfaces import Array, Command, Reading
 from crowdbot.core.optical import OPTICAL_QUATERNION, optical
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
-from crowdbot.core.recording.camera import camera_messages
+from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
@@ -58,10 +58,9 @@ class RecordingWriter:
         self._ros = record != "none"
         self._people = PeopleMessages(header.agents) if header.agents else None
         self._images = record == "all"
-        self._cameras = {n: i for n, i in header.sensors.items() if i.camera is not None}
-        self._sensors = sensor_topics(
-            {n: i for n, i in header.sensors.items() if n not in self._cameras}
-        )
+        cameras = {n: i for n, i in header.sensors.items() if i.camera is not None}
+        self._cameras = {n: CameraMessages(n, i) for n, i in cameras.items()}
+        self._sensors = sensor_topics({n: i for n, i in header.sensors.items() if n not in cameras})
         self._clock, self._twist = template.clock(), template.twist()
         self._truth, self._pose = template.transform("map", BASE), template.pose_stamped("map")
         self._state_of, self._signal_of = cache(template.run_state), cache(template.signal)
@@ -107,7 +106,7 @@ class RecordingWriter:
         ns = ros.nanoseconds(reading.stamp)
         if sensor in self._cameras:
             if self._images:
-                for image in camera_messages(sensor, self._cameras[sensor], reading):
+                for image in self._cameras[sensor](reading):
                     self._file.put_bytes(image.topic, ns, image.msgtype, image.data)
             return
         topic = self._sensors[sensor]
@@ -229,7 +228,7 @@ class RecordingWriter:
         mounts = {s.frame: s.mount for s in self._header.sensors.values() if s.frame not in FRAMES}
         for frame, (x, y, z, yaw) in mounts.items():
             frames.append(ros.transform(0, "base_link", frame, (x, y, z), yaw))
-        for info in self._cameras.values():
+        for info in (s for s in self._header.sensors.values() if s.camera is not None):
             here = ros.transform(0, info.frame, optical(info.frame), (0.0, 0.0, 0.0), 0.0)
             turned = dict(zip("xyzw", OPTICAL_QUATERNION, strict=True))
             here.transform.rotation = ros.new("geometry_msgs/Quaternion", **turned)

@@ -176,6 +176,60 @@ def _add_wall(
 
 
 @numba.njit(cache=True, error_model="numpy")
+def fill_columns(
+    x: float, y: float, yaw: float, lowest: float, highest: float, azimuth: Array, cos: Array,
+    sin: Array, max_range: float, walls: Array, wall_heights: Array, discs: Array,
+    owner: NDArray[np.int64], work: Array,
+) -> NDArray[np.int64]:  # fmt: skip
+    """Put every body between two heights into the columns that meet it.
+
+    Args:
+        x, y, yaw: origin and direction in the world frame, m and rad.
+        lowest, highest: heights between which rays run, m.
+        azimuth: (C,) rising, within one turn, rad.
+        cos, sin: (C,) of azimuth.
+        max_range: m; what is farther is left out.
+        walls, wall_heights: (S, 4), (S, 2).
+        discs, owner: (D, 5), (D,) upright cylinders and the bodies that they belong to.
+        work: (C, `DEEPEST`, `WORK_COLUMNS`) output, nearest first.
+
+    Returns:
+        (C,) how many bodies each column holds.
+    """
+    columns = azimuth.shape[0]
+    c0, s0 = math.cos(yaw), math.sin(yaw)
+    ahead, aside = np.empty(columns), np.empty(columns)
+    for c in range(columns):
+        ahead[c], aside[c] = c0 * cos[c] - s0 * sin[c], s0 * cos[c] + c0 * sin[c]
+    count = np.zeros(columns, dtype=np.int64)
+    runs = np.empty((3, 2), dtype=np.int64)
+    for i in range(walls.shape[0]):
+        if wall_heights[i, 0] <= highest and wall_heights[i, 1] >= lowest:
+            _add_wall(
+                x, y, yaw, walls[i], wall_heights[i], -(2 + i), max_range,
+                azimuth, ahead, aside, work, count, runs,
+            )  # fmt: skip
+    for i in range(discs.shape[0]):
+        px, py, r = discs[i, X] - x, discs[i, Y] - y, discs[i, RADIUS]
+        far = max_range + r  # most are: sorted out here, before anything is called
+        if not (abs(px) <= far and abs(py) <= far and math.hypot(px, py) - r <= max_range):
+            continue
+        if discs[i, BOTTOM] <= highest and discs[i, TOP] >= lowest:
+            _add_disc(
+                px, py, r, discs[i, BOTTOM], discs[i, TOP], yaw, owner[i],
+                azimuth, ahead, aside, work, count, runs,
+            )  # fmt: skip
+    return count
+
+
+@numba.njit(cache=True, error_model="numpy")
+def heights_of(z: float, rise: Array, lean: Array, max_range: float) -> tuple[float, float]:
+    """Heights between which the rays of a grid from a height ``z`` run, m."""
+    reach = np.max(np.abs(lean)) * max_range
+    return z + min(0.0, np.min(rise)) * reach, z + max(0.0, np.max(rise)) * reach
+
+
+@numba.njit(cache=True, error_model="numpy")
 def _meet(slope: float, oz: float, near: float, far: float, low: float, high: float) -> float:
     """Horizontal distance at which a ray meets an upright body; inf if it misses.
 
@@ -219,35 +273,14 @@ def cast_columns(
         incidence: (R, C) result, angle to the normal, rad, 0 without a hit; or (0, 0).
         body: (R, C) result: owner, -(2 + index) of a wall, -1 for nothing and the floor; or (0, 0).
     """
-    columns, rows = azimuth.shape[0], rise.shape[0]
-    c0, s0 = math.cos(yaw), math.sin(yaw)
-    ahead, aside = np.empty(columns), np.empty(columns)
-    for c in range(columns):
-        ahead[c], aside[c] = c0 * cos[c] - s0 * sin[c], s0 * cos[c] + c0 * sin[c]
-    steepest = np.max(np.abs(lean))
-    lowest = z + min(0.0, np.min(rise)) * steepest * max_range
-    highest = z + max(0.0, np.max(rise)) * steepest * max_range
-    count = np.zeros(columns, dtype=np.int64)
-    runs = np.empty((3, 2), dtype=np.int64)
-    for i in range(walls.shape[0]):
-        if wall_heights[i, 0] <= highest and wall_heights[i, 1] >= lowest:
-            _add_wall(
-                x, y, yaw, walls[i], wall_heights[i], -(2 + i), max_range,
-                azimuth, ahead, aside, work, count, runs,
-            )  # fmt: skip
-    for i in range(discs.shape[0]):
-        px, py, r = discs[i, X] - x, discs[i, Y] - y, discs[i, RADIUS]
-        far = max_range + r  # most are: sorted out here, before anything is called
-        if not (abs(px) <= far and abs(py) <= far and math.hypot(px, py) - r <= max_range):
-            continue
-        if discs[i, BOTTOM] <= highest and discs[i, TOP] >= lowest:
-            _add_disc(
-                px, py, r, discs[i, BOTTOM], discs[i, TOP], yaw, owner[i],
-                azimuth, ahead, aside, work, count, runs,
-            )  # fmt: skip
+    lowest, highest = heights_of(z, rise, lean, max_range)
+    count = fill_columns(
+        x, y, yaw, lowest, highest, azimuth, cos, sin, max_range,
+        walls, wall_heights, discs, owner, work,
+    )  # fmt: skip
     wants_incidence, wants_body = incidence.shape[0] > 0, body.shape[0] > 0
-    for r in range(rows):
-        for c in range(columns):
+    for r in range(rise.shape[0]):
+        for c in range(azimuth.shape[0]):
             slope = rise[r] * lean[c]
             best, hit = -z / slope if floor and slope < 0.0 else math.inf, -1
             for k in range(count[c]):

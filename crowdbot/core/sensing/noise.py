@@ -8,7 +8,6 @@ nor on whether earlier readings were taken.
 from __future__ import annotations
 
 import hashlib
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -27,25 +26,37 @@ class _Key(ISeedSequence):
         return self.key
 
 
-@lru_cache(maxsize=1024)
 def _key(run_seed: int, robot: str, sensor: str) -> _Key:
     digest = hashlib.sha256(f"{run_seed}\0{robot}\0{sensor}".encode()).digest()
     return _Key(np.frombuffer(digest[:16], dtype="<u8").astype(np.uint64))
 
 
-def sensor_rng(run_seed: int, robot: str, sensor: str, tick: int) -> np.random.Generator:
-    """Random numbers of one reading.
+class SensorStream:
+    """Random numbers of one sensor, reading by reading.
 
     Args:
         run_seed: ``--seed`` of the run.
         robot: its name in the scenario.
         sensor: its name on the robot.
-        tick: number of the 1/128 s tick at which the reading is taken, not negative.
-
-    Returns:
-        a new generator; equal arguments give equal numbers, ticks never share any.
     """
-    # The tick is the second of four counter words: 2^64 blocks lie between two ticks.
-    counter = np.array([0, tick, 0, 0], dtype=np.uint64)
-    key = _key(run_seed, robot, sensor)
-    return np.random.Generator(np.random.Philox(key, counter=counter))  # type: ignore[arg-type]
+
+    def __init__(self, run_seed: int, robot: str, sensor: str) -> None:
+        philox = np.random.Philox(_key(run_seed, robot, sensor))  # type: ignore[arg-type]
+        self._generator, self._state = np.random.Generator(philox), philox.state
+
+    def at(self, tick: int) -> np.random.Generator:
+        """Numbers of the reading at a tick of 1/128 s, not negative.
+
+        Returns:
+            the one generator of the stream, moved there; equal arguments give equal numbers,
+            ticks never share any.
+        """
+        # The tick is the second of four counter words: 2^64 blocks lie between two ticks.
+        self._state["state"]["counter"][1] = tick
+        self._generator.bit_generator.state = self._state
+        return self._generator
+
+
+def sensor_rng(run_seed: int, robot: str, sensor: str, tick: int) -> np.random.Generator:
+    """Random numbers of one reading: a new generator; arguments as of `SensorStream`."""
+    return SensorStream(run_seed, robot, sensor).at(tick)

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core.interfaces import RobotState
 from crowdbot.core.sensing.bodies import DISC_COLUMNS, PARTS, place_people
 from crowdbot.core.sensing.columns import Grid, cast_columns
+from crowdbot.core.sensing.depth import paint_depth
 from crowdbot.core.sensing.raycast import cast_rays
 
 Array = NDArray[np.float64]
@@ -179,3 +180,26 @@ class Scene:
                 distance, incidence, body,
             )  # fmt: skip
         return distance, incidence, body
+
+    def cast_depth(
+        self, grid: Grid, at: tuple[float, float, float], yaw: float, max_range: float
+    ) -> Array:
+        """What a camera sees that looks along a grid's azimuth 0; the floor is seen.
+
+        Args:
+            grid: its ``lean`` the cosines of its azimuths, its rows falling.
+            at: the point, world frame, m.
+            yaw: direction of the grid's azimuth 0, world frame, rad.
+            max_range: m over the floor; what is farther may be left out.
+
+        Returns:
+            (C, R) depth along the axis, m, inf where nothing is; columns by rising azimuth.
+        """
+        rows, columns = grid.shape
+        depth = np.empty((columns, rows))
+        discs, owner = self._bodies()
+        paint_depth(
+            *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, max_range,
+            self.walls, self.wall_heights, discs, owner, grid.work, depth,
+        )  # fmt: skip
+        return depth

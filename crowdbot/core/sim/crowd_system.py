@@ -47,8 +47,17 @@ class CrowdSystem(LeafSystem):
         self._robot[0, 6:] = yaw, w
         values = state.get_mutable_discrete_state()
         crowd = values.get_mutable_value(self._crowd)
+        before = crowd[: s.HEADER_SIZE].tolist()
         self._engine.advance(crowd, self._robot, self._outline)
         header = crowd[: s.HEADER_SIZE].tolist()
-        force = values.get_mutable_value(self._force)
-        self._push.write(force, header[s.ROBOT_FX], header[s.ROBOT_FY], header[s.ROBOT_TORQUE])
-        values.get_mutable_value(self._events)[0] = header[s.CONTACTS] + header[s.TRIPS]
+        # At most ticks nobody touches the robot and nothing ends: the rest stays as it is.
+        if (force := _push(header)) != _push(before):
+            self._push.write(values.get_mutable_value(self._force), *force)
+        events = header[s.CONTACTS] + header[s.TRIPS]
+        if events != before[s.CONTACTS] + before[s.TRIPS]:
+            values.get_mutable_value(self._events)[0] = events
+
+
+def _push(header: list[float]) -> tuple[float, float, float]:
+    """Force (N) and torque about the vertical (N m) on the robot."""
+    return header[s.ROBOT_FX], header[s.ROBOT_FY], header[s.ROBOT_TORQUE]

@@ -24,7 +24,7 @@ from crowdbot.core.interfaces import (
     SensorInfo,
     SensorWithMemory,
 )
-from crowdbot.core.sensing.noise import sensor_rng
+from crowdbot.core.sensing.noise import SensorStream
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.images import Images, Painter, capture, view_size
@@ -119,9 +119,9 @@ class SensorBank(LeafSystem):
         """
         super().__init__()
         self._sensors, self._scene = dict(sensors), scene
-        self._seed, self._robot_name = seed, robot
         self._on_reading = on_reading
-        self._not_random = sensor_rng(seed, robot, "", 0)
+        self._streams = {n: SensorStream(seed, robot, n) for n in sensors}
+        self._idle = SensorStream(seed, robot, "").at(0)
         people = len(s.view(np.zeros(crowd_size))[1]) if crowd_size else 0
         self.slots, size = lay_out({n: x.info() for n, x in sensors.items()}, people)
         self._images = {
@@ -153,8 +153,10 @@ class SensorBank(LeafSystem):
         return self._images[name].reading(self._scene, float(bank[slot.stamp]), bank[slot.values])
 
     def _rng(self, name: str, t: float) -> np.random.Generator:
-        """Random numbers of one reading."""
-        return sensor_rng(self._seed, self._robot_name, name, round(t * TICKS_PER_SECOND))
+        """Random numbers of one reading; who draws none gets a generator all the same."""
+        if not self.slots[name].info.random:
+            return self._idle
+        return self._streams[name].at(round(t * TICKS_PER_SECOND))
 
     def _update(self, context: Context, state: State) -> None:
         bank = state.get_mutable_discrete_state().get_mutable_value(self._index)
@@ -199,10 +201,8 @@ class SensorBank(LeafSystem):
 
     def _read(self, name: str, bank: Array, pose: Pose, tick: int) -> None:
         slot, sensor = self.slots[name], self._sensors[name]
-        rng = self._not_random  # a new generator costs more than a reading of wheel odometry
-        if slot.info.random:
-            rng = sensor_rng(self._seed, self._robot_name, name, tick)
         t = tick * TICK
+        rng = self._rng(name, t)
         if slot.info.memory:
             memory = bank[slot.memory]
             values = sensor.read(self._scene, pose, t, rng, memory)  # type: ignore[call-arg]

@@ -195,13 +195,9 @@ class Dwa:
         bottom = max(limits.v_min, _REVERSE) if escaping else 0.0
         low = min(max(v - dv, bottom), top)
         high = max(min(v + dv, top), low)
-        speeds = np.unique(np.append(np.linspace(low, high, spec.speeds), max(low, min(0.0, high))))
         left, right = max(w - dw, -limits.w_max), min(w + dw, limits.w_max)
         wish = max(left, min(right, 1.5 * direction_error(direction)))
-        rates = np.append(
-            np.linspace(left, right, spec.yaw_rates), (wish, max(left, min(right, 0.0)))
-        )
-        return np.column_stack([np.repeat(speeds, len(rates)), np.tile(rates, len(speeds))])
+        return rollout.candidates(low, high, spec.speeds, left, right, spec.yaw_rates, wish)
 
     def _is_lost(self, distance: float) -> bool:
         """Whether the robot has come no nearer to the goal for long: it needs a map."""

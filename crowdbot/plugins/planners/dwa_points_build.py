@@ -18,6 +18,23 @@ def unsigned(angle: float) -> float:
 
 
 @numba.njit(cache=True, error_model="numpy")
+def minimum(values: Array) -> float:
+    """The least of (N,) numbers, none of them NaN; inf for none. Overwrites them.
+
+    Halves them again and again: that way several are compared at once.
+    """
+    count = values.shape[0]
+    while count > 1:
+        half = (count + 1) // 2
+        upper = values[half:count]
+        for i in range(upper.shape[0]):
+            a, b = values[i], upper[i]
+            values[i] = b if b < a else a
+        count = half
+    return float(values[0]) if count else math.inf
+
+
+@numba.njit(cache=True, error_model="numpy")
 def nearest_per_sector(points: Array, sectors: int, reach: float) -> Array:
     """Thin points out to the nearest one of each sector around the origin.
 
@@ -74,14 +91,16 @@ def apparent_velocity(
     if before.shape[0] == 0 or dt <= 0.0:
         return out
     low, high = (slowest * dt) ** 2, (fastest * dt) ** 2
+    square, least = np.empty(before.shape[0]), np.empty(before.shape[0])
     for i in range(now.shape[0]):
-        best, nearest = math.inf, 0
         for j in range(before.shape[0]):
             dx, dy = now[i, 0] - before[j, 0], now[i, 1] - before[j, 1]
-            square = dx * dx + dy * dy
-            if square < best:
-                best, nearest = square, j
+            square[j] = least[j] = dx * dx + dy * dy
+        best = minimum(least)
         if low < best < high:
+            nearest = 0
+            while square[nearest] != best:
+                nearest += 1
             out[i] = (now[i] - before[nearest]) / dt
     return out
 

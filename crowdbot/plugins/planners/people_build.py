@@ -159,7 +159,10 @@ def carry(points: Array, velocities: Array, people: Array, going: Array, radius:
     for i in range(points.shape[0]):
         best = radius + 0.05
         for k in range(people.shape[0]):
-            gap = math.hypot(points[i, 0] - people[k, 0], points[i, 1] - people[k, 1])
+            dx, dy = points[i, 0] - people[k, 0], points[i, 1] - people[k, 1]
+            if abs(dx) >= best or abs(dy) >= best:
+                continue  # most of them
+            gap = math.hypot(dx, dy)
             if gap < best:
                 best = gap
                 velocities[i] = going[k]

@@ -45,11 +45,9 @@ class RgbdCamera:
         column, row = pinhole.centre
         left = (column - np.arange(spec.width)) / focal
         up = (row - np.arange(spec.height)) / focal
-        flat = np.sqrt(1.0 + left**2)
         # Azimuths of a grid rise, so its columns run from right to left.
-        self._grid = Grid(np.arctan(left[::-1]), up, 1.0 / flat[::-1])
-        self._along: Array = 1.0 / np.sqrt(1.0 + up[:, None] ** 2 + left[::-1] ** 2)
-        self._reach = spec.depth_max / float(self._along.min())
+        self._grid = Grid(np.arctan(left[::-1]), up, 1.0 / np.sqrt(1.0 + left[::-1] ** 2))
+        self._reach = spec.depth_max * math.sqrt(1.0 + float(np.max(left**2)))
 
     def info(self) -> SensorInfo:
         """Constant description."""
@@ -60,42 +58,52 @@ class RgbdCamera:
         del t
         spec = self._spec
         at, yaw = placed(spec.mount, scene, pose)
-        distance, _, _ = scene.cast_grid(
-            self._grid, at, yaw, self._reach, floor=True, details=False
-        )
+        seen = scene.cast_depth(self._grid, at, yaw, self._reach)
+        shape = self._info.shape
         if spec.noise > 0.0:
             # Drawn for every pixel, so that one's noise does not depend on what others see.
-            noise = spec.noise * rng.standard_normal(distance.shape, dtype=np.float32)
+            noise = spec.noise * rng.standard_normal(shape, dtype=np.float32)
         else:
             noise = np.zeros((0, 0), np.float32)
-        depth = np.empty(distance.shape, np.float32)
-        _measure(
-            distance, self._along, noise, spec.depth_min, spec.depth_max, spec.resolution, depth
-        )
+        depth = np.empty(shape, np.float32)
+        _measure(seen, noise, spec.depth_min, spec.depth_max, spec.resolution, depth)
         return cast(Array, depth)
+
+
+#: Columns that are turned into rows at a time: as many pixels as a line of the cache holds.
+_BLOCK = 16
 
 
 @njit(cache=True, error_model="numpy")
 def _measure(
-    distance: Array, along: Array, noise: NDArray[np.float32],
-    nearest: float, farthest: float, step: float, out: NDArray[np.float32],
+    seen: Array, noise: NDArray[np.float32], nearest: float, farthest: float, step: float,
+    out: NDArray[np.float32],
 ) -> None:  # fmt: skip
-    """Write the measured depths of ray lengths, whose columns run from right to left."""
-    noisy, last = noise.shape[0] > 0, distance.shape[1] - 1
-    for r in range(distance.shape[0]):
-        for c in range(last + 1):
-            depth = distance[r, last - c] * along[r, last - c]
-            if depth < nearest:
-                depth = 0.0
-            elif depth <= farthest:
-                if noisy:
-                    depth += depth * depth * noise[r, c]
-                if step > 0.0:
-                    depth = round(depth / step) * step
-                depth = min(max(depth, nearest), farthest)
-            else:
-                depth = math.inf
-            out[r, c] = depth
+    """Write the measured depths (H, W) of columns (W, H) that run from right to left."""
+    rows, columns = out.shape
+    exact = noise.shape[0] == 0 and step <= 0.0
+    block = np.empty((_BLOCK, rows), np.float32)
+    for first in range(0, columns, _BLOCK):
+        width = min(_BLOCK, columns - first)
+        for b in range(width):
+            c = first + b
+            column = seen[columns - 1 - c]
+            for r in range(rows):
+                depth = column[r]
+                block[b, r] = 0.0 if depth < nearest else depth if depth <= farthest else math.inf
+            if not exact:
+                for r in range(rows):
+                    depth = column[r]
+                    if depth < nearest or depth > farthest:
+                        continue
+                    if noise.shape[0]:
+                        depth += depth * depth * noise[r, c]
+                    if step > 0.0:
+                        depth = round(depth / step) * step
+                    block[b, r] = min(max(depth, nearest), farthest)
+        for r in range(rows):
+            for b in range(width):
+                out[r, first + b] = block[b, r]
 
 
 def build(spec: RgbdCameraSpec) -> RgbdCamera:

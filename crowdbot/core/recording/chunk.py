@@ -1,0 +1,120 @@
+"""The chunk of an MCAP file that is being filled.
+
+A run hands over some hundreds of messages per simulated second, so a message becomes bytes by one
+``pack``; everything rarer is left to `mcap.records`. Layout: https://mcap.dev/spec.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Iterable
+from struct import Struct, pack
+from typing import NamedTuple
+
+import zstandard
+from mcap.data_stream import RecordBuilder
+from mcap.opcode import Opcode
+from mcap.records import Channel, Chunk, ChunkIndex, McapRecord, Schema
+
+_COMPRESSION, _LEVEL = "zstd", 1
+_MESSAGE = Struct("<BQHIQQ")  # opcode and length of a record; channel, sequence, both times
+_INDEX = Struct("<BQHI")  # opcode and length of a record; channel, length of the entries
+_PREFIX = 1 + 8  # opcode and length, which the length leaves out
+
+
+class PackedChunk(NamedTuple):
+    """A finished chunk with the indices that follow it, and what the summary says of both."""
+
+    data: bytes
+    entry: ChunkIndex
+
+
+def serialised(records: Iterable[McapRecord]) -> bytes:
+    """Records one after another."""
+    builder = RecordBuilder()
+    for record in records:
+        record.write(builder)
+    data: bytes = builder.end()  # type: ignore[no-untyped-call]
+    return data
+
+
+class OpenChunk:
+    """Collects records in the order in which they come.
+
+    Attributes:
+        size: bytes so far, uncompressed.
+    """
+
+    def __init__(self) -> None:
+        self._compressor = zstandard.ZstdCompressor(level=_LEVEL)
+        self._clear()
+
+    def _clear(self) -> None:
+        self._parts: list[bytes] = []
+        self._entries: dict[int, list[int]] = {}  # of a channel: time, offset, time, offset, …
+        self.size = 0
+
+    def __len__(self) -> int:
+        """Number of messages."""
+        return sum(map(len, self._entries.values())) // 2
+
+    def define(self, record: Schema | Channel) -> None:
+        """Add what messages refer to."""
+        data = serialised([record])
+        self._parts.append(data)
+        self.size += len(data)
+
+    def add(self, channel: int, sequence: int, ns: int, data: bytes) -> None:
+        """Add a message, logged and published at ``ns`` nanoseconds."""
+        length = _MESSAGE.size - _PREFIX + len(data)
+        head = _MESSAGE.pack(Opcode.MESSAGE, length, channel, sequence, ns, ns)
+        self._parts += head, data
+        entries = self._entries.get(channel)
+        if entries is None:
+            self._entries[channel] = [ns, self.size]
+        else:
+            entries += ns, self.size
+        self.size += _PREFIX + length
+
+    def pack(self, at: int) -> PackedChunk:
+        """Compress what was collected, and begin anew.
+
+        Args:
+            at: where in the file the chunk is going to be.
+        """
+        plain = b"".join(self._parts)
+        times = [ns for entries in self._entries.values() for ns in entries[::2]]
+        chunk = Chunk(
+            compression=_COMPRESSION,
+            data=self._compressor.compress(plain),
+            message_start_time=min(times),
+            message_end_time=max(times),
+            uncompressed_crc=zlib.crc32(plain),
+            uncompressed_size=len(plain),
+        )
+        data = serialised([chunk])
+        end, offsets, indices = at + len(data), dict[int, int](), list[bytes]()
+        for channel, entries in self._entries.items():
+            offsets[channel] = end
+            indices.append(_index(channel, entries))
+            end += len(indices[-1])
+        entry = ChunkIndex(
+            chunk_start_offset=at,
+            chunk_length=len(data),
+            message_start_time=chunk.message_start_time,
+            message_end_time=chunk.message_end_time,
+            message_index_offsets=offsets,
+            message_index_length=end - at - len(data),
+            compression=_COMPRESSION,
+            compressed_size=len(chunk.data),
+            uncompressed_size=chunk.uncompressed_size,
+        )
+        self._clear()
+        return PackedChunk(b"".join([data, *indices]), entry)
+
+
+def _index(channel: int, entries: list[int]) -> bytes:
+    """A MessageIndex record."""
+    length = 8 * len(entries)
+    head = _INDEX.pack(Opcode.MESSAGE_INDEX, _INDEX.size - _PREFIX + length, channel, length)
+    return head + pack(f"<{len(entries)}Q", *entries)

@@ -1,0 +1,110 @@
+"""Depth images, painted column by column.
+
+An upright face has one depth in all rows of a column, since depth is measured along the optical
+axis; the floor, and tops and bottoms of bodies, have one depth in all columns of a row. So a
+column is a few runs of equal numbers, the least of which counts. What is hit is what
+`crowdbot.core.sensing.columns.cast_columns` hits, pixel by pixel.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.sensing.columns import FAR, HIGH, LOW, NEAR, fill_columns, heights_of
+
+Array = NDArray[np.float64]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _rows_above(
+    bound: float, also_at: bool, z: float, depth: float, rise: Array, guess: float
+) -> int:
+    """How many rays, from the first on, are above ``bound`` (or at it) at a depth.
+
+    Args:
+        rise: (R,) falling.
+        guess: roughly how many they are; it costs time to be wrong.
+    """
+    rows = rise.shape[0]
+    row = rows if guess >= rows else int(guess) if guess > 0.0 else 0
+    while row > 0:
+        height = z + rise[row - 1] * depth
+        if height > bound or (also_at and height == bound):
+            break
+        row -= 1
+    while row < rows:
+        height = z + rise[row] * depth
+        if not (height > bound or (also_at and height == bound)):
+            break
+        row += 1
+    return row
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _paint(
+    z: float, near: float, far: float, low: float, high: float, rise: Array, per_row: float,
+    column: Array,
+) -> None:  # fmt: skip
+    """Paint one body, from ``near`` to ``far`` along the axis, where nothing nearer is.
+
+    Args:
+        per_row: by how much ``rise`` falls from row to row, on average.
+    """
+    # Exact where it falls evenly; nonsense, which does no harm, where a length is zero.
+    rows_per_metre = 1.0 / (near * per_row)
+    middle = rise[0] / per_row
+    begin = _rows_above(high, False, z, near, rise, middle - (high - z) * rows_per_metre)
+    end = _rows_above(low, True, z, near, rise, middle - (low - z) * rows_per_metre)
+    face = column[begin:end]  # indexed from 0, so that several rows are painted at once
+    for r in range(face.shape[0]):
+        here = face[r]
+        face[r] = near if near < here else here
+    if far <= near:
+        return
+    for r in range(begin - 1, -1, -1):  # comes down on the top
+        if rise[r] >= 0.0 or (high - z) / rise[r] > far:
+            break
+        column[r] = min(column[r], (high - z) / rise[r])
+    for r in range(max(begin, end), rise.shape[0]):  # comes up from below
+        if rise[r] <= 0.0 or (low - z) / rise[r] > far:
+            break
+        column[r] = min(column[r], (low - z) / rise[r])
+
+
+@numba.njit(cache=True, error_model="numpy")
+def paint_depth(
+    x: float, y: float, z: float, yaw: float, azimuth: Array, cos: Array, sin: Array,
+    rise: Array, lean: Array, max_range: float, walls: Array, wall_heights: Array, discs: Array,
+    owner: NDArray[np.int64], work: Array, depth: Array,
+) -> None:  # fmt: skip
+    """Depth along the axis of a camera, m; inf where nothing is. The floor z = 0 is seen.
+
+    Args:
+        rise: (R,) falling: the first row is on top.
+        lean: (C,) cosines of the azimuths.
+        max_range: m over the floor; what is farther may be left out.
+        depth: (C, R) result, columns by rising azimuth.
+
+    Everything else is as in `crowdbot.core.sensing.columns.cast_columns`.
+    """
+    rows = rise.shape[0]
+    lowest, highest = heights_of(z, rise, lean, max_range)
+    count = fill_columns(
+        x, y, yaw, lowest, highest, azimuth, cos, sin, max_range,
+        walls, wall_heights, discs, owner, work,
+    )  # fmt: skip
+    floor = np.empty(rows)
+    for r in range(rows):
+        floor[r] = -z / rise[r] if rise[r] < 0.0 else math.inf
+    per_row = (rise[0] - rise[rows - 1]) / max(rows - 1, 1)
+    for c in range(azimuth.shape[0]):
+        column = depth[c]
+        column[:] = floor
+        for k in range(count[c]):
+            body = work[c, k]
+            near, far = body[NEAR] * lean[c], body[FAR] * lean[c]
+            _paint(z, near, far, body[LOW], body[HIGH], rise, per_row, column)
