@@ -31,7 +31,7 @@ def check_commanded_motion(component: Component[Any], registry: Registry | None 
     known = discover() if registry is None else registry
     for example in component.examples:
         spec = component.spec.model_validate({"kind": component.kind, **example})
-        model = build_model(known, spec)  # type: ignore[arg-type]
+        model = build_model(known, spec)
         for mode in MODES[type(model.drive)]:
             for command in commands_for(model):
                 assert_moves(model, mode, command)

@@ -88,7 +88,9 @@ def _check(kind: str, info: object) -> None:
     if not (isinstance(info.rate, int | float) and 0.0 < info.rate <= TICKS_PER_SECOND):
         refuse(f"rate is {info.rate!r} Hz; it must be above 0 and at most {TICKS_PER_SECOND}")
     shape: object = info.shape
-    if not (isinstance(shape, tuple) and all(isinstance(n, Integral) and int(n) > 0 for n in shape)):
+    if not (
+        isinstance(shape, tuple) and all(isinstance(n, Integral) and int(n) > 0 for n in shape)
+    ):
         refuse(f"shape is {shape!r}; a tuple of whole numbers above 0 is wanted")
     mount = np.asarray(info.mount, np.float64)
     if mount.shape != (4,) or not np.all(np.isfinite(mount)):
