@@ -186,7 +186,7 @@ def test_components_of_others_run(odd: list[str], capsys: pytest.CaptureFixture[
     for policy in ("velocity_space", "odd.policy"):
         assert main([*odd, "--force", "--set", f"crowd.policy={{kind: {policy}}}"]) == 0
     assert main([*odd, "--force", "--set", "crowd.policy={kind: odd.policy, way: push_fine}"]) == 0
-    assert capsys.readouterr().err.count("arrived after") == 3
+    assert capsys.readouterr().out.count("arrived after") == 3
 
 
 WRONG = [
