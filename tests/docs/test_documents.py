@@ -18,7 +18,9 @@ from crowdbot.cli import _load, command_names, main
 from crowdbot.core.library import pick
 
 FILES = sorted(
-    f for kind in ("*.py", "**/*.yaml", "*.csv") for f in ROOT.glob(f"docs/*/files/{kind}")
+    f
+    for kind in ("**/*.py", "**/*.yaml", "**/*.urdf", "*.csv")
+    for f in ROOT.glob(f"docs/*/files/{kind}")
 )
 #: Pages whose commands are run where their files are.
 BESIDE_FILES = ("docs/howto", "docs/tutorial/first_scenario", "docs/explanation/pitfalls")
