@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.policy import CrowdPolicy, CrowdView
-from crowdbot.errors import PluginError
+from crowdbot.core.fault import described
+from crowdbot.errors import CrowdbotError, PluginError
 
 Array = NDArray[np.float64]
 
@@ -15,16 +16,30 @@ def willed(policy: CrowdPolicy, view: CrowdView) -> Array:
     """Accelerations (N, 2) of those who decide, m/s^2; others' rows mean nothing.
 
     Raises:
-        PluginError: the policy's answer has a wrong shape, or is not finite for one who decides.
+        PluginError: the policy raised, its answer has a wrong shape, or it is not finite for one
+            who decides.
     """
+    wanted = _checked(policy, _asked(policy, view), view)
     if hasattr(policy, "accelerations"):
-        return _checked(policy, policy.accelerations(view), view)
-    wanted = _checked(policy, policy.velocities(view, view.dt), view)
+        return wanted
     acceleration = (wanted - view.velocity) / view.dt
     norm = np.hypot(acceleration[:, 0], acceleration[:, 1])
     limit = view.agents.max_acceleration
     scale = np.minimum(1.0, limit / np.maximum(norm, limit))
     return np.asarray(acceleration * scale[:, np.newaxis])
+
+
+def _asked(policy: CrowdPolicy, view: CrowdView) -> Array:
+    try:
+        if hasattr(policy, "accelerations"):
+            return policy.accelerations(view)
+        return policy.velocities(view, view.dt)
+    except CrowdbotError:
+        raise
+    except (Exception, SystemExit) as error:
+        name = type(policy).__name__
+        text = f"crowd policy {name} at t = {view.t:g} s: {described(error)}"
+        raise PluginError(text) from error
 
 
 def _checked(policy: CrowdPolicy, answer: Array, view: CrowdView) -> Array:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from pydrake.systems.framework import Context, DiscreteStateIndex, LeafSystem, State
 
 from crowdbot.core.crowd import state as s
+from crowdbot.core.fault import described
 from crowdbot.core.interfaces import (
     Pose,
     Reading,
@@ -29,6 +30,7 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.images import Images, Painter, capture, view_size
 from crowdbot.core.ticks import TICK, TICKS_PER_SECOND, is_due
+from crowdbot.errors import PluginError
 
 Array = NDArray[np.float64]
 
@@ -203,11 +205,16 @@ class SensorBank(LeafSystem):
         if slot.info.random:
             rng = sensor_rng(self._seed, self._robot_name, name, tick)
         t = tick * TICK
-        if slot.info.memory:
-            memory = bank[slot.memory]
-            values = sensor.read(self._scene, pose, t, rng, memory)  # type: ignore[call-arg]
-        else:
-            values = sensor.read(self._scene, pose, t, rng)  # type: ignore[call-arg]
+        try:
+            if slot.info.memory:
+                memory = bank[slot.memory]
+                values = sensor.read(self._scene, pose, t, rng, memory)  # type: ignore[call-arg]
+            else:
+                values = sensor.read(self._scene, pose, t, rng)  # type: ignore[call-arg]
+            bank[slot.values] = np.ravel(values)
+        except (Exception, SystemExit) as error:
+            kind = type(sensor).__name__
+            text = f"sensor '{name}' ({kind}) at t = {t:g} s: {described(error)}"
+            raise PluginError(text) from error
         bank[slot.stamp] = t
-        bank[slot.values] = np.ravel(values)
         self._on_reading(name, slot.reading(bank))
