@@ -38,44 +38,193 @@ hookimpl = pluggy.HookimplMarker("crowdbot")
 
 @hookspec
 def crowdbot_environments() -> Sequence[Component[EnvironmentSpec]]:  # type: ignore[empty-body]
-    """Return the environments this package provides."""
+    """Return the places this package provides.
+
+    Places: floors with walls, blocks, pillars, zones, portals, borders.
+
+    Called once, while the registry is built, before any document is read. The components are
+    built later, once for each recording:
+    `crowdbot.core.builds.BuildEnvironment`.
+
+    Returns:
+        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
+        point. An exception, or anything else, disables this plugin alone.
+
+    Example::
+
+        @hookimpl
+        def crowdbot_environments():
+            return [AISLES]
+    """
 
 
 @hookspec
 def crowdbot_robots() -> Sequence[Component[RobotSpec]]:  # type: ignore[empty-body]
-    """Return the robots this package provides."""
+    """Return the robots this package provides.
+
+    Bodies, drives and limits.
+
+    Called once, while the registry is built, before any document is read. The components are
+    built later, once for each recording:
+    `crowdbot.core.builds.BuildRobot`.
+
+    Returns:
+        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
+        point. An exception, or anything else, disables this plugin alone.
+
+    Example::
+
+        @hookimpl
+        def crowdbot_robots():
+            return [OMNI]
+    """
 
 
 @hookspec
 def crowdbot_sensors() -> Sequence[Component[SensorSpec]]:  # type: ignore[empty-body]
-    """Return the sensors this package provides."""
+    """Return the sensors this package provides.
+
+    What robots carry to see, feel and count their wheels.
+
+    Called once, while the registry is built, before any document is read. The components are
+    built later, when a run is prepared, and where they are simulated:
+    `crowdbot.core.builds.BuildSensor`.
+
+    Returns:
+        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
+        point. An exception, or anything else, disables this plugin alone.
+
+    Example::
+
+        @hookimpl
+        def crowdbot_sensors():
+            return [SONAR]
+    """
 
 
 @hookspec
 def crowdbot_noise_generators() -> Sequence[Component[NoiseSpec]]:  # type: ignore[empty-body]
-    """Return the noise generators of sensors this package provides."""
+    """Return the noise generators this package provides.
+
+    Errors of sensors, for the map ``noise`` of every sensor that measures distances.
+
+    Called once, while the registry is built, before any document is read. The components are
+    built later, before their sensor, in the order of their names:
+    `crowdbot.core.builds.BuildNoise`.
+
+    Returns:
+        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
+        point. An exception, or anything else, disables this plugin alone.
+
+    Example::
+
+        @hookimpl
+        def crowdbot_noise_generators():
+            return [DRIFT]
+    """
 
 
 @hookspec
 def crowdbot_planners() -> Sequence[Component[PlannerSpec]]:  # type: ignore[empty-body]
-    """Return the planners this package provides."""
+    """Return the planners this package provides.
+
+    The things under test. Never part of a scenario.
+
+    Called once, while the registry is built, before any document is read. The components are
+    built later, once for each recording with a robot, also for the one without people:
+    `crowdbot.core.builds.BuildPlanner`.
+
+    Returns:
+        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
+        point. An exception, or anything else, disables this plugin alone.
+
+    Example::
+
+        @hookimpl
+        def crowdbot_planners():
+            return [SWERVE]
+    """
 
 
 @hookspec
 def crowdbot_crowd_policies() -> Sequence[Component[CrowdPolicySpec]]:  # type: ignore[empty-body]
-    """Return the crowd policies this package provides."""
+    """Return the crowd policies this package provides.
+
+    How people decide where to walk.
+
+    Called once, while the registry is built, before any document is read. The components are
+    built later, once for each recording with people:
+    `crowdbot.core.builds.BuildPolicy`.
+
+    Returns:
+        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
+        point. An exception, or anything else, disables this plugin alone.
+
+    Example::
+
+        @hookimpl
+        def crowdbot_crowd_policies():
+            return [SWARM]
+    """
 
 
 @hookspec
 def crowdbot_cost_functions() -> Sequence[Component[CostFunctionSpec]]:  # type: ignore[empty-body]
-    """Return the cost functions this package provides."""
+    """Return the cost functions this package provides.
+
+    Costs over velocities, which a velocity-space policy minimises.
+
+    Called once, while the registry is built, before any document is read. The components are
+    built later, before the policy that minimises them:
+    `crowdbot.core.builds.BuildCost`.
+
+    Returns:
+        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
+        point. An exception, or anything else, disables this plugin alone.
+
+    Example::
+
+        @hookimpl
+        def crowdbot_cost_functions():
+            return [PATIENCE]
+    """
 
 
 @hookspec
 def crowdbot_metrics() -> Sequence[Component[MetricSpec]]:  # type: ignore[empty-body]
-    """Return the metrics this package provides."""
+    """Return the metrics this package provides.
+
+    Functions of what was recorded; each is a ``MetricComponent`` with a label and a card.
+
+    Called once, while the registry is built, before any document is read. The components are
+    built later, once for each scoring:
+    `crowdbot.core.builds.BuildMetric`.
+
+    Returns:
+        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
+        point. An exception, or anything else, disables this plugin alone.
+
+    Example::
+
+        @hookimpl
+        def crowdbot_metrics():
+            return [COMFORT]
+    """
 
 
 @hookspec
 def crowdbot_scenario_dirs() -> Sequence[Traversable]:  # type: ignore[empty-body]
-    """Return folders with suites, found as ``plugin:suite``."""
+    """Return folders with suites: ``office.yaml`` of the plugin ``acme`` is ``acme:office``.
+
+    Called once, while the registry is built. Folders are looked into when a document is named
+    that is no path, or extends ``NAME:...``; they may lie in an archive.
+
+    Returns:
+        A list or tuple of folders. Parts that others extend go into a folder inside.
+
+    Example::
+
+        @hookimpl
+        def crowdbot_scenario_dirs():
+            return [importlib.resources.files(__name__) / "suites"]
+    """

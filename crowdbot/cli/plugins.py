@@ -77,6 +77,7 @@ def check(
         str | None, typer.Argument(metavar="[NAME]", help="A plugin, or the kind of a component.")
     ] = None,
     plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
     as_json: _Json = False,
 ) -> None:
     """Hold components to what crowdbot promises about them; exit code 1 when a check fails.
@@ -90,7 +91,7 @@ def check(
 
     if name is None and not plugin:
         raise typer.BadParameter("name a plugin or a kind, or give one by --plugin")
-    registry = installed(plugin, strict=False)
+    registry = installed(plugin, no_plugins, strict=False)
     results: list[Result] = failed_plugins(registry, name)
     if not results:
         components = chosen(registry, name)

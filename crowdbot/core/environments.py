@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.core.fault import described
 from crowdbot.core.interfaces import Array, EnvironmentParts
 from crowdbot.core.registry import Registry
 from crowdbot.dsl.base import EnvironmentSpec
@@ -25,8 +26,8 @@ def build_environment(registry: Registry, spec: EnvironmentSpec) -> EnvironmentP
     except CrowdbotError as error:
         text = str(error)
         raise PluginError(text if spec.kind in text else f"{spec.kind}: {text}") from error
-    except Exception as error:
-        raise PluginError(f"{spec.kind}: {type(error).__name__}: {error}") from error
+    except (Exception, SystemExit) as error:
+        raise PluginError(f"{spec.kind}: {described(error)}") from error
     built: EnvironmentParts = parts
     return built
 

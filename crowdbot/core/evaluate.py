@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import fnmatch
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, overload
@@ -12,6 +14,7 @@ from pydantic import ValidationError
 
 from crowdbot.core.commands import Commands
 from crowdbot.core.component import Component
+from crowdbot.core.fault import described
 from crowdbot.core.interfaces import References
 from crowdbot.core.preprocess import cropped
 from crowdbot.core.questionnaires import Questionnaires
@@ -167,11 +170,12 @@ def _scores_of(
     """Ask one metric; whatever it does wrong is its plugin's failure."""
     try:
         parameters = spec.model_dump(exclude={"kind"})
-        scores = list(registry.build(spec).score(run, refs))
+        with contextlib.redirect_stdout(sys.stderr):
+            scores = list(registry.build(spec).score(run, refs))
     except PluginError as error:
         raise _failure(registry, spec, str(error)) from error
-    except Exception as error:
-        raise _failure(registry, spec, f"{type(error).__name__}: {error}") from error
+    except (Exception, SystemExit) as error:
+        raise _failure(registry, spec, described(error)) from error
     for item in scores:
         if not isinstance(item, Score) or item.metric != spec.kind:
             raise _failure(registry, spec, f"returned {item!r} instead of its own scores")

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import ast
 import contextlib
 import hashlib
-import importlib.util
-import inspect
 import json
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 from pydantic import ValidationError
@@ -22,6 +18,12 @@ from ruamel.yaml.error import YAMLError
 from crowdbot.core.component import Component
 from crowdbot.core.fault import described, is_users
 from crowdbot.core.interfaces import Planner, SensorInfo
+from crowdbot.core.planner_file import (
+    check_parameters,
+    guess_class,
+    missing_methods,
+    planner_class,
+)
 from crowdbot.core.plugin import BUILTIN
 from crowdbot.core.registry import Registry
 from crowdbot.dsl.base import PlannerSpec
@@ -32,8 +34,6 @@ from crowdbot.errors import (
     did_you_mean,
     nearest,
 )
-
-_METHODS = ("reset", "step")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,7 +80,7 @@ def resolve_planner(text: str, registry: Registry, settings: Sequence[str] = ())
     if colon and path.endswith(".py"):
         return _from_class(Path(path), name, given)
     if text.endswith(".py"):
-        raise InputError(f"{text}: which class? Write {text}:{_guess(Path(text))}")
+        raise InputError(f"{text}: which class? Write {text}:{guess_class(Path(text))}")
     if text.endswith((".yaml", ".yml")) or "/" in text:
         document = _read(Path(text))
         kind = document.pop("kind", None)
@@ -243,13 +243,13 @@ def _first(error: YAMLError) -> str:
 
 # --------------------------------------------------------------------- Python files
 def _from_class(path: Path, name: str, parameters: Mapping[str, Any]) -> PlannerChoice:
-    kind = _class(path, name)
+    kind = planner_class(path, name)
     dump = {
         "kind": f"{path.name}:{name}",
         "sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
         **({"parameters": dict(parameters)} if parameters else {}),
     }
-    _check_parameters(kind, parameters, f"{path}:{name}")
+    check_parameters(kind, parameters, f"{path}:{name}")
 
     def build() -> Planner:
         made: Planner = _made(name, lambda: kind(**parameters), "")
@@ -280,68 +280,8 @@ def _made(name: str, make: Callable[[], Any], whose: str) -> Any:
         if is_users(error):
             raise
         raise PlannerError(f"{title} cannot be made: {described(error)}") from error
-    missing = [m for m in _METHODS if not callable(getattr(planner, m, None))]
+    missing = missing_methods(planner)
     if missing:
         what = type(planner).__name__
         raise PlannerError(f"{title}: what was built, a {what}, has no {' and no '.join(missing)}")
     return planner
-
-
-def _class(path: Path, name: str) -> type[Any]:
-    if not path.is_file():
-        raise InputError(f"{path}: no such file")
-    module = _import(path)
-    found = getattr(module, name, None)
-    if not inspect.isclass(found):
-        classes = [n for n, v in vars(module).items() if inspect.isclass(v)]
-        raise InputError(f"{path}: no class '{name}'{did_you_mean(nearest(name, classes))}")
-    missing = [m for m in _METHODS if not callable(getattr(found, m, None))]
-    if missing:
-        raise InputError(f"{path}: class '{name}' is no planner: no {' and no '.join(missing)}")
-    return found
-
-
-def _import(path: Path) -> ModuleType:
-    """Run a file under a name of its own, its folder importable after everything else."""
-    file = path.resolve()
-    unique = f"crowdbot_planner_{hashlib.sha256(str(file).encode()).hexdigest()[:12]}"
-    spec = importlib.util.spec_from_file_location(unique, file)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[unique] = module
-    if str(file.parent) not in sys.path:
-        sys.path.append(str(file.parent))
-    try:
-        with contextlib.redirect_stdout(sys.stderr):
-            spec.loader.exec_module(module)
-    except BaseException as error:
-        del sys.modules[unique]
-        if is_users(error):
-            raise
-        raise PlannerError(f"{path}: cannot be imported: {described(error)}") from error
-    return module
-
-
-def _check_parameters(kind: type[Any], parameters: Mapping[str, Any], where: str) -> None:
-    try:
-        inspect.signature(kind).bind(**parameters)
-    except ValueError:  # a class without a signature tells only when it is called
-        return
-    except TypeError as error:
-        known = ", ".join(inspect.signature(kind).parameters) or "none"
-        raise InputError(f"{where}: {error}; its parameters: {known}") from None
-
-
-def _guess(path: Path) -> str:
-    """Name of the first class in a file that has both methods, or ``Class``."""
-    try:
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, SyntaxError):
-        return "Class"
-    for node in tree.body:
-        if isinstance(node, ast.ClassDef):
-            methods = {n.name for n in node.body if isinstance(n, ast.FunctionDef)}
-            if methods >= set(_METHODS):
-                return node.name
-    return "Class"

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
@@ -68,3 +69,66 @@ def test_show_json(capsys: Captured) -> None:
 def test_show_unknown(capsys: Captured) -> None:
     assert main(["plugins", "show", "lidar2"]) == 1
     assert "did you mean 'lidar2d'" in capsys.readouterr().err
+
+
+def test_what_is_built_in_is_described_where_it_says() -> None:
+    import re
+
+    from crowdbot.cli._component_page import reference
+
+    root = Path(__file__).parent.parent.parent
+    registry = discover(allow=())
+    for plugin in registry.plugins:
+        for component in plugin.components:
+            page, _, anchor = reference(component, plugin).partition("#")
+            text = (root / page).read_text(encoding="utf-8")
+            assert re.search(rf"^#+ `?{anchor or component.kind}`?$", text, re.M), component.kind
+
+
+def test_show_says_where_a_component_is_from(capsys: Captured) -> None:
+    assert main(["plugins", "show", "risk"]) == 0
+    shown = capsys.readouterr().out
+    assert "from crowdbot 0.1.0 (plugin builtin)" in shown
+    assert "described in docs/reference/metrics/risk.md" in shown
+    assert "R in s, better: lower" in shown
+    assert main(["plugins", "show", "risk", "--json"]) == 0
+    (about,) = json.loads(capsys.readouterr().out)
+    assert about["label"]["symbol"] == "R"
+    assert (about["plugin"], about["pinned"]) == ("builtin", True)
+
+
+def test_checks_of_one_kind(capsys: Captured) -> None:
+    assert main(["plugins", "check", "goal_seek"]) == 0
+    shown = capsys.readouterr().out
+    assert "check_build_resolves" in shown
+    assert shown.splitlines()[-1].startswith("1 component: ")
+    assert main(["plugins", "check", "goal_seek", "-q"]) == 0
+    assert "check_build_resolves" not in capsys.readouterr().out
+
+
+def test_an_expected_failure_has_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    from crowdbot.cli import _check
+
+    def check_bad(component: object) -> None:
+        """Fails. If this fails, rejoice."""
+        raise AssertionError(f"bad {component is not None}")
+
+    def check_good(component: object) -> None:
+        """Passes."""
+
+    registry = discover(allow=())
+    component = registry.find("planner", "goal_seek")
+    monkeypatch.setattr(_check, "_checks", lambda _: (check_bad, check_good))
+    failed, passed = _check.run_checks(component, registry)
+    assert (failed.result, failed.reason, failed.advice) == ("failed", "bad True", "rejoice.")
+    assert (passed.result, passed.bad) == ("passed", False)
+    both = {"check_bad": "known", "check_good": "hoped"}
+    monkeypatch.setattr(_check, "_exceptions", lambda _: both)
+    expected, unexpected = _check.run_checks(component, registry)
+    assert (expected.result, expected.reason, expected.bad) == ("expected failure", "known", False)
+    assert (unexpected.result, unexpected.bad) == ("unexpected pass", True)
+
+
+def test_options_of_the_list_do_not_stand_before_a_command(capsys: Captured) -> None:
+    assert main(["plugins", "--json", "show", "risk"]) == 2
+    assert "stand behind it" in capsys.readouterr().err

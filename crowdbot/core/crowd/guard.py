@@ -21,6 +21,7 @@ from crowdbot.core.crowd.cost import (
     Neighbours,
     NumpyCost,
 )
+from crowdbot.core.fault import described
 from crowdbot.errors import CrowdbotError, PluginError
 
 _SIGNATURES = {
@@ -102,8 +103,8 @@ def _watched(
             found = np.asarray(evaluate(candidates, agent, neighbours), np.float64)
         except CrowdbotError:
             raise
-        except Exception as error:
-            text = f"cost function {kind}: {type(error).__name__}: {error}"
+        except (Exception, SystemExit) as error:
+            text = f"cost function {kind}: {described(error)}"
             raise PluginError(text) from error
         if found.shape != (len(candidates),):
             raise PluginError(

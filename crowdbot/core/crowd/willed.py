@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.policy import CrowdPolicy, CrowdView
+from crowdbot.core.fault import described
 from crowdbot.errors import CrowdbotError, PluginError
 
 Array = NDArray[np.float64]
@@ -36,8 +37,9 @@ def _answer(policy: CrowdPolicy, ask: Callable[[], object], view: CrowdView) -> 
         answer = np.asarray(ask(), np.float64)
     except CrowdbotError:
         raise
-    except Exception as error:
-        raise PluginError(f"crowd policy {name}: {type(error).__name__}: {error}") from error
+    except (Exception, SystemExit) as error:
+        text = f"crowd policy {name} at t = {view.t:g} s: {described(error)}"
+        raise PluginError(text) from error
     if answer.shape != view.position.shape:
         raise PluginError(
             f"crowd policy {name} returned shape {answer.shape} instead of {view.position.shape}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from crowdbot.core.fault import described
 from crowdbot.core.interfaces import DifferentialDrive, HolonomicDrive, RobotModel
 from crowdbot.core.registry import Registry
 from crowdbot.core.robots.check import check_model
@@ -30,8 +31,8 @@ def build_model(registry: Registry, spec: RobotSpec) -> RobotModel:
         text = str(error)
         named = text if spec.kind in text else f"{spec.kind}: {text}"
         raise PluginError(named) from error
-    except Exception as error:
-        raise PluginError(f"{spec.kind}: {type(error).__name__}: {error}") from error
+    except (Exception, SystemExit) as error:
+        raise PluginError(f"{spec.kind}: {described(error)}") from error
 
 
 def build_robot(registry: Registry, robot: Robot) -> RobotModel:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.fault import described
 from crowdbot.core.interfaces import Sensor, SensorInfo, SensorWithMemory
 from crowdbot.core.registry import Registry
 from crowdbot.core.ticks import TICKS_PER_SECOND
@@ -34,8 +35,8 @@ def build_sensor(registry: Registry, spec: SensorSpec) -> Sensor | SensorWithMem
         info = sensor.info()
     except CrowdbotError:
         raise
-    except Exception as error:
-        raise PluginError(f"sensor {spec.kind}: {type(error).__name__}: {error}") from error
+    except (Exception, SystemExit) as error:
+        raise PluginError(f"sensor {spec.kind}: {described(error)}") from error
     _check(spec.kind, info)
     specs = [spec, *(spec.noise.values() if isinstance(spec, ProximitySpec) else ())]
     owners = (registry.owner(registry.find(s.category, s.kind)) for s in specs)
@@ -63,8 +64,9 @@ class Watched:
             values = np.asarray(self._sensor.read(*given), np.float64)
         except CrowdbotError:
             raise
-        except Exception as error:
-            raise PluginError(f"sensor {self._kind}: {type(error).__name__}: {error}") from error
+        except (Exception, SystemExit) as error:
+            text = f"sensor {self._kind} at t = {given[2]:g} s: {described(error)}"
+            raise PluginError(text) from error
         if values.shape != self._info.shape:
             raise PluginError(
                 f"sensor {self._kind} returned shape {values.shape}; info() says {self._info.shape}"

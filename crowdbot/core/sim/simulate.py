@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -27,8 +28,9 @@ from crowdbot.core.trajectory import Trajectories
 from crowdbot.core.watchdog import STEP_LIMIT
 from crowdbot.dsl.canonical import content_hash, dump_scenario_yaml
 from crowdbot.dsl.scenario import Scenario
-from crowdbot.errors import InputError, Interrupted, PlannerHungError
+from crowdbot.errors import InputError, Interrupted, PluginError
 
+_LOG = logging.getLogger("crowdbot")
 _REPLAY_RATE = 8.0  # scans per second that the replay page holds, Hz
 
 
@@ -206,6 +208,8 @@ def _reference(
         with _partial(final) as folder:
             outcome = simulate_it(_setup(request, scenario, people, folder, name))
             _check_interrupted(outcome, folder)
+            if outcome.status == PLANNER_FAILED:
+                _LOG.warning("%s: the planner failed: %s", name, outcome.reason)
             _write_scenario(folder, scenario, request.registry)
             record = {"run_id": run_id, "reference": name, **key, **_ending(outcome)}
             files.write_json(folder / files.RECORD, record)
@@ -215,12 +219,14 @@ def _reference(
 
 @contextmanager
 def _partial(final: Path) -> Iterator[Path]:
-    """A directory aside; a planner that hangs in it is told together with what is left."""
+    """A directory aside; a plugin that fails in it is told together with what is left."""
     with files.partial(final) as folder:
         try:
             yield folder
-        except PlannerHungError as error:
-            raise PlannerHungError(f"{error}; what was recorded: {folder}") from error
+        except PluginError as error:
+            if not (folder / files.RECORDING).exists():
+                raise
+            raise type(error)(f"{error}; what was recorded: {folder}") from error
 
 
 # --------------------------------------------------------------------------- the run

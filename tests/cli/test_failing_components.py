@@ -1,0 +1,130 @@
+"""Sensors, policies and metrics that fail in a run: a message that names them, never ours."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from simulate_cases import Shell
+
+from crowdbot.core.recording import read_trajectories
+
+PLUGIN = '''
+import sys
+from typing import Literal
+import numpy as np
+from crowdbot.core.component import Component
+from crowdbot.core.interfaces import SensorInfo
+from crowdbot.core.score_label import MetricComponent, ScoreLabel
+from crowdbot.dsl.base import CrowdPolicySpec, MetricSpec, SensorSpec
+from crowdbot.hookspecs import hookimpl
+
+class SensorWords(SensorSpec):
+    """A sensor."""
+    kind: Literal["faulty.sensor"] = "faulty.sensor"
+
+class PolicyWords(CrowdPolicySpec):
+    """A policy."""
+    kind: Literal["faulty.policy"] = "faulty.policy"
+
+class MetricWords(MetricSpec):
+    """A metric."""
+    kind: Literal["faulty.metric"] = "faulty.metric"
+
+LABEL = ScoreLabel(metric="faulty.metric", symbol="F", category="task", unit="m", better="lower")
+
+class Sensor:
+    def __init__(self, spec):
+        {init}
+    def info(self):
+        return SensorInfo(category="s", frame="s", mount=(0, 0, 0, 0), rate=16.0, shape=(1,),
+                          ros_type="std_msgs/msg/Float64MultiArray", random=False)
+    def read(self, scene, pose, t, rng):
+        {read}
+
+class Policy:
+    def __init__(self, spec, costs, agents):
+        pass
+    def velocities(self, view, dt):
+        {velocities}
+
+class Metric:
+    def __init__(self, spec):
+        pass
+    def score(self, run, refs):
+        {score}
+
+@hookimpl
+def crowdbot_sensors():
+    return [Component(spec=SensorWords, build="faulty:Sensor", summary="s")]
+
+@hookimpl
+def crowdbot_crowd_policies():
+    return [Component(spec=PolicyWords, build="faulty:Policy", summary="p")]
+
+@hookimpl
+def crowdbot_metrics():
+    return [MetricComponent(spec=MetricWords, build="faulty:Metric", summary="m", label=LABEL,
+                            card="# faulty.metric\\n")]
+'''
+FINE = {
+    "init": "pass",
+    "read": "return np.zeros(1)",
+    "velocities": "return view.velocity.copy()",
+    "score": "print('hello'); return [LABEL.ok('corrected', 1.0)]",
+}
+FAILING = {
+    "sensor cannot be built": ("init", "raise ValueError('no')", "sensor 'faulty.sensor' ("),
+    "sensor raises": ("read", "raise ValueError('no')", "sensor 'x' (Sensor) at t = 0 s: Value"),
+    "sensor leaves": ("read", "sys.exit(0)", "sensor 'x' (Sensor) at t = 0 s: SystemExit: 0"),
+    "reading too long": ("read", "return np.zeros(3)", "sensor 'x' (Sensor)"),
+    "policy raises": ("velocities", "raise ValueError('no')", "crowd policy Policy at t = 0 s: V"),
+    "policy is nan": ("velocities", "return view.velocity * np.nan", "policy Policy returned"),
+    "metric raises": ("score", "1 / 0", "metric 'faulty.metric' of plugin "),
+    "metric leaves": ("score", "sys.exit(0)", "SystemExit: 0"),
+    "metric is nan": ("score", "return [LABEL.ok('corrected', np.nan)]", "nan must not escape"),
+    "metric is no score": ("score", "return [3.0]", "returned 3.0 instead of its own scores"),
+}  # fmt: skip
+SETTINGS = (
+    "robots.robot.sensors.x={kind: faulty.sensor}",
+    "crowd.policy={kind: faulty.policy}",
+    "crowd.costs={}",
+)
+
+
+@pytest.fixture(autouse=True)
+def _forget() -> Iterator[None]:
+    yield
+    sys.modules.pop("faulty", None)
+
+
+def options(folder: Path, **code: str) -> list[str]:
+    path = folder / "faulty.py"
+    path.write_text(PLUGIN.format(**{**FINE, **code}), encoding="utf-8")
+    changes = [word for setting in SETTINGS for word in ("--set", setting)]
+    return ["--plugin", str(path), "--planner", "goal_seek", "--no-references", *changes]
+
+
+@pytest.mark.parametrize("case", FAILING)
+def test_the_message_names_the_component(case: str, shell: Shell, tmp_path: Path) -> None:
+    place, code, text = FAILING[case]
+    answer = shell(*options(tmp_path, **{place: code}), "--json")
+    assert answer.code == 3
+    assert text in answer.err
+    assert answer.out == ""
+    assert shell.runs() == []
+    if place == "score":
+        (partial,) = shell.out.rglob("*.partial")
+        assert f"what was recorded: {partial}" in answer.err
+        assert read_trajectories(partial / "run.mcap").t[-1] == 1.0
+
+
+def test_without_faults_it_runs_and_prints_of_metrics_keep_off_stdout(
+    shell: Shell, tmp_path: Path
+) -> None:
+    answer = shell(*options(tmp_path), "--json")
+    assert answer.code == 0
+    assert "faulty.metric" in {s["metric"] for s in answer.json["scores"]}
+    assert "hello" in answer.err
