@@ -77,11 +77,11 @@ FINE = {
 }
 FAILING = {
     "sensor cannot be built": ("init", "raise ValueError('no')", "sensor 'faulty.sensor' ("),
-    "sensor raises": ("read", "raise ValueError('no')", "sensor 'x' (Sensor) at t = 0 s: Value"),
-    "sensor leaves": ("read", "sys.exit(0)", "sensor 'x' (Sensor) at t = 0 s: SystemExit: 0"),
-    "reading too long": ("read", "return np.zeros(3)", "sensor 'x' (Sensor)"),
-    "policy raises": ("velocities", "raise ValueError('no')", "crowd policy Policy at t = 0 s: V"),
-    "policy is nan": ("velocities", "return view.velocity * np.nan", "policy Policy returned"),
+    "sensor raises": ("read", "raise ValueError('no')", "sensor faulty.sensor at t = 0 s: Value"),
+    "sensor leaves": ("read", "sys.exit(0)", "sensor faulty.sensor at t = 0 s: SystemExit: 0"),
+    "reading too long": ("read", "return np.zeros(3)", "sensor faulty.sensor returned shape (3,)"),
+    "policy raises": ("velocities", "raise ValueError('no')", "crowd policy faulty.policy at t = 0 s: V"),
+    "policy is nan": ("velocities", "return view.velocity * np.nan", "policy faulty.policy returned"),
     "metric raises": ("score", "1 / 0", "metric 'faulty.metric' of plugin "),
     "metric leaves": ("score", "sys.exit(0)", "SystemExit: 0"),
     "metric is nan": ("score", "return [LABEL.ok('corrected', np.nan)]", "nan must not escape"),
