@@ -6,24 +6,28 @@ import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.image import imread
+from numpy.typing import NDArray
 
 from crowdbot.cli import main
-from crowdbot.core.interfaces import EnvironmentParts
+from crowdbot.core.interfaces import EnvironmentParts, RobotModel
 from crowdbot.core.library import open_spec, pick
 from crowdbot.core.realisation import Realisation
 from crowdbot.core.realise import realise
-from crowdbot.core.registry import discover
+from crowdbot.core.registry import Registry, discover
 from crowdbot.core.view.build import build_scene, field_of_view
 from crowdbot.core.view.draw import draw
 from crowdbot.core.view.png import to_png
 from crowdbot.core.view.scene import Scene, extent
 from crowdbot.core.view.shapes import DARK, LIGHT, LOOKS
+from crowdbot.core.view.shapes import Path as Line
 from crowdbot.core.view.svg import to_svg
 from crowdbot.core.view.world import LEFT, Map, nice
 
@@ -223,6 +227,36 @@ def test_a_folder_in_the_way(tmp_path: Path, capsys: Captured) -> None:
     assert main([*ONE, "--out", str(tmp_path / "x.svg")]) == 1
     assert "cannot be written" in capsys.readouterr().err
     assert [p.name for p in tmp_path.iterdir()] == ["x.svg"]
+
+
+@pytest.mark.parametrize(
+    ("outline", "points"),
+    [(np.array([[0.4, -0.2], [0.4, 0.2], [-0.3, 0.2], [-0.3, -0.2]]), 4),
+     (np.array([[-0.3, 0.0], [0.4, 0.0]]), 26)],
+)  # fmt: skip
+def test_a_robot_that_is_no_disc(
+    outline: NDArray[np.float64], points: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its outline is drawn where it stands and as it is turned; its name clears all of it."""
+    scenario = pick(open_spec("challenge-2020", REGISTRY), ONE[2])
+    plain: Any = Registry.build
+
+    def build(registry: Registry, spec: object, *more: object) -> object:
+        built = plain(registry, spec, *more)
+        return replace(built, footprint=outline) if isinstance(built, RobotModel) else built
+
+    monkeypatch.setattr(Registry, "build", build)
+    scene = build_scene(scenario, Realisation.nobody(), REGISTRY)
+    (robot,) = scene.robots
+    assert len(robot.outline) == points
+    assert max(x for x, _ in robot.outline) == pytest.approx(
+        robot.x + 0.4 + (0.178 if len(outline) == 2 else 0.0)
+    )
+    assert robot.radius >= 0.44
+    drawing = draw(scene, "x", {}, heading=False)
+    (body,) = [s for s in drawing.shapes if isinstance(s, Line) and s.role == "robot" and s.inside]
+    assert len(body.points) == points
+    assert body.closed
 
 
 def test_fields_of_view() -> None:

@@ -135,15 +135,17 @@ def test_contacts_are_booked_when_they_end() -> None:
     people[1, s.TOUCHING] = 1.0
     log.book(flat)
     assert rows.contacts == []
-    columns = [s.TOUCH_START, s.TOUCH_END, s.TOUCH_IMPULSE, s.TOUCH_PEAK, s.TOUCH_SPEED]
-    people[1, columns] = 0.1, 0.2, 3.0, 400.0, 0.7
+    columns = [
+        s.TOUCH_START, s.TOUCH_END, s.TOUCH_IMPULSE, s.TOUCH_PEAK, s.TOUCH_SPEED, s.TOUCH_SIDE
+    ]  # fmt: skip
+    people[1, columns] = 0.1, 0.2, 3.0, 400.0, 0.7, -1.25
     people[1, [s.TOUCHING, s.TOUCHES]] = 0.0, 1.0
     flat[s.CONTACTS] = 1.0
     log.book(flat)
     log.book(flat)
     assert rows.contacts == [
         {"t0": 0.1, "t1": 0.2, "agent": 11, "impulse": 3.0, "peak_force": 400.0,
-         "relative_speed": 0.7}
+         "relative_speed": 0.7, "bearing": -1.25}
     ]  # fmt: skip
     people[0, s.TOUCHING] = 1.0
     log.finish(1.0, flat)
