@@ -69,34 +69,35 @@ class Imu:
         """
         if scene.robot is None:
             raise SimulationError("an IMU needs a robot in the scene")
-        if memory[STARTED] == 0.0 or t > memory[TIME]:
-            memory[READING] = self._felt(scene.robot, pose.yaw, t, memory)
-            memory[READING] += self._errors(t, rng, memory)
-            memory[STARTED], memory[TIME] = 1.0, t
+        was = memory[: BIAS.start].tolist()  # far cheaper than number by number
+        if was[STARTED] == 0.0 or t > was[TIME]:
+            memory[READING] = self._felt(scene.robot, pose.yaw, t, was, memory)
+            if self._info.random:
+                memory[READING] += self._errors(t, rng, was, memory)
         return memory[READING].copy()
 
-    def _felt(self, robot: RobotState, yaw: float, t: float, memory: Array) -> Array:
-        """What a perfect IMU reads; remembers heading and velocity."""
+    def _felt(
+        self, robot: RobotState, yaw: float, t: float, was: list[float], memory: Array
+    ) -> Array:
+        """What a perfect IMU reads; remembers time, heading and velocity."""
         mount = self._mount
         c, s = math.cos(yaw), math.sin(yaw)
         x, y = c * mount.x - s * mount.y, s * mount.x + c * mount.y
         vx, vy = robot.vx - robot.w * y, robot.vy + robot.w * x
         ax = ay = 0.0
         heading = yaw
-        if memory[STARTED]:
-            dt = t - memory[TIME]
-            ax, ay = (vx - memory[VX]) / dt, (vy - memory[VY]) / dt
-            heading -= 0.5 * math.remainder(yaw - memory[YAW], 2.0 * math.pi)
-        memory[YAW], memory[VX], memory[VY] = yaw, vx, vy
+        if was[STARTED]:
+            dt = t - was[TIME]
+            ax, ay = (vx - was[VX]) / dt, (vy - was[VY]) / dt
+            heading -= 0.5 * math.remainder(yaw - was[YAW], 2.0 * math.pi)
+        memory[: BIAS.start] = 1.0, t, yaw, vx, vy
         c, s = math.cos(heading + mount.yaw), math.sin(heading + mount.yaw)
         return np.array([0.0, 0.0, robot.w, c * ax + s * ay, c * ay - s * ax, GRAVITY])
 
-    def _errors(self, t: float, rng: np.random.Generator, memory: Array) -> Array | float:
-        if not self._info.random:
-            return 0.0
+    def _errors(self, t: float, rng: np.random.Generator, was: list[float], memory: Array) -> Array:
         draws = rng.standard_normal((2, 6))
-        if memory[STARTED]:
-            memory[BIAS] += self._walk * math.sqrt(t - memory[TIME]) * draws[1]
+        if was[STARTED]:
+            memory[BIAS] += self._walk * math.sqrt(t - was[TIME]) * draws[1]
         else:
             memory[BIAS] = self._start * draws[1]
         errors: Array = self._white * draws[0] + memory[BIAS]

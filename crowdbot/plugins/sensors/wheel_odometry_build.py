@@ -68,25 +68,27 @@ class WheelOdometry:
         """
         if scene.robot is None:
             raise SimulationError("wheel odometry needs a robot in the scene")
-        dt = t - memory[TIME]
+        # A list is far cheaper than an array, number by number.
+        started, then, left_before, right_before, side_before, yaw = memory[: ERRORS.start].tolist()
+        dt = t - then
         reading = memory[READING][: self._info.shape[0]]
-        if memory[STARTED] and dt <= 0.0:
+        if started and dt <= 0.0:
             return reading.copy()
-        turned = math.remainder(pose.yaw - memory[YAW], 2.0 * math.pi)
-        if memory[STARTED] and self._info.random:
+        turned = math.remainder(pose.yaw - yaw, 2.0 * math.pi)
+        if started and self._info.random:
             draws = rng.standard_normal(4 if self._sideways else 3)
             memory[ERRORS][: len(draws) - 1] += self._spec.noise * dt * np.delete(draws, 2)
             turned += self._spec.gyro_noise * math.sqrt(dt) * draws[2]
-        left = self._ticks(scene.robot.left_angle + memory[ERRORS][0])
-        right = self._ticks(scene.robot.right_angle + memory[ERRORS][1])
-        side = self._ticks(scene.robot.side_angle + memory[ERRORS][2])
-        if memory[STARTED]:
-            ways = left - memory[LEFT], right - memory[RIGHT], side - memory[SIDE]
-            memory[READING] = self._advanced(memory[READING], *ways, turned, dt)
+        left_error, right_error, side_error = memory[ERRORS].tolist()
+        left = self._ticks(scene.robot.left_angle + left_error)
+        right = self._ticks(scene.robot.right_angle + right_error)
+        side = self._ticks(scene.robot.side_angle + side_error)
+        if started:
+            ways = left - left_before, right - right_before, side - side_before
+            memory[READING] = self._advanced(memory[READING].tolist(), *ways, turned, dt)
         else:
             memory[READING] = (pose.x, pose.y, _wrapped(pose.yaw), 0.0, 0.0, 0.0)
-        memory[STARTED], memory[TIME], memory[YAW] = 1.0, t, pose.yaw
-        memory[LEFT], memory[RIGHT], memory[SIDE] = left, right, side
+        memory[: ERRORS.start] = 1.0, t, left, right, side, pose.yaw
         return reading.copy()
 
     def _ticks(self, angle: float) -> int:
@@ -94,12 +96,12 @@ class WheelOdometry:
         return math.floor(angle / (2.0 * math.pi) * self._spec.ticks_per_turn)
 
     def _advanced(
-        self, state: Array, left: float, right: float, side: float, turned: float, dt: float
+        self, state: list[float], left: float, right: float, side: float, turned: float, dt: float
     ) -> tuple[float, float, float, float, float, float]:
         metre = 2.0 * math.pi * self._spec.wheel_radius / self._spec.ticks_per_turn
         ahead, aside = (left + right) / 2.0 * metre, side * metre
         turn = turned if self._gyro else (right - left) * metre / self._spec.track
-        x, y, yaw = state[0], state[1], state[2]
+        x, y, yaw, *_ = state
         middle = yaw + turn / 2.0
         x, y = x + ahead * math.cos(middle), y + ahead * math.sin(middle)
         x, y = x - aside * math.sin(middle), y + aside * math.cos(middle)
