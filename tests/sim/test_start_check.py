@@ -16,7 +16,8 @@ from crowdbot.core.interfaces import EnvironmentParts, Pose, RobotModel
 from crowdbot.core.lock import population
 from crowdbot.core.planner_source import resolve_planner
 from crowdbot.core.recording import read_trajectories
-from crowdbot.core.sim.record import RunSetup, record_robot
+from crowdbot.core.sim.record import record_robot
+from crowdbot.core.sim.record_crowd import RunSetup
 from crowdbot.core.sim.start_check import check_start
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
