@@ -5,7 +5,9 @@ the same and change rounding at most:
 
 - ``generic``: kernels compiled for a plain processor (NUMBA_CPU_NAME), the C library and numpy
   told to do without AVX and fused multiply-add, as on an old machine;
-- ``nudge``: the robot starts 1e-9 m beside its start, which stands for every other cause.
+- ``nudge``: the robot starts 1e-9 m beside its start;
+- ``seed``: with another seed of sensors and planner: histories that have come apart for good,
+  which is the most that rounding can do.
 
 Prints by how much scores differ: where the tolerances of crowdbot verify come from
 (crowdbot/core/bundle/tolerances.py).
@@ -43,6 +45,7 @@ WAYS: dict[str, tuple[dict[str, str], list[str]]] = {
     "here": ({}, []),
     "generic": (PLAIN, []),
     "nudge": ({}, NUDGE),
+    "seed": ({}, ["--seed", "1"]),
 }
 
 
@@ -64,11 +67,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenarios", type=int, default=12)
     parser.add_argument("--planner", default="dwa")
+    parser.add_argument("--ways", default="generic,nudge,seed")
     options = parser.parse_args()
     listed = [s.id for s in open_spec(SUITE, registry()).scenarios]
     ids = listed[:: max(1, len(listed) // options.scenarios)][: options.scenarios]
     with tempfile.TemporaryDirectory() as folder:
-        for way in WAYS:
+        for way in ("here", *options.ways.split(",")):
             simulate(Path(folder) / way, way, ids, options.planner)
             if way != "here":
                 print(f"\n== {way} ==")
@@ -77,7 +81,7 @@ def main() -> None:
 
 def runs_of(root: Path, planner: str) -> dict[str, Path]:
     """Scenario -> folder of its run; what a change appends to the id is left out."""
-    found = (root / SUITE).glob(f"*/{planner}/seed-0")
+    found = (root / SUITE).glob(f"*/{planner}/seed-*")
     return {f.parent.parent.name.partition("+")[0]: f for f in sorted(found)}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -32,7 +33,9 @@ class Standings:
 
     def rank(self, metric: str, entry: Entry) -> int | None:
         """1 + how many are better for certain; None where it is not ranked."""
-        return self.summary.ranks(metric).get(entry.name) if entry.ranked else None
+        if not entry.ranked or metric in entry.outdated:
+            return None
+        return self.summary.ranks(metric).get(entry.name)
 
     def shares_rank(self, metric: str, entry: Entry) -> bool:
         """Whether another entry has the same rank."""
@@ -72,10 +75,13 @@ def _table(
     check_comparable(findings)
     summary = summarise(results)
     ranks = summary.ranks(by)
-    means = {s.planner: s.mean.value or 0.0 for s in summary.scores if s.metric == by}
+    scores = [s for s in summary.scores if s.metric == by and s.mean.value is not None]
+    sign = {s.planner: -1.0 if s.better == "higher" else 1.0 for s in scores}
+    means = {s.planner: sign[s.planner] * (s.mean.value or 0.0) for s in scores}
 
     def order(entry: Entry) -> tuple[bool, int, float, str]:
-        return (not entry.ranked, ranks.get(entry.name, 1), -means.get(entry.name, 0.0), entry.name)
+        name = entry.name
+        return not entry.ranked, ranks.get(name, 1), means.get(name, math.inf), name
 
     return Standings(
         edition=edition,
