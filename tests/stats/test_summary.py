@@ -91,8 +91,8 @@ def test_counts_show_every_run() -> None:
     runs = tuple(run("a", f"s{i}", f"d{i}") for i in range(4))
     failed = run("a", "s9", "d9", status="planner_failed")
     scores = (score(runs[0], 1.0), score(runs[1], reason="no_agents"), censored(runs[2], 0.5))
-    scores = (*scores, score(failed, 0.0))
-    (found,) = summarise(Results(runs=(*runs, failed), scores=scores)).scores
+    after = (*scores, score(failed, 0.0))
+    (found,) = summarise(Results(runs=(*runs, failed), scores=after)).scores
     counts = found.counts
     assert (counts.ok, counts.undefined, counts.censored, counts.failed) == (1, 2, 1, 1)
     assert counts.tried == 5

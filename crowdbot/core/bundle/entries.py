@@ -57,7 +57,7 @@ def load_entries(folder: Path, registry: Registry) -> tuple[list[Entry], dict[st
     Raises:
         InputError: no such folder, or no bundle in it.
     """
-    paths = sorted(folder.glob(f"*{SUFFIX}"))
+    paths = sorted(p for p in folder.glob(f"*{SUFFIX}") if p.is_file())
     if not paths:
         raise InputError(f"{folder}: no bundles (*{SUFFIX}) there")
     entries, left_out = [], dict[str, str]()
