@@ -58,7 +58,9 @@ def test_one_offline_page(folder: Path, tmp_path: Path) -> None:
     assert code == 0
     assert page.addresses == []
     assert not {"script", "link", "img", "b"} & set(page.tags)
-    assert re.search(r"default-src 'none'; style-src 'sha256-[^']+'; base-uri 'none'", unescape(text))
+    assert re.search(
+        r"default-src 'none'; style-src 'sha256-[^']+'; base-uri 'none'", unescape(text)
+    )
     assert "One <b>team</b>" in "".join(page.words)
     assert "prefers-color-scheme: dark" in text
     assert "@media print" in text
