@@ -124,6 +124,17 @@ def test_old_records_without_conditions_compare() -> None:
     assert found(bare[0], row("b")).keys() >= {"versions"}
 
 
+def test_conditions_as_the_store_gives_them() -> None:
+    """Flat names; nothing is told twice."""
+    flat = CONDITIONS | {"metrics.risk": '{"risk_horizon": 5}', "versions.numpy": "2.4.6",
+                         "processor": "znver3"}  # fmt: skip
+    other = flat | {"metrics.risk": '{"risk_horizon": 3}', "processor": "generic"}
+    results = Results(runs=(row("a", conditions=flat), row("b", conditions=other)))
+    assert [(f.kind, f.subject) for f in confounds(results)] == [
+        ("metrics", "metrics.risk"), ("processor", "processor"),
+    ]  # fmt: skip
+
+
 def test_metrics_that_were_not_scored_are_not_compared() -> None:
     fewer = RECORD | {"metrics": {}}
     assert found(row("a"), row("b", record=fewer)) == {}

@@ -40,9 +40,10 @@ _CONDITIONS = {
     "metric": "metrics",
     "versions": "versions",
     "version": "versions",
+    "processor": "processor",
 }
 #: These are to be equal in all runs; the others in all runs of one scenario.
-_EVERYWHERE = ("metrics", "versions")
+_EVERYWHERE = ("metrics", "versions", "processor")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,7 +122,6 @@ def _all(runs: Sequence[RunRow]) -> Iterator[Finding]:
         yield _finding("agents", scenario, group, lambda r: str(r.record.get("agents", "")))
     yield from _conditions(runs)
     yield _finding("privileged", "planners", runs, _class)
-    yield _finding("processor", "machines", runs, _processor)
     loose = [r for r in runs if not r.pinned]
     for planner, group in _grouped(loose, lambda r: r.planner):
         yield _finding("unpinned", planner, group, _source)
@@ -156,6 +156,8 @@ def _conditions_of(run: RunRow) -> dict[str, str]:
     """Conditions of a run; versions and metrics of its record where they are not among them."""
     found = dict(run.conditions)
     heads = {name.partition(".")[0] for name in found}
+    if "processor" not in heads:
+        found["processor"] = str(_map(run, "machine").get("processor", ""))
     if not heads & {"version", "versions"}:
         found |= {f"versions.{k}": str(v) for k, v in _map(run, "versions").items()}
     if not heads & {"metric", "metrics"}:
@@ -233,11 +235,6 @@ def _scenario(run: RunRow) -> str:
 
 def _class(run: RunRow) -> str:
     return "privileged" if run.privileged else "sensors only"
-
-
-def _processor(run: RunRow) -> str:
-    machine = _map(run, "machine")
-    return str(machine.get("processor") or machine.get("machine") or "unknown")
 
 
 def _source(run: RunRow) -> str:

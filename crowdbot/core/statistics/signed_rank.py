@@ -48,7 +48,8 @@ def p_value(ranks: NDArray[np.int64], clusters: Clusters) -> float:
     if parts.sum() <= _EXACT_TOTAL:
         return _by_sums(parts, seen)
     spread = float(np.sqrt(np.sum(parts.astype(float) ** 2)))
-    return float(math.erfc(seen / spread / math.sqrt(2)))
+    tails: float = math.erfc(seen / spread / math.sqrt(2))
+    return tails
 
 
 def _by_halves(parts: NDArray[np.int64], seen: int) -> float:

@@ -122,7 +122,9 @@ def _key(run: RunRow) -> Key:
 
 
 def _draw(run: RunRow) -> str:
-    return f"{run.suite}/{run.scenario}" if run.density is None else run.realisation_hash
+    """Its people; without people, or with none that are known, the scenario itself."""
+    nobody = run.density is None and run.record.get("agents", "none") == "none"
+    return f"{run.suite}/{run.scenario}" if nobody else run.realisation_hash
 
 
 def _read(run: RunRow | None, score: ScoreRow | None) -> tuple[int, str, tuple[float, float]]:
