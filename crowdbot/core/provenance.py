@@ -16,6 +16,7 @@ import numpy as np
 
 from crowdbot.core.plugin import BUILTIN
 from crowdbot.core.registry import Registry
+from crowdbot.core.rounding import fingerprint
 from crowdbot.core.trajectory import Trajectories
 
 _PACKAGES = ("crowdbot", "drake", "mcap", "numba", "numpy", "pydantic", "rosbags")
@@ -102,11 +103,16 @@ def remarks(record: Mapping[str, Any]) -> dict[str, str]:
 
 
 def machine() -> dict[str, str]:
-    """What the run ran on; ``processor`` is the one that compiled code was made for."""
+    """What the run ran on.
+
+    ``processor`` is the one that compiled code was made for; machines with equal ``processor`` and
+    ``rounding`` give equal trajectories.
+    """
     return {
         "system": platform.system(),
         "machine": platform.machine(),
         "processor": _processor(),
+        "rounding": fingerprint(),
     }
 
 
