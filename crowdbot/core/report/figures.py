@@ -1,0 +1,171 @@
+"""Figures: the statistics that a page shows but cannot work out itself, ready to be packed.
+
+Intervals are for all runs and for one label of one axis; comparisons for all runs only, because
+every further selection would be a further chance to find a difference that is not there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.report.series import Series
+from crowdbot.core.results.rows import Results
+from crowdbot.core.statistics import Comparison, Estimate, Name, Summary, Table, summarise
+from crowdbot.core.statistics.axes import REALISED_DENSITY
+from crowdbot.core.statistics.clusters import Clusters, bootstrap, trimmed_mean
+
+#: What the page is told of a comparison, in this order.
+FIELDS = (
+    "difference", "low", "high", "effect", "effect_low", "effect_high", "improvement",
+    "improvement_low", "improvement_high", "detectable", "p_holm", "pairs", "draws", "undecided",
+    "verdict", "why",
+)  # fmt: skip
+VERDICTS = ("better", "worse", "not distinguishable", "not ranked")
+
+_Numbers = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Figures:
+    """Statistics of a report.
+
+    Attributes:
+        headline: of the scores that stand for their metrics: one family of tests.
+        others: of the other variants, a family of their own; None where there are none.
+        selections: ``""`` for all runs, ``axis=label`` for a part.
+        intervals: (selection, series, planner, 3): interquartile mean, low, high.
+        pairs: (series, pair, field).
+        effects: (axis, series, planner): eta squared; the last axis is the realised density.
+        whys: reasons of verdicts by number.
+    """
+
+    headline: Summary
+    others: Summary | None
+    selections: tuple[str, ...]
+    intervals: _Numbers
+    pairs: _Numbers
+    effects: _Numbers
+    whys: tuple[str, ...]
+
+    @property
+    def planners(self) -> tuple[str, ...]:
+        """Sorted."""
+        return self.headline.planners
+
+
+def figures(results: Results, series: Sequence[Series], axes: Sequence[Mapping[str, Any]]) -> Figures:
+    """Work out everything.
+
+    Args:
+        results: runs that may be compared.
+        series: what the page shows.
+        axes: ``name`` and ``labels`` of each axis of the suite.
+    """
+    table = Table(results)
+    chosen = [s.name for s in series if s.headline and _has_values(table, s.name)]
+    rest = [s.name for s in series if s.name not in chosen and _has_values(table, s.name)]
+    headline = summarise(results, chosen)
+    others = summarise(results, rest) if rest else None
+    both = [x for x in (headline, others) if x is not None]
+    whys = tuple(dict.fromkeys(["", *(c.reason for s in both for c in s.comparisons)]))
+    selections = ("", *(f"{axis['name']}={label}" for axis in axes for label in axis["labels"]))
+    return Figures(
+        headline=headline,
+        others=others,
+        selections=selections,
+        intervals=_intervals(table, both, series, selections),
+        pairs=_pairs(both, series, table.planners, whys),
+        effects=_effects(both, series, table.planners, axes),
+        whys=whys,
+    )
+
+
+def _has_values(table: Table, name: Name) -> bool:
+    return any(table.column(name, planner).known.any() for planner in table.planners)
+
+
+def _intervals(
+    table: Table, summaries: Sequence[Summary], series: Sequence[Series], selections: Sequence[str]
+) -> _Numbers:
+    place = {s.name: i for i, s in enumerate(series)}
+    found = np.full((len(selections), len(series), len(table.planners), 3), np.nan)
+    for score in (score for summary in summaries for score in summary.scores):
+        row = place[score.metric, score.variant], table.planners.index(score.planner)
+        found[0][row] = _numbers(score.iqm)
+    for one in series:
+        for p, planner in enumerate(table.planners):
+            for k, estimate in _by_label(table, one.name, planner, selections):
+                found[k, place[one.name], p] = _numbers(estimate)
+    return found
+
+
+def _by_label(
+    table: Table, name: Name, planner: str, selections: Sequence[str]
+) -> Iterator[tuple[int, Estimate]]:
+    """Interquartile means of the runs of each label of each axis."""
+    column = table.column(name, planner)
+    labels = [_labels(table, planner, key) for key in table.keys]
+    for k, selection in enumerate(selections[1:], start=1):
+        inside = column.known & np.array([selection in found for found in labels], dtype=bool)
+        if inside.any():
+            draws = Clusters.of([d for d, i in zip(table.draws, inside, strict=True) if i])
+            yield k, bootstrap(trimmed_mean(column.low[inside]), draws)
+
+
+def _labels(table: Table, planner: str, key: tuple[str, str, int]) -> set[str]:
+    run = table.runs.get((planner, key))
+    return set() if run is None else {f"{axis}={label}" for axis, label in run.axes.items()}
+
+
+def _pairs(
+    summaries: Sequence[Summary],
+    series: Sequence[Series],
+    planners: Sequence[str],
+    whys: Sequence[str],
+) -> _Numbers:
+    place = {s.name: i for i, s in enumerate(series)}
+    pairs = list(combinations(planners, 2))
+    found = np.full((len(series), len(pairs), len(FIELDS)), np.nan)
+    for comparison in (c for summary in summaries for c in summary.comparisons):
+        row = place[comparison.metric, comparison.variant], pairs.index((comparison.a, comparison.b))
+        found[row] = _fields(comparison, whys)
+    return found
+
+
+def _fields(found: Comparison, whys: Sequence[str]) -> list[float]:
+    estimates = (found.difference, found.standardised, found.improvement)
+    numbers = [x for estimate in estimates for x in _numbers(estimate)]
+    return [
+        *numbers, _number(found.detectable), _number(found.p_holm), found.pairs, found.draws,
+        found.undecided, VERDICTS.index(found.verdict), whys.index(found.reason),
+    ]  # fmt: skip
+
+
+def _effects(
+    summaries: Sequence[Summary],
+    series: Sequence[Series],
+    planners: Sequence[str],
+    axes: Sequence[Mapping[str, Any]],
+) -> _Numbers:
+    names = [*(axis["name"] for axis in axes), REALISED_DENSITY]
+    place = {s.name: i for i, s in enumerate(series)}
+    found = np.full((len(names), len(series), len(planners)), np.nan)
+    for effect in (e for summary in summaries for e in summary.axes):
+        row = place[effect.metric, effect.variant], planners.index(effect.planner)
+        found[names.index(effect.axis)][row] = _number(effect.eta_squared)
+    return found
+
+
+def _numbers(estimate: Estimate) -> tuple[float, float, float]:
+    return _number(estimate.value), _number(estimate.low), _number(estimate.high)
+
+
+def _number(value: float | None) -> float:
+    return math.nan if value is None else float(value)
