@@ -31,7 +31,8 @@ from crowdbot.core.sim.diagram import robot_task
 from crowdbot.core.sim.metric_logger import MetricLogger
 from crowdbot.core.sim.planner_system import PlannerSystem
 from crowdbot.core.sim.plant import add_plant, place_robot
-from crowdbot.core.sim.record import RunSetup, record_robot
+from crowdbot.core.sim.record import record_robot
+from crowdbot.core.sim.record_crowd import RunSetup
 from crowdbot.core.sim.recorder import Recorder
 from crowdbot.core.sim.robot_state import RobotStateSystem
 from crowdbot.core.sim.sensor_bank import SensorBank

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from crowdbot.core.commands import Commands
     from crowdbot.core.evaluate import MetricParameters, Scores
     from crowdbot.core.questionnaires import Questionnaires
+    from crowdbot.core.sim.outcome import Progress
     from crowdbot.core.sim.request import Run
-    from crowdbot.core.sim.runner import Progress
     from crowdbot.core.trajectory import Trajectories
 
 

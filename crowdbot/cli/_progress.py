@@ -15,7 +15,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from crowdbot.core.kernel_cache import nothing_compiled
 
 if TYPE_CHECKING:
-    from crowdbot.core.sim.runner import Progress as Report
+    from crowdbot.core.sim.outcome import Progress as Report
 
 _COMPILES = "the first run compiles"
 #: How long nothing may be seen without an excuse, s.

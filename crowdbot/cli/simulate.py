@@ -79,6 +79,8 @@ def simulate(
             out=out,
             suite="scenarios" if expansion.single else expansion.suite_id,
             metrics=expansion.metrics,
+            axes=expansion.axes.get(chosen.id, {}),
+            position=expansion.scenarios.index(chosen),
             record=record.value,
             references=references,
             force=force,

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import platform
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
+from functools import cache
 from importlib import metadata
 from typing import Any
 
@@ -52,7 +54,13 @@ def _feed(sha: Any, name: str, value: Any) -> None:
 
 def versions() -> dict[str, str]:
     """Versions of crowdbot and of what its numbers depend on."""
-    return {"python": platform.python_version(), **{p: metadata.version(p) for p in _PACKAGES}}
+    return dict(_versions())
+
+
+@cache
+def _versions() -> tuple[tuple[str, str], ...]:
+    packages = ((p, metadata.version(p)) for p in _PACKAGES)
+    return ("python", platform.python_version()), *packages
 
 
 def plugins(registry: Registry) -> list[dict[str, Any]]:
@@ -65,5 +73,15 @@ def plugins(registry: Registry) -> list[dict[str, Any]]:
 
 
 def machine() -> dict[str, str]:
-    """What the run ran on."""
-    return {"system": platform.system(), "machine": platform.machine()}
+    """What the run ran on; ``processor`` is the one that compiled code was made for."""
+    return {
+        "system": platform.system(),
+        "machine": platform.machine(),
+        "processor": _processor(),
+    }
+
+
+def _processor() -> str:
+    from llvmlite import binding  # type: ignore[import-untyped]
+
+    return os.environ.get("NUMBA_CPU_NAME") or str(binding.get_host_cpu_name())

@@ -83,14 +83,27 @@ def read_scores_csv(path: str | os.PathLike[str]) -> list[ScoreRow]:
     """
     path = Path(path)
     try:
-        with path.open(encoding="utf-8", newline="") as file:
-            reader = csv.DictReader(file, strict=True)
-            if tuple(reader.fieldnames or ()) != COLUMNS:
-                raise InputError(f"{path}:1: not a table of scores: expected {','.join(COLUMNS)}")
-            return [_row(path, reader.line_num, cells) for cells in reader]
+        text = path.read_bytes().decode()
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-    except (csv.Error, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not a table of scores: {error}") from error
+    return parse_scores(text, path)
+
+
+def parse_scores(text: str, name: str | os.PathLike[str]) -> list[ScoreRow]:
+    """The rows of a ``scores.csv``; ``name`` is what messages call it.
+
+    Raises:
+        InputError: other columns, or a cell that is no score; names the line.
+    """
+    path = os.fspath(name)
+    try:
+        reader = csv.DictReader(io.StringIO(text, newline=""), strict=True)
+        if tuple(reader.fieldnames or ()) != COLUMNS:
+            raise InputError(f"{path}:1: not a table of scores: expected {','.join(COLUMNS)}")
+        return [_row(path, reader.line_num, cells) for cells in reader]
+    except csv.Error as error:
         raise InputError(f"{path}: not a table of scores: {error}") from error
 
 
@@ -103,7 +116,7 @@ def cells_of(score: Score) -> list[str]:
     return [cells[name] for name in COLUMNS[3:]]
 
 
-def _row(path: Path, line: int, cells: Mapping[str, Any]) -> ScoreRow:
+def _row(path: str, line: int, cells: Mapping[str, Any]) -> ScoreRow:
     try:
         if None in cells or None in cells.values():
             raise ValueError(f"a row has {len(COLUMNS)} cells")

@@ -41,6 +41,7 @@ class Expansion:
         suite_id: id of the suite; of the scenario in a document that holds one.
         metrics: names or patterns of the metrics to score; None means all.
         trees: id -> the merged tree of the scenario, which knows where each value is written.
+        axes: id -> axis -> label, in the suite's order; no axes in a document without a matrix.
     """
 
     suite_id: str
@@ -48,6 +49,7 @@ class Expansion:
     scenarios: list[Scenario]
     metrics: tuple[str, ...] | None = None
     trees: dict[str, Node] = field(default_factory=dict, repr=False)
+    axes: dict[str, dict[str, str]] = field(default_factory=dict, repr=False)
 
     @property
     def single(self) -> bool:
@@ -112,12 +114,17 @@ class _Folded:
 
 @dataclass(frozen=True, slots=True)
 class _Bare:
-    """A combination: its id, key of the crowd's seed, label of the replicate, tree."""
+    """A combination: its id, key of the crowd's seed, its label on each axis, tree."""
 
     name: str
     key: str
-    replicate: str
+    labels: dict[str, str]
     tree: Node
+
+    @property
+    def replicate(self) -> str:
+        """Label of the replicate; empty where there is only one."""
+        return self.labels.get(REPLICATE, "")
 
 
 class _Expander:
@@ -137,7 +144,7 @@ class _Expander:
         self._total = self._noted = 0
 
     def run(self) -> Expansion:
-        scenarios, trees = [], {}
+        scenarios, trees, axes = [], {}, {}
         for bare in self._trees():
             if self._noted > _ENOUGH:
                 break
@@ -151,11 +158,12 @@ class _Expander:
             if scenario is not None:
                 scenarios.append(scenario.model_copy(update={"references": references}))
                 trees[bare.name] = tree
+                axes[bare.name] = bare.labels
         problems = [*self._problems, *self._folded()]
         if problems:
             raise SpecError(_sorted(problems))
         suite = self._suite
-        return Expansion(suite.id, suite.title, scenarios, suite.metrics, trees)
+        return Expansion(suite.id, suite.title, scenarios, suite.metrics, trees, axes)
 
     def _trees(self) -> Iterator[_Bare]:
         """The combinations that stay, as trees."""
@@ -165,10 +173,11 @@ class _Expander:
                 continue
             labels = dict(zip(axes, combination.labels, strict=True))
             key = "-".join(labels[axis] for axis in suite.crowd_axes)
-            replicate = labels.pop(REPLICATE, "")
-            name = "-".join(labels.values()) or suite.scenario_id
+            name = "-".join(v for axis, v in labels.items() if axis != REPLICATE)
+            name = name or suite.scenario_id
+            replicate = labels.get(REPLICATE)
             name = f"{name}-{replicate}" if name and replicate else name
-            yield _Bare(name and name + self._suffix, key, replicate, combination.tree)
+            yield _Bare(name and name + self._suffix, key, labels, combination.tree)
 
     def _complete(self, bare: _Bare, reference: Node | None = None) -> Node:
         """The reference, ``--set`` and the seed laid over a combination, in this order."""

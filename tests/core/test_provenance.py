@@ -76,7 +76,9 @@ def test_versions_and_plugins() -> None:
     (builtin,) = provenance.plugins(discover(entry_points=False))
     assert builtin["name"] == "builtin"
     assert builtin["pinned"] is True
-    assert set(provenance.machine()) == {"system", "machine"}
+    machine = provenance.machine()
+    assert set(machine) == {"system", "machine", "processor"}
+    assert all(machine.values())
 
 
 GOLDEN = "cb1-sha256:5c0f553610a1d665c1647faca2482c1e5b466e03e91cb37c5470dca4a4ecb9a4"

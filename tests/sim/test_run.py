@@ -11,7 +11,8 @@ from sim_worlds import Drive, Rig, alone, constant, person, rig, scenario
 from crowdbot.core.crowd import state as s
 from crowdbot.core.interfaces import Task
 from crowdbot.core.sim.diagram import robot_task
-from crowdbot.core.sim.runner import Progress, run
+from crowdbot.core.sim.outcome import Progress
+from crowdbot.core.sim.runner import run
 from crowdbot.dsl.scenario import Scenario
 
 TICK = 1.0 / 128.0

@@ -1,19 +1,12 @@
-"""Records one run into one file: a robot among people, a robot alone, or people alone."""
+"""Records one run of a robot into one file: among people, or alone."""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Literal, cast
+from dataclasses import replace
+from typing import cast
 
-import numpy as np
-from numpy.typing import NDArray
-
-from crowdbot.core.crowd import CrowdEngine
-from crowdbot.core.crowd_run import run_crowd
 from crowdbot.core.crowd_setup import build_crowd
 from crowdbot.core.interfaces import (
     EnvironmentParts,
@@ -26,33 +19,15 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.core.planner_host import RESET_LIMIT, HostedCommand, PlannerHost
 from crowdbot.core.planner_source import PlannerChoice, select_sensors
-from crowdbot.core.realisation import Realisation
-from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter, RobotHeader
-from crowdbot.core.registry import Registry
+from crowdbot.core.recording import RecordingHeader, RobotHeader
 from crowdbot.core.run_log import RunLog
 from crowdbot.core.sim.diagram import build_diagram, robot_task
-from crowdbot.core.sim.runner import INTERRUPTED, TIMEOUT, Outcome, Progress, run
+from crowdbot.core.sim.outcome import Outcome
+from crowdbot.core.sim.record_crowd import RunSetup, agents, ids, recording
+from crowdbot.core.sim.runner import run
 from crowdbot.core.watchdog import Watchdog
-from crowdbot.dsl.scenario import Scenario
 from crowdbot.dsl.seeds import stream_seed
-from crowdbot.errors import InputError, PlannerError, PlannerHungError
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RunSetup:
-    """What one recording needs."""
-
-    scenario: Scenario
-    agents: Realisation
-    registry: Registry
-    choice: PlannerChoice
-    seed: int
-    recording: Path
-    record: Literal["all", "used", "none"]
-    stage: str
-    progress: Callable[[Progress], None] | None
-    stop: Callable[[], bool]
-    on_hang: Callable[[], object] | None
+from crowdbot.errors import PlannerError, PlannerHungError
 
 
 def record_robot(setup: RunSetup) -> Outcome:
@@ -80,13 +55,13 @@ def record_robot(setup: RunSetup) -> Outcome:
             base_height=model.base_height,
             limits=model.limits,
         ),
-        agents=_agents(engine),
+        agents=agents(engine),
         sensors={n: i for n, i in infos.items() if n in sensors},
         walls=parts.walls,
         goal_zone=task.goal_zone,
     )
-    with _recording(setup, header) as (writer, ending), _watchdog(setup) as watchdog:
-        log = RunLog(writer, _ids(engine))
+    with recording(setup, header) as (writer, ending), _watchdog(setup) as watchdog:
+        log = RunLog(writer, ids(engine))
         seen = {n: infos[n] for n in visible}
         host = _host(setup, model, task, seen, watchdog, name)
         if engine is not None:
@@ -100,57 +75,6 @@ def record_robot(setup: RunSetup) -> Outcome:
         )
         ending.append(outcome)
     return outcome
-
-
-def record_crowd(setup: RunSetup, duration: float) -> Outcome:
-    """Simulate the scenario's people without a robot, and without Drake."""
-    scenario, registry = setup.scenario, setup.registry
-    parts: EnvironmentParts = registry.build(scenario.environment)
-    engine = build_crowd(scenario, setup.agents, parts, registry)
-    if engine is None:
-        raise InputError(f"{scenario.id} has no crowd")
-    header = RecordingHeader(scenario=scenario.id, agents=_agents(engine), walls=parts.walls)
-    begin, cpu = time.perf_counter(), time.process_time()
-    now = 0.0
-
-    def report(t: float) -> None:
-        nonlocal now
-        now = t
-        if setup.progress is not None and t == int(t):
-            factor = t / max(time.perf_counter() - begin, 1e-9)
-            setup.progress(Progress(setup.stage, t, duration, factor, None))
-
-    with _recording(setup, header) as (writer, ending):
-        log = RunLog(writer, _ids(engine))
-        whole = run_crowd(
-            engine, log, duration, scenario.rates.log, on_sample=report, stop=setup.stop
-        )
-        outcome = Outcome(
-            status=TIMEOUT if whole else INTERRUPTED,
-            reason=f"ran for {duration:g} s" if whole else "interrupted by the user",
-            goal_time=None,
-            sim_time=now,
-            wall_time=time.perf_counter() - begin,
-            cpu_time=time.process_time() - cpu,
-        )
-        ending.append(outcome)
-    return outcome
-
-
-@contextmanager
-def _recording(
-    setup: RunSetup, header: RecordingHeader
-) -> Iterator[tuple[RecordingWriter, list[Outcome]]]:
-    """A writer that is closed whatever happens; the body appends how the run ended."""
-    writer = RecordingWriter(setup.recording, header, record=setup.record)
-    ending: list[Outcome] = []
-    try:
-        yield writer, ending
-    finally:
-        last = ending[0] if ending else None
-        status = last.status if last else INTERRUPTED
-        goal_time = last.goal_time if last else None
-        writer.close(goal_time, status != INTERRUPTED, status)
 
 
 @contextmanager
@@ -212,14 +136,3 @@ def _framed(name: str, info: SensorInfo) -> SensorInfo:
 
 def _odometry(infos: Mapping[str, SensorInfo]) -> set[str]:
     return {n for n, i in infos.items() if i.category == "odometry"}
-
-
-def _ids(engine: CrowdEngine | None) -> NDArray[np.int64]:
-    return np.zeros(0, np.int64) if engine is None else engine.agents.id
-
-
-def _agents(engine: CrowdEngine | None) -> AgentsHeader | None:
-    if engine is None:
-        return None
-    a = engine.agents
-    return AgentsHeader(id=a.id, radius=a.radius, mass=a.mass)

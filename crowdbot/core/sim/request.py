@@ -13,7 +13,7 @@ from crowdbot.core.interfaces import References
 from crowdbot.core.planner_source import PlannerChoice
 from crowdbot.core.recording import read_trajectories
 from crowdbot.core.registry import Registry
-from crowdbot.core.sim.runner import Progress
+from crowdbot.core.sim.outcome import Progress
 from crowdbot.core.trajectory import Trajectories
 from crowdbot.dsl.scenario import Scenario
 
@@ -62,6 +62,11 @@ class Request:
         suite: first folder below it.
         record: which sensors are simulated and recorded.
         metrics: patterns of the metrics to score; None is all.
+        axes: axis of the suite -> label, in the suite's order.
+        position: of the scenario in its suite.
+        replay: whether to write the replay page.
+        settled: whoever asks has seen to the references; those in which the planner failed are
+            not tried again.
         stop: asked several times a simulated second; True ends the run as interrupted.
         on_hang: called when a planner cannot be interrupted; should end the process.
     """
@@ -76,6 +81,10 @@ class Request:
     references: bool = True
     force: bool = False
     metrics: Sequence[str] | None = None
+    axes: Mapping[str, str] = field(default_factory=dict)
+    position: int = 0
+    replay: bool = True
+    settled: bool = False
     progress: Callable[[Progress], None] | None = None
     stop: Callable[[], bool] = lambda: False
     on_hang: Callable[[], object] | None = None

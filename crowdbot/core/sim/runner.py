@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import NamedTuple
+from collections.abc import Callable
 
 from pydrake.systems.analysis import Simulator, SimulatorStatus
 
@@ -15,48 +13,18 @@ from crowdbot.core.interfaces import RobotState, Task
 from crowdbot.core.run_log import RunLog
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.diagram import Blocks
+from crowdbot.core.sim.outcome import (
+    ARRIVED,
+    INTERRUPTED,
+    PLANNER_FAILED,
+    TIMEOUT,
+    Outcome,
+    Progress,
+)
 from crowdbot.errors import PlannerError
 
 #: Simulated time between looks at progress and interruption, s.
 _LOOK = 0.125
-
-ARRIVED, TIMEOUT, PLANNER_FAILED, INTERRUPTED = (
-    "arrived", "timeout", "planner_failed", "interrupted",
-)  # fmt: skip
-
-
-class Progress(NamedTuple):
-    """How far a run is: simulated time and limit (s), real-time factor, distance to goal (m)."""
-
-    stage: str
-    t: float
-    limit: float
-    real_time_factor: float
-    distance: float | None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Outcome:
-    """How a run ended; times in s.
-
-    Attributes:
-        clamped: commands that had to be clamped to the robot's limits.
-        planner_step_time: mean and largest wall time of a planner step.
-    """
-
-    status: str
-    reason: str
-    goal_time: float | None
-    sim_time: float
-    wall_time: float
-    cpu_time: float
-    clamped: int = 0
-    planner_step_time: Mapping[str, float] = field(default_factory=dict)
-
-    @property
-    def real_time_factor(self) -> float:
-        """Simulated time over wall time."""
-        return self.sim_time / max(self.wall_time, 1e-9)
 
 
 def run(

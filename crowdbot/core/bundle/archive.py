@@ -1,0 +1,247 @@
+"""The archive itself: the same content gives the same bytes; foreign ones are read with care."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import stat
+import zipfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import IO
+
+from crowdbot.core.bundle.manifest import MANIFEST, Manifest, Member, parse_manifest
+from crowdbot.errors import InputError
+
+#: What may be in a bundle: suffix -> largest size, bytes.
+LIMITS: Mapping[str, int] = {
+    ".json": 64 << 20,
+    ".yaml": 4 << 20,
+    ".csv": 64 << 20,
+    ".mcap": 4 << 30,
+}
+_ALL_TEXTS = 2 << 30  # all members but recordings, which are stored as they are
+_MOST = 100_000
+_NAME = re.compile(r"(?:[A-Za-z0-9_+.:@~-]+/)*[A-Za-z0-9_+.:@~-]+")
+_EPOCH = (1980, 1, 1, 0, 0, 0)  # the first moment that the format knows
+_CHUNK = 1 << 20
+
+
+# ------------------------------------------------------------------------- writing
+def members_of(files: Mapping[str, Path | bytes]) -> dict[str, Member]:
+    """Hashes and sizes, by name.
+
+    Raises:
+        InputError: a file cannot be read, or is none that belongs into a bundle.
+    """
+    return {name: _member(name, content) for name, content in sorted(files.items())}
+
+
+def write_archive(path: Path, manifest: Manifest, files: Mapping[str, Path | bytes]) -> None:
+    """Write aside, then rename; members are sorted and carry no time.
+
+    Raises:
+        InputError: the path cannot be written, or a file cannot be read.
+    """
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        with zipfile.ZipFile(part, "w", strict_timestamps=True) as archive:
+            _add(archive, MANIFEST, manifest.text().encode())
+            for name in sorted(files):
+                _add(archive, name, files[name])
+        part.replace(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+    finally:
+        with suppress(OSError):
+            part.unlink()
+
+
+def _add(archive: zipfile.ZipFile, name: str, content: Path | bytes) -> None:
+    info = zipfile.ZipInfo(name, _EPOCH)
+    info.create_system, info.external_attr = 3, 0o644 << 16
+    recording = name.endswith(".mcap")
+    info.compress_type = zipfile.ZIP_STORED if recording else zipfile.ZIP_DEFLATED
+    with archive.open(info, "w", force_zip64=recording) as target:
+        if isinstance(content, bytes):
+            target.write(content)
+            return
+        with content.open("rb") as source:
+            while chunk := source.read(_CHUNK):
+                target.write(chunk)
+
+
+def _member(name: str, content: Path | bytes) -> Member:
+    problem = _name_problem(name)
+    if problem:
+        raise InputError(f"'{name}' cannot be bundled: {problem}")
+    if isinstance(content, bytes):
+        return Member(sha256=hashlib.sha256(content).hexdigest(), size=len(content))
+    try:
+        with content.open("rb") as file:
+            digest = hashlib.file_digest(file, "sha256").hexdigest()
+            return Member(sha256=digest, size=file.tell())
+    except OSError as error:
+        raise InputError(f"{content}: cannot be read: {error.strerror}") from error
+
+
+# ------------------------------------------------------------------------- reading
+class Archive:
+    """A bundle that is open for reading; nothing is unpacked unless somebody asks for it."""
+
+    def __init__(self, path: Path, file: zipfile.ZipFile, manifest: Manifest) -> None:
+        self.path, self.manifest, self._file = path, manifest, file
+        self._infos = {i.filename: i for i in file.infolist()}
+
+    @property
+    def names(self) -> set[str]:
+        """All members but the manifest."""
+        return set(self._infos) - {MANIFEST}
+
+    def read(self, name: str) -> bytes:
+        """One member, compared with its hash.
+
+        Raises:
+            InputError: it is missing, damaged, or not what the manifest says.
+        """
+        with self._open(name) as file:
+            return _checked(self.path, name, self.manifest, iter([file.read()]))
+
+    def text(self, name: str) -> str:
+        """One member as text.
+
+        Raises:
+            InputError: as `read`, or it is not UTF-8.
+        """
+        try:
+            return self.read(name).decode()
+        except UnicodeDecodeError:
+            raise InputError(f"{self.path}: {name} is not UTF-8 text") from None
+
+    def check(self, name: str) -> None:
+        """Compare one member with its hash, without holding it in memory.
+
+        Raises:
+            InputError: as `read`.
+        """
+        with self._open(name) as file:
+            _checked(
+                self.path, name, self.manifest, iter(lambda: file.read(_CHUNK), b""), keep=False
+            )
+
+    def unpack(self, name: str, target: Path) -> None:
+        """Write one member to a file.
+
+        Raises:
+            InputError: as `read`.
+        """
+        self.check(name)
+        with self._open(name) as file, target.open("wb") as out:
+            while chunk := file.read(_CHUNK):
+                out.write(chunk)
+
+    @contextmanager
+    def _open(self, name: str) -> Iterator[IO[bytes]]:
+        if name not in self._infos:
+            raise InputError(f"{self.path}: {name} is missing")
+        try:
+            with self._file.open(self._infos[name]) as file:
+                yield file
+        except (zipfile.BadZipFile, NotImplementedError, EOFError, _zlib_error()) as error:
+            raise InputError(f"{self.path}: {name} is damaged: {error}") from None
+
+
+@contextmanager
+def open_archive(path: Path) -> Iterator[Archive]:
+    """Open a bundle; names, sizes and the manifest are looked at before anything else is read.
+
+    Raises:
+        InputError: no such file, no bundle, or one that no crowdbot has made.
+    """
+    try:
+        file = zipfile.ZipFile(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
+        raise InputError(f"{path} is no bundle: {error}") from None
+    with file:
+        _check_listing(path, file)
+        try:
+            text = file.read(MANIFEST).decode()
+        except (zipfile.BadZipFile, UnicodeDecodeError, EOFError, _zlib_error()) as error:
+            raise InputError(f"{path}: {MANIFEST} is damaged: {error}") from None
+        try:
+            yield Archive(path, file, parse_manifest(text))
+        except InputError as error:
+            if str(path) in str(error):
+                raise
+            raise InputError(f"{path}: {error}") from None
+
+
+def _check_listing(path: Path, file: zipfile.ZipFile) -> None:
+    """Refuse what could fill a disk or memory, or lead out of a folder."""
+    infos = file.infolist()
+    if len(infos) > _MOST:
+        raise InputError(f"{path}: {len(infos)} members; a bundle has at most {_MOST}")
+    seen: set[str] = set()
+    for info in infos:
+        problem = _name_problem(info.filename) or _info_problem(info)
+        if info.filename in seen:
+            problem = "there twice"
+        if problem:
+            raise InputError(f"{path}: member '{info.filename}' is not allowed: {problem}")
+        seen.add(info.filename)
+    if sum(i.file_size for i in infos if not i.filename.endswith(".mcap")) > _ALL_TEXTS:
+        raise InputError(f"{path}: more than {_ALL_TEXTS >> 20} MB when unpacked")
+    if MANIFEST not in seen:
+        raise InputError(f"{path} is no bundle: {MANIFEST} is missing")
+
+
+def _name_problem(name: str) -> str:
+    if name.startswith("/") or "\\" in name or ".." in name.split("/") or "." in name.split("/"):
+        return "it leads out of the folder"
+    if not _NAME.fullmatch(name):
+        return "its name has other characters than letters, digits and _ + - . : @ ~"
+    if Path(name).suffix not in LIMITS:
+        return f"only {', '.join(LIMITS)} belong into a bundle"
+    return ""
+
+
+def _info_problem(info: zipfile.ZipInfo) -> str:
+    kind = stat.S_IFMT(info.external_attr >> 16)
+    suffix = Path(info.filename).suffix
+    if kind not in (0, stat.S_IFREG):
+        return "it is no plain file"
+    if info.flag_bits & 0x1:
+        return "it is encrypted"
+    if info.file_size > LIMITS[suffix]:
+        return f"{info.file_size} bytes; {suffix} may have {LIMITS[suffix]}"
+    if suffix == ".mcap" and info.compress_type != zipfile.ZIP_STORED:
+        return "recordings are stored, not compressed again"
+    if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        return "its compression is not deflate"
+    return ""
+
+
+def _checked(
+    path: Path, name: str, manifest: Manifest, chunks: Iterator[bytes], *, keep: bool = True
+) -> bytes:
+    digest, parts, size = hashlib.sha256(), [], 0
+    for chunk in chunks:
+        digest.update(chunk)
+        size += len(chunk)
+        parts += [chunk] * keep
+    expected = manifest.members.get(name)
+    if expected is None:
+        raise InputError(f"{path}: {name} is not in the manifest")
+    if (digest.hexdigest(), size) != (expected.sha256, expected.size):
+        raise InputError(f"{path}: {name} is not what the manifest says; it was changed")
+    return b"".join(parts)
+
+
+def _zlib_error() -> type[Exception]:
+    import zlib
+
+    return zlib.error

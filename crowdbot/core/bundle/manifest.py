@@ -1,0 +1,126 @@
+"""The manifest of a bundle: what is in it, who made it, and by which rules."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated, Any, Literal
+
+from annotated_types import Ge
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from crowdbot.errors import InputError
+
+#: The version of the bundle format that this release reads and writes.
+BUNDLE = 1
+MANIFEST, LOCK = "bundle.json", "suite.lock.json"
+
+#: The rules that a bundle is made by; their number is raised when they change.
+RULES = 1
+RULES_TEXT = (
+    "One planner with one set of parameters drives all scenarios of the suite.",
+    "Every scenario is run with the same seeds; no run is left out, whatever came of it.",
+    "A planner that reads ground truth says so and is ranked apart.",
+    "A planner is deterministic: the same observations and seed give the same commands.",
+    "Scenarios, rates and metrics are those of the suite, unchanged.",
+)
+
+Class = Literal["privileged", "sensors only"]
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class Member(_Model):
+    """One file of the archive."""
+
+    sha256: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
+    size: Annotated[int, Ge(0)]
+
+
+class Edition(_Model):
+    """What was run.
+
+    Attributes:
+        suite, title: of the suite.
+        lock: SHA-256 of its lock, or empty if it has none.
+        scenarios: how many it has.
+        rules: number of the rules.
+    """
+
+    suite: str
+    title: str
+    lock: str
+    scenarios: int
+    rules: int
+
+    @property
+    def name(self) -> str:
+        """For people: bundles with equal names may be ranked together."""
+        return f"{self.suite} · {self.lock[:8] or 'no lock'} · rules {self.rules}"
+
+
+class BundledRun(_Model):
+    """One run: where its files are, and the hashes that identify it."""
+
+    scenario: str
+    seed: int
+    directory: str
+    run_id: str
+    trajectory: str
+
+
+class Manifest(_Model):
+    """The content of ``bundle.json``.
+
+    Attributes:
+        planner: as in ``run.json``: kind, name, label and every parameter.
+        classed: whether the planner senses or knows.
+        versions: of the software, the same in all runs.
+        missing: ``ID seed-N`` of the runs that a partial bundle lacks.
+    """
+
+    bundle: Annotated[int, Ge(1)]
+    crowdbot: str
+    team: str
+    contact: str
+    edition: Edition
+    planner: dict[str, Any]
+    classed: Class
+    pinned: bool
+    versions: dict[str, str]
+    seeds: list[int]
+    missing: list[str]
+    runs: list[BundledRun]
+    members: dict[str, Member]
+
+    @property
+    def label(self) -> str:
+        """Of the planner."""
+        return str(self.planner.get("label", ""))
+
+    def text(self) -> str:
+        """The file."""
+        return json.dumps(self.model_dump(mode="json"), indent=1, ensure_ascii=False) + "\n"
+
+
+def parse_manifest(text: str) -> Manifest:
+    """A manifest from its text.
+
+    Raises:
+        InputError: it is none, or a newer release wrote it.
+    """
+    try:
+        content = json.loads(text)
+        version = content.get("bundle") if isinstance(content, dict) else None
+        if isinstance(version, int) and version > BUNDLE:
+            raise InputError(
+                f"{MANIFEST} has format {version}; this release reads {BUNDLE}: upgrade crowdbot"
+            )
+        return Manifest.model_validate(content)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        place = ".".join(map(str, first["loc"]))
+        raise InputError(f"{MANIFEST} is no manifest: {place}: {first['msg']}") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{MANIFEST} is no manifest: {error}") from None

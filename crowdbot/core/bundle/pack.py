@@ -1,0 +1,246 @@
+"""Packing a bundle from run directories."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from crowdbot.core import run_directory as files
+from crowdbot.core.bundle.archive import members_of, write_archive
+from crowdbot.core.bundle.manifest import BUNDLE, LOCK, RULES, BundledRun, Edition, Manifest
+from crowdbot.core.lock_check import spec_of
+from crowdbot.core.registry import Registry
+from crowdbot.dsl.expand import Expansion
+from crowdbot.dsl.lock import LockFiles
+from crowdbot.errors import InputError, UnknownNameError
+
+_OF_A_RUN = (files.RECORD, files.SCENARIO, files.SCORES)
+_SHOWN = 10
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Submission:
+    """What to pack.
+
+    Attributes:
+        root: of the run directories.
+        planner: name of its folders.
+        team, contact: for the leaderboard; may be empty.
+        partial: whether a set that is not complete may be packed.
+        recordings: whether recordings go in, too.
+    """
+
+    root: Path
+    planner: str
+    team: str = ""
+    contact: str = ""
+    partial: bool = False
+    recordings: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """One complete run: name of its folder below the root, and its record."""
+
+    folder: PurePosixPath
+    record: dict[str, Any]
+
+
+def pack(
+    submission: Submission,
+    expansion: Expansion,
+    lock: LockFiles,
+    registry: Registry,
+    out: Path,
+) -> Manifest:
+    """Write the bundle of one planner.
+
+    Args:
+        submission: what to pack.
+        expansion, lock: of the suite.
+        registry: the installed components.
+        out: the archive; appears under its name only when whole.
+
+    Raises:
+        InputError: runs are missing, belong to another state of the suite, or differ in what must
+            be equal; or something cannot be read or written.
+        UnknownNameError: no run of this planner is there.
+    """
+    found = _runs(submission, expansion)
+    missing = _missing(found, expansion)
+    if missing and not submission.partial:
+        some = "\n".join(f"  {name}" for name in missing[:_SHOWN])
+        more = f"\n  … and {len(missing) - _SHOWN} more" if len(missing) > _SHOWN else ""
+        raise InputError(
+            f"{len(missing)} of {len(missing) + len(found)} runs are missing:\n{some}{more}\n"
+            "run them, or pack what is there with --partial"
+        )
+    _check_fits(found, expansion, registry)
+    _check_alike(found)
+    members = _members(submission, found)
+    if lock.lock_path.exists():
+        members[LOCK] = lock.lock_path.read_bytes()
+    manifest = _manifest(submission, expansion, found, missing, members)
+    write_archive(out, manifest, members)
+    return manifest
+
+
+# ------------------------------------------------------------------------ finding
+def _runs(submission: Submission, expansion: Expansion) -> list[_Found]:
+    """Complete runs of the planner, in the suite's order."""
+    base = submission.root / expansion.suite_id
+    labels = {p.parent.name for p in base.glob("*/*/seed-*") if p.is_dir()}
+    if submission.planner not in labels:
+        if not labels:
+            raise InputError(f"{base}: no runs of {expansion.suite_id} there")
+        raise UnknownNameError("planner among the runs", submission.planner, labels)
+    found = []
+    for scenario in expansion.scenarios:
+        folder = base / scenario.id / submission.planner
+        for place in sorted(folder.glob("seed-*"), key=_seed):
+            record = files.read_record(place) if place.name.count(".") == 0 else None
+            if record is not None:
+                name = PurePosixPath(place.relative_to(submission.root).as_posix())
+                found.append(_Found(name, record))
+    return found
+
+
+def _seed(folder: Path) -> tuple[int, str]:
+    number = folder.name.removeprefix("seed-")
+    return (int(number) if number.isdigit() else -1, number)
+
+
+def _missing(found: Sequence[_Found], expansion: Expansion) -> list[str]:
+    there = {(str(f.record.get("scenario")), f.record.get("seed")) for f in found}
+    seeds = sorted({seed for _, seed in there if isinstance(seed, int)}) or [0]
+    return [
+        f"{scenario.id} seed-{seed}"
+        for scenario in expansion.scenarios
+        for seed in seeds
+        if (scenario.id, seed) not in there
+    ]
+
+
+# ----------------------------------------------------------------------- checking
+def _check_fits(found: Sequence[_Found], expansion: Expansion, registry: Registry) -> None:
+    specs = {s.id: spec_of(s, registry) for s in expansion.scenarios}
+    for run in found:
+        if _hash(run, "spec") != specs[str(run.record["scenario"])]:
+            raise InputError(
+                f"{run.folder} is of another state of {expansion.suite_id}: its scenario has "
+                "another hash; run it again"
+            )
+
+
+def _check_alike(found: Sequence[_Found]) -> None:
+    """Refuse a bundle of runs that must not be compared with each other."""
+    first = found[0]
+    for name in ("planner", "versions", "pinned", "recorded"):
+        if name == "recorded":
+            continue
+        for run in found[1:]:
+            if run.record.get(name) != first.record.get(name):
+                raise InputError(
+                    f"{first.folder} and {run.folder} have different '{name}' in {files.RECORD}; "
+                    "run the older ones again"
+                )
+
+
+def _hash(run: _Found, name: str) -> str:
+    return str(run.record.get("hashes", {}).get(name, ""))
+
+
+# ------------------------------------------------------------------------ packing
+def _members(submission: Submission, found: Sequence[_Found]) -> dict[str, Path | bytes]:
+    members: dict[str, Path | bytes] = {}
+    for run in found:
+        folder = submission.root / run.folder
+        names = [*_OF_A_RUN, files.RECORDING] if submission.recordings else [*_OF_A_RUN]
+        members |= {f"runs/{run.folder}/{name}": folder / name for name in names}
+        if submission.recordings:
+            members |= dict(_references(submission.root, folder, run))
+    for name, place in members.items():
+        if isinstance(place, Path) and not place.is_file():
+            raise InputError(f"{place}: missing; run {name} again")
+    return members
+
+
+def _references(root: Path, folder: Path, run: _Found) -> Iterator[tuple[str, Path]]:
+    """The recordings that the run was compared with."""
+    listed: Mapping[str, str] = run.record.get("references") or {}
+    for path in listed.values():
+        place = (folder / path).resolve()
+        inside = place.is_relative_to(root.resolve())
+        if not inside:
+            raise InputError(f"{folder}: its reference {path} is not below {root}")
+        name = place.relative_to(root.resolve()).as_posix()
+        yield f"runs/{name}", place
+        record = place.with_name(files.RECORD)
+        yield f"runs/{PurePosixPath(name).with_name(files.RECORD)}", record
+
+
+def _manifest(
+    submission: Submission,
+    expansion: Expansion,
+    found: Sequence[_Found],
+    missing: Sequence[str],
+    members: Mapping[str, Path | bytes],
+) -> Manifest:
+    first = found[0].record
+    lock = members.get(LOCK)
+    return Manifest(
+        bundle=BUNDLE,
+        crowdbot=metadata.version("crowdbot"),
+        team=submission.team,
+        contact=submission.contact,
+        edition=Edition(
+            suite=expansion.suite_id,
+            title=expansion.title,
+            lock=hashlib.sha256(lock).hexdigest() if isinstance(lock, bytes) else "",
+            scenarios=len(expansion.scenarios),
+            rules=RULES,
+        ),
+        planner=first["planner"],
+        classed="privileged" if is_privileged(first) else "sensors only",
+        pinned=bool(first.get("pinned")),
+        versions=first["versions"],
+        seeds=sorted({int(f.record["seed"]) for f in found}),
+        missing=list(missing),
+        runs=[
+            BundledRun(
+                scenario=str(f.record["scenario"]),
+                seed=int(f.record["seed"]),
+                directory=f"runs/{f.folder}",
+                run_id=str(f.record["run_id"]),
+                trajectory=_hash(f, "trajectory"),
+            )
+            for f in found
+        ],
+        members=members_of(members),
+    )
+
+
+def is_privileged(record: Mapping[str, Any]) -> bool:
+    """Whether the planner of a run was told what no sensor can tell."""
+    label = str(record.get("planner", {}).get("label", ""))
+    return bool(record.get("privileged")) or label.endswith("+privileged")
+
+
+def read_json(text: str, what: str) -> dict[str, Any]:
+    """A JSON document that is a mapping.
+
+    Raises:
+        InputError: it is none.
+    """
+    try:
+        document = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{what} is not JSON: {error}") from None
+    if not isinstance(document, dict):
+        raise InputError(f"{what} is no mapping")
+    return document

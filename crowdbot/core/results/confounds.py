@@ -1,0 +1,254 @@
+"""Confounds: what besides the planner differs between runs that are about to be compared."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+from crowdbot.core.results.rows import Results, RunRow
+from crowdbot.errors import InputError, UnknownNameError
+
+#: Name of a confound -> how bad it is, and what it is.
+KINDS: Mapping[str, tuple[Literal["error", "warning"], str]] = {
+    "scenario": ("error", "scenarios of one name with different content"),
+    "crowd": ("error", "different people in one scenario"),
+    "rates": ("error", "different rates of simulation, planner or log"),
+    "perceived_radius": ("error", "people see the robot in different sizes"),
+    "visibility": ("error", "people see and heed the robot differently"),
+    "condition": ("error", "another condition of the scenario differs"),
+    "metrics": ("error", "metrics of different versions or parameters"),
+    "versions": ("error", "different versions of software"),
+    "privileged": ("error", "planners that know ground truth among planners that sense"),
+    "agents": ("warning", "people read from a lock in some runs, drawn anew in others"),
+    "unpinned": ("warning", "code of no installed version, which nobody else can get by name"),
+    "processor": ("warning", "different processors, which round differently"),
+    "unpaired": ("warning", "scenarios and seeds that not all planners have run"),
+}
+
+_SHOWN = 3
+_NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
+#: Beginning of a condition's name -> the confound that it is.
+_CONDITIONS = {
+    "rates": "rates",
+    "rate": "rates",
+    "perceived_radius": "perceived_radius",
+    "people_and_robot": "visibility",
+    "visibility": "visibility",
+    "metrics": "metrics",
+    "metric": "metrics",
+    "versions": "versions",
+    "version": "versions",
+}
+#: These are to be equal in all runs; the others in all runs of one scenario.
+_EVERYWHERE = ("metrics", "versions")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """One thing that differs.
+
+    Attributes:
+        kind: of `KINDS`.
+        severity: ``error``: the runs must not be compared; ``warning``: they may.
+        subject: what differs: a scenario, a condition, a package.
+        values: value -> directories of the runs that have it, the commonest first.
+        accepted: somebody takes the responsibility; reports print it.
+    """
+
+    kind: str
+    severity: Literal["error", "warning"]
+    subject: str
+    values: Mapping[str, tuple[str, ...]]
+    accepted: bool = False
+
+    def __str__(self) -> str:
+        parts = [f"{v or 'nothing'} in {_counted(runs)}" for v, runs in self.values.items()]
+        apart = _apart([*self.values])
+        return f"{self.kind}: {self.subject}: {'; '.join(parts)}{f' ({apart})' * bool(apart)}"
+
+
+def confounds(results: Results, accept: Iterable[str] = ()) -> tuple[Finding, ...]:
+    """Everything besides the planner that differs, errors first.
+
+    Args:
+        results: the runs that are compared.
+        accept: names of confounds that are known and accepted.
+
+    Raises:
+        UnknownNameError: there is no confound of such a name.
+    """
+    accepted = set(accept)
+    for name in sorted(accepted - set(KINDS)):
+        raise UnknownNameError("confound", name, KINDS)
+    found = [f for f in _merged(_all(results.runs)) if len(f.values) > 1 or f.kind == "unpinned"]
+    found = [replace(f, accepted=f.kind in accepted) for f in found]
+    order = list(KINDS)
+    return tuple(sorted(found, key=lambda f: (order.index(f.kind), f.subject)))
+
+
+def check_comparable(findings: Sequence[Finding]) -> None:
+    """Refuse to compare.
+
+    Raises:
+        InputError: a finding is an error and was not accepted.
+    """
+    errors = [f for f in findings if f.severity == "error" and not f.accepted]
+    if errors:
+        kinds = ", ".join(dict.fromkeys(f.kind for f in errors))
+        lines = "\n".join(f"  {f}" for f in errors)
+        raise InputError(
+            f"these runs differ in more than the planner:\n{lines}\n"
+            f"compare them apart, or accept what differs by name: {kinds}"
+        )
+
+
+# ------------------------------------------------------------------------- looking
+def _all(runs: Sequence[RunRow]) -> Iterator[Finding]:
+    for scenario, group in _grouped(runs, lambda r: f"{r.suite}/{r.scenario}"):
+        yield _finding("scenario", scenario, group, lambda r: _short(r.spec_hash))
+        yield _finding("crowd", scenario, group, lambda r: _short(r.realisation_hash))
+        yield _finding("agents", scenario, group, lambda r: str(r.record.get("agents", "")))
+    yield from _conditions(runs)
+    yield _finding("privileged", "planners", runs, _class)
+    yield _finding("processor", "machines", runs, _processor)
+    loose = [r for r in runs if not r.pinned]
+    for planner, group in _grouped(loose, lambda r: r.planner):
+        yield _finding("unpinned", planner, group, _source)
+    yield from _unpaired(runs)
+
+
+def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:
+    all_conditions = {r.run_id: _conditions_of(r) for r in runs}
+    names = dict.fromkeys(n for found in all_conditions.values() for n in found)
+    for name in sorted(names):
+        kind = _CONDITIONS.get(name.partition(".")[0], "condition")
+        groups = [("", runs)] if kind in _EVERYWHERE else _grouped(runs, _scenario)
+        for scenario, group in groups:
+            subject = f"{name}, {scenario}" if scenario else name
+
+            def value(r: RunRow, name: str = name) -> str:
+                return all_conditions[r.run_id].get(name, "")
+
+            yield _finding(kind, subject, group, value)
+
+
+def _conditions_of(run: RunRow) -> dict[str, str]:
+    """Conditions of a run; versions and metrics of its record where they are not among them."""
+    found = dict(run.conditions)
+    heads = {name.partition(".")[0] for name in found}
+    if not heads & {"version", "versions"}:
+        found |= {f"versions.{k}": str(v) for k, v in _map(run, "versions").items()}
+    if not heads & {"metric", "metrics"}:
+        for metric, parameters in _map(run, "metrics").items():
+            given = parameters if isinstance(parameters, Mapping) else {"version": parameters}
+            found |= {f"metrics.{metric}.{k}": str(v) for k, v in given.items()}
+    return found
+
+
+def _unpaired(runs: Sequence[RunRow]) -> Iterator[Finding]:
+    """One finding for each set of planners that alone have run something."""
+    planners = tuple(sorted({r.planner for r in runs}))
+    by_place: dict[tuple[str, int], list[RunRow]] = {}
+    for run in runs:
+        by_place.setdefault((_scenario(run), run.seed), []).append(run)
+    alone: dict[str, list[str]] = {}
+    for group in by_place.values():
+        who = tuple(sorted({r.planner for r in group}))
+        if who != planners:
+            alone.setdefault(", ".join(who), []).extend(r.directory or r.run_id for r in group)
+    if alone:
+        paired = [r.directory or r.run_id for g in by_place.values() for r in g
+                  if len({x.planner for x in g}) == len(planners)]  # fmt: skip
+        values = {"all planners": tuple(paired)} | {f"only {k}": tuple(v) for k, v in alone.items()}
+        yield Finding(
+            kind="unpaired", severity=KINDS["unpaired"][0], subject="scenarios and seeds",
+            values=values,
+        )  # fmt: skip
+
+
+def _finding(
+    kind: str, subject: str, runs: Iterable[RunRow], value: Callable[[RunRow], str]
+) -> Finding:
+    values: dict[str, list[str]] = {}
+    for run in runs:
+        values.setdefault(value(run), []).append(run.directory or run.run_id)
+    common = sorted(values.items(), key=lambda item: (-len(item[1]), item[0]))
+    return Finding(
+        kind=kind, severity=KINDS[kind][0], subject=subject,
+        values={v: tuple(found) for v, found in common},
+    )  # fmt: skip
+
+
+def _merged(findings: Iterable[Finding]) -> Iterator[Finding]:
+    """Findings of one kind and one pair of values in many scenarios become one."""
+    found: dict[tuple[str, str, tuple[str, ...]], list[Finding]] = {}
+    for finding in findings:
+        name = finding.subject.partition(",")[0] if "," in finding.subject else ""
+        together = finding.kind in ("agents", "rates", "perceived_radius", "visibility",
+                                    "condition")  # fmt: skip
+        key = (finding.kind, name if together else finding.subject, tuple(sorted(finding.values)))
+        found.setdefault(key, []).append(finding)
+    for (_, name, _), group in found.items():
+        first = group[0]
+        if len(group) == 1:
+            yield first
+            continue
+        values = {v: tuple(r for f in group for r in f.values[v]) for v in first.values}
+        yield replace(first, subject=f"{name or 'people'}, {len(group)} scenarios", values=values)
+
+
+def _grouped(
+    runs: Sequence[RunRow], key: Callable[[RunRow], str]
+) -> list[tuple[str, list[RunRow]]]:
+    found: dict[str, list[RunRow]] = {}
+    for run in runs:
+        found.setdefault(key(run), []).append(run)
+    return sorted(found.items())
+
+
+# -------------------------------------------------------------------------- values
+def _scenario(run: RunRow) -> str:
+    return f"{run.suite}/{run.scenario}"
+
+
+def _class(run: RunRow) -> str:
+    return "privileged" if run.privileged else "sensors only"
+
+
+def _processor(run: RunRow) -> str:
+    machine = _map(run, "machine")
+    return str(machine.get("processor") or machine.get("machine") or "unknown")
+
+
+def _source(run: RunRow) -> str:
+    planner = _map(run, "planner")
+    digest = str(planner.get("sha256", ""))[:12]
+    return f"{planner.get('kind', run.planner)}{f' sha256 {digest}' * bool(digest)}"
+
+
+def _map(run: RunRow, name: str) -> Mapping[str, Any]:
+    value = run.record.get(name)
+    return value if isinstance(value, Mapping) else {}
+
+
+def _short(text: str) -> str:
+    return text.removeprefix("cb1-sha256:")[:12]
+
+
+def _counted(runs: Sequence[str]) -> str:
+    shown = ", ".join(runs[:_SHOWN]) + (", …" if len(runs) > _SHOWN else "")
+    return f"{len(runs)} run{'s' * (len(runs) != 1)} ({shown})"
+
+
+def _apart(values: Sequence[str]) -> str:
+    """By how much two values differ, where both are numbers with the same words around."""
+    if len(values) != 2 or len({_NUMBER.sub("#", v) for v in values}) != 1:
+        return ""
+    found = [_NUMBER.findall(v) for v in values]
+    pairs = [(float(a), float(b)) for a, b in zip(*found, strict=True) if float(a) != float(b)]
+    if len(pairs) != 1 or "." in "".join(_NUMBER.split(values[0])):
+        return ""
+    a, b = pairs[0]
+    return f"{b - a:+g}" + (f", {(b / a - 1):+.1%}" if a else "")

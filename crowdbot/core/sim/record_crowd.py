@@ -1,0 +1,111 @@
+"""Records people alone, without Drake; and what both kinds of recordings share."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd import CrowdEngine
+from crowdbot.core.crowd_run import run_crowd
+from crowdbot.core.crowd_setup import build_crowd
+from crowdbot.core.interfaces import EnvironmentParts
+from crowdbot.core.planner_source import PlannerChoice
+from crowdbot.core.realisation import Realisation
+from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter
+from crowdbot.core.registry import Registry
+from crowdbot.core.run_log import RunLog
+from crowdbot.core.sim.outcome import INTERRUPTED, TIMEOUT, Outcome, Progress
+from crowdbot.dsl.scenario import Scenario
+from crowdbot.errors import InputError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunSetup:
+    """What one recording needs."""
+
+    scenario: Scenario
+    agents: Realisation
+    registry: Registry
+    choice: PlannerChoice
+    seed: int
+    recording: Path
+    record: Literal["all", "used", "none"]
+    stage: str
+    progress: Callable[[Progress], None] | None
+    stop: Callable[[], bool]
+    on_hang: Callable[[], object] | None
+
+
+def record_crowd(setup: RunSetup, duration: float) -> Outcome:
+    """Simulate the scenario's people without a robot.
+
+    Raises:
+        InputError: nobody walks there.
+    """
+    scenario, registry = setup.scenario, setup.registry
+    parts: EnvironmentParts = registry.build(scenario.environment)
+    engine = build_crowd(scenario, setup.agents, parts, registry)
+    if engine is None:
+        raise InputError(f"{scenario.id} has no crowd")
+    header = RecordingHeader(scenario=scenario.id, agents=agents(engine), walls=parts.walls)
+    begin, cpu = time.perf_counter(), time.process_time()
+    now = 0.0
+
+    def report(t: float) -> None:
+        nonlocal now
+        now = t
+        if setup.progress is not None and t == int(t):
+            factor = t / max(time.perf_counter() - begin, 1e-9)
+            setup.progress(Progress(setup.stage, t, duration, factor, None))
+
+    with recording(setup, header) as (writer, ending):
+        log = RunLog(writer, ids(engine))
+        whole = run_crowd(
+            engine, log, duration, scenario.rates.log, on_sample=report, stop=setup.stop
+        )
+        outcome = Outcome(
+            status=TIMEOUT if whole else INTERRUPTED,
+            reason=f"ran for {duration:g} s" if whole else "interrupted by the user",
+            goal_time=None,
+            sim_time=now,
+            wall_time=time.perf_counter() - begin,
+            cpu_time=time.process_time() - cpu,
+        )
+        ending.append(outcome)
+    return outcome
+
+
+@contextmanager
+def recording(
+    setup: RunSetup, header: RecordingHeader
+) -> Iterator[tuple[RecordingWriter, list[Outcome]]]:
+    """A writer that is closed whatever happens; the body appends how the run ended."""
+    writer = RecordingWriter(setup.recording, header, record=setup.record)
+    ending: list[Outcome] = []
+    try:
+        yield writer, ending
+    finally:
+        last = ending[0] if ending else None
+        status = last.status if last else INTERRUPTED
+        goal_time = last.goal_time if last else None
+        writer.close(goal_time, status != INTERRUPTED, status)
+
+
+def ids(engine: CrowdEngine | None) -> NDArray[np.int64]:
+    """(N,) numbers of the people; none without an engine."""
+    return np.zeros(0, np.int64) if engine is None else engine.agents.id
+
+
+def agents(engine: CrowdEngine | None) -> AgentsHeader | None:
+    """What a recording says about the people; None without an engine."""
+    if engine is None:
+        return None
+    a = engine.agents
+    return AgentsHeader(id=a.id, radius=a.radius, mass=a.mass)

@@ -1,0 +1,31 @@
+"""Statistics of campaigns: who is better, by how much, and how sure that is.
+
+Works on `crowdbot.core.results.rows.Results` alone: no store, no simulator, no page.
+docs/explanation/statistics.md says what is computed and how to read it.
+"""
+
+from __future__ import annotations
+
+from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, Level
+from crowdbot.core.statistics.comparison import Comparison, Verdict
+from crowdbot.core.statistics.estimate import OUTCOMES, Counts, Estimate, Outcome
+from crowdbot.core.statistics.summary import PlannerScore, Summary, headline_names, summarise
+from crowdbot.core.statistics.table import Name, Table
+
+__all__ = [
+    "OUTCOMES",
+    "AxisEffect",
+    "Comparison",
+    "Counts",
+    "DensityLevel",
+    "Estimate",
+    "Level",
+    "Name",
+    "Outcome",
+    "PlannerScore",
+    "Summary",
+    "Table",
+    "Verdict",
+    "headline_names",
+    "summarise",
+]

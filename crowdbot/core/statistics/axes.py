@@ -1,0 +1,148 @@
+"""How much each axis of a suite moves a score, and how dense the crowds really were."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.statistics.clusters import Floats
+from crowdbot.core.statistics.table import Name, Table
+
+#: Stands for an axis: the density that a run really had, as a straight line.
+REALISED_DENSITY = "realised density"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Level:
+    """The runs of one label of an axis; ``mean`` of those that have a value, or None."""
+
+    label: str
+    runs: int
+    mean: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AxisEffect:
+    """How much of a score's spread goes with one axis, for one planner.
+
+    Attributes:
+        levels: in the order of the suite; empty for `REALISED_DENSITY`.
+        eta_squared: between-label over total sum of squares, 0 to 1; None without spread.
+            Of `REALISED_DENSITY` the squared correlation.
+        omega_squared: the same without what chance alone would give (Hays 1963), not below 0.
+        reason: why there is none.
+    """
+
+    planner: str
+    metric: str
+    variant: str
+    axis: str
+    levels: tuple[Level, ...] = ()
+    eta_squared: float | None = None
+    omega_squared: float | None = None
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DensityLevel:
+    """Realised density of the runs of one label of the axis ``density``, 1/m².
+
+    ``label`` is empty where the suite has no such axis.
+    """
+
+    label: str
+    runs: int
+    mean: float
+    least: float
+    most: float
+
+
+def axis_effects(table: Table, name: Name, planner: str) -> list[AxisEffect]:
+    """Effects of all axes on one score of one planner; values that do not exist are counted."""
+    column = table.column(name, planner)
+    runs = [table.runs.get((planner, key)) for key in table.keys]
+    there = [(i, run) for i, run in enumerate(runs) if run is not None]
+    values = np.array([column.low[i] if column.known[i] else np.nan for i, _ in there])
+    found = []
+    for axis in dict.fromkeys(a for _, run in there for a in run.axes):
+        effect = _effect([run.axes.get(axis, "") for _, run in there], values)
+        found.append((axis, *effect))
+    density = np.array([np.nan if r.density is None else r.density for _, r in there])
+    found.append((REALISED_DENSITY, (), *_line(density, values)))
+    return [
+        AxisEffect(
+            planner=planner, metric=name[0], variant=name[1], axis=axis, levels=levels,
+            eta_squared=eta, omega_squared=omega, reason=reason,
+        )
+        for axis, levels, eta, omega, reason in found
+    ]  # fmt: skip
+
+
+def densities(table: Table) -> tuple[DensityLevel, ...]:
+    """Realised densities by label of the axis ``density``, of all runs with people."""
+    by_label: dict[str, list[float]] = {}
+    for run in table.runs.values():
+        if run.density is not None:
+            by_label.setdefault(run.axes.get("density", ""), []).append(run.density)
+    return tuple(
+        DensityLevel(
+            label=label, runs=len(found), mean=float(np.mean(found)),
+            least=min(found), most=max(found),
+        )
+        for label, found in by_label.items()
+    )  # fmt: skip
+
+
+_Effect = tuple[tuple[Level, ...], float | None, float | None, str]
+
+
+def _effect(labels: Sequence[str], values: Floats) -> _Effect:
+    order = list(dict.fromkeys(labels))
+    index = np.array([order.index(label) for label in labels], dtype=np.intp)
+    known = np.isfinite(values)
+    count = np.bincount(index[known], minlength=len(order))
+    total = np.bincount(index[known], weights=values[known], minlength=len(order))
+    levels = tuple(
+        Level(label=label, runs=int(np.count_nonzero(index == i)),
+              mean=float(total[i] / count[i]) if count[i] else None)
+        for i, label in enumerate(order)
+    )  # fmt: skip
+    return levels, *_shares(values[known], index[known], len(order))
+
+
+def _shares(
+    values: Floats, index: NDArray[np.intp], labels: int
+) -> tuple[float | None, float | None, str]:
+    """Eta squared and omega squared of a one-way layout."""
+    count = np.bincount(index, minlength=labels)
+    used = int(np.count_nonzero(count))
+    if used < 2:
+        return None, None, "fewer than two labels have a value"
+    scale = float(np.abs(values).max())
+    if np.ptp(values) <= 1e-12 * scale:
+        return None, None, "all values are equal"
+    total = float(((values - values.mean()) ** 2).sum())
+    means = np.bincount(index, weights=values, minlength=labels) / np.maximum(count, 1)
+    within = float(((values - means[index]) ** 2).sum())
+    eta = 1 - within / total
+    freedom = len(values) - used
+    if freedom < 1:
+        return eta, None, "one value a label: chance cannot be told from the axis"
+    noise = within / freedom
+    omega = (total - within - (used - 1) * noise) / (total + noise)
+    return eta, max(omega, 0.0), ""
+
+
+def _line(x: Floats, y: Floats) -> tuple[float | None, float | None, str]:
+    """Squared correlation, and the adjusted one."""
+    known = np.isfinite(x) & np.isfinite(y)
+    x, y, n = x[known], y[known], int(known.sum())
+    if n < 2 or np.ptp(x) == 0 or np.ptp(y) <= 1e-12 * float(np.abs(y).max()):
+        return None, None, "no spread of densities or values"
+    squared = float(np.corrcoef(x, y)[0, 1] ** 2)
+    if n < 3:
+        return squared, None, "two values lie on a line"
+    return squared, max(0.0, 1 - (1 - squared) * (n - 1) / (n - 2)), ""

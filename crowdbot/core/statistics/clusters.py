@@ -1,0 +1,208 @@
+"""Intervals for runs that share crowd draws: the draw is what is repeated, not the run.
+
+The 162 scenarios of the challenge walk 18 drawn crowds. Runs with the same crowd rise and fall
+together, so the sample has 18 independent parts and no more; see
+docs/decisions/0014-statistics.md for what was tried and how well it covers.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.statistics.estimate import Estimate
+from crowdbot.dsl.seeds import stream_seed
+
+Floats = NDArray[np.float64]
+#: Statistic of many weighted samples at once: weights (B, n) -> values (B,).
+Statistic = Callable[[Floats], Floats]
+
+#: Resamples of a bootstrap.
+RESAMPLES = 2000
+_AT_ONCE = 2_000_000  # weights that are held in memory at a time
+
+ONE_DRAW = "one crowd draw: its chance cannot be told from a difference"
+NO_RUNS = "no run has a value"
+NO_SPREAD = "no variation between crowd draws: the interval has no width"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Clusters:
+    """Which crowd draw each run belongs to.
+
+    Attributes:
+        index: (n,) number of the draw, its place in ``names``.
+        names: of the draws, sorted.
+    """
+
+    index: NDArray[np.intp]
+    names: tuple[str, ...]
+
+    @staticmethod
+    def of(names: Sequence[str]) -> Clusters:
+        """From the name of each run's draw."""
+        different, index = np.unique(np.asarray(names, dtype=str), return_inverse=True)
+        return Clusters(index, tuple(different.tolist()))
+
+    @property
+    def count(self) -> int:
+        """How many draws there are."""
+        return len(self.names)
+
+    def part(self, chosen: NDArray[np.bool_]) -> Clusters:
+        """Of some of the runs; draws without any of them are gone."""
+        left, index = np.unique(self.index[chosen], return_inverse=True)
+        return Clusters(index, tuple(self.names[i] for i in left))
+
+    def sums(self, values: Floats) -> Floats:
+        """Sum of each draw's values, (count,)."""
+        found = np.bincount(self.index, weights=values, minlength=self.count)
+        return found.astype(np.float64, copy=False)
+
+
+# ------------------------------------------------------------------------- means
+def mean(values: Floats, clusters: Clusters, level: float = 0.95) -> Estimate:
+    """Mean of all runs; Student's t over the draws.
+
+    Args:
+        values: (n,).
+        clusters: of the same runs.
+        level: of the interval.
+    """
+    return ratio(values, np.ones_like(values), clusters, level)
+
+
+def ratio(above: Floats, below: Floats, clusters: Clusters, level: float = 0.95) -> Estimate:
+    """Sum over sum, with the linearised variance between draws and t of ``count`` - 1.
+
+    With equal draws and ``below`` = 1 it is the t interval of the draws' means (Cochran,
+    Sampling Techniques, 3rd ed., 6.3 and 9A).
+    """
+    if not len(above) or not below.sum():
+        return Estimate(reason=NO_RUNS)
+    value = float(above.sum() / below.sum())
+    error = ratio_error(above, below, clusters)
+    if error is None:
+        return Estimate(value=value, reason=ONE_DRAW)
+    half = error * quantile_t(0.5 + level / 2, clusters.count - 1)
+    reason = "" if error > 0 else NO_SPREAD
+    return Estimate(value=value, low=value - half, high=value + half, reason=reason)
+
+
+def ratio_error(above: Floats, below: Floats, clusters: Clusters) -> float | None:
+    """Standard error of `ratio`; None with fewer than two draws."""
+    count, total = clusters.count, float(below.sum())
+    if count < 2:
+        return None
+    rest = clusters.sums(above - above.sum() / total * below)
+    scale = float(np.abs(above).sum())
+    error = math.sqrt(count / (count - 1) * float(rest @ rest)) / total
+    return error if error > 1e-13 * scale / total else 0.0  # equal up to rounding
+
+
+def quantile_t(p: float, freedom: float) -> float:
+    """Quantile of Student's t."""
+    from scipy.special import stdtrit  # type: ignore[import-untyped]
+
+    return float(stdtrit(freedom, p))
+
+
+# --------------------------------------------------------------------- bootstrap
+def bootstrap(
+    statistic: Statistic, clusters: Clusters, level: float = 0.95, *, studentised: bool = True
+) -> Estimate:
+    """BCa interval of a statistic; whole draws are resampled.
+
+    Bias and acceleration as in Efron (1987), the acceleration from leaving out one draw at a
+    time. ``studentised`` takes quantiles of t with ``count`` - 1 degrees of freedom, stretched by
+    sqrt(count / (count - 1)), in place of normal ones (Hesterberg 2015, "expanded"): with few
+    draws the plain interval is too narrow.
+
+    Args:
+        statistic: of weighted samples; a weight is how often a run is in the sample.
+        clusters: of the n runs.
+        level: of the interval.
+        studentised: whether to correct for few draws.
+    """
+    value = float(statistic(np.ones((1, len(clusters.index))))[0])
+    if clusters.count < 2:
+        return Estimate(value=value, reason=ONE_DRAW)
+    found = _resampled(statistic, clusters)
+    left_out = statistic(1.0 - np.eye(clusters.count)[:, clusters.index])
+    found, left_out = found[np.isfinite(found)], left_out[np.isfinite(left_out)]
+    if not len(found) or np.ptp(found) == 0:
+        return Estimate(value=value, low=value, high=value, reason=NO_SPREAD)
+    tails = [_bca_tail(p, value, found, left_out, clusters.count, studentised)
+             for p in (0.5 - level / 2, 0.5 + level / 2)]  # fmt: skip
+    low, high = np.quantile(found, tails)
+    return Estimate(value=value, low=float(low), high=float(high))
+
+
+def _resampled(statistic: Statistic, clusters: Clusters) -> Floats:
+    times = _times(clusters.names)
+    rows = max(1, _AT_ONCE // max(1, len(clusters.index)))
+    parts = [times[i : i + rows] for i in range(0, len(times), rows)]
+    return np.concatenate([statistic(part[:, clusters.index]) for part in parts])
+
+
+@lru_cache(maxsize=64)
+def _times(names: tuple[str, ...]) -> Floats:
+    """How often each draw is in each resample, (RESAMPLES, count).
+
+    The stream is named by the draws alone: neither the order of the runs nor other scores matter.
+    """
+    key, count = hashlib.sha256("\0".join(names).encode()).hexdigest(), len(names)
+    rng = np.random.Generator(np.random.PCG64(stream_seed(0, key, "statistics.bootstrap")))
+    return rng.multinomial(count, np.full(count, 1 / count), size=RESAMPLES).astype(float)
+
+
+def _bca_tail(
+    p: float, value: float, found: Floats, left_out: Floats, count: int, studentised: bool
+) -> float:
+    from scipy.special import ndtr, ndtri
+
+    below = (np.count_nonzero(found < value) + np.count_nonzero(found <= value)) / 2
+    bias = float(ndtri(np.clip(below / len(found), 1 / len(found), 1 - 1 / len(found))))
+    centred = left_out.mean() - left_out
+    spread = float((centred**2).sum()) ** 1.5
+    bend = float((centred**3).sum()) / (6 * spread) if spread > 0 else 0.0
+    z = float(ndtri(p))
+    if studentised:
+        z = quantile_t(p, count - 1) * math.sqrt(count / (count - 1))
+    return float(ndtr(bias + (bias + z) / max(1 - bend * (bias + z), 0.1)))
+
+
+def weighted(function: Callable[..., Any], *arrays: Floats) -> Statistic:
+    """A statistic that depends on nothing but weighted sums of some arrays."""
+    stacked = np.column_stack([*arrays, np.ones(len(arrays[0]))])
+
+    def statistic(weights: Floats) -> Floats:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(function(*(weights @ stacked).T), dtype=float)
+
+    return statistic
+
+
+def trimmed_mean(values: Floats) -> Statistic:
+    """Interquartile mean: of the middle half of the weight, runs at its ends counted in part.
+
+    Equal to ``scipy.stats.trim_mean(values, 0.25)`` where the number of runs is divisible by 4.
+    """
+    order = np.argsort(values, kind="stable")
+    ordered = values[order]
+
+    def statistic(weights: Floats) -> Floats:
+        upto = np.cumsum(weights[:, order], axis=1)
+        total = upto[:, -1:]
+        inside = np.diff(np.clip(upto, total / 4, 3 * total / 4), axis=1, prepend=total / 4)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(inside @ ordered / (total[:, 0] / 2))
+
+    return statistic

@@ -1,0 +1,279 @@
+"""One planner against another in one score."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.statistics import clusters as c
+from crowdbot.core.statistics.clusters import Clusters, Floats
+from crowdbot.core.statistics.estimate import NOTHING, Counts, Estimate
+from crowdbot.core.statistics.signed_rank import double_ranks, least_p, p_value, signed_ranks
+from crowdbot.core.statistics.table import FAILED, MISSING, UNDEFINED, Column, Name, Table
+
+Verdict = Literal["better", "worse", "not distinguishable", "not ranked"]
+
+NO_DIRECTION = "nothing says which values are better"
+NO_REFERENCE = "the value to be near to is not among the scores"
+_POWER = 0.8
+_ROUNDING = 1e-12  # values that are nearer to each other, relatively, are equal
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Comparison:
+    """Planner ``a`` against planner ``b``; effects are positive where ``a`` is better.
+
+    Attributes:
+        metric, variant, unit, better: which score.
+        pairs: scenarios and seeds that both have tried.
+        draws: independent crowd draws among them.
+        counts_a, counts_b: how the runs ended; ``missing`` ones are not among the pairs.
+        wins, losses, ties, undecided: pairs that ``a`` is better or worse in, is equal in, and
+            those that undefined scores or overlapping bounds leave open.
+        difference: mean of a - b over pairs where both have a value; distances to the reference
+            where ``better`` is ``reference``. In ``unit``.
+        bounds: of the same mean over all pairs, if undefined and censored values are anywhere
+            within their bounds; None on a side where there is no bound.
+        standardised: ``difference`` in standard deviations of the pairs' differences.
+        rank_biserial: share of the ranks for ``a`` minus share for ``b``, -1 to 1.
+        improvement: probability that ``a`` is better in a pair; ties and undecided count half.
+        improvement_bounds: the same if all undecided pairs were lost, or won.
+        detectable: the smallest mean difference that would be found with probability 0.8 by this
+            many draws at this level; None where it cannot be told.
+        p: of the signed ranks of whole draws; ``p_holm`` corrected for all tests of the summary.
+        verdict: of ``a``: never more than ``p_holm`` bears out. ``reason`` says why no other.
+    """
+
+    metric: str
+    variant: str
+    unit: str
+    better: str
+    a: str
+    b: str
+    pairs: int
+    draws: int
+    counts_a: Counts
+    counts_b: Counts
+    wins: int = 0
+    losses: int = 0
+    ties: int = 0
+    undecided: int = 0
+    difference: Estimate = NOTHING
+    bounds: tuple[float | None, float | None] = (None, None)
+    standardised: Estimate = NOTHING
+    rank_biserial: Estimate = NOTHING
+    improvement: Estimate = NOTHING
+    improvement_bounds: tuple[float, float] = (0.0, 1.0)
+    detectable: float | None = None
+    p: float | None = None
+    p_holm: float | None = None
+    verdict: Verdict = "not distinguishable"
+    reason: str = ""
+
+
+def compare(
+    table: Table, name: Name, a: str, b: str, *, level: float = 0.95
+) -> tuple[Comparison, int]:
+    """Compare two planners; the verdict is given by `judged`, when all p values are known.
+
+    Returns:
+        The comparison, and the sign of its ranks: 1 where ``a`` looks better.
+    """
+    label = table.label(name)
+    sides = table.column(name, a), table.column(name, b)
+    there = (sides[0].outcome != MISSING) & (sides[1].outcome != MISSING)
+    groups = Clusters.of([d for d, t in zip(table.draws, there, strict=True) if t])
+    head = Comparison(
+        metric=name[0], variant=name[1], unit=label.unit, better=label.better, a=a, b=b,
+        pairs=int(there.sum()), draws=groups.count,
+        counts_a=sides[0].counts, counts_b=sides[1].counts,
+    )  # fmt: skip
+    if not there.any():
+        return replace(head, reason="no scenario and seed was run with both"), 0
+    reference = table.reference(name)
+    if label.better == "reference" and reference is None:
+        return replace(head, verdict="not ranked", reason=NO_REFERENCE), 0
+    pair = _Pair(*(_Side.of(s, there, label.better, reference) for s in sides))
+    sign = 1.0 if label.better in ("higher", "none") else -1.0
+    found = _differences(head, pair, groups, sign, level)
+    if label.better == "none":
+        return replace(found, verdict="not ranked", reason=NO_DIRECTION), 0
+    return _ranked(found, pair, groups, level)
+
+
+def judged(found: Comparison, direction: int, p_holm: float | None, alpha: float) -> Comparison:
+    """The comparison with its verdict.
+
+    A verdict takes ranks that chance does not explain and a mean that does not contradict them.
+    """
+    if found.verdict == "not ranked" or found.p is None:
+        return found
+    verdict: Verdict = "not distinguishable"
+    reason = ""
+    if p_holm is not None and p_holm <= alpha and direction:
+        verdict = "better" if direction > 0 else "worse"
+        if _contradicts(found, direction):
+            verdict, reason = "not distinguishable", "ranks and means point to different sides"
+    elif least_p(found.draws) > alpha:
+        reason = f"too few crowd draws: {found.draws}; no difference could be told from chance"
+    elif not found.wins and not found.losses:
+        reason = "every pair is equal" if not found.undecided else "no pair is decided"
+    return replace(found, p_holm=p_holm, verdict=verdict, reason=reason)
+
+
+# ----------------------------------------------------------------------- one pair
+@dataclass(frozen=True, slots=True, eq=False)
+class _Side:
+    """One planner's values turned so that more is better; failed ones are below all others."""
+
+    low: Floats
+    high: Floats
+    known: NDArray[np.bool_]
+    undefined: NDArray[np.bool_]
+    failed: NDArray[np.bool_]
+
+    @staticmethod
+    def of(column: Column, there: NDArray[np.bool_], better: str, reference: float | None) -> _Side:
+        low, high = _utility(column.low[there], column.high[there], better, reference)
+        outcome = column.outcome[there]
+        return _Side(low, high, column.known[there], outcome == UNDEFINED, outcome == FAILED)
+
+
+def _utility(
+    low: Floats, high: Floats, better: str, reference: float | None
+) -> tuple[Floats, Floats]:
+    if better == "lower":
+        return -high, -low
+    if better == "reference" and reference is not None:
+        near, far = np.abs(low - reference), np.abs(high - reference)
+        within = (low <= reference) & (reference <= high)
+        return -np.maximum(near, far), -np.where(within, 0.0, np.minimum(near, far))
+    return low, high
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Pair:
+    a: _Side
+    b: _Side
+
+    @property
+    def known(self) -> NDArray[np.bool_]:
+        return self.a.known & self.b.known
+
+    @property
+    def least(self) -> Floats:
+        return self.a.low - self.b.high
+
+    @property
+    def most(self) -> Floats:
+        return self.a.high - self.b.low
+
+    def contrasts(self) -> tuple[Floats, NDArray[np.bool_]]:
+        """By how much ``a`` is better for certain, (n,), and which pairs are undecided.
+
+        Exchanging the planners changes nothing but the sign: what the test's level rests on.
+        """
+        certain = np.maximum(self.least, 0.0) + np.minimum(self.most, 0.0)
+        size = np.maximum(np.abs(self.a.low), np.abs(self.b.low))
+        certain[self.known & (np.abs(certain) <= _ROUNDING * size)] = 0.0
+        certain[self.a.undefined | self.b.undefined] = 0.0
+        both = self.a.failed & self.b.failed
+        certain[self.a.failed], certain[self.b.failed] = -np.inf, np.inf
+        certain[both] = 0.0
+        return certain, (certain == 0) & ~self.known & ~both
+
+
+def _differences(
+    head: Comparison, pair: _Pair, groups: Clusters, sign: float, level: float
+) -> Comparison:
+    """What is told in the metric's unit, over pairs where both have a value."""
+    known = pair.known
+    least, most = sign * pair.least, sign * pair.most
+    ends = [float(x.mean()) for x in (np.minimum(least, most), np.maximum(least, most))]
+    bounds = (_finite(ends[0]), _finite(ends[1]))
+    if not known.any():
+        nothing = Estimate(reason="no pair in which both have a value")
+        return replace(head, difference=nothing, standardised=nothing, bounds=bounds)
+    some = groups.part(known)
+    gains = (pair.least)[known]
+    ones = np.ones_like(gains)
+    error = c.ratio_error(gains, ones, some)
+    return replace(
+        head,
+        difference=c.mean(sign * gains, some, level),
+        bounds=bounds,
+        standardised=_standardised(gains, some, level),
+        detectable=None if not error else error * _reach(some.count, level),
+    )
+
+
+def _finite(number: float) -> float | None:
+    return number if math.isfinite(number) else None
+
+
+def _reach(draws: int, level: float) -> float:
+    """Standard errors that a difference must have to be found with probability `_POWER`."""
+    freedom = draws - 1
+    return c.quantile_t(0.5 + level / 2, freedom) + c.quantile_t(_POWER, freedom)
+
+
+def _standardised(gains: Floats, groups: Clusters, level: float) -> Estimate:
+    if len(gains) < 2:
+        return Estimate(reason="one pair: no spread")
+    if np.ptp(gains) <= 1e-12 * float(np.abs(gains).max()):
+        return Estimate(reason="all differences are equal")
+    centre, scale = float(gains.mean()), float(gains.std())
+    scaled = (gains - centre) / scale  # squares of large numbers would cancel
+
+    def effect(first: Floats, second: Floats, count: Floats) -> Floats:
+        spread = np.sqrt(second / count - (first / count) ** 2)
+        return np.asarray((first / count + centre / scale) / spread)
+
+    unbiased = math.sqrt((len(gains) - 1) / len(gains))
+    found = c.bootstrap(c.weighted(effect, scaled, scaled**2), groups, level)
+    ends = (None if x is None else x * unbiased for x in (found.value, found.low, found.high))
+    value, low, high = ends
+    return Estimate(value=value, low=low, high=high, reason=found.reason)
+
+
+def _ranked(
+    found: Comparison, pair: _Pair, groups: Clusters, level: float
+) -> tuple[Comparison, int]:
+    """What only asks which is better, over all pairs."""
+    contrasts, undecided = pair.contrasts()
+    ranks = signed_ranks(contrasts)
+    won = 0.5 + np.sign(contrasts) / 2
+    half = float(undecided.mean()) / 2
+    improvement = _clipped(c.mean(won, groups, level), 0.0, 1.0)
+    share = float(won.mean())
+    biserial = c.ratio(ranks.astype(float), double_ranks(contrasts).astype(float), groups, level)
+    ended = replace(
+        found,
+        wins=int((contrasts > 0).sum()),
+        losses=int((contrasts < 0).sum()),
+        ties=int(((contrasts == 0) & ~undecided).sum()),
+        undecided=int(undecided.sum()),
+        rank_biserial=_clipped(biserial, -1.0, 1.0),
+        improvement=improvement,
+        improvement_bounds=(share - half, share + half),
+        p=p_value(ranks, groups),
+    )
+    return ended, int(np.sign(ranks.sum()))
+
+
+def _clipped(found: Estimate, least: float, most: float) -> Estimate:
+    low = None if found.low is None else max(found.low, least)
+    high = None if found.high is None else min(found.high, most)
+    return Estimate(value=found.value, low=low, high=high, reason=found.reason)
+
+
+def _contradicts(found: Comparison, direction: int) -> bool:
+    sign = direction if found.better == "higher" else -direction
+    low, high = found.difference.low, found.difference.high
+    if low is None or high is None:
+        return False
+    return high < 0 if sign > 0 else low > 0

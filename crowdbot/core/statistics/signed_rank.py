@@ -1,0 +1,94 @@
+"""Wilcoxon's signed ranks where the draw is the unit that chance decides about.
+
+Ranks are given to all pairs and signs are flipped for whole draws together: under "no
+difference", exchanging the planners' names within a draw leaves the distribution as it is. This
+holds whatever the pairs of one draw have in common, so that the test keeps its level with few
+draws and with unequal ones; Wilcoxon's own table takes every pair for a witness of its own. With
+one pair a draw both are the same test.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.statistics.clusters import Clusters, Floats
+
+_EXACT_DRAWS = 24  # 2**12 sums of either half
+_EXACT_TOTAL = 200_000  # length of an exact distribution, where there are more draws
+
+
+def double_ranks(contrasts: Floats) -> NDArray[np.int64]:
+    """Twice the ranks of the absolute values, whole numbers; ties share the mean of their ranks.
+
+    Infinite contrasts tie at the top; zeros are ranked, too, which is Pratt's way (1959).
+    """
+    _, inverse, counts = np.unique(np.abs(contrasts), return_inverse=True, return_counts=True)
+    return np.asarray((2 * np.cumsum(counts) - counts + 1)[inverse], dtype=np.int64)
+
+
+def signed_ranks(contrasts: Floats) -> NDArray[np.int64]:
+    """`double_ranks` with the signs of the contrasts; those of zeros are 0."""
+    return np.sign(contrasts).astype(np.int64) * double_ranks(contrasts)
+
+
+def p_value(ranks: NDArray[np.int64], clusters: Clusters) -> float:
+    """Two-sided p: how often flipped draws give a sum of ranks at least as far from zero.
+
+    Exact for up to 24 draws, and for more of them while the sums are small; normal beyond.
+    """
+    sums = np.rint(clusters.sums(ranks.astype(float))).astype(np.int64)
+    seen, parts = abs(int(sums.sum())), np.abs(sums[sums != 0])
+    if not seen:
+        return 1.0
+    if len(parts) <= _EXACT_DRAWS:
+        return _by_halves(parts, seen)
+    if parts.sum() <= _EXACT_TOTAL:
+        return _by_sums(parts, seen)
+    spread = float(np.sqrt(np.sum(parts.astype(float) ** 2)))
+    return float(math.erfc(seen / spread / math.sqrt(2)))
+
+
+def _by_halves(parts: NDArray[np.int64], seen: int) -> float:
+    """All 2**G sums, as those of two halves met in the middle; upper tail twice."""
+    half = len(parts) // 2
+    first, second = _all_sums(parts[:half]), np.sort(_all_sums(parts[half:]))
+    reached = len(second) - np.searchsorted(second, seen - first, side="left")
+    return min(1.0, 2 * float(reached.sum()) / 2 ** len(parts))
+
+
+def _all_sums(parts: NDArray[np.int64]) -> NDArray[np.int64]:
+    found = np.zeros(1, dtype=np.int64)
+    for part in parts:
+        found = np.concatenate([found + part, found - part])
+    return found
+
+
+def _by_sums(parts: NDArray[np.int64], seen: int) -> float:
+    """The distribution of the positive sum, draw by draw; signs change it by two each."""
+    total = int(parts.sum())
+    chance = np.zeros(total + 1)
+    chance[0] = 1.0
+    for part in parts:
+        moved = np.zeros_like(chance)
+        moved[part:] = chance[: total + 1 - part]
+        chance = (chance + moved) / 2
+    least = -((-(seen + total)) // 2)  # S = 2 P - total >= seen
+    return min(1.0, 2 * float(chance[least:].sum()))
+
+
+def least_p(draws: int) -> float:
+    """The smallest p that so many draws can give."""
+    return float(2.0 ** (1 - draws))
+
+
+def holm(p_values: Floats) -> Floats:
+    """Holm's step-down adjustment (1979): controls the chance of any false finding."""
+    order = np.argsort(p_values, kind="stable")
+    factors = len(p_values) - np.arange(len(p_values))
+    adjusted = np.minimum(1.0, np.maximum.accumulate(p_values[order] * factors))
+    result = np.empty_like(adjusted)
+    result[order] = adjusted
+    return result

@@ -1,0 +1,183 @@
+"""Everything that is computed of a campaign's results, at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from crowdbot.core.results.rows import Results
+from crowdbot.core.statistics import clusters as c
+from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, axis_effects, densities
+from crowdbot.core.statistics.clusters import Clusters
+from crowdbot.core.statistics.comparison import Comparison, compare, judged
+from crowdbot.core.statistics.estimate import Counts, Estimate
+from crowdbot.core.statistics.signed_rank import holm
+from crowdbot.core.statistics.table import Name, Table
+
+#: Reasons of scores whose data no simulated run has; they are left out where all runs say so.
+_NOT_ASKED = {"no_command", "no_answers", "no_formula_in_seed"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlannerScore:
+    """One score of one planner over all its runs.
+
+    Attributes:
+        counts: how the runs ended; ``reasons`` says why values are missing -> how often.
+        draws: independent crowd draws among the values.
+        mean, iqm: over the values that exist (``counts.ok``), with intervals.
+        least, quartiles, most: of these values; None without any.
+    """
+
+    planner: str
+    metric: str
+    variant: str
+    category: str
+    symbol: str
+    unit: str
+    better: str
+    counts: Counts
+    reasons: Mapping[str, int]
+    draws: int
+    mean: Estimate
+    iqm: Estimate
+    least: float | None
+    quartiles: tuple[float, float, float] | None
+    most: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Summary:
+    """What is known after some runs.
+
+    Attributes:
+        planners: sorted.
+        scores: by metric, variant and planner.
+        comparisons: of each pair of planners in each score.
+        axes: effect of each axis on each score of each planner.
+        densities: how dense the crowds really were.
+        level: of all intervals.
+        alpha: chance of any false verdict in the whole summary.
+        tests: how many comparisons `alpha` is shared by (Holm).
+    """
+
+    planners: tuple[str, ...]
+    scores: tuple[PlannerScore, ...]
+    comparisons: tuple[Comparison, ...]
+    axes: tuple[AxisEffect, ...]
+    densities: tuple[DensityLevel, ...]
+    level: float
+    alpha: float
+    tests: int
+
+    def comparison(self, metric: str, a: str, b: str) -> Comparison | None:
+        """The comparison of two planners in a metric as it was computed, a before b."""
+        found = (x for x in self.comparisons if (x.metric, x.a, x.b) == (metric, a, b))
+        return next(found, None)
+
+    def ranks(self, metric: str) -> dict[str, int]:
+        """Planner -> 1 + how many are better for certain; equal ranks are not distinguishable.
+
+        Empty where the metric is not ranked.
+        """
+        here = [x for x in self.comparisons if x.metric == metric and x.verdict != "not ranked"]
+        ranks = {planner: 1 for x in here for planner in (x.a, x.b)}
+        for x in here:
+            if x.verdict in ("better", "worse"):
+                ranks[x.b if x.verdict == "better" else x.a] += 1
+        return ranks
+
+
+def headline_names(table: Table) -> tuple[Name, ...]:
+    """One variant of each metric, the same for all runs.
+
+    That is ``corrected``; where it has fewer values than ``restricted``, which is made for records
+    that end too early, that one; else the first. Metrics that no run has data for are left out.
+    """
+    variants: dict[str, list[Name]] = {}
+    for name in table.names:
+        if _is_asked(table, name):
+            variants.setdefault(name[0], []).append(name)
+    return tuple(_headline(table, names) for names in variants.values())
+
+
+def summarise(
+    results: Results,
+    names: Sequence[Name] | None = None,
+    *,
+    level: float = 0.95,
+    alpha: float = 0.05,
+) -> Summary:
+    """All statistics of some results.
+
+    Args:
+        results: from a store.
+        names: (metric, variant) to look at; default `headline_names`. They are the family that
+            Holm's correction is for, together with all pairs of planners.
+        level: of intervals.
+        alpha: chance of any false verdict.
+    """
+    table = Table(results)
+    chosen = headline_names(table) if names is None else tuple(names)
+    pairs = list(combinations(table.planners, 2))
+    found = [compare(table, name, a, b, level=level) for name in chosen for a, b in pairs]
+    tested = [i for i, (x, _) in enumerate(found) if x.p is not None]
+    adjusted = holm(np.array([found[i][0].p for i in tested], dtype=float))
+    p_holm = dict(zip(tested, adjusted.tolist(), strict=True))
+    everybody = [(name, planner) for name in chosen for planner in table.planners]
+    return Summary(
+        planners=table.planners,
+        scores=tuple(_planner_score(table, name, p, level) for name, p in everybody),
+        comparisons=tuple(judged(x, d, p_holm.get(i), alpha) for i, (x, d) in enumerate(found)),
+        axes=tuple(e for name, p in everybody for e in axis_effects(table, name, p)),
+        densities=densities(table),
+        level=level,
+        alpha=alpha,
+        tests=len(tested),
+    )
+
+
+def _planner_score(table: Table, name: Name, planner: str, level: float) -> PlannerScore:
+    column, label = table.column(name, planner), table.label(name)
+    values = column.low[column.known]
+    groups = Clusters.of(table.draws).part(column.known)
+    quartiles = np.quantile(values, [0.25, 0.5, 0.75]).tolist() if len(values) else None
+    nothing = Estimate(reason=c.NO_RUNS)
+    return PlannerScore(
+        planner=planner,
+        metric=name[0],
+        variant=name[1],
+        category=label.category,
+        symbol=label.symbol,
+        unit=label.unit,
+        better=label.better,
+        counts=column.counts,
+        reasons=column.reasons,
+        draws=groups.count,
+        mean=c.mean(values, groups, level),
+        iqm=c.bootstrap(c.trimmed_mean(values), groups, level) if len(values) else nothing,
+        least=float(values.min()) if len(values) else None,
+        quartiles=(quartiles[0], quartiles[1], quartiles[2]) if quartiles else None,
+        most=float(values.max()) if len(values) else None,
+    )
+
+
+def _is_asked(table: Table, name: Name) -> bool:
+    columns = [table.column(name, planner) for planner in table.planners]
+    reasons = {reason for column in columns for reason in column.reasons}
+    return any(column.known.any() for column in columns) or not reasons & _NOT_ASKED
+
+
+def _headline(table: Table, names: Sequence[Name]) -> Name:
+    by_variant = {variant: (metric, variant) for metric, variant in names}
+    corrected, restricted = by_variant.get("corrected"), by_variant.get("restricted")
+    if corrected and restricted and _values(table, restricted) > _values(table, corrected):
+        return restricted
+    return corrected or names[0]
+
+
+def _values(table: Table, name: Name) -> int:
+    return sum(table.column(name, planner).counts.ok for planner in table.planners)

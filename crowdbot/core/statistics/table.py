@@ -1,0 +1,147 @@
+"""Results laid out by what is paired: scenario and seed in rows, planners in columns."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.results.rows import Results, RunRow, ScoreRow
+from crowdbot.core.statistics.clusters import Floats
+from crowdbot.core.statistics.estimate import OUTCOMES, Counts
+
+#: Suite, scenario, seed: what runs are paired by.
+Key = tuple[str, str, int]
+#: Metric and variant.
+Name = tuple[str, str]
+
+OK, CENSORED, UNDEFINED, FAILED, MISSING = range(len(OUTCOMES))
+
+#: What people score in metrics that compare with them, where it is not 1, the ratio of equals.
+#: None: it is not among the scores, so that no distance can be told.
+REFERENCES: Mapping[str, float | None] = {"overtaking_count": None}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Column:
+    """One score of one planner in every row of the table.
+
+    Attributes:
+        outcome: (n,) index into `OUTCOMES`.
+        low, high: (n,) bounds of the value: equal where it is known, infinite where nothing is.
+        reasons: why values are missing -> how often.
+    """
+
+    outcome: NDArray[np.int8]
+    low: Floats
+    high: Floats
+    reasons: Mapping[str, int]
+
+    @property
+    def known(self) -> NDArray[np.bool_]:
+        """Where there is a value."""
+        return np.asarray(self.outcome == OK)
+
+    @property
+    def counts(self) -> Counts:
+        """How many of each."""
+        found = np.bincount(self.outcome, minlength=len(OUTCOMES))
+        return Counts(**dict(zip(OUTCOMES, map(int, found), strict=True)))
+
+
+class Table:
+    """Rows are scenario x seed, columns planner x score.
+
+    A run that could not be made (`Results.failures`) counts as failed unless it was made after all.
+    """
+
+    def __init__(self, results: Results) -> None:
+        self.runs = {(r.planner, _key(r)): r for r in results.runs}
+        made = {(f.planner, (f.suite, f.scenario, f.seed)): f.error for f in results.failures}
+        self.failures = {place: why for place, why in made.items() if place not in self.runs}
+        places = [*self.runs, *self.failures]
+        self.keys: tuple[Key, ...] = tuple(dict.fromkeys(key for _, key in places))
+        self.planners = tuple(sorted({planner for planner, _ in places}))
+        self._rows = _by_score(results.scores)
+        self._columns: dict[tuple[Name, str], Column] = {}
+
+    @cached_property
+    def names(self) -> tuple[Name, ...]:
+        """All scores, sorted."""
+        return tuple(sorted(self._rows))
+
+    def label(self, name: Name) -> ScoreRow:
+        """A row that says unit, category and direction of a score."""
+        return next(iter(self._rows[name].values()))
+
+    @cached_property
+    def draws(self) -> tuple[str, ...]:
+        """The crowd draw of each row; where nobody walks, the scenario itself."""
+        found = {key: _draw(run) for (_, key), run in self.runs.items()}
+        known = {key[:2]: draw for key, draw in found.items()}
+        return tuple(found.get(k) or known.get(k[:2]) or f"{k[0]}/{k[1]}" for k in self.keys)
+
+    def reference(self, name: Name) -> float | None:
+        """What a score that compares with people is to be near to."""
+        return REFERENCES.get(name[0], 1.0)
+
+    def column(self, name: Name, planner: str) -> Column:
+        """One score of one planner."""
+        if (name, planner) not in self._columns:
+            self._columns[name, planner] = self._column(name, planner)
+        return self._columns[name, planner]
+
+    def _column(self, name: Name, planner: str) -> Column:
+        rows, reasons = self._rows.get(name, {}), Counter[str]()
+        outcome = np.full(len(self.keys), MISSING, dtype=np.int8)
+        low, high = np.full(len(self.keys), -math.inf), np.full(len(self.keys), math.inf)
+        for place, key in enumerate(self.keys):
+            run = self.runs.get((planner, key))
+            kind, why, bounds = _read(run, rows.get(run.run_id) if run else None)
+            if run is None and (planner, key) in self.failures:
+                kind, why = FAILED, "no_run"
+            outcome[place], (low[place], high[place]) = kind, bounds
+            reasons.update([why] if why else [])
+        return Column(outcome, low, high, dict(sorted(reasons.items())))
+
+
+def _by_score(scores: Sequence[ScoreRow]) -> dict[Name, dict[str, ScoreRow]]:
+    found: dict[Name, dict[str, ScoreRow]] = {}
+    for row in scores:
+        found.setdefault((row.metric, row.variant), {})[row.run_id] = row
+    return found
+
+
+def _key(run: RunRow) -> Key:
+    return run.suite, run.scenario, run.seed
+
+
+def _draw(run: RunRow) -> str:
+    return f"{run.suite}/{run.scenario}" if run.density is None else run.realisation_hash
+
+
+def _read(run: RunRow | None, score: ScoreRow | None) -> tuple[int, str, tuple[float, float]]:
+    """Outcome, reason and bounds of one score of one run."""
+    nothing = (-math.inf, math.inf)
+    if run is None:
+        return MISSING, "", nothing
+    if run.status == "planner_failed":
+        return FAILED, "planner_failed", nothing
+    if score is None:
+        return UNDEFINED, "not_scored", nothing
+    if score.status == "censored":
+        return CENSORED, score.reason, (_end(score.lower, -1.0), _end(score.upper, 1.0))
+    if score.status != "ok" or score.value is None:
+        return UNDEFINED, score.reason or "no_value", nothing
+    if not math.isfinite(score.value):
+        return UNDEFINED, "not_finite", nothing
+    return OK, "", (score.value, score.value)
+
+
+def _end(bound: float | None, side: float) -> float:
+    return side * math.inf if bound is None or math.isnan(bound) else bound
