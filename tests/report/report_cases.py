@@ -110,7 +110,7 @@ def _run(suite: str, named: dict[str, str], planner: str, seed: int, skill: floa
         goal_time=goal_time,
         sim_time=sim_time,
         wall_time=float(rng.uniform(4, 12)),
-        privileged=planner == "orca_lookahead",
+        privileged=planner.endswith("+privileged"),
         pinned=True,
         spec_hash=f"cb1-sha256:{zlib.crc32(scenario.encode()):064x}",
         realisation_hash=f"cb1-sha256:{zlib.crc32(drawn.encode()):064x}",
@@ -124,7 +124,7 @@ def _run(suite: str, named: dict[str, str], planner: str, seed: int, skill: floa
 
 def conditions(**changed: str) -> dict[str, str]:
     """What all runs have in common."""
-    return {"rate.log": "16 Hz", "version.crowdbot": "0.1.0", **changed}
+    return {"rates.log": "16 Hz", "versions.crowdbot": "0.1.0", **changed}
 
 
 def record(planner: str) -> dict[str, Any]:

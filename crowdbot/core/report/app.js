@@ -29,7 +29,7 @@ function start() {
   });
   let width = innerWidth;
   addEventListener("resize", () => {
-    if (innerWidth !== width) drawDistribution();
+    if (innerWidth !== width) drawChosen();
     width = innerWidth;
   });
   addEventListener("beforeprint", () => openDetails(true));

@@ -20,15 +20,19 @@ function buildCards() {
   };
   const later = () => {
     clearTimeout(leaving);
-    leaving = setTimeout(() => owner !== document.activeElement && close(), 160);
+    leaving = setTimeout(() => owner && owner !== document.activeElement && close(), 160);
   };
   const named = (event) => event.target.closest?.("[data-card]");
   document.addEventListener("pointerover", (event) => {
-    if (named(event)) open(named(event));
+    const button = named(event);
+    if (button && button !== owner) {
+      clearTimeout(leaving);
+      leaving = setTimeout(() => open(button), 120);
+    } else if (button) clearTimeout(leaving);
     else if (card.contains(event.target)) clearTimeout(leaving);
   });
   document.addEventListener("pointerout", (event) => {
-    if (owner && (named(event) || card.contains(event.target))) later();
+    if (named(event) || card.contains(event.target)) later();
   });
   document.addEventListener("focusin", (event) => (named(event) ? open(named(event)) : close()));
   document.addEventListener("keydown", (event) => event.key === "Escape" && close());
@@ -43,7 +47,7 @@ function cardOf(s) {
   const rows = about.head.map(([name, text]) => el("div", {}, el("dt", { text: name }), el("dd", {}, marked(text))));
   const variant = about.variants[series.variant];
   return [
-    heading, el("p", {}, marked(about.summary)), about.formula ? el("pre", { text: about.formula }) : null,
+    heading, el("p", {}, marked(about.summary)), about.formula ? el("pre", {}, marked(about.formula)) : null,
     variant ? el("p", {}, el("b", { text: `${words(series.variant)}: ` }), marked(variant)) : null,
     el("dl", {}, rows),
     about.literal ? el("p", { class: "muted" }, el("b", { text: "Literal form: " }), marked(about.literal)) : null,

@@ -3,6 +3,7 @@
 let report; // the document
 const OK = 0;
 const ABSENT = 65535;
+const FAILED = ["planner_failed", "failed"];
 const WITHOUT_VALUE = [
   ["censored", "censored"], ["undefined", "undefined"], ["failed", "failed"], ["absent", "not scored"],
 ];
@@ -43,6 +44,9 @@ function quantile(sorted, q) {
   return sorted[k] + (place - k) * ((sorted[k + 1] ?? sorted[k]) - sorted[k]);
 }
 
+const centreName = (series) => (series.share ? "share" : "interquartile mean");
+const mean = (sorted) => sorted.reduce((sum, x) => sum + x, 0) / sorted.length;
+
 /** Mean of the middle half of sorted numbers; those at its ends count in part. */
 function interquartileMean(sorted) {
   const [from, to] = [sorted.length / 4, (3 * sorted.length) / 4];
@@ -66,14 +70,14 @@ function describe(series, runs) {
     runs: runs.length,
     ok: sorted.length,
     sorted,
-    iqm: interquartileMean(sorted),
+    centre: report.series[series].share ? mean(sorted) : interquartileMean(sorted),
     q1: quantile(sorted, 0.25),
     median: quantile(sorted, 0.5),
     q3: quantile(sorted, 0.75),
   };
 }
 
-/** Interquartile mean with its interval, where Python has worked it out for this selection. */
+/** Interquartile mean (or share) with its interval, where Python has worked it out for this selection. */
 function intervalOf(selection, series, planner) {
   const place = selection === null ? -1 : report.stats.selections.indexOf(selection);
   if (place < 0) return null;

@@ -1,6 +1,6 @@
 // How one score is distributed over the runs: dots with a box, or cumulative curves.
 
-const LEFT = 150;
+let left = 150; // room for the names of planners
 const RIGHT = 118;
 const ROW = 74;
 
@@ -11,10 +11,11 @@ function drawDistribution() {
     const runs = selectedRuns(p);
     return { planner: p, runs, about: describe(state.series, runs) };
   });
+  left = Math.min(230, 70 + 7 * Math.max(0, ...rows.map((row) => shortened(row.planner).length)));
   const width = Math.max(480, box.clientWidth || 900);
   const values = rows.flatMap((row) => [...row.about.sorted]);
   const marks = series.reference ? [series.reference.value] : [];
-  const x = scale(spanOf(values, marks), [LEFT, width - RIGHT], 7);
+  const x = scale(spanOf(values, marks), [left, width - RIGHT], 7);
   const picture = state.chart === "ecdf" ? drawCurves(rows, x, width) : drawStrips(rows, x, width);
   picture.setAttribute("aria-label", distributionText(series, rows));
   box.replaceChildren(picture);
@@ -39,7 +40,7 @@ function canvas(width, height, ...children) {
 function strip({ planner, runs, about }, x, top, width) {
   const middle = top + ROW / 2 - 8;
   const group = svg("g", {}, planner === 0 ? null : svg("line", { class: "rule", x1: 0, x2: width, y1: top, y2: top }));
-  group.append(marker(planner, 10, top + 22, 5), label(report.planners[planner].label, 22, top + 26));
+  group.append(marker(planner, 10, top + 22, 5), label(shortened(planner), 22, top + 26));
   const dots = svg("g", { class: `dots p${planner % SHAPES.length}` });
   const beyond = [0, 0];
   runs.forEach((run, k) => {
@@ -76,8 +77,14 @@ function boxOf(planner, about, x, y) {
   if (known && Number.isFinite(known.low)) {
     group.append(svg("line", { class: "whisker", x1: inside(known.low), x2: inside(known.high), y1: y, y2: y }));
   }
-  group.append(marker(planner, inside(about.iqm), y, 5, "ringed"));
+  group.append(marker(planner, inside(about.centre), y, 5, "ringed"));
   return group;
+}
+
+/** A planner's name, cut to what there is room for; the table has it in full. */
+function shortened(planner) {
+  const name = report.planners[planner].label;
+  return name.length > 22 ? `${name.slice(0, 21)}…` : name;
 }
 
 function label(text, x, y, kind = "label", anchor = "start") {
@@ -105,8 +112,8 @@ function drawCurves(rows, x, width) {
   const reference = report.series[state.series].reference;
   const picture = canvas(width, height + 18, bottomAxis(x, 12, height - 8, reference));
   for (const tick of y.ticks) {
-    picture.append(svg("line", { class: "grid", x1: LEFT, x2: width - RIGHT, y1: round(y.place(tick)), y2: round(y.place(tick)) }),
-      label(`${Math.round(100 * tick)} %`, LEFT - 8, y.place(tick) + 4, "tick", "end"));
+    picture.append(svg("line", { class: "grid", x1: left, x2: width - RIGHT, y1: round(y.place(tick)), y2: round(y.place(tick)) }),
+      label(`${Math.round(100 * tick)} %`, left - 8, y.place(tick) + 4, "tick", "end"));
   }
   rows.forEach(({ planner, runs, about }, i) => {
     let path = `M${round(x.place(x.low))} ${round(y.place(0))}`;
@@ -123,14 +130,14 @@ function drawCurves(rows, x, width) {
       if (k >= 0 && k < about.ok) picture.append(marker(planner, Math.min(x.place(x.high), Math.max(x.place(x.low), x.place(about.sorted[k]))), y.place((k + 1) / runs.length), 4.5, "ringed"));
     }
     const top = 24 + 56 * i;
-    picture.append(marker(planner, 10, top, 5), label(report.planners[planner].label, 22, top + 4), counts(about, width - RIGHT + 14, top));
+    picture.append(marker(planner, 10, top, 5), label(shortened(planner), 22, top + 4), counts(about, width - RIGHT + 14, top));
   });
   return picture;
 }
 
 function distributionText(series, rows) {
   const parts = rows.map(({ planner, about }) => `${report.planners[planner].label}: ` +
-    `interquartile mean ${digits(about.iqm)}, quartiles ${digits(about.q1)}, ${digits(about.median)}, ` +
+    `${centreName(series)} ${digits(about.centre)}, quartiles ${digits(about.q1)}, ${digits(about.median)}, ` +
     `${digits(about.q3)}, ${about.ok} values, ${about.censored} censored, ${about.undefined} undefined`);
   return `${words(series.metric)}, ${words(series.variant)}. ${parts.join(". ")}.`;
 }
@@ -138,9 +145,9 @@ function distributionText(series, rows) {
 function distributionNote(series, rows, x) {
   const parts = [];
   if (state.chart === "strip") {
-    parts.push("A dot is a run; the bar is the middle half of the runs, the tick its median, the mark the interquartile mean.");
+    parts.push(`A dot is a run; the bar is the middle half of the runs, the tick its median, the mark the ${centreName(series)}.`);
     if (selectionName() === null) parts.push("Intervals are worked out for all runs and for one value of one parameter only, so there is none here.");
-    else parts.push(`The thin line is the ${report.stats.level} % interval of the interquartile mean.`);
+    else parts.push(`The thin line is the ${report.stats.level} % interval of the ${centreName(series)}.`);
     if (rows.some(({ about }) => about.censored)) parts.push("Hollow arrows are censored runs: the value lies on the side to which they point.");
   } else {
     parts.push("Share of all runs with a value up to this; a curve that ends below 100 % has runs without a value.");

@@ -81,13 +81,13 @@ def encode_runs(
         "seed": [a.seed for a in tried],
         "status": [statuses.place(status_of(a)) for a in tried],
         "reason": [reasons.place(_reason(a)) for a in tried],
-        "axes": [[_index(axis["labels"], one.get(axis["name"])) for one in labels] for axis in axes],
+        "axes": [
+            [_index(axis["labels"], one.get(axis["name"])) for one in labels] for axis in axes
+        ],
         "time": [None if r is None else round(r.sim_time, 3) for r in runs],
         "density": [None if r is None else r.density for r in runs],
         "replay": [None if r is None else replays.get(r.run_id) for r in runs],
-        "traceback": {
-            i: a.traceback for i, a in enumerate(tried) if isinstance(a, FailureRow)
-        },
+        "traceback": {i: a.traceback for i, a in enumerate(tried) if isinstance(a, FailureRow)},
     }
     names = {"scenarios": scenarios.texts, "statuses": statuses.texts, "reasons": reasons.texts}
     return {"runs": columns, **names}

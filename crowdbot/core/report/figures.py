@@ -19,7 +19,7 @@ from crowdbot.core.report.series import Series
 from crowdbot.core.results.rows import Results
 from crowdbot.core.statistics import Comparison, Estimate, Name, Summary, Table, summarise
 from crowdbot.core.statistics.axes import REALISED_DENSITY
-from crowdbot.core.statistics.clusters import Clusters, bootstrap, trimmed_mean
+from crowdbot.core.statistics.clusters import Clusters, bootstrap, mean, trimmed_mean
 
 #: What the page is told of a comparison, in this order.
 FIELDS = (
@@ -29,6 +29,7 @@ FIELDS = (
 )  # fmt: skip
 VERDICTS = ("better", "worse", "not distinguishable", "not ranked")
 
+_Triple = tuple[float, float, float]
 _Numbers = NDArray[np.float64]
 
 
@@ -60,7 +61,9 @@ class Figures:
         return self.headline.planners
 
 
-def figures(results: Results, series: Sequence[Series], axes: Sequence[Mapping[str, Any]]) -> Figures:
+def figures(
+    results: Results, series: Sequence[Series], axes: Sequence[Mapping[str, Any]]
+) -> Figures:
     """Work out everything.
 
     Args:
@@ -98,25 +101,29 @@ def _intervals(
     found = np.full((len(selections), len(series), len(table.planners), 3), np.nan)
     for score in (score for summary in summaries for score in summary.scores):
         row = place[score.metric, score.variant], table.planners.index(score.planner)
-        found[0][row] = _numbers(score.iqm)
+        found[0][row] = _share(score.mean) if series[row[0]].share else _numbers(score.iqm)
     for one in series:
         for p, planner in enumerate(table.planners):
-            for k, estimate in _by_label(table, one.name, planner, selections):
-                found[k, place[one.name], p] = _numbers(estimate)
+            for k, numbers in _by_label(table, one, planner, selections):
+                found[k, place[one.name], p] = numbers
     return found
 
 
 def _by_label(
-    table: Table, name: Name, planner: str, selections: Sequence[str]
-) -> Iterator[tuple[int, Estimate]]:
-    """Interquartile means of the runs of each label of each axis."""
-    column = table.column(name, planner)
+    table: Table, one: Series, planner: str, selections: Sequence[str]
+) -> Iterator[tuple[int, _Triple]]:
+    """Interquartile means (or shares) of the runs of each label of each axis."""
+    column = table.column(one.name, planner)
     labels = [_labels(table, planner, key) for key in table.keys]
     for k, selection in enumerate(selections[1:], start=1):
         inside = column.known & np.array([selection in found for found in labels], dtype=bool)
         if inside.any():
             draws = Clusters.of([d for d, i in zip(table.draws, inside, strict=True) if i])
-            yield k, bootstrap(trimmed_mean(column.low[inside]), draws)
+            values = column.low[inside]
+            if one.share:
+                yield k, _share(mean(values, draws))
+            else:
+                yield k, _numbers(bootstrap(trimmed_mean(values), draws))
 
 
 def _labels(table: Table, planner: str, key: tuple[str, str, int]) -> set[str]:
@@ -134,7 +141,10 @@ def _pairs(
     pairs = list(combinations(planners, 2))
     found = np.full((len(series), len(pairs), len(FIELDS)), np.nan)
     for comparison in (c for summary in summaries for c in summary.comparisons):
-        row = place[comparison.metric, comparison.variant], pairs.index((comparison.a, comparison.b))
+        row = (
+            place[comparison.metric, comparison.variant],
+            pairs.index((comparison.a, comparison.b)),
+        )
         found[row] = _fields(comparison, whys)
     return found
 
@@ -163,7 +173,13 @@ def _effects(
     return found
 
 
-def _numbers(estimate: Estimate) -> tuple[float, float, float]:
+def _share(estimate: Estimate) -> _Triple:
+    """A share of runs is not below 0 or above 1, whatever its standard error."""
+    value, low, high = _numbers(estimate)
+    return value, max(low, 0.0), min(high, 1.0)
+
+
+def _numbers(estimate: Estimate) -> _Triple:
     return _number(estimate.value), _number(estimate.low), _number(estimate.high)
 
 

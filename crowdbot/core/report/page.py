@@ -107,8 +107,8 @@ def _first(contents: Contents) -> int:
     """The series that is shown first: one that has a value."""
     known = {(s.metric, s.variant) for s in contents.figures.headline.scores}
     liked = [i for i, s in enumerate(contents.series) if s.name in known]
-    efficient = [i for i in liked if contents.series[i].category == "path efficiency"]
-    return next(iter([*efficient, *liked]), 0)
+    best = [i for i in liked if contents.series[i].metric == "relative_time_to_goal"]
+    return next(iter([*best, *liked]), 0)
 
 
 def _stats(contents: Contents) -> dict[str, Any]:

@@ -8,7 +8,6 @@ function verdictsOf(series, planners) {
 
 /** Who is better than whom, in marks; no order where the difference may be chance. */
 function verdictText(verdicts) {
-  if (!verdicts.length) return el("small", { text: "not worked out for this selection" });
   const decided = verdicts.filter(isClear);
   if (!decided.length) {
     const none = verdicts.every((v) => v.verdict === "not ranked");

@@ -1,15 +1,16 @@
 // One score by the parameters of the suite: a picture for each, and the numbers in a table.
 
-const PANEL = { width: 300, height: 190, left: 46, right: 10, top: 10, bottom: 34 };
+const PANEL = { height: 190, left: 42, right: 6, top: 10, bottom: 30, least: 212, gap: 18 };
 
 function drawParameters() {
   const planners = shownPlanners();
   const panels = report.axes.map((axis, a) => panelRows(axis, a, planners));
   const numbers = panels.flatMap((rows) => rows.flatMap((row) =>
-    row.cells.flatMap(({ about, known }) => (about.ok ? [about.iqm, known?.low, known?.high] : []))));
+    row.cells.flatMap(({ about, known }) => (about.ok ? [about.centre, known?.low, known?.high] : []))));
   const { reference } = report.series[state.series];
-  const y = scale(spanOf(numbers, reference ? [reference.value] : []), [PANEL.height - PANEL.bottom, PANEL.top], 4);
-  byId("panels").replaceChildren(...report.axes.map((axis, a) => drawPanel(axis, a, panels[a], y, planners)));
+  const y = scale(wholeSpan(numbers, reference ? [reference.value] : []), [PANEL.height - PANEL.bottom, PANEL.top], 4);
+  const width = panelWidth(byId("panels").clientWidth || 900);
+  byId("panels").replaceChildren(...report.axes.map((axis, a) => drawPanel(axis, a, panels[a], { y, width }, planners)));
   drawParameterTable(panels.flat(), planners);
   byId("parameters-note").textContent = parametersNote();
 }
@@ -34,8 +35,14 @@ function densityOf(runs) {
   return { low: Math.min(...seen), mean: seen.reduce((s, d) => s + d, 0) / seen.length, high: Math.max(...seen) };
 }
 
-function drawPanel(axis, a, rows, y, planners) {
-  const { width, height, left, right, bottom } = PANEL;
+/** As many panels in a row as there is room for. */
+function panelWidth(room) {
+  const columns = Math.max(1, Math.floor((room + PANEL.gap) / (PANEL.least + PANEL.gap)));
+  return (room - PANEL.gap * (columns - 1)) / columns;
+}
+
+function drawPanel(axis, a, rows, { y, width }, planners) {
+  const { height, left, right, bottom } = PANEL;
   const x = (l) => left + ((l + 0.5) * (width - left - right)) / rows.length;
   const spread = Math.min(13, (width - left - right) / rows.length / (planners.length + 1));
   const picture = canvas(width, height);
@@ -62,14 +69,14 @@ function trend(planner, cells, place, y) {
   const kind = `p${planner % SHAPES.length}`;
   const group = svg("g", { class: kind });
   const inside = (v) => round(Math.min(y.place(y.low), Math.max(y.place(y.high), y.place(v))));
-  const points = cells.map(({ about }, l) => (about.ok ? [round(place(l)), inside(about.iqm)] : null));
+  const points = cells.map(({ about }, l) => (about.ok ? [round(place(l)), inside(about.centre)] : null));
   const path = points.map((p, l) => (p ? `${points[l - 1] ? "L" : "M"}${p[0]} ${p[1]}` : "")).join("");
   group.append(svg("path", { class: `trend ${kind}`, d: path || "M0 0" }));
   cells.forEach(({ about, known }, l) => {
     if (known && Number.isFinite(known.low)) {
       group.append(svg("line", { class: "whisker", x1: round(place(l)), x2: round(place(l)), y1: inside(known.low), y2: inside(known.high) }));
     }
-    if (about.ok) group.append(marker(planner, place(l), inside(about.iqm), 4.5, "ringed"));
+    if (about.ok) group.append(marker(planner, place(l), inside(about.centre), 4.5, "ringed"));
   });
   return group;
 }
@@ -82,18 +89,18 @@ function axisEffectText(a, planners) {
 }
 
 function drawParameterTable(rows, planners) {
-  const decimals = decimalsFor(rows.flatMap((row) => row.cells.map((c) => c.about.iqm)));
+  const decimals = decimalsFor(rows.flatMap((row) => row.cells.map((c) => c.about.centre)));
   const columns = [
     { text: "parameter", key: (row) => row.axis.name },
     { text: "value", key: (row) => row.text },
     { text: "people per m², realised", numeric: true, key: (row) => row.density?.mean },
-    ...planners.map((p, i) => ({ node: planned(p), numeric: true, key: (row) => row.cells[i].about.iqm })),
+    ...planners.map((p, i) => ({ node: planned(p), numeric: true, key: (row) => row.cells[i].about.centre })),
   ];
   sortable(byId("parameters-table"), columns, rows, (row) => el("tr", {},
     el("th", { scope: "row", text: words(row.axis.name) }), el("td", { text: row.text }),
     row.density ? numberCell(format(row.density.mean, 3), interval(row.density.low, row.density.high, 3)) : numberCell("–"),
-    row.cells.map(({ about, known }) => el("td", { class: "number" }, el("b", { text: format(about.iqm, decimals) }),
-      el("small", { text: known ? interval(known.low, known.high, decimals) : interval(about.q1, about.q3, decimals), class: known ? null : "quartile" }),
+    row.cells.map(({ about, known }) => el("td", { class: "number" }, el("b", { text: format(about.centre, decimals) }),
+      el("small", { text: known ? interval(known.low, known.high, decimals) : quartileText(about, report.series[state.series], decimals), class: known ? null : "quartile" }),
       missingChips(about)))));
 }
 

@@ -25,6 +25,17 @@ function spanOf(numbers, marks = []) {
   const reach = 5 * (q3 - q1);
   if (reach > 0 && high > q3 + reach) high = Math.min(high, Math.max(quantile(sorted, 0.99), q3 + reach));
   if (reach > 0 && low < q1 - reach) low = Math.max(low, Math.min(quantile(sorted, 0.01), q1 - reach));
+  return widened([low, high], marks);
+}
+
+/** Everything. */
+function wholeSpan(numbers, marks = []) {
+  const known = numbers.filter(Number.isFinite);
+  return known.length ? widened([Math.min(...known), Math.max(...known)], marks) : [0, 1];
+}
+
+/** With some room, and with the marks that are near. */
+function widened([low, high], marks) {
   for (const mark of marks) {
     const near = mark >= low - 0.5 * (high - low) && mark <= high + 0.5 * (high - low);
     if (near) [low, high] = [Math.min(low, mark), Math.max(high, mark)];

@@ -11,14 +11,16 @@ function drawScores(choose) {
   const runs = Object.fromEntries(planners.map((p) => [p, selectedRuns(p)]));
   const all = shownSeries().map((s) => scoreRow(s, planners, runs));
   const rows = all.filter((row) => row.abouts.some((a) => a.ok || a.censored));
+  const compared = rows.some((row) => row.verdicts.length);
   const columns = [
     { text: "score", key: (row) => `${report.series[row.series].metric} ${row.series}` },
-    ...planners.map((p, i) => ({ node: planned(p), numeric: true, key: (row) => row.abouts[i].iqm })),
-    { text: "spread" },
-    ...(planners.length > 1 ? [{ text: "difference", key: (row) => row.evidence }] : []),
+    ...planners.map((p, i) => ({ node: [planned(p), endings(runs[p])], numeric: true, key: (row) => row.abouts[i].centre })),
+    { text: "spread", kind: "spread" },
+    ...(compared ? [{ text: "difference", kind: "verdict", key: (row) => row.evidence }] : []),
   ];
-  const sorted = { metric: { column: 0, up: true }, evidence: { column: columns.length - 1, up: true } };
+  const sorted = { metric: { column: 0, up: true }, evidence: compared ? { column: columns.length - 1, up: true } : null };
   const table = byId("scores-table");
+  table.classList.toggle("many", planners.length > 4);
   const draw = (row) => drawScoreRow(row, planners, choose);
   sortable(table, columns, rows, draw, sorted[state.order] ?? { column: -1, up: true });
   if (state.order === "category") groupByCategory(table, rows);
@@ -37,16 +39,21 @@ function scoreRow(series, planners, runs) {
 
 function drawScoreRow(row, planners, choose) {
   const series = report.series[row.series];
-  const decimals = decimalsFor(row.abouts.flatMap((a) => [a.iqm, a.q1, a.q3]));
+  const decimals = decimalsFor(row.abouts.flatMap((a) => (series.share ? [a.centre] : [a.centre, a.q1, a.q3])));
   const cells = row.abouts.map((about, i) => {
     const known = row.known[i];
-    const range = known ? interval(known.low, known.high, decimals) : interval(about.q1, about.q3, decimals);
-    return el("td", { class: "number" }, el("b", { text: format(about.iqm, decimals) }),
-      el("small", { text: range, class: known ? null : "quartile" }), missingChips(about));
+    const range = known ? interval(known.low, known.high, decimals) : quartileText(about, series, decimals);
+    return el("td", { class: "number" }, el("b", { text: format(about.centre, decimals) }),
+      el("small", { text: range, class: known ? null : "quartile" }), missingChips(about, "failed"));
   });
   return el("tr", { "data-score": `${series.metric}.${series.variant}`, class: row.series === state.series ? "chosen" : null },
     scoreHead(row.series, choose), cells, el("td", { class: "spread" }, spreadPicture(row, planners)),
-    planners.length > 1 ? el("td", { class: "verdict" }, verdictText(row.verdicts)) : null);
+    row.verdicts.length ? el("td", { class: "verdict" }, verdictText(row.verdicts)) : null);
+}
+
+/** Quartiles of yes and no say nothing. */
+function quartileText(about, series, decimals) {
+  return series.share ? "" : interval(about.q1, about.q3, decimals);
 }
 
 /** Name, symbol, unit and direction of a score; opens its card, and shows it below. */
@@ -64,9 +71,9 @@ function scoreHead(s, choose) {
 /** For each planner the middle half of its runs and its interquartile mean on one scale. */
 function spreadPicture(row, planners) {
   const height = 8 + 13 * planners.length;
-  const ends = row.abouts.flatMap((a) => (a.ok ? [a.q1, a.q3, a.iqm] : []));
-  const reference = report.series[row.series].reference;
-  const x = scale(spanOf(ends, reference ? [reference.value] : []), [8, SPREAD - 8]);
+  const { reference, share } = report.series[row.series];
+  const ends = row.abouts.flatMap((a) => (!a.ok ? [] : share ? [a.centre] : [a.q1, a.q3, a.centre]));
+  const x = scale(wholeSpan(ends, reference ? [reference.value] : []), [8, SPREAD - 8]);
   const picture = svg("svg", { viewBox: `0 0 ${SPREAD} ${height}`, class: "mini", "aria-hidden": "true" });
   if (reference && reference.value >= x.low && reference.value <= x.high) {
     const place = round(x.place(reference.value));
@@ -75,8 +82,10 @@ function spreadPicture(row, planners) {
   row.abouts.forEach((about, i) => {
     const y = 10 + 13 * i;
     if (!about.ok) return;
-    picture.append(svg("line", { class: `middle p${planners[i] % SHAPES.length}`, x1: round(x.place(about.q1)), x2: round(x.place(about.q3)), y1: y, y2: y }),
-      marker(planners[i], x.place(about.iqm), y, 4, "ringed"));
+    if (!share) {
+      picture.append(svg("line", { class: `middle p${planners[i] % SHAPES.length}`, x1: round(x.place(about.q1)), x2: round(x.place(about.q3)), y1: y, y2: y }));
+    }
+    picture.append(marker(planners[i], x.place(about.centre), y, 4, "ringed"));
   });
   return picture;
 }
@@ -93,13 +102,22 @@ function groupByCategory(table, rows) {
   });
 }
 
+/** How many runs a column is made of, and how many of them failed. */
+function endings(runs) {
+  const failed = runs.filter((run) => FAILED.includes(report.statuses[report.runs.status[run]])).length;
+  return el("small", { text: plural(runs.length, "run") }, failed ? ` · ${failed} failed` : "");
+}
+
 /** Scores that no run has a value for: named, with the reason. */
 function silentText(rows) {
   if (!rows.length) return [];
   const reasons = new Map();
   for (const { series } of rows) {
     const found = new Set();
-    for (const p of shownPlanners()) for (const run of selectedRuns(p)) found.add(scoreOf(series, run).reason);
+    for (const p of shownPlanners()) for (const run of selectedRuns(p)) {
+      const { status, reason } = scoreOf(series, run);
+      if (status === "undefined") found.add(reason);
+    }
     const reason = [...found].filter(Boolean).map(words).join(", ") || "not scored";
     reasons.set(reason, [...(reasons.get(reason) ?? []), series]);
   }
@@ -113,5 +131,12 @@ function scoresNote() {
   const range = selectionName() === null
     ? "in brackets, in italics, the quartiles of the runs: intervals are worked out for all runs and for one value of one parameter, not for this selection"
     : `in brackets its ${stats.level} % interval, for which whole crowd draws were resampled`;
-  return `Interquartile mean over the runs with a value; ${range}. Hatched: runs without a value, which no number above counts.`;
+  return `Interquartile mean over the runs with a value, of scores that are yes or no the share of yes; ${range}. Hatched: runs without a value, which no number beside them counts; nor are runs in which the planner failed. ${differenceNote()}`;
+}
+
+function differenceNote() {
+  if (shownPlanners().length < 2) return "";
+  return selectionName() === ""
+    ? "Difference: who is better than whom for certain, after Holm's correction."
+    : "Who is better is worked out for all runs only: every further selection would be a further chance to find a difference that is not there.";
 }

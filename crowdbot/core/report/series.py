@@ -17,7 +17,8 @@ class Series(NamedTuple):
     """One variant of one metric.
 
     ``plain``: the corrected variant, or one of a metric that has no such variant. ``headline``:
-    shown before anybody asks for more.
+    shown before anybody asks for more. ``share``: it is yes or no, so that its mean says more
+    than the mean of its middle half.
     """
 
     metric: str
@@ -28,6 +29,7 @@ class Series(NamedTuple):
     better: str
     plain: bool
     headline: bool
+    share: bool
 
     @property
     def name(self) -> tuple[str, str]:
@@ -35,10 +37,8 @@ class Series(NamedTuple):
         return self.metric, self.variant
 
 
-def all_series(
-    scores: Sequence[ScoreRow], headlines: Collection[tuple[str, str]]
-) -> list[Series]:
-    """Every variant of every metric in some scores.
+def all_series(scores: Sequence[ScoreRow], headlines: Collection[tuple[str, str]]) -> list[Series]:
+    """Every variant of every metric in some scores; those of the seed first in their category.
 
     Args:
         scores: of all runs.
@@ -47,6 +47,8 @@ def all_series(
     """
     labels = {(s.metric, s.variant): s for s in reversed(scores)}
     represented = {metric for metric, _ in headlines}
+    values = _values(scores)
+    seeds = {s.metric for s in scores if s.variant == "literal"}
     found = []
     for name, label in labels.items():
         has_corrected = (label.metric, "corrected") in labels
@@ -62,12 +64,24 @@ def all_series(
                 better=label.better,
                 plain=plain,
                 headline=headline,
+                share=values.get(name, {None}) <= {0.0, 1.0},
             )
         )
-    return sorted(found, key=_place)
+    return sorted(found, key=lambda s: (*_rank(s.category), s.metric not in seeds, *_place(s)))
 
 
-def _place(series: Series) -> tuple[int, str, str, bool, str]:
-    ranks = {name: i for i, name in enumerate(_FIRST)} | {n: 99 for n in _LAST}
-    rank = ranks.get(series.category, len(_FIRST))
-    return (rank, series.category, series.metric, not series.plain, series.variant)
+def _values(scores: Sequence[ScoreRow]) -> dict[tuple[str, str], set[float]]:
+    found: dict[tuple[str, str], set[float]] = {}
+    for s in scores:
+        if s.value is not None:
+            found.setdefault((s.metric, s.variant), set()).add(s.value)
+    return found
+
+
+def _rank(category: str) -> tuple[int, str]:
+    ranks = {name: i for i, name in enumerate(_FIRST)} | dict.fromkeys(_LAST, 99)
+    return ranks.get(category, len(_FIRST)), category
+
+
+def _place(series: Series) -> tuple[str, bool, str]:
+    return series.metric, not series.plain, series.variant

@@ -24,9 +24,9 @@ function sortable(table, columns, rows, draw, sorted = { column: -1, up: true })
   show();
 }
 
-function headerCell({ text, node, key, numeric }, onclick) {
-  const inside = node ?? text;
-  const kind = numeric ? "number" : null;
+function headerCell({ text, node, key, numeric, kind: own }, onclick) {
+  const inside = [node ?? text].flat();
+  const kind = numeric ? "number" : own;
   if (!key) return el("th", { scope: "col", class: kind }, inside);
   return el("th", { scope: "col", class: kind, "aria-sort": "none" },
     el("button", { type: "button", class: "sort", onclick }, inside));
@@ -48,8 +48,8 @@ function numberCell(text, more) {
 }
 
 /** Hatched boxes with the counts of what has no value; nothing where everything has one. */
-function missingChips(about) {
-  return WITHOUT_VALUE.filter(([kind]) => about[kind]).map(([kind, name]) =>
+function missingChips(about, but = "") {
+  return WITHOUT_VALUE.filter(([kind]) => kind !== but && about[kind]).map(([kind, name]) =>
     el("span", { class: "missing", title: `${about[kind]} of ${about.runs} runs ${name}` },
       el("i", { class: kind, "aria-hidden": "true" }), `${about[kind]} ${name}`));
 }

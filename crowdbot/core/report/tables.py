@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import Attempt, status_of
 from crowdbot.core.results.rows import FailureRow, RunRow, ScoreRow
-from crowdbot.core.statistics import Comparison, Estimate, PlannerScore, Summary
+from crowdbot.core.statistics import Comparison, Counts, Estimate, Summary
 
 _RUN = ("suite", "scenario", "planner", "seed", "run_status", "run_id", "realisation", "density")
 _SCORE = (
@@ -38,8 +39,18 @@ def _run_cells(attempt: Attempt) -> tuple[str, ...]:
     cells = (attempt.suite, attempt.scenario, attempt.planner, str(attempt.seed))
     if isinstance(attempt, FailureRow):
         return (*cells, status_of(attempt), "", "", "")
-    more = (attempt.status, attempt.run_id, attempt.realisation_hash, _cell(attempt.density))
+    more = (
+        attempt.status,
+        _digest(attempt.run_id),
+        _digest(attempt.realisation_hash),
+        _cell(attempt.density),
+    )
     return (*cells, *more)
+
+
+def _digest(text: str) -> str:
+    """Enough of a hash to find it by; in full it would be half of the file."""
+    return text.removeprefix("cb1-sha256:")[:16]
 
 
 def _without_scores(attempt: Attempt) -> tuple[str, ...]:
@@ -65,7 +76,7 @@ def markdown(contents: Contents) -> str:
     for text in heading.warnings:
         lines += [f"Warning: {_plain(text)}", ""]
     lines += [*_table(*_endings(contents)), "", "## Scores", "", _meaning(summary), ""]
-    lines += [*_table(*_scores(summary)), ""]
+    lines += [*_table(*_scores(contents)), ""]
     if summary.comparisons:
         lines += ["## Planner against planner", "", _family(summary), ""]
         lines += [*_table(*_comparisons(summary)), ""]
@@ -74,7 +85,8 @@ def markdown(contents: Contents) -> str:
 
 def _meaning(summary: Summary) -> str:
     return (
-        f"Interquartile mean over all runs with a value, and its {100 * summary.level:g} % "
+        f"Interquartile mean over all runs with a value (of yes or no: the share), and its "
+        f"{100 * summary.level:g} % "
         "interval; whole crowd draws were resampled. Runs without a value are counted, not dropped."
     )
 
@@ -89,23 +101,26 @@ def _family(summary: Summary) -> str:
 def _endings(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
     counts = {p: contents.counts(contents.of(p)) for p in contents.planners}
     head = ("planner", *(next(iter(counts.values()))))
-    return head, [(p, *map(str, found.values())) for p, found in counts.items()]
+    return head, [(_plain(p), *map(str, found.values())) for p, found in counts.items()]
 
 
-def _scores(summary: Summary) -> tuple[Sequence[str], list[Sequence[str]]]:
+def _scores(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
+    summary = contents.figures.headline
+    places = {s.name: i for i, s in enumerate(contents.series)}
     names = dict.fromkeys((s.metric, s.variant) for s in summary.scores)
-    found = {(s.metric, s.variant, s.planner): s for s in summary.scores}
+    scores = {(s.metric, s.variant, s.planner): s for s in summary.scores}
     rows: list[Sequence[str]] = []
     for metric, variant in names:
-        here = [found[metric, variant, planner] for planner in summary.planners]
+        here = [scores[metric, variant, planner] for planner in summary.planners]
         unit = "" if here[0].unit == "1" else here[0].unit
-        head = (f"{metric} {variant}".removesuffix(" corrected"), here[0].symbol, unit)
-        rows.append((*head, here[0].better, *map(_score_cell, here)))
-    return ("score", "symbol", "unit", "better", *summary.planners), rows
+        intervals = contents.figures.intervals[0, places[metric, variant]].tolist()
+        cells = [_score_cell(s.counts, found) for s, found in zip(here, intervals, strict=True)]
+        head = map(_plain, (f"{metric} {variant}".removesuffix(" corrected"), here[0].symbol, unit))
+        rows.append((*head, here[0].better, *cells))
+    return ("score", "symbol", "unit", "better", *map(_plain, summary.planners)), rows
 
 
-def _score_cell(score: PlannerScore) -> str:
-    counts = score.counts
+def _score_cell(counts: Counts, centre: Sequence[float]) -> str:
     missing = [
         f"{count} {name}"
         for name, count in (
@@ -115,15 +130,18 @@ def _score_cell(score: PlannerScore) -> str:
         )
         if count
     ]
-    return "; ".join([_estimate(score.iqm), *missing])
+    return "; ".join([_numbers(*centre), *missing])
 
 
 def _estimate(found: Estimate) -> str:
-    if found.value is None:
+    return _numbers(*(math.nan if x is None else x for x in (found.value, found.low, found.high)))
+
+
+def _numbers(value: float, low: float, high: float) -> str:
+    if math.isnan(value):
         return "–"
-    if found.low is None or found.high is None:
-        return f"{found.value:.4g}"
-    return f"{found.value:.4g} [{found.low:.4g}, {found.high:.4g}]"
+    interval = f" [{low:.4g}, {high:.4g}]" if math.isfinite(low) and math.isfinite(high) else ""
+    return f"{value:.4g}{interval}"
 
 
 def _comparisons(summary: Summary) -> tuple[Sequence[str], list[Sequence[str]]]:
@@ -136,15 +154,15 @@ def _comparison(found: Comparison) -> Sequence[str]:
     score = f"{found.metric} {found.variant}".removesuffix(" corrected")
     p_holm = "–" if found.p_holm is None else f"{found.p_holm:.3g}"
     estimates = (_estimate(found.difference), _estimate(found.improvement))
-    return (score, found.a, found.b, *estimates, p_holm, verdict)
+    return (*map(_plain, (score, found.a, found.b)), *estimates, p_holm, verdict)
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     lines = [head, ["---"] * len(head), *rows]
-    return [f"| {' | '.join(map(_plain, line))} |" for line in lines]
+    return [f"| {' | '.join(line)} |" for line in lines]
 
 
 def _plain(text: str) -> str:
     """Text that Markdown shows as it is: names are user input."""
-    escaped = "".join(f"\\{c}" if c in "\\|*_`<>[]#&" else c for c in text)
+    escaped = "".join(f"\\{c}" if c in "\\|*`<>[]#&" else c for c in text)
     return " ".join(escaped.split())
