@@ -100,7 +100,8 @@ def _chosen(results: Results, suite: str | None, planners: Sequence[str], root: 
     wanted = suite if suite is not None else next(iter(suites))
     if wanted not in suites:
         raise UnknownNameError("suite", wanted, suites)
-    labels = {r.planner for r in [*results.runs, *results.failures] if r.suite == wanted}
+    labels = {r.planner for r in results.runs if r.suite == wanted}
+    labels |= {f.planner for f in results.failures if f.suite == wanted}
     for pattern in planners:
         if not any(fnmatchcase(label, pattern) for label in labels):
             raise UnknownNameError("planner", pattern, labels)

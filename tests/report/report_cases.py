@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from itertools import product
 from typing import Any
+from urllib.parse import quote
 
 import numpy as np
 
 from crowdbot.core.registry import discover
+from crowdbot.core.report import Contents, Heading, gather
 from crowdbot.core.results.rows import FailureRow, Results, RunRow, ScoreRow
 from crowdbot.core.score_label import ScoreLabel
 
@@ -67,6 +70,18 @@ def _failure(suite: str, labels: Sequence[str], planner: str, seed: int) -> Fail
         traceback='Traceback (most recent call last):\n  File "worker.py", line 12, in work\n'
         "MemoryError: 2 GiB are not enough\n",
     )
+
+
+@cache
+def full() -> Contents:
+    """Three planners x 162 scenarios, all metrics."""
+    return contents(campaign())
+
+
+def contents(results: Results, **heading: Any) -> Contents:
+    """A report about some results, with the cards that are installed."""
+    links = {r.run_id: f"runs/{quote(r.directory)}/replay.html" for r in results.runs}
+    return gather(results, discover(), Heading(suite="challenge-2020", **heading), links)
 
 
 def stream(*names: object) -> np.random.Generator:

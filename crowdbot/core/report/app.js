@@ -59,6 +59,9 @@ function draw() {
 }
 
 function drawChosen() {
+  const bare = !report.series.length;
+  for (const id of ["scores", "one-score", "against", "worst-part"]) byId(id).hidden = bare;
+  if (bare) return drawFailed();
   const series = report.series[state.series];
   const [arrow, meaning] = ARROWS[series.better];
   byId("chosen").replaceChildren(
@@ -69,7 +72,7 @@ function drawChosen() {
   drawDistribution();
   drawParameters();
   drawPairs((pair) => update({ pair }));
-  drawExplorer();
+  return drawExplorer();
 }
 
 function chooseScore(series) {

@@ -39,7 +39,7 @@ function canvas(width, height, ...children) {
 
 function strip({ planner, runs, about }, x, top, width) {
   const middle = top + ROW / 2 - 8;
-  const group = svg("g", {}, planner === 0 ? null : svg("line", { class: "rule", x1: 0, x2: width, y1: top, y2: top }));
+  const group = svg("g", {}, top < ROW ? null : svg("line", { class: "rule", x1: 0, x2: width, y1: top, y2: top }));
   group.append(marker(planner, 10, top + 22, 5), label(shortened(planner), 22, top + 26));
   const dots = svg("g", { class: `dots p${planner % SHAPES.length}` });
   const beyond = [0, 0];
