@@ -163,8 +163,7 @@ def _tell(
     if not as_json:
         counts = contents.counts()
         said = ", ".join(f"{n} {name.replace('_', ' ')}" for name, n in counts.items() if n)
-        print(f"{len(contents.attempts)} runs of {len(contents.planners)} planners: {said}",
-              file=sys.stderr)  # fmt: skip
+        print(f"{', '.join(contents.planners)}: {said}", file=sys.stderr)
         typer.echo(paths["html"])
         return
     document = {

@@ -228,8 +228,9 @@ def test_markdown_says_what_the_page_says() -> None:
 def test_yes_or_no_is_told_as_a_share() -> None:
     report = full()
     place = next(i for i, s in enumerate(report.series) if s.metric == "success")
-    assert report.series[place].share
-    assert not any(s.share for s in report.series if s.metric == "risk")
+    assert report.series[place].centre == "share"
+    assert {s.centre for s in report.series if s.metric == "risk"} == {"interquartile mean"}
+    assert {s.centre for s in report.series if s.metric == "collision_count"} == {"mean"}
     arrived = [
         s.value for s in report.results.scores if s.metric == "success"
         and s.run_id in {r.run_id for r in report.results.runs

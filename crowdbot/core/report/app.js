@@ -107,7 +107,7 @@ function applyTheme() {
 
 /** Paper cannot unfold anything. */
 function openDetails(open) {
-  for (const details of document.querySelectorAll("details")) {
+  for (const details of document.querySelectorAll("details:not([data-screen])")) {
     if (open && !details.open) details.dataset.closed = "";
     if (open) details.open = true;
     else if ("closed" in details.dataset) details.open = false;

@@ -106,7 +106,9 @@ def gather(
     if not results.runs:
         raise InputError("there is no run to report about")
     axes = axes_of(results)
-    series = all_series(results.scores, headline_names(Table(results)))
+    found = cards(registry, dict.fromkeys(s.metric for s in results.scores))
+    ranges = {metric: dict(card["head"]).get("range", "") for metric, card in found.items()}
+    series = all_series(results.scores, headline_names(Table(results)), ranges)
     return Contents(
         heading=heading,
         results=results,
@@ -114,6 +116,6 @@ def gather(
         axes=axes,
         series=series,
         figures=figures(results, series, axes),
-        cards=cards(registry, dict.fromkeys(s.metric for s in series)),
+        cards=found,
         replays=replays,
     )

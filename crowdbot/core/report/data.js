@@ -44,7 +44,6 @@ function quantile(sorted, q) {
   return sorted[k] + (place - k) * ((sorted[k + 1] ?? sorted[k]) - sorted[k]);
 }
 
-const centreName = (series) => (series.share ? "share" : "interquartile mean");
 const mean = (sorted) => sorted.reduce((sum, x) => sum + x, 0) / sorted.length;
 
 /** Mean of the middle half of sorted numbers; those at its ends count in part. */
@@ -70,14 +69,14 @@ function describe(series, runs) {
     runs: runs.length,
     ok: sorted.length,
     sorted,
-    centre: report.series[series].share ? mean(sorted) : interquartileMean(sorted),
+    centre: report.series[series].centre === "interquartile mean" ? interquartileMean(sorted) : mean(sorted),
     q1: quantile(sorted, 0.25),
     median: quantile(sorted, 0.5),
     q3: quantile(sorted, 0.75),
   };
 }
 
-/** Interquartile mean (or share) with its interval, where Python has worked it out for this selection. */
+/** What sums up a series, with its interval, where Python has worked it out for this selection. */
 function intervalOf(selection, series, planner) {
   const place = selection === null ? -1 : report.stats.selections.indexOf(selection);
   if (place < 0) return null;

@@ -137,7 +137,7 @@ function drawCurves(rows, x, width) {
 
 function distributionText(series, rows) {
   const parts = rows.map(({ planner, about }) => `${report.planners[planner].label}: ` +
-    `${centreName(series)} ${digits(about.centre)}, quartiles ${digits(about.q1)}, ${digits(about.median)}, ` +
+    `${series.centre} ${digits(about.centre)}, quartiles ${digits(about.q1)}, ${digits(about.median)}, ` +
     `${digits(about.q3)}, ${about.ok} values, ${about.censored} censored, ${about.undefined} undefined`);
   return `${words(series.metric)}, ${words(series.variant)}. ${parts.join(". ")}.`;
 }
@@ -145,9 +145,9 @@ function distributionText(series, rows) {
 function distributionNote(series, rows, x) {
   const parts = [];
   if (state.chart === "strip") {
-    parts.push(`A dot is a run; the bar is the middle half of the runs, the tick its median, the mark the ${centreName(series)}.`);
+    parts.push(`A dot is a run; the bar is the middle half of the runs, the tick its median, the mark the ${series.centre}.`);
     if (selectionName() === null) parts.push("Intervals are worked out for all runs and for one value of one parameter only, so there is none here.");
-    else parts.push(`The thin line is the ${report.stats.level} % interval of the ${centreName(series)}.`);
+    else parts.push(`The thin line is the ${report.stats.level} % interval of the ${series.centre}.`);
     if (rows.some(({ about }) => about.censored)) parts.push("Hollow arrows are censored runs: the value lies on the side to which they point.");
   } else {
     parts.push("Share of all runs with a value up to this; a curve that ends below 100 % has runs without a value.");

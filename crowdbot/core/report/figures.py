@@ -101,18 +101,30 @@ def _intervals(
     found = np.full((len(selections), len(series), len(table.planners), 3), np.nan)
     for score in (score for summary in summaries for score in summary.scores):
         row = place[score.metric, score.variant], table.planners.index(score.planner)
-        found[0][row] = _share(score.mean) if series[row[0]].share else _numbers(score.iqm)
+        whole = series[row[0]].centre != "interquartile mean"
+        found[0][row] = _numbers(score.mean if whole else score.iqm)
     for one in series:
         for p, planner in enumerate(table.planners):
             for k, numbers in _by_label(table, one, planner, selections):
                 found[k, place[one.name], p] = numbers
+    _clip(found, series)
     return found
+
+
+def _clip(intervals: _Numbers, series: Sequence[Series]) -> None:
+    """A share is not below 0 or above 1, and a count not below 0, whatever its standard error."""
+    for s, one in enumerate(series):
+        ends = intervals[:, s, :, 1:]
+        if one.centre == "share":
+            np.clip(ends, 0.0, 1.0, out=ends)
+        elif one.centre == "mean" and not (intervals[:, s, :, 0] < 0).any():
+            np.maximum(ends, 0.0, out=ends)
 
 
 def _by_label(
     table: Table, one: Series, planner: str, selections: Sequence[str]
 ) -> Iterator[tuple[int, _Triple]]:
-    """Interquartile means (or shares) of the runs of each label of each axis."""
+    """What sums up the runs of each label of each axis."""
     column = table.column(one.name, planner)
     labels = [_labels(table, planner, key) for key in table.keys]
     for k, selection in enumerate(selections[1:], start=1):
@@ -120,10 +132,10 @@ def _by_label(
         if inside.any():
             draws = Clusters.of([d for d, i in zip(table.draws, inside, strict=True) if i])
             values = column.low[inside]
-            if one.share:
-                yield k, _share(mean(values, draws))
-            else:
+            if one.centre == "interquartile mean":
                 yield k, _numbers(bootstrap(trimmed_mean(values), draws))
+            else:
+                yield k, _numbers(mean(values, draws))
 
 
 def _labels(table: Table, planner: str, key: tuple[str, str, int]) -> set[str]:
@@ -171,12 +183,6 @@ def _effects(
         row = place[effect.metric, effect.variant], planners.index(effect.planner)
         found[names.index(effect.axis)][row] = _number(effect.eta_squared)
     return found
-
-
-def _share(estimate: Estimate) -> _Triple:
-    """A share of runs is not below 0 or above 1, whatever its standard error."""
-    value, low, high = _numbers(estimate)
-    return value, max(low, 0.0), min(high, 1.0)
 
 
 def _numbers(estimate: Estimate) -> _Triple:

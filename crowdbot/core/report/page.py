@@ -65,6 +65,7 @@ def render(contents: Contents) -> str:
         planners=[_planner(contents, p) for p in contents.planners],
         hashes=provenance.hashes(runs),
         facts=provenance.facts(runs),
+        scenarios=provenance.scenarios(runs),
         summary=figures.headline,
         meta={**_meta(contents), "states": states},
         blobs=blobs,

@@ -3,6 +3,8 @@
 const PANEL = { height: 190, left: 42, right: 6, top: 10, bottom: 30, least: 212, gap: 18 };
 
 function drawParameters() {
+  byId("parameters").hidden = !report.axes.length;
+  if (!report.axes.length) return;
   const planners = shownPlanners();
   const panels = report.axes.map((axis, a) => panelRows(axis, a, planners));
   const numbers = panels.flatMap((rows) => rows.flatMap((row) =>

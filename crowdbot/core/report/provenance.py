@@ -34,6 +34,21 @@ def hashes(runs: Sequence[RunRow]) -> dict[str, str]:
     }
 
 
+def scenarios(runs: Sequence[RunRow]) -> list[tuple[str, str, str]]:
+    """Scenario, the beginning of its hash, and of that of its crowd; several where they differ."""
+    found: dict[str, tuple[dict[str, None], dict[str, None]]] = {}
+    for run in runs:
+        specs, draws = found.setdefault(run.scenario, ({}, {}))
+        specs[short(run.spec_hash)] = None
+        draws[short(run.realisation_hash)] = None
+    return [(name, ", ".join(specs), ", ".join(draws)) for name, (specs, draws) in found.items()]
+
+
+def short(hash_: str) -> str:
+    """Enough of a hash to find it by."""
+    return hash_.removeprefix("cb1-sha256:")[:16]
+
+
 def planner_facts(runs: Sequence[RunRow]) -> dict[str, str]:
     """Kind and parameters of one planner, from its runs."""
     return _merged(_texts(run.record.get("planner")) for run in runs)

@@ -39,7 +39,7 @@ function scoreRow(series, planners, runs) {
 
 function drawScoreRow(row, planners, choose) {
   const series = report.series[row.series];
-  const decimals = decimalsFor(row.abouts.flatMap((a) => (series.share ? [a.centre] : [a.centre, a.q1, a.q3])));
+  const decimals = decimalsFor(row.abouts.flatMap((a) => (series.centre === "share" ? [a.centre] : [a.centre, a.q1, a.q3])));
   const cells = row.abouts.map((about, i) => {
     const known = row.known[i];
     const range = known ? interval(known.low, known.high, decimals) : quartileText(about, series, decimals);
@@ -53,7 +53,7 @@ function drawScoreRow(row, planners, choose) {
 
 /** Quartiles of yes and no say nothing. */
 function quartileText(about, series, decimals) {
-  return series.share ? "" : interval(about.q1, about.q3, decimals);
+  return series.centre === "share" ? "" : interval(about.q1, about.q3, decimals);
 }
 
 /** Name, symbol, unit and direction of a score; opens its card, and shows it below. */
@@ -65,13 +65,15 @@ function scoreHead(s, choose) {
   const variant = series.variant === "corrected" ? null : el("span", { class: "variant", text: words(series.variant) });
   return el("th", { scope: "row" }, button, variant, el("span", { class: "about" },
     el("i", { text: series.symbol }), series.unit === "1" ? "" : ` in ${series.unit}`,
+    series.centre === "interquartile mean" ? "" : ` · ${series.centre}`,
     arrow ? el("span", { class: "arrow", title: meaning, role: "img", "aria-label": meaning, text: arrow }) : null));
 }
 
 /** For each planner the middle half of its runs and its interquartile mean on one scale. */
 function spreadPicture(row, planners) {
   const height = 8 + 13 * planners.length;
-  const { reference, share } = report.series[row.series];
+  const { reference, centre } = report.series[row.series];
+  const share = centre === "share";
   const ends = row.abouts.flatMap((a) => (!a.ok ? [] : share ? [a.centre] : [a.q1, a.q3, a.centre]));
   const x = scale(wholeSpan(ends, reference ? [reference.value] : []), [8, SPREAD - 8]);
   const picture = svg("svg", { viewBox: `0 0 ${SPREAD} ${height}`, class: "mini", "aria-hidden": "true" });
@@ -131,7 +133,7 @@ function scoresNote() {
   const range = selectionName() === null
     ? "in brackets, in italics, the quartiles of the runs: intervals are worked out for all runs and for one value of one parameter, not for this selection"
     : `in brackets its ${stats.level} % interval, for which whole crowd draws were resampled`;
-  return `Interquartile mean over the runs with a value, of scores that are yes or no the share of yes; ${range}. Hatched: runs without a value, which no number beside them counts; nor are runs in which the planner failed. ${differenceNote()}`;
+  return `Interquartile mean over the runs with a value; where it says so the mean, of counts and of what is zero in most runs, or the share of yes; ${range}. Hatched: runs without a value, which no number beside them counts; nor are runs in which the planner failed. ${differenceNote()}`;
 }
 
 function differenceNote() {

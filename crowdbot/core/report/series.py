@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
-from typing import NamedTuple
+from collections.abc import Collection, Mapping, Sequence
+from typing import Literal, NamedTuple
 
 from crowdbot.core.results.rows import ScoreRow
 
@@ -12,13 +12,14 @@ _FIRST = ("task", "path efficiency", "effect on crowd", "collision", "similarity
 #: Categories that no simulated run has data for.
 _LAST = ("shared control", "questionnaire")
 
+Centre = Literal["share", "mean", "interquartile mean"]
+
 
 class Series(NamedTuple):
     """One variant of one metric.
 
     ``plain``: the corrected variant, or one of a metric that has no such variant. ``headline``:
-    shown before anybody asks for more. ``share``: it is yes or no, so that its mean says more
-    than the mean of its middle half.
+    shown before anybody asks for more. ``centre``: what its runs are summed up by.
     """
 
     metric: str
@@ -29,7 +30,7 @@ class Series(NamedTuple):
     better: str
     plain: bool
     headline: bool
-    share: bool
+    centre: Centre
 
     @property
     def name(self) -> tuple[str, str]:
@@ -37,13 +38,18 @@ class Series(NamedTuple):
         return self.metric, self.variant
 
 
-def all_series(scores: Sequence[ScoreRow], headlines: Collection[tuple[str, str]]) -> list[Series]:
+def all_series(
+    scores: Sequence[ScoreRow],
+    headlines: Collection[tuple[str, str]],
+    ranges: Mapping[str, str],
+) -> list[Series]:
     """Every variant of every metric in some scores; those of the seed first in their category.
 
     Args:
         scores: of all runs.
         headlines: (metric, variant) that stand for their metrics; a metric without one is
             represented by its plain variants.
+        ranges: metric -> its range, as its card says.
     """
     labels = {(s.metric, s.variant): s for s in reversed(scores)}
     represented = {metric for metric, _ in headlines}
@@ -64,17 +70,29 @@ def all_series(scores: Sequence[ScoreRow], headlines: Collection[tuple[str, str]
                 better=label.better,
                 plain=plain,
                 headline=headline,
-                share=values.get(name, {None}) <= {0.0, 1.0},
+                centre=_centre(ranges.get(label.metric, ""), values.get(name, [])),
             )
         )
     return sorted(found, key=lambda s: (*_rank(s.category), s.metric not in seeds, *_place(s)))
 
 
-def _values(scores: Sequence[ScoreRow]) -> dict[tuple[str, str], set[float]]:
-    found: dict[tuple[str, str], set[float]] = {}
+def _centre(range_: str, values: Sequence[float]) -> Centre:
+    """What sums up a series.
+
+    The middle half has no room for rare events: nine runs without a collision and one with three
+    would be no collision at all. So counts, and what is zero in most runs, have their mean.
+    """
+    if range_.startswith("0 or 1"):
+        return "share"
+    rare = sum(value == 0 for value in values) > len(values) / 2
+    return "mean" if rare or range_.startswith("0, 1, 2") else "interquartile mean"
+
+
+def _values(scores: Sequence[ScoreRow]) -> dict[tuple[str, str], list[float]]:
+    found: dict[tuple[str, str], list[float]] = {}
     for s in scores:
         if s.value is not None:
-            found.setdefault((s.metric, s.variant), set()).add(s.value)
+            found.setdefault((s.metric, s.variant), []).append(s.value)
     return found
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import Attempt, status_of
+from crowdbot.core.report.provenance import short
 from crowdbot.core.results.rows import FailureRow, RunRow, ScoreRow
 from crowdbot.core.statistics import Comparison, Counts, Estimate, Summary
 
@@ -41,16 +42,11 @@ def _run_cells(attempt: Attempt) -> tuple[str, ...]:
         return (*cells, status_of(attempt), "", "", "")
     more = (
         attempt.status,
-        _digest(attempt.run_id),
-        _digest(attempt.realisation_hash),
+        short(attempt.run_id),
+        short(attempt.realisation_hash),
         _cell(attempt.density),
     )
     return (*cells, *more)
-
-
-def _digest(text: str) -> str:
-    """Enough of a hash to find it by; in full it would be half of the file."""
-    return text.removeprefix("cb1-sha256:")[:16]
 
 
 def _without_scores(attempt: Attempt) -> tuple[str, ...]:
@@ -85,9 +81,9 @@ def markdown(contents: Contents) -> str:
 
 def _meaning(summary: Summary) -> str:
     return (
-        f"Interquartile mean over all runs with a value (of yes or no: the share), and its "
-        f"{100 * summary.level:g} % "
-        "interval; whole crowd draws were resampled. Runs without a value are counted, not dropped."
+        "Interquartile mean over all runs with a value (of counts and rare events the mean, of "
+        f"yes or no the share), and its {100 * summary.level:g} % interval; whole crowd draws "
+        "were resampled. Runs without a value are counted, not dropped."
     )
 
 
