@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -378,3 +379,18 @@ def test_a_campaign_without_scores_or_axes_can_be_looked_at(
     with Visit(browser, write_report(tmp_path / "x.html", bare)["html"]) as page:
         assert page.is_visible("#failures")
         assert not page.is_visible("#one-score")
+
+
+@pytest.mark.parametrize("size", [0.0, 1.0, -1e-12, 1e9, 1e100])
+def test_numbers_that_differ_by_rounding_alone_are_drawn(
+    size: float, browser: Browser, tmp_path: Path
+) -> None:
+    found = small(planners={"a": 0.0, "b": 0.0}, failures=0)
+    scores = tuple(
+        s if s.value is None else replace(s, value=size * (1 + 2e-16 * (i % 3)))
+        for i, s in enumerate(found.scores)
+    )
+    path = write_report(tmp_path / "x.html", contents(replace(found, scores=scores)))["html"]
+    with Visit(browser, path, "#score=risk.corrected") as page:
+        assert page.query_selector("#distribution circle")
+        assert len(page.query_selector_all("#distribution .tick")) < 40

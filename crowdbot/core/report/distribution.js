@@ -13,7 +13,7 @@ function drawDistribution() {
   });
   left = Math.min(230, 70 + 7 * Math.max(0, ...rows.map((row) => shortened(row.planner).length)));
   const width = Math.max(480, box.clientWidth || 900);
-  const values = rows.flatMap((row) => [...row.about.sorted]);
+  const values = rows.flatMap(({ runs, about }) => [...about.sorted, ...runs.flatMap(boundsOf)]);
   const marks = series.reference ? [series.reference.value] : [];
   const x = scale(spanOf(values, marks), [left, width - RIGHT], 7);
   const picture = state.chart === "ecdf" ? drawCurves(rows, x, width) : drawStrips(rows, x, width);
@@ -57,6 +57,12 @@ function strip({ planner, runs, about }, x, top, width) {
   if (beyond[1]) group.append(label(`${beyond[1]} beyond ▸`, x.place(x.high) - 2, top + 12, "tick", "end"));
   group.append(counts(about, width - RIGHT + 14, top + 20));
   return group;
+}
+
+/** What is known of a censored value. */
+function boundsOf(run) {
+  const { status, lower, upper } = scoreOf(state.series, run);
+  return status === "censored" ? [lower, upper] : [];
 }
 
 /** A censored value: a hollow arrow at its bound, pointing to where the value may be. */

@@ -53,11 +53,14 @@ function badge(planner) {
 
 const round = (x) => Math.round(10 * x) / 10;
 
-/** Decimals that show three digits of the largest number. */
+/** Decimals that show three digits of the largest number, and two of what the numbers differ by. */
 function decimalsFor(numbers) {
-  const largest = Math.max(0, ...numbers.filter(Number.isFinite).map(Math.abs));
-  if (!largest) return 0;
-  return Math.min(6, Math.max(0, 2 - Math.floor(Math.log10(largest))));
+  const known = numbers.filter(Number.isFinite);
+  const places = (size, digits) => (size > 0 ? digits - 1 - Math.floor(Math.log10(size)) : 0);
+  const largest = Math.max(0, ...known.map(Math.abs));
+  const spread = known.length ? Math.max(...known) - Math.min(...known) : 0;
+  const seen = spread > 1e-6 * largest ? places(spread, 2) : 0;
+  return Math.min(6, Math.max(0, places(largest, 3), seen));
 }
 
 function format(number, decimals) {

@@ -1,8 +1,13 @@
 // From values to places in a picture.
 
+const sizeOf = (low, high) => Math.max(Math.abs(low), Math.abs(high)) || 1;
+
+/** Whether numbers differ by more than rounding: between others there are no round ticks. */
+const isWide = (low, high) => high - low > 1e-9 * sizeOf(low, high);
+
 /** A linear scale with round ticks. */
 function scale([low, high], [from, to], wanted = 5) {
-  if (!(high > low)) [low, high] = [low - 0.5, high + 0.5];
+  if (!isWide(low, high)) [low, high] = [low - 0.5 * sizeOf(low, high), high + 0.5 * sizeOf(low, high)];
   const place = (value) => from + ((value - low) / (high - low)) * (to - from);
   const raw = (high - low) / wanted;
   const power = 10 ** Math.floor(Math.log10(raw));
@@ -40,7 +45,7 @@ function widened([low, high], marks) {
     const near = mark >= low - 0.5 * (high - low) && mark <= high + 0.5 * (high - low);
     if (near) [low, high] = [Math.min(low, mark), Math.max(high, mark)];
   }
-  const room = 0.03 * (high - low || 1);
+  const room = isWide(low, high) ? 0.03 * (high - low) : 0.03 * sizeOf(low, high);
   return [low - room, high + room];
 }
 
