@@ -103,10 +103,11 @@ def _intervals(
         row = place[score.metric, score.variant], table.planners.index(score.planner)
         whole = series[row[0]].centre != "interquartile mean"
         found[0][row] = _numbers(score.mean if whole else score.iqm)
-    for one in series:
+    inside = [_inside(table, planner, selections) for planner in table.planners]
+    for s, one in enumerate(series):
         for p, planner in enumerate(table.planners):
-            for k, numbers in _by_label(table, one, planner, selections):
-                found[k, place[one.name], p] = numbers
+            for k, numbers in _by_label(table, one, planner, inside[p]):
+                found[k, s, p] = numbers
     _clip(found, series)
     return found
 
@@ -121,26 +122,28 @@ def _clip(intervals: _Numbers, series: Sequence[Series]) -> None:
             np.maximum(ends, 0.0, out=ends)
 
 
+def _inside(table: Table, planner: str, selections: Sequence[str]) -> NDArray[np.bool_]:
+    """Which rows of the table belong to which selection, (selection, row)."""
+    runs = [table.runs.get((planner, key)) for key in table.keys]
+    labels = [{f"{a}={x}" for a, x in run.axes.items()} if run else set() for run in runs]
+    return np.array([[selection in found for found in labels] for selection in selections])
+
+
 def _by_label(
-    table: Table, one: Series, planner: str, selections: Sequence[str]
+    table: Table, one: Series, planner: str, inside: NDArray[np.bool_]
 ) -> Iterator[tuple[int, _Triple]]:
     """What sums up the runs of each label of each axis."""
     column = table.column(one.name, planner)
-    labels = [_labels(table, planner, key) for key in table.keys]
-    for k, selection in enumerate(selections[1:], start=1):
-        inside = column.known & np.array([selection in found for found in labels], dtype=bool)
-        if inside.any():
-            draws = Clusters.of([d for d, i in zip(table.draws, inside, strict=True) if i])
-            values = column.low[inside]
-            if one.centre == "interquartile mean":
-                yield k, _numbers(bootstrap(trimmed_mean(values), draws))
-            else:
-                yield k, _numbers(mean(values, draws))
-
-
-def _labels(table: Table, planner: str, key: tuple[str, str, int]) -> set[str]:
-    run = table.runs.get((planner, key))
-    return set() if run is None else {f"{axis}={label}" for axis, label in run.axes.items()}
+    for k in range(1, len(inside)):
+        chosen = column.known & inside[k]
+        if not chosen.any():
+            continue
+        draws = Clusters.of([d for d, i in zip(table.draws, chosen, strict=True) if i])
+        values = column.low[chosen]
+        if one.centre == "interquartile mean":
+            yield k, _numbers(bootstrap(trimmed_mean(values), draws))
+        else:
+            yield k, _numbers(mean(values, draws))
 
 
 def _pairs(
