@@ -17,7 +17,15 @@ from numpy.typing import NDArray
 
 from crowdbot.core.report.series import Series
 from crowdbot.core.results.rows import Results
-from crowdbot.core.statistics import Comparison, Estimate, Name, Summary, Table, summarise
+from crowdbot.core.statistics import (
+    Comparison,
+    Estimate,
+    Name,
+    Summary,
+    Table,
+    headline_names,
+    summarise,
+)
 from crowdbot.core.statistics.axes import REALISED_DENSITY
 from crowdbot.core.statistics.clusters import Clusters, bootstrap, mean, trimmed_mean
 
@@ -38,8 +46,8 @@ class Figures:
     """Statistics of a report.
 
     Attributes:
-        headline: of the scores that stand for their metrics: one family of tests.
-        others: of the other variants, a family of their own; None where there are none.
+        headline: of the scores that stand for their metrics, one family of tests; the other
+            variants are another.
         selections: ``""`` for all runs, ``axis=label`` for a part.
         intervals: (selection, series, planner, 3): interquartile mean, low, high.
         pairs: (series, pair, field).
@@ -48,7 +56,6 @@ class Figures:
     """
 
     headline: Summary
-    others: Summary | None
     selections: tuple[str, ...]
     intervals: _Numbers
     pairs: _Numbers
@@ -72,16 +79,14 @@ def figures(
         axes: ``name`` and ``labels`` of each axis of the suite.
     """
     table = Table(results)
-    chosen = [s.name for s in series if s.headline and _has_values(table, s.name)]
+    chosen = headline_names(table)
     rest = [s.name for s in series if s.name not in chosen and _has_values(table, s.name)]
     headline = summarise(results, chosen)
-    others = summarise(results, rest) if rest else None
-    both = [x for x in (headline, others) if x is not None]
+    both = [headline, summarise(results, rest)] if rest else [headline]
     whys = tuple(dict.fromkeys(["", *(c.reason for s in both for c in s.comparisons)]))
     selections = ("", *(f"{axis['name']}={label}" for axis in axes for label in axis["labels"]))
     return Figures(
         headline=headline,
-        others=others,
         selections=selections,
         intervals=_intervals(table, both, series, selections),
         pairs=_pairs(both, series, table.planners, whys),
