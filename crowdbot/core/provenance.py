@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.registry import Registry
+from crowdbot.core.rounding import fingerprint
 from crowdbot.core.trajectory import Trajectories
 
 _PACKAGES = ("crowdbot", "drake", "mcap", "numba", "numpy", "pydantic", "rosbags")
@@ -73,11 +74,16 @@ def plugins(registry: Registry) -> list[dict[str, Any]]:
 
 
 def machine() -> dict[str, str]:
-    """What the run ran on; ``processor`` is the one that compiled code was made for."""
+    """What the run ran on.
+
+    ``processor`` is the one that compiled code was made for; machines with equal ``processor`` and
+    ``rounding`` give equal trajectories.
+    """
     return {
         "system": platform.system(),
         "machine": platform.machine(),
         "processor": _processor(),
+        "rounding": fingerprint(),
     }
 
 

@@ -97,11 +97,20 @@ def check_comparable(findings: Sequence[Finding]) -> None:
     errors = [f for f in findings if f.severity == "error" and not f.accepted]
     if errors:
         kinds = ", ".join(dict.fromkeys(f.kind for f in errors))
-        lines = "\n".join(f"  {f}" for f in errors)
+        lines = "\n".join(_lines(errors))
         raise InputError(
             f"these runs differ in more than the planner:\n{lines}\n"
             f"compare them apart, or accept what differs by name: {kinds}"
         )
+
+
+def _lines(findings: Sequence[Finding]) -> Iterator[str]:
+    """Some findings of each kind."""
+    for kind in dict.fromkeys(f.kind for f in findings):
+        same = [f for f in findings if f.kind == kind]
+        yield from (f"  {f}" for f in same[:_SHOWN])
+        if len(same) > _SHOWN:
+            yield f"  {kind}: {len(same) - _SHOWN} more like these"
 
 
 # ------------------------------------------------------------------------- looking
@@ -128,10 +137,19 @@ def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:
         for scenario, group in groups:
             subject = f"{name}, {scenario}" if scenario else name
 
+            if kind == "metrics":  # what was not scored is not compared
+                group = [r for r in group if _has_metric(all_conditions[r.run_id], name)]
+
             def value(r: RunRow, name: str = name) -> str:
                 return all_conditions[r.run_id].get(name, "")
 
             yield _finding(kind, subject, group, value)
+
+
+def _has_metric(conditions: Mapping[str, str], name: str) -> bool:
+    """Whether a run has the metric of a condition such as ``metrics.risk.risk_horizon``."""
+    head = ".".join(name.split(".")[:2])
+    return any(n == head or n.startswith(f"{head}.") for n in conditions)
 
 
 def _conditions_of(run: RunRow) -> dict[str, str]:

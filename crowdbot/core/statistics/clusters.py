@@ -109,7 +109,7 @@ def ratio_error(above: Floats, below: Floats, clusters: Clusters) -> float | Non
 
 def quantile_t(p: float, freedom: float) -> float:
     """Quantile of Student's t."""
-    from scipy.special import stdtrit  # type: ignore[import-untyped]
+    from scipy.special import stdtrit
 
     return float(stdtrit(freedom, p))
 
@@ -137,7 +137,7 @@ def bootstrap(
     found = _resampled(statistic, clusters)
     left_out = statistic(1.0 - np.eye(clusters.count)[:, clusters.index])
     found, left_out = found[np.isfinite(found)], left_out[np.isfinite(left_out)]
-    if not len(found) or np.ptp(found) == 0:
+    if not len(found) or np.ptp(found) <= 1e-12 * float(np.abs(found).max()):
         return Estimate(value=value, low=value, high=value, reason=NO_SPREAD)
     tails = [_bca_tail(p, value, found, left_out, clusters.count, studentised)
              for p in (0.5 - level / 2, 0.5 + level / 2)]  # fmt: skip

@@ -72,7 +72,7 @@ def challenge(
     planners: Sequence[str],
     metrics: int,
     rng: np.random.Generator,
-    shift: Callable[[str], float] = lambda planner: 0.0,
+    shift: Callable[[str], float] = lambda _: 0.0,
     spread: tuple[float, float, float] = (1.0, 1.0, 1.0),
 ) -> Results:
     """A whole campaign: effects of draws, of scenarios and of the run, different by planner."""
@@ -85,7 +85,5 @@ def challenge(
             common = by_draw.setdefault(draw, spread[0] * rng.normal(size=metrics))
             values = common + spread[1] * rng.normal(size=metrics)
             values = values + spread[2] * rng.normal(size=metrics) + shift(planner)
-            scores += [
-                score(runs[-1], float(v), metric=f"m{k:02d}") for k, v in enumerate(values)
-            ]
+            scores += [score(runs[-1], float(v), metric=f"m{k:02d}") for k, v in enumerate(values)]
     return Results(runs=tuple(runs), scores=tuple(scores))

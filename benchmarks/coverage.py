@@ -1,0 +1,108 @@
+"""Do the intervals cover, with runs that share crowd draws?
+
+Simulates campaigns of 18 draws with 9 scenarios each: effects of draws, of scenarios and of runs,
+in several proportions, symmetric and skewed. Prints how often 95 % intervals cover the truth, and
+how often the test finds a difference that is not there (symmetric only: the test asks whether one
+planner is better more often, not about means).
+
+    python benchmarks/coverage.py --repetitions 1000
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections import Counter
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.statistics import clusters as c
+from crowdbot.core.statistics.clusters import Clusters
+from crowdbot.core.statistics.estimate import Estimate
+from crowdbot.core.statistics.signed_rank import p_value, signed_ranks
+
+DRAWS, SCENARIOS = 18, 9
+#: Standard deviations of draw, scenario and run.
+SPREADS = ((0.0, 0.0, 1.0), (0.3, 1.0, 1.0), (1.0, 0.0, 1.0), (1.0, 1.0, 1.0), (2.0, 0.5, 0.5))
+COLUMNS = ("mean t", "mean bca", "mean bca+t", "iqm bca", "iqm bca+t", "d bca+t", "P(better) t",
+           "rank r t")  # fmt: skip
+_LARGE = 2_000_000
+
+Floats = NDArray[np.float64]
+
+
+def noise(rng: np.random.Generator, size: tuple[int, ...], *, skewed: bool) -> Floats:
+    """Mean 0, variance 1."""
+    if not skewed:
+        return rng.normal(size=size)
+    e = np.e
+    return np.asarray((np.exp(rng.normal(size=size)) - e**0.5) / (e * (e - 1)) ** 0.5)
+
+
+def campaign(
+    rng: np.random.Generator, spread: tuple[float, float, float], seeds: int, *, skewed: bool
+) -> Floats:
+    sizes = ((DRAWS, 1, 1), (DRAWS, SCENARIOS, 1), (DRAWS, SCENARIOS, seeds))
+    parts = [s * noise(rng, size, skewed=skewed) for s, size in zip(spread, sizes, strict=True)]
+    return np.broadcast_to(sum(parts), sizes[-1]).reshape(-1)
+
+
+def truths(spread: tuple[float, float, float], *, skewed: bool) -> dict[str, float]:
+    rng = np.random.default_rng(1)
+    large = sum(s * noise(rng, (_LARGE,), skewed=skewed) for s in spread)
+    large = np.sort(np.asarray(large))
+    other = np.asarray(sum(s * noise(rng, (_LARGE,), skewed=skewed) for s in spread))
+    middle = large[_LARGE // 4 : 3 * _LARGE // 4]
+    return {
+        "mean": 0.0,
+        "iqm": float(middle.mean()),
+        "d": 0.0,
+        "P": float((large > 0).mean()),
+        "rank": 2 * float((rng.permutation(large) + other > 0).mean()) - 1,  # Walsh averages
+    }
+
+
+def intervals(values: Floats, groups: Clusters) -> Iterator[tuple[str, str, Estimate]]:
+    mean = c.weighted(lambda a, n: a / n, values)
+    iqm = c.trimmed_mean(values)
+    effect = c.weighted(lambda a, b, n: (a / n) / np.sqrt(b / n - (a / n) ** 2), values, values**2)
+    yield "mean t", "mean", c.mean(values, groups)
+    for name, statistic, truth in (("mean", mean, "mean"), ("iqm", iqm, "iqm")):
+        yield f"{name} bca", truth, c.bootstrap(statistic, groups, studentised=False)
+        yield f"{name} bca+t", truth, c.bootstrap(statistic, groups)
+    yield "d bca+t", "d", c.bootstrap(effect, groups)
+    yield "P(better) t", "P", c.mean(0.5 + np.sign(values) / 2, groups)
+    ranks = signed_ranks(values).astype(float)
+    yield "rank r t", "rank", c.ratio(ranks, np.abs(ranks), groups)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--repetitions", type=int, default=1000)
+    parser.add_argument("--seeds", type=int, default=1)
+    options = parser.parse_args()
+    groups = Clusters.of(
+        [f"draw {i}" for i in range(DRAWS) for _ in range(SCENARIOS * options.seeds)]
+    )
+    heads = "".join(f"{name:>13}" for name in COLUMNS)
+    print(f"{'noise':11}{'draw, scenario, run':21}{heads}{'false':>9}")
+    for skewed in (False, True):
+        for spread in SPREADS:
+            rng = np.random.default_rng(7)
+            truth, found, false = truths(spread, skewed=skewed), Counter[str](), 0
+            for _ in range(options.repetitions):
+                values = campaign(rng, spread, options.seeds, skewed=skewed)
+                for column, name, x in intervals(values, groups):
+                    assert x.low is not None
+                    assert x.high is not None
+                    found[column] += x.low <= truth[name] <= x.high
+                false += p_value(signed_ranks(values), groups) <= 0.05
+            shares = "".join(f"{found[n] / options.repetitions:13.1%}" for n in COLUMNS)
+            level = "" if skewed else f"{false / options.repetitions:9.1%}"
+            kind = "lognormal" if skewed else "normal"
+            print(f"{kind:11}{', '.join(f'{s:g}' for s in spread):21}{shares}{level}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

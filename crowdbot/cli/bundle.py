@@ -1,0 +1,69 @@
+"""``crowdbot bundle``: pack the runs of one planner into an archive that others can check."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from crowdbot.cli._options import Plugins
+
+
+def bundle(
+    root: Annotated[
+        Path, typer.Argument(metavar="[ROOT]", help="Root of the run directories.")
+    ] = Path("runs"),
+    suite: Annotated[
+        str, typer.Option(metavar="SPEC", help="The suite that was run: file or name.")
+    ] = "challenge-2020",
+    planner: Annotated[
+        str, typer.Option(metavar="LABEL", help="The planner: name of its folders.")
+    ] = "dwa",
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Default: SUITE-PLANNER.cbz.")
+    ] = None,
+    team: Annotated[str, typer.Option(metavar="NAME", help="For the leaderboard.")] = "",
+    contact: Annotated[str, typer.Option(metavar="TEXT", help="Whom to ask.")] = "",
+    partial: Annotated[
+        bool, typer.Option("--partial", help="Pack what is there, though runs are missing.")
+    ] = False,
+    recordings: Annotated[
+        bool, typer.Option("--recordings", help="Pack the recordings, too.")
+    ] = False,
+    plugin: Plugins = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="The manifest as JSON on stdout.")
+    ] = False,
+) -> None:
+    """Pack scores, hashes, scenarios and provenance of one planner's runs into one archive.
+
+    The same runs give the same bytes. crowdbot verify checks the archive and makes some of its
+    runs again.
+
+    Example: crowdbot bundle runs --suite challenge-2020 --planner dwa --out team.cbz --team Us
+    """
+    from crowdbot.core.bundle.pack import Submission, pack
+    from crowdbot.core.library import open_suite
+    from crowdbot.core.registry import discover
+
+    registry = discover(extra=plugin or ())
+    expansion, lock = open_suite(suite, registry)
+    submission = Submission(
+        root=root, planner=planner, team=team, contact=contact, partial=partial,
+        recordings=recordings,
+    )  # fmt: skip
+    target = out or Path(f"{expansion.suite_id}-{planner}.cbz")
+    manifest = pack(submission, expansion, lock, registry, target)
+    if as_json:
+        typer.echo(
+            json.dumps({"bundle": str(target), **manifest.model_dump(mode="json")}, indent=2)
+        )
+        return
+    lacking = f", {len(manifest.missing)} missing" if manifest.missing else ""
+    typer.echo(
+        f"{manifest.edition.name}: {manifest.label}, {len(manifest.runs)} runs{lacking}, "
+        f"{len(manifest.members)} files, {target.stat().st_size / 1e6:.1f} MB"
+    )
+    typer.echo(f"wrote {target}")

@@ -1,0 +1,60 @@
+"""``crowdbot leaderboard``: one page from a folder of bundles."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from crowdbot.cli._options import Plugins
+
+
+def leaderboard(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="With bundles (*.cbz).")],
+    out: Annotated[Path, typer.Option(metavar="FILE", help="The page.")] = Path("leaderboard.html"),
+    by: Annotated[
+        str, typer.Option(metavar="METRIC", help="Which metric decides the order.")
+    ] = "success_no_collision",
+    title: Annotated[str, typer.Option(metavar="TEXT", help="Heading.")] = "Leaderboard",
+    accept: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Compare although this differs; repeatable."),
+    ] = None,
+    plugin: Plugins = None,
+    as_json: Annotated[bool, typer.Option("--json", help="The order as JSON on stdout.")] = False,
+) -> None:
+    """Rank the bundles of a folder, by edition and class, on one offline page.
+
+    Bundles that cannot be told apart share a rank. Scores of older versions of a metric are
+    computed again where a bundle has recordings, and left out where not.
+
+    Example: crowdbot leaderboard bundles --out leaderboard.html --by spl
+    """
+    from crowdbot.core.bundle.entries import load_entries
+    from crowdbot.core.bundle.leaderboard import write_leaderboard
+    from crowdbot.core.bundle.standings import standings
+    from crowdbot.core.registry import discover
+    from crowdbot.errors import UnknownNameError
+
+    registry = discover(extra=plugin or ())
+    if by not in registry.components("metric"):
+        raise UnknownNameError("metric", by, registry.components("metric"))
+    entries, left_out = load_entries(folder, registry)
+    tables = standings(entries, by, accept or ())
+    write_leaderboard(out, tables, left_out, title)
+    for name, why in left_out.items():
+        typer.echo(f"warning: {name} is left out: {why}", err=True)
+    if as_json:
+        document = [
+            {"edition": t.edition, "class": t.classed, "by": t.by,
+             "entries": [{"name": e.name, "rank": t.rank(by, e), "file": e.path.name}
+                         for e in t.entries]}
+            for t in tables
+        ]  # fmt: skip
+        typer.echo(
+            json.dumps({"page": str(out), "tables": document, "left_out": left_out}, indent=2)
+        )
+        return
+    typer.echo(f"{len(entries)} bundles, {len(tables)} tables; wrote {out}")

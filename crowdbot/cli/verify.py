@@ -1,0 +1,171 @@
+"""``crowdbot verify``: check a bundle and make a random sample of its runs again."""
+
+from __future__ import annotations
+
+import json
+import secrets
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from crowdbot.cli._options import Plugins
+
+if TYPE_CHECKING:
+    from crowdbot.core.bundle.archive import Archive
+    from crowdbot.core.bundle.check import ClaimedRun
+    from crowdbot.core.bundle.judge import Judgement
+    from crowdbot.core.registry import Registry
+    from crowdbot.dsl.expand import Expansion
+
+_SAYS = {
+    "verified": "every run that was made again is the same, bit by bit",
+    "within tolerance": "runs differ no more than processors and software explain",
+    "suspicious": "ask the team before anything else; see above what does not fit",
+    "cannot be re-run": "nothing was simulated",
+    "invalid": "the archive is damaged, or its parts contradict each other",
+    "not re-run": "the archive is whole and fits the suite; nothing was simulated",
+}
+
+
+def verify(
+    bundle: Annotated[Path, typer.Argument(metavar="BUNDLE", help="From crowdbot bundle.")],
+    sample: Annotated[
+        int, typer.Option(min=0, metavar="N", help="How many runs to make again; 0: none.")
+    ] = 5,
+    everything: Annotated[bool, typer.Option("--all", help="Make all runs again.")] = False,
+    seed: Annotated[
+        int | None,
+        typer.Option(min=0, metavar="S", help="Which runs; default: a new one each time."),
+    ] = None,
+    planner: Annotated[
+        str | None,
+        typer.Option(metavar="FILE.py:CLASS", help="The planner, where it is not installed."),
+    ] = None,
+    suite: Annotated[
+        str | None, typer.Option(metavar="SPEC", help="The suite, where it is no packaged one.")
+    ] = None,
+    save: Annotated[
+        bool, typer.Option("--save", help="Write the outcome to NAME.verified.json beside it.")
+    ] = False,
+    plugin: Plugins = None,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """Check a bundle, and make some of its runs again; exit code 1 if anything does not fit.
+
+    Example: crowdbot verify team.cbz --sample 10 --seed 7
+    """
+    from crowdbot.core.bundle.archive import open_archive
+    from crowdbot.core.bundle.verification import content_hash, save_verification
+    from crowdbot.core.registry import discover
+
+    registry = discover(extra=plugin or ())
+    seed = secrets.randbelow(2**32) if seed is None else seed
+    size = None if everything else sample
+    with open_archive(bundle) as archive:
+        digest = content_hash(bundle)
+        judgement = _verify(archive, registry, suite, planner, (size, seed, digest))
+        label, edition = archive.manifest.label, archive.manifest.edition.name
+    document = _document(judgement, seed, digest)
+    if save:
+        save_verification(bundle, document)
+    if as_json:
+        typer.echo(json.dumps({"bundle": str(bundle), "planner": label, **document}, indent=2))
+    else:
+        _print(f"{edition}: {label}", document)
+    raise typer.Exit(0 if document["ok"] else 1)
+
+
+def _verify(
+    archive: Archive,
+    registry: Registry,
+    suite: str | None,
+    planner: str | None,
+    draw: tuple[int | None, int, str],
+) -> Judgement:
+    from crowdbot.core.bundle.check import check_members, check_suite, claimed_runs
+    from crowdbot.core.bundle.judge import Judgement
+
+    problems = list(check_members(archive))
+    runs, wrong = claimed_runs(archive)
+    expansion = _suite(archive, registry, suite)
+    problems += [p for p in wrong if p not in problems]
+    problems += [p for p in check_suite(archive, expansion, registry) if p not in problems]
+    if problems:
+        return Judgement(outcome="invalid", findings=tuple(problems))
+    if draw[0] == 0:
+        return Judgement(outcome="not re-run")
+    return _make_again(archive, expansion, registry, planner, runs, draw)
+
+
+def _suite(archive: Archive, registry: Registry, given: str | None) -> Expansion:
+    from crowdbot.core.library import open_spec, suite_names
+    from crowdbot.errors import InputError
+
+    name = archive.manifest.edition.suite
+    if given is None and name not in suite_names(registry):
+        raise InputError(
+            f"{archive.path}: suite '{name}' is not installed; name its file with --suite"
+        )
+    expansion = open_spec(given or name, registry)
+    if expansion.suite_id != name:
+        raise InputError(f"{archive.path} is of suite '{name}', not of '{expansion.suite_id}'")
+    return expansion
+
+
+def _make_again(
+    archive: Archive,
+    expansion: Expansion,
+    registry: Registry,
+    planner: str | None,
+    runs: Sequence[ClaimedRun],
+    draw: tuple[int | None, int, str],
+) -> Judgement:
+    from crowdbot.cli._progress import show_progress
+    from crowdbot.cli.simulate import _end_hung_process, _import_simulate, _interruptible
+    from crowdbot.core.bundle.judge import Again, Judgement, judge
+
+    _import_simulate()  # says what is missing where Drake cannot be imported
+    from crowdbot.core.sim.verify import NotRunnable, Rerun, choose_planner, draw_sample, make_again
+
+    try:
+        choice = choose_planner(archive.manifest, registry, planner)
+    except NotRunnable as error:
+        return Judgement(outcome="cannot be re-run", findings=(str(error),))
+    size, seed, content = draw
+    found: list[Again] = []
+    with _interruptible() as stop, show_progress() as progress:
+        rerun = Rerun(
+            expansion=expansion, registry=registry, choice=choice, progress=progress, stop=stop,
+            on_hang=_end_hung_process,
+        )  # fmt: skip
+        for number in draw_sample(runs, size, seed, content):
+            found.append(make_again(rerun, runs[number]))
+    return judge(found)
+
+
+def _document(judgement: Judgement, seed: int, digest: str) -> dict[str, Any]:
+    from crowdbot.core import provenance
+    from crowdbot.core.bundle.judge import FINE
+
+    return {
+        "outcome": judgement.outcome,
+        "ok": judgement.outcome in FINE,
+        "sha256": digest,
+        "seed": seed,
+        "findings": list(judgement.findings),
+        "runs": dict(judgement.relations),
+        "crowdbot": provenance.versions()["crowdbot"],
+        "machine": provenance.machine(),
+    }
+
+
+def _print(head: str, document: dict[str, Any]) -> None:
+    for finding in document["findings"]:
+        typer.echo(finding)
+    for name, relation in document["runs"].items():
+        typer.echo(f"{name}: {relation}")
+    outcome = document["outcome"]
+    chosen = f", sample seed {document['seed']}" if document["runs"] else ""
+    typer.echo(f"{head}: {outcome}: {_SAYS[outcome]}{chosen}")

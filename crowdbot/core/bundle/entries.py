@@ -1,0 +1,161 @@
+"""The entries of a leaderboard: bundles that are read, checked and, where need be, scored again."""
+
+from __future__ import annotations
+
+import posixpath
+import tempfile
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core import run_directory as files
+from crowdbot.core.bundle.archive import Archive, open_archive
+from crowdbot.core.bundle.check import ClaimedRun, check_members, claimed_runs
+from crowdbot.core.bundle.manifest import Manifest
+from crowdbot.core.bundle.verification import content_hash, read_verification
+from crowdbot.core.evaluate import score
+from crowdbot.core.recording import read_trajectories
+from crowdbot.core.registry import Registry
+from crowdbot.errors import InputError
+
+SUFFIX = ".cbz"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Entry:
+    """One bundle on the leaderboard.
+
+    Attributes:
+        name: team and planner, different for each entry.
+        sha256: of the archive.
+        verification: the record beside it, or None.
+        rescored: metrics that were scored again from recordings, as their version had changed.
+        outdated: metrics that were left out, as their version had changed and nothing of the
+            bundle can be scored again.
+    """
+
+    path: Path
+    name: str
+    manifest: Manifest
+    sha256: str
+    verification: Mapping[str, Any] | None
+    runs: tuple[ClaimedRun, ...] = field(repr=False)
+    rescored: tuple[str, ...] = ()
+    outdated: tuple[str, ...] = ()
+
+    @property
+    def ranked(self) -> bool:
+        """Whether it is complete."""
+        return not self.manifest.missing
+
+
+def load_entries(folder: Path, registry: Registry) -> tuple[list[Entry], dict[str, str]]:
+    """All bundles of a folder, by file name, and those that are left out, with the reason.
+
+    Raises:
+        InputError: no such folder, or no bundle in it.
+    """
+    paths = sorted(p for p in folder.glob(f"*{SUFFIX}") if p.is_file())
+    if not paths:
+        raise InputError(f"{folder}: no bundles (*{SUFFIX}) there")
+    entries, left_out = [], dict[str, str]()
+    for path in paths:
+        try:
+            entries.append(_entry(path, registry))
+        except InputError as error:
+            left_out[path.name] = str(error).removeprefix(f"{path}: ")
+    return _named_apart(entries), left_out
+
+
+def _entry(path: Path, registry: Registry) -> Entry:
+    with open_archive(path) as archive:
+        problems = list(check_members(archive))
+        runs, wrong = claimed_runs(archive)
+        if problems or wrong:
+            raise InputError(f"{path}: {[*problems, *wrong][0]}")
+        if not runs:
+            raise InputError(f"{path}: there is no run in it")
+        manifest = archive.manifest
+        entry = Entry(
+            path=path,
+            name=" · ".join(part for part in (manifest.team, manifest.label) if part),
+            manifest=manifest,
+            sha256=content_hash(path),
+            verification=read_verification(path),
+            runs=tuple(runs),
+        )
+        return _up_to_date(entry, archive, registry)
+
+
+def _named_apart(entries: Sequence[Entry]) -> list[Entry]:
+    times = Counter(e.name for e in entries)
+    return [
+        e if times[e.name] == 1 else replace(e, name=f"{e.name} ({e.path.stem})") for e in entries
+    ]
+
+
+# ------------------------------------------------------------------ metrics' versions
+def old_metrics(run: ClaimedRun, registry: Registry) -> set[str]:
+    """Metrics of a run whose version is not the one that is installed."""
+    known = registry.components("metric")
+    recorded = run.record.get("metrics")
+    recorded = recorded if isinstance(recorded, Mapping) else {}
+    return {s.metric for s in run.scores if _version(recorded.get(s.metric)) != (
+        known[s.metric].spec_version if s.metric in known else None)}  # fmt: skip
+
+
+def _version(recorded: Any) -> int | None:
+    value = recorded.get("spec_version") if isinstance(recorded, Mapping) else recorded
+    return value if isinstance(value, int) else None
+
+
+def _up_to_date(entry: Entry, archive: Archive, registry: Registry) -> Entry:
+    old = {metric for run in entry.runs for metric in old_metrics(run, registry)}
+    if not old:
+        return entry
+    known = registry.components("metric")
+    recorded = all(f"{r.entry.directory}/{files.RECORDING}" in archive.names for r in entry.runs)
+    again = sorted(old & set(known)) if recorded else []
+    gone = sorted(old - set(again))
+    runs = tuple(_scored_again(archive, run, again, gone, registry) for run in entry.runs)
+    return replace(entry, runs=runs, rescored=tuple(again), outdated=tuple(gone))
+
+
+def _scored_again(
+    archive: Archive, run: ClaimedRun, again: Sequence[str], gone: Sequence[str], registry: Registry
+) -> ClaimedRun:
+    left = [s for s in run.scores if s.metric not in again and s.metric not in gone]
+    metrics = dict(run.record.get("metrics") or {})
+    for name in gone:
+        metrics.pop(name, None)
+    if again:
+        known = registry.components("metric")
+        found = _score(archive, run, again, registry)
+        left += found
+        metrics |= {s.metric: {"spec_version": known[s.metric].spec_version, **s.parameters}
+                    for s in found}  # fmt: skip
+    left.sort(key=lambda s: s.metric)
+    return replace(run, scores=tuple(left), record={**run.record, "metrics": metrics})
+
+
+def _score(
+    archive: Archive, run: ClaimedRun, metrics: Sequence[str], registry: Registry
+) -> list[Any]:
+    """Scores from the recordings in the archive, with the calibration runs that are there."""
+    listed = run.record.get("references")
+    listed = listed if isinstance(listed, Mapping) else {}
+    names = {"run": f"{run.entry.directory}/{files.RECORDING}"}
+    names |= {k: posixpath.normpath(f"{run.entry.directory}/{p}") for k, p in listed.items()}
+    with tempfile.TemporaryDirectory(prefix="crowdbot-rescore-") as folder:
+        read = {}
+        for key, name in names.items():
+            if name in archive.names:
+                archive.unpack(name, Path(folder) / files.RECORDING)
+                read[key] = read_trajectories(Path(folder) / files.RECORDING)
+    return list(
+        score(
+            registry, read["run"], read.get("robot_alone"), read.get("crowd_alone"), metrics=metrics
+        )
+    )

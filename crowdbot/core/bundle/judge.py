@@ -1,0 +1,198 @@
+"""What follows from runs that were made again: pure comparison, nothing is simulated here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from crowdbot.core.bundle.check import ClaimedRun
+from crowdbot.core.bundle.tolerances import (
+    SPREADS,
+    WALL_CLOCK,
+    are_equal,
+    mean_limit,
+    single_limit,
+)
+from crowdbot.core.score import Score
+
+Outcome = Literal[
+    "verified", "within tolerance", "suspicious", "cannot be re-run", "invalid", "not re-run"
+]
+#: What a bundle may be accepted with.
+FINE: tuple[Outcome, ...] = ("verified", "within tolerance", "not re-run")
+
+#: How a run that was made again relates to what the bundle claims.
+#:
+#: ``identical``: the trajectory is the same, bit by bit.
+#: ``different``: it is not, although nothing that may change it did.
+#: ``elsewhere``: it is not, and was made on another processor or with other software.
+#: ``unsteady``: the planner does something else each time.
+Relation = Literal["identical", "different", "elsewhere", "unsteady"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Again:
+    """One run, made again.
+
+    Attributes:
+        record: the new ``run.json``.
+        repeated: trajectory's hash of a third time, where there was one.
+        own: scores without part of calibration runs, where those may be others; None: not asked.
+    """
+
+    claimed: ClaimedRun
+    record: Mapping[str, Any] = field(repr=False)
+    scores: tuple[Score, ...] = field(repr=False)
+    repeated: str | None = None
+    own: frozenset[tuple[str, str]] | None = None
+
+    @property
+    def trajectory(self) -> str:
+        """Hash of the new trajectory."""
+        return _trajectory(self.record)
+
+    @property
+    def relation(self) -> Relation:
+        """How both relate."""
+        if self.trajectory == self.claimed.entry.trajectory:
+            return "identical"
+        if not self.same_ground:
+            return "elsewhere"
+        unsteady = self.repeated is not None and self.repeated != self.trajectory
+        return "unsteady" if unsteady else "different"
+
+    @property
+    def same_ground(self) -> bool:
+        """Whether processor and software are the same, so that trajectories must be, too."""
+        return same_ground(self.claimed.record, self.record)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Judgement:
+    """The outcome, and why: one line for each thing that was found."""
+
+    outcome: Outcome
+    findings: tuple[str, ...] = ()
+    relations: Mapping[str, Relation] = field(default_factory=dict)
+
+
+def judge(sample: Sequence[Again]) -> Judgement:
+    """What the runs that were made again say about a bundle."""
+    relations = {a.claimed.name: a.relation for a in sample}
+    findings = [
+        f"{a.claimed.name}: the trajectory is another one on the same processor "
+        f"({_machine(a.record, 'processor')}) with the same software"
+        for a in sample
+        if a.relation == "different"
+    ]
+    for again in sample:
+        if again.relation == "identical":
+            findings += _unequal(again)
+    loose = [a for a in sample if a.relation != "identical" or not a.same_ground]
+    findings += _beyond(loose)
+    if findings:
+        return Judgement(outcome="suspicious", findings=tuple(findings), relations=relations)
+    outcome: Outcome = "within tolerance" if loose else "verified"
+    if all(r == "identical" for r in relations.values()):
+        outcome = "verified"
+    return Judgement(outcome=outcome, relations=relations)
+
+
+def same_ground(claimed: Mapping[str, Any], record: Mapping[str, Any]) -> bool:
+    """Whether two records come from the same processor and software."""
+    names = ("processor", "rounding")
+    same = all(_machine(claimed, n) == _machine(record, n) != "" for n in names)
+    return same and claimed.get("versions") == record.get("versions")
+
+
+# ------------------------------------------------------------------- equal trajectories
+def _unequal(again: Again) -> Iterator[str]:
+    """Scores that the trajectory, which is the same, does not give."""
+    computed = {(s.metric, s.variant): s for s in again.scores}
+    for score in again.claimed.scores:
+        if not _comparable(again, score):
+            continue
+        here = computed.get((score.metric, score.variant))
+        if here is None:
+            yield f"{again.claimed.name}: {_name(score)} is claimed, but there is no such score"
+        elif not _agree(score, here):
+            yield (
+                f"{again.claimed.name}: {_name(score)} is claimed to be {_said(score)}, "
+                f"but the same trajectory gives {_said(here)}"
+            )
+    claimed = {(s.metric, s.variant) for s in again.claimed.scores}
+    for name in sorted(set(computed) - claimed):
+        yield f"{again.claimed.name}: {'.'.join(name)} was left out"
+
+
+def _comparable(again: Again, score: Score) -> bool:
+    """Whether a score must be the same if the trajectory is."""
+    if score.metric in WALL_CLOCK or not _same_metric(again, score.metric):
+        return False
+    return again.own is None or (score.metric, score.variant) in again.own
+
+
+def _agree(a: Score, b: Score) -> bool:
+    if (a.status, a.unit, a.better, a.reason) != (b.status, b.unit, b.better, b.reason):
+        return False
+    ends = ((a.value, b.value), (a.lower, b.lower), (a.upper, b.upper))
+    return all(
+        x is y is None or (x is not None and y is not None and are_equal(x, y)) for x, y in ends
+    )
+
+
+def _same_metric(again: Again, metric: str) -> bool:
+    """Whether both were scored by the same version of a metric with the same parameters."""
+    sides = [(r.get("metrics") or {}).get(metric) for r in (again.claimed.record, again.record)]
+    return bool(sides[0] == sides[1])
+
+
+# --------------------------------------------------------------- different trajectories
+def _beyond(loose: Sequence[Again]) -> Iterator[str]:
+    """Differences that other processors do not explain."""
+    for metric, spread in SPREADS.items():
+        gaps = {a.claimed.name: g for a in loose if (g := _gap(a, metric)) is not None}
+        for name, gap in gaps.items():
+            if abs(gap) > single_limit(spread):
+                yield (
+                    f"{name}: {metric} is off by {gap:+.3g}; processors explain "
+                    f"{single_limit(spread):.3g}"
+                )
+        if len(gaps) > 1:
+            mean, limit = sum(gaps.values()) / len(gaps), mean_limit(spread, len(gaps))
+            if abs(mean) > limit:
+                yield (
+                    f"{metric} is off by {mean:+.3g} on the mean of {len(gaps)} runs; processors "
+                    f"explain {limit:.3g}"
+                )
+
+
+def _gap(again: Again, metric: str) -> float | None:
+    """Claimed minus computed value of the corrected variant; None where one has no value."""
+    if not _same_metric(again, metric):
+        return None
+    found = []
+    for scores in (again.claimed.scores, again.scores):
+        values = [s.value for s in scores if (s.metric, s.variant) == (metric, "corrected")]
+        found.append(values[0] if values else None)
+    a, b = found
+    return None if a is None or b is None else a - b
+
+
+# ------------------------------------------------------------------------------- words
+def _trajectory(record: Mapping[str, Any]) -> str:
+    return str(record.get("hashes", {}).get("trajectory", ""))
+
+
+def _machine(record: Mapping[str, Any], name: str) -> str:
+    machine = record.get("machine")
+    return str(machine.get(name, "")) if isinstance(machine, Mapping) else ""
+
+
+def _name(score: Score) -> str:
+    return f"{score.metric}.{score.variant}"
+
+
+def _said(score: Score) -> str:
+    return f"{score.value!r}" if score.value is not None else f"{score.status} ({score.reason})"

@@ -1,0 +1,140 @@
+"""Writes the leaderboard: one offline page without a script, in the reader's light or dark."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from collections.abc import Mapping, Sequence
+from importlib import metadata, resources
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+from crowdbot.core.aside import write_aside
+from crowdbot.core.bundle.entries import Entry
+from crowdbot.core.bundle.manifest import RULES, RULES_TEXT
+from crowdbot.core.bundle.standings import Standings
+from crowdbot.core.statistics import OUTCOMES, Estimate
+
+_ARROWS = {"higher": "↑", "lower": "↓", "reference": "=", "none": ""}
+
+
+def write_leaderboard(
+    path: Path, tables: Sequence[Standings], left_out: Mapping[str, str], title: str
+) -> None:
+    """Write the page; equal input gives equal bytes.
+
+    Raises:
+        InputError: the path cannot be written.
+    """
+    style = _asset("page.css")
+    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode("ascii")
+    template = jinja2.Environment(
+        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    ).from_string(_asset("page.html.j2"))
+    text = template.render(
+        title=title,
+        policy=f"default-src 'none'; style-src 'sha256-{digest}'; base-uri 'none'; "
+        "form-action 'none'",
+        style=Markup(style),
+        tables=[_table(t) for t in tables],
+        left_out=left_out,
+        rules=RULES_TEXT,
+        rules_number=RULES,
+        version=metadata.version("crowdbot"),
+    )
+    write_aside(path, text)
+
+
+def _table(table: Standings) -> dict[str, Any]:
+    return {
+        "edition": table.edition,
+        "title": table.entries[0].manifest.edition.title,
+        "class": table.classed,
+        "by": table.by,
+        "ordered": bool(table.summary.ranks(table.by)),
+        "entries": [_entry(table, e) for e in table.entries],
+        "ranked": [e.name for e in table.entries if e.ranked],
+        "groups": _groups(table),
+        "findings": [(f.severity, str(f), f.accepted) for f in table.findings],
+        "tests": table.summary.tests,
+        "level": f"{table.summary.level:.0%}",
+    }
+
+
+def _entry(table: Standings, entry: Entry) -> dict[str, Any]:
+    manifest = entry.manifest
+    rank = table.rank(table.by, entry)
+    return {
+        "rank": "" if rank is None else f"{rank}{'=' * table.shares_rank(table.by, entry)}",
+        "name": entry.name,
+        "team": manifest.team or "—",
+        "planner": manifest.label,
+        "contact": manifest.contact,
+        "runs": len(manifest.runs),
+        "missing": len(manifest.missing),
+        "pinned": manifest.pinned,
+        "state": _state(entry),
+        "hash": entry.sha256[:12],
+        "crowdbot": manifest.versions.get("crowdbot", ""),
+        "rescored": ", ".join(entry.rescored),
+        "outdated": ", ".join(entry.outdated),
+    }
+
+
+def _state(entry: Entry) -> str:
+    record = entry.verification
+    if record is None:
+        return "not verified"
+    runs = record.get("runs")
+    count = len(runs) if isinstance(runs, Mapping) else 0
+    return f"{record.get('outcome', 'unknown')}, {count} of {len(entry.runs)} runs made again"
+
+
+def _groups(table: Standings) -> dict[str, list[dict[str, Any]]]:
+    """Category -> metrics, each with a cell for every ranked entry."""
+    ranked = [e for e in table.entries if e.ranked]
+    found: dict[str, list[dict[str, Any]]] = {}
+    for metric in dict.fromkeys(s.metric for s in table.summary.scores):
+        label = next(s for s in table.summary.scores if s.metric == metric)
+        row = {
+            "metric": metric,
+            "variant": label.variant,
+            "unit": "" if label.unit == "1" else label.unit,
+            "arrow": _ARROWS[label.better],
+            "better": label.better,
+            "cells": [_cell(table, metric, e) for e in ranked],
+        }
+        found.setdefault(label.category, []).append(row)
+    return dict(sorted(found.items()))
+
+
+def _cell(table: Standings, metric: str, entry: Entry) -> dict[str, Any]:
+    score, rank = table.score(metric, entry), table.rank(metric, entry)
+    if score is None or metric in entry.outdated:
+        return {"rank": "", "value": "—", "interval": "", "note": "an older version of the metric"}
+    others = {k: getattr(score.counts, k) for k in OUTCOMES if k != "ok"}
+    notes = [f"{n} {k}" for k, n in others.items() if n]
+    notes += ["scored again"] * (metric in entry.rescored)
+    return {
+        "rank": "" if rank is None else f"{rank}{'=' * table.shares_rank(metric, entry)}",
+        "value": _number(score.mean.value),
+        "interval": _interval(score.mean),
+        "note": ", ".join(notes),
+    }
+
+
+def _interval(found: Estimate) -> str:
+    if found.low is None or found.high is None:
+        return ""
+    return f"{_number(found.low)} to {_number(found.high)}"
+
+
+def _number(value: float | None) -> str:
+    return "—" if value is None else f"{value:.4g}"
+
+
+def _asset(name: str) -> str:
+    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")

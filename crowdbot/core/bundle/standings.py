@@ -1,0 +1,93 @@
+"""Who stands where: entries of one edition and one class, ranked only as far as data goes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from crowdbot.core.bundle.entries import Entry
+from crowdbot.core.bundle.rows import results_of
+from crowdbot.core.results.confounds import Finding, check_comparable, confounds
+from crowdbot.core.statistics import PlannerScore, Summary, summarise
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Standings:
+    """One table of the leaderboard.
+
+    Attributes:
+        edition, classed: of all entries.
+        entries: the best in ``by`` first, those that are not ranked last.
+        findings: what besides the planner differs.
+        summary: of the ranked entries.
+        by: metric that decides the order.
+    """
+
+    edition: str
+    classed: str
+    entries: tuple[Entry, ...]
+    findings: tuple[Finding, ...]
+    summary: Summary
+    by: str
+
+    def rank(self, metric: str, entry: Entry) -> int | None:
+        """1 + how many are better for certain; None where it is not ranked."""
+        if not entry.ranked or metric in entry.outdated:
+            return None
+        return self.summary.ranks(metric).get(entry.name)
+
+    def shares_rank(self, metric: str, entry: Entry) -> bool:
+        """Whether another entry has the same rank."""
+        ranks = self.summary.ranks(metric)
+        return list(ranks.values()).count(ranks.get(entry.name, 0)) > 1
+
+    def score(self, metric: str, entry: Entry) -> PlannerScore | None:
+        """The entry's score, if it is ranked."""
+        found = (s for s in self.summary.scores if (s.metric, s.planner) == (metric, entry.name))
+        return next(found, None)
+
+
+def standings(entries: Sequence[Entry], by: str, accept: Iterable[str]) -> list[Standings]:
+    """One table for each edition and class.
+
+    Args:
+        entries: from `load_entries`.
+        by: metric that decides the order.
+        accept: confounds that are accepted; tables print them.
+
+    Raises:
+        InputError: entries differ in more than the planner.
+        UnknownNameError: there is no such confound.
+    """
+    groups: dict[tuple[str, str], list[Entry]] = {}
+    for entry in entries:
+        groups.setdefault((entry.manifest.edition.name, entry.manifest.classed), []).append(entry)
+    accepted = tuple(accept)
+    return [_table(*key, groups[key], by, accepted) for key in sorted(groups, reverse=True)]
+
+
+def _table(
+    edition: str, classed: str, entries: list[Entry], by: str, accept: tuple[str, ...]
+) -> Standings:
+    results = results_of((e.name, run) for e in entries if e.ranked for run in e.runs)
+    findings = confounds(results, accept)
+    check_comparable(findings)
+    summary = summarise(results)
+    ranks = summary.ranks(by)
+    scores = [s for s in summary.scores if s.metric == by and s.mean.value is not None]
+    sign = {s.planner: -1.0 if s.better == "higher" else 1.0 for s in scores}
+    means = {s.planner: sign[s.planner] * (s.mean.value or 0.0) for s in scores}
+
+    def order(entry: Entry) -> tuple[bool, int, float, str]:
+        name = entry.name
+        return not entry.ranked, ranks.get(name, 1), means.get(name, math.inf), name
+
+    return Standings(
+        edition=edition,
+        classed=classed,
+        entries=tuple(sorted(entries, key=order)),
+        findings=findings,
+        summary=summary,
+        by=by,
+    )

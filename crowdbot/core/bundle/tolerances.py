@@ -1,0 +1,81 @@
+"""How far scores of the same run may be apart on two processors.
+
+Processors round differently, and a crowd turns the last digit into another history within some
+seconds. Scores of one run then differ like scores of two runs: no bound on a single one is both
+fair and sharp, but differences of honest runs scatter around zero. So there are two rules, both
+from one published number for each score, its ``spread``:
+
+- no single difference is larger than `SINGLE` spreads;
+- the mean of n differences is no further from zero than `MEAN` spreads over the root of n.
+
+The spread of a score is twice the root mean square by which two runs of one scenario differ that
+have come apart for good: 12 scenarios of challenge-2020, planner dwa, two seeds
+(benchmarks/processor_targets.py, way ``seed``). Rounding alone did far less: at most 2e-6 in any
+of these scores but two. Scores without a spread are not judged.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+SINGLE, MEAN = 10.0, 4.0
+
+#: Scores of equal trajectories are equal but for the last digits, which sums may round.
+EQUAL = 1e-9
+
+#: Scores that measure the machine instead of the run.
+WALL_CLOCK = ("max_planner_time", "mean_planner_time")
+
+#: Metric, corrected variant -> spread in its unit. A robot arrives or does not: 0.5 for success.
+SPREADS: Mapping[str, float] = {
+    "ade_to_reference": 2.3,
+    "avg_wall_clearance": 0.96,
+    "cumulative_heading_change": 27,
+    "effect_on_time": 0.0075,
+    "effect_on_velocity": 0.0018,
+    "expected_severity": 37,
+    "fde_to_reference": 5,
+    "final_distance_to_goal": 1.2,
+    "heading_similarity": 1.7,
+    "integrated_time_to_collision": 82,
+    "intimate_time_fraction": 0.15,
+    "min_clearance": 0.069,
+    "min_distance_to_goal": 1.2,
+    "min_wall_clearance": 1.4,
+    "neighbour_velocity_similarity": 0.049,
+    "neighbours_time_to_goal": 0.027,
+    "neighbours_velocity": 0.019,
+    "normalized_proximity": 0.046,
+    "path_length_similarity": 0.2,
+    "personal_time_fraction": 0.097,
+    "proximity": 0.1,
+    "relative_jerk": 0.001,
+    "relative_path_length": 0.12,
+    "relative_time_to_goal": 0.094,
+    "risk": 16,
+    "social_time_fraction": 0.089,
+    "space_compliance": 0.14,
+    "spl": 0.12,
+    "success": 0.5,
+    "success_no_collision": 0.5,
+    "time_exposed": 24,
+    "time_not_moving": 0.46,
+    "time_to_goal_similarity": 0.48,
+    "velocity_similarity": 0.04,
+}
+
+
+def are_equal(a: float, b: float) -> bool:
+    """Whether two scores of one trajectory agree."""
+    return math.isclose(a, b, rel_tol=EQUAL, abs_tol=EQUAL)
+
+
+def single_limit(spread: float) -> float:
+    """Largest difference of one run."""
+    return SINGLE * spread
+
+
+def mean_limit(spread: float, runs: int) -> float:
+    """Largest absolute mean of the differences of some runs."""
+    return MEAN * spread / math.sqrt(runs)

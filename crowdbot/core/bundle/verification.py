@@ -1,0 +1,50 @@
+"""The record of a verification, kept beside the bundle for the leaderboard."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.run_directory import write_json
+from crowdbot.errors import InputError
+
+
+def content_hash(bundle: Path) -> str:
+    """SHA-256 of an archive.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    try:
+        with bundle.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError as error:
+        raise InputError(f"{bundle}: cannot be read: {error.strerror}") from None
+
+
+def record_path(bundle: Path) -> Path:
+    """Where the record of a bundle's verification is."""
+    return bundle.with_suffix(".verified.json")
+
+
+def save_verification(bundle: Path, record: Mapping[str, Any]) -> None:
+    """Write the record; it names the bundle by its hash.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    write_json(record_path(bundle), record)
+
+
+def read_verification(bundle: Path) -> dict[str, Any] | None:
+    """The record of this very bundle; None if there is none, or it is of another one."""
+    try:
+        record = json.loads(record_path(bundle).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    if not isinstance(record, dict) or record.get("sha256") != content_hash(bundle):
+        return None
+    return record
