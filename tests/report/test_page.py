@@ -102,12 +102,16 @@ def test_failures_of_the_campaign_are_attempts_like_others() -> None:
         suite=made_good.suite, scenario=made_good.scenario, planner=made_good.planner,
         seed=made_good.seed, error="killed", traceback="",
     )  # fmt: skip
-    report = contents(replace(results, failures=(*results.failures, late)))
+    deep = replace(results.failures[1], traceback="\n".join(f"line {i}" for i in range(999)))
+    failures = (results.failures[0], deep, results.failures[2], late)
+    report = contents(replace(results, failures=failures))
     meta = Page(render(report)).meta
     assert meta["runs"]["count"] == 3 * 8
     statuses = [meta["statuses"][s] for s in meta["runs"]["status"]]
     assert statuses.count("failed") == 3  # the fourth was made good
     assert "MemoryError" in meta["runs"]["traceback"]["21"]
+    excerpt = meta["runs"]["traceback"]["22"].splitlines()
+    assert (excerpt[0], excerpt[-1], len(excerpt)) == ("… 975 lines …", "line 998", 25)
     scenarios = meta["runs"]["scenario"]
     twin = scenarios.index(scenarios[21])  # another planner's run of it
     assert [axis[21] for axis in meta["runs"]["axes"]] == [

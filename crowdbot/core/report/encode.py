@@ -21,6 +21,8 @@ from crowdbot.core.results.rows import FailureRow, Results, RunRow
 ABSENT = 65535
 #: Status of an attempt that left no run.
 FAILED = "failed"
+#: Of a traceback.
+_LINES, _WIDTH = 24, 400
 
 Attempt = RunRow | FailureRow
 
@@ -87,10 +89,19 @@ def encode_runs(
         "time": [None if r is None else round(r.sim_time, 3) for r in runs],
         "density": [None if r is None else r.density for r in runs],
         "replay": [None if r is None else replays.get(r.run_id) for r in runs],
-        "traceback": {i: a.traceback for i, a in enumerate(tried) if isinstance(a, FailureRow)},
+        "traceback": {
+            i: _excerpt(a.traceback) for i, a in enumerate(tried) if isinstance(a, FailureRow)
+        },
     }
     names = {"scenarios": scenarios.texts, "statuses": statuses.texts, "reasons": reasons.texts}
     return {"runs": columns, **names}
+
+
+def _excerpt(traceback: str) -> str:
+    """The end, which says what went wrong; a deep recursion would be most of the page."""
+    lines = traceback.splitlines()
+    cut = [f"… {len(lines) - _LINES} lines …"] if len(lines) > _LINES else []
+    return "\n".join(line[:_WIDTH] for line in [*cut, *lines[-_LINES:]])
 
 
 def _index(labels: Sequence[str], label: str | None) -> int:
