@@ -10,7 +10,7 @@ from typing import Any
 from crowdbot.core import provenance
 from crowdbot.core import run_directory as files
 from crowdbot.core.evaluate import Scores, score
-from crowdbot.core.planner_source import resolve_planner, select_sensors
+from crowdbot.core.planner_source import resolve_planner
 from crowdbot.core.recording import read_scans, read_trajectories
 from crowdbot.core.registry import Registry
 from crowdbot.core.replay import write_replay
@@ -22,6 +22,7 @@ from crowdbot.core.sim.identity import (
     reusable_record,
     run_identity,
 )
+from crowdbot.core.sim.needs import check_needs
 from crowdbot.core.sim.record import record_robot
 from crowdbot.core.sim.record_crowd import RunSetup
 from crowdbot.core.sim.references import check_interrupted, make_references, partial
@@ -91,24 +92,6 @@ def make_run(request: Request, prepared: Prepared, keep: object = None) -> Run:
     paths = make_references(request, references)
     record = _record_run(request, prepared, identity, paths)
     return Run(request.directory, record, _keep=keep)
-
-
-def check_needs(request: Request) -> None:
-    """Refuse what this robot, or this machine, cannot give before anything is written.
-
-    Raises:
-        InputError: the robot lacks a sensor that the planner needs.
-        MissingLibraryError: colour images are wanted where they cannot be drawn.
-    """
-    (robot,) = request.scenario.robots.values()
-    infos = {n: request.registry.build(x).info() for n, x in robot.sensors.items()}
-    choice = request.choice
-    visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
-    cameras = [infos[n].camera for n in (infos if request.record == "all" else visible)]
-    if any(camera is not None and camera.colour for camera in cameras):
-        from crowdbot.core.sim.rendering import check_egl
-
-        check_egl()
 
 
 # --------------------------------------------------------------------------- the run

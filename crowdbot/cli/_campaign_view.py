@@ -1,0 +1,142 @@
+"""What a campaign shows while it runs: a live table on a terminal, lines elsewhere."""
+
+from __future__ import annotations
+
+import logging
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from crowdbot.core.sim.campaign.campaign import Listener, State
+    from crowdbot.core.sim.campaign.job import Done, Job
+    from crowdbot.core.sim.campaign.plan import Plan
+
+_COLUMNS = ("arrived", "timeout", "planner_failed", "failed")
+
+
+@contextmanager
+def show(plan: Plan) -> Iterator[Listener]:
+    """Yield what a campaign calls with its state."""
+    if logging.getLogger("crowdbot").level > logging.INFO:
+        yield _silent
+        return
+    there = sum(bool(w.status) for w in plan.wanted)
+    _say(f"{len(plan.wanted)} runs, {there} complete, {len(plan.jobs)} jobs to do")
+    lines = _Lines()
+    if not sys.stderr.isatty():
+        yield lines
+    else:
+        with _live() as listener:
+            yield listener
+            lines.state = getattr(listener, "state", None)
+    if lines.state is not None:
+        _summary(lines.state)
+
+
+def _silent(state: State, job: Job | None, done: Done | None) -> None:
+    del state, job, done
+
+
+class _Lines:
+    """A line for each job that ended."""
+
+    def __init__(self) -> None:
+        self.state: State | None = None
+
+    def __call__(self, state: State, job: Job | None, done: Done | None) -> None:
+        self.state = state
+        if job is not None and done is not None:
+            _say(_line(state, job, done))
+
+
+@contextmanager
+def _live() -> Iterator[Listener]:
+    from rich.console import Console
+    from rich.live import Live
+
+    with Live(console=Console(stderr=True), refresh_per_second=4, transient=True) as live:
+        yield _Table(live)
+
+
+class _Table:
+    """Draws the table again whenever something is told."""
+
+    def __init__(self, live: object) -> None:
+        self._live = live
+        self.state: State | None = None
+
+    def __call__(self, state: State, job: Job | None, done: Done | None) -> None:
+        self.state = state
+        if job is not None and done is not None and done.error:
+            self._live.console.print(f"{job.title}: {_first(done.error)}", markup=False)  # type: ignore[attr-defined]
+        self._live.update(_table(state))  # type: ignore[attr-defined]
+
+
+def _table(state: State) -> RenderableType:
+    from rich.box import SIMPLE_HEAD
+    from rich.console import Group
+    from rich.progress_bar import ProgressBar
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for name in ("planner", "done", "", *_COLUMNS):
+        table.add_column(name)
+    counts = _counts(state)
+    for label in state.plan.labels:
+        total = sum(w.label == label for w in state.plan.wanted)
+        done = sum(counts[label].values())
+        bar = ProgressBar(total=total, completed=done, width=20)
+        cells = [Text(str(counts[label][c])) for c in _COLUMNS]
+        table.add_row(Text(label), f"{done}/{total}", bar, *cells)
+    lines = [_busy(b.job, b.progress) for b in state.busy]
+    return Group(table, *map(Text, lines), Text(_rate(state)))
+
+
+def _busy(job: Job, progress: object) -> str:
+    t, limit = getattr(progress, "t", 0.0), getattr(progress, "limit", 0.0)
+    far = f"{t:.0f} of {limit:.0f} s" if limit else "preparing"
+    return f"  {job.title}: {far}"
+
+
+def _rate(state: State) -> str:
+    ended = len(state.plan.jobs) - len(state.left)
+    return f"{ended} of {len(state.plan.jobs)} jobs, about {_minutes(state.remaining)} left"
+
+
+def _minutes(seconds: float) -> str:
+    return f"{seconds / 60.0:.0f} min" if seconds >= 90.0 else f"{seconds:.0f} s"
+
+
+def _line(state: State, job: Job, done: Done) -> str:
+    ended = len(state.plan.jobs) - len(state.left)
+    how = f"failed: {_first(done.error)}" if done.error else done.status
+    left = f", {_minutes(state.remaining)} left" if state.left else ""
+    return f"[{ended}/{len(state.plan.jobs)}] {job.title}: {how} ({done.wall_time:.1f} s{left})"
+
+
+def _counts(state: State) -> dict[str, Counter[str]]:
+    counts: dict[str, Counter[str]] = {label: Counter() for label in state.plan.labels}
+    for key, status in state.statuses.items():
+        counts[state.labels[key]][status] += 1
+    return counts
+
+
+def _summary(state: State) -> None:
+    for label, counts in _counts(state).items():
+        total = sum(w.label == label for w in state.plan.wanted)
+        found = ", ".join(f"{counts[c]} {c}" for c in _COLUMNS if counts[c])
+        _say(f"{label}: {sum(counts.values())} of {total}: {found}")
+
+
+def _first(text: str) -> str:
+    return text.splitlines()[0] if text else ""
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)

@@ -1,0 +1,56 @@
+"""What is left of a run that could not be made: a file beside the place where it would be."""
+
+from __future__ import annotations
+
+import json
+from contextlib import suppress
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+
+from crowdbot.core.run_directory import write_json
+
+SUFFIX = ".failure.json"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Failure:
+    """Which run, and what Python said."""
+
+    run_id: str
+    suite: str
+    scenario: str
+    planner: str
+    seed: int
+    position: int
+    error: str
+    traceback: str
+    exit_code: int
+
+
+def write_failure(run: Path, failure: Failure) -> None:
+    """Write it beside the directory of the run, which need not exist.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    run.parent.mkdir(parents=True, exist_ok=True)
+    write_json(_file(run), asdict(failure))
+
+
+def read_failure(file: Path) -> Failure | None:
+    """What `write_failure` wrote; None for anything else."""
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+        return Failure(**{f.name: content[f.name] for f in fields(Failure)})
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def forget_failure(run: Path) -> None:
+    """The run is there now."""
+    with suppress(FileNotFoundError):
+        _file(run).unlink()
+
+
+def _file(run: Path) -> Path:
+    return run.with_name(run.name + SUFFIX)

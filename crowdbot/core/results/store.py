@@ -1,0 +1,297 @@
+"""results.sqlite: an index of the run directories below a root, which can always be rebuilt.
+
+The directories are the truth. One process writes the index at a time, the one that holds
+``results.lock``; who does not get the lock, or may not write, brings a copy in memory up to date.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import sqlite3
+from collections.abc import Iterator
+from contextlib import ExitStack, closing, contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core import run_directory as files
+from crowdbot.core.results.failure import SUFFIX, read_failure
+from crowdbot.core.results.rows import FailureRow, Results, RunRow, ScoreRow
+from crowdbot.core.scores_table import read_scores_csv
+from crowdbot.errors import InputError
+
+INDEX, LOCK = "results.sqlite", "results.lock"
+#: Of the tables; an index of another version is rebuilt.
+VERSION = 1
+
+_TABLES = """
+CREATE TABLE IF NOT EXISTS runs (
+    directory TEXT PRIMARY KEY, stamp TEXT NOT NULL, run_id TEXT NOT NULL,
+    suite TEXT NOT NULL, scenario TEXT NOT NULL, position INTEGER NOT NULL,
+    planner TEXT NOT NULL, seed INTEGER NOT NULL, axes TEXT NOT NULL,
+    status TEXT NOT NULL, reason TEXT NOT NULL, goal_time REAL, sim_time REAL, wall_time REAL,
+    density REAL, spec_hash TEXT, realisation_hash TEXT, trajectory_hash TEXT,
+    conditions TEXT NOT NULL, record TEXT NOT NULL
+);
+CREATE TABLE IF NOT EXISTS scores (
+    directory TEXT NOT NULL REFERENCES runs ON DELETE CASCADE, row INTEGER NOT NULL,
+    category TEXT NOT NULL, metric TEXT NOT NULL, symbol TEXT NOT NULL, variant TEXT NOT NULL,
+    value REAL, unit TEXT NOT NULL, better TEXT NOT NULL, status TEXT NOT NULL,
+    reason TEXT NOT NULL, lower REAL, upper REAL, PRIMARY KEY (directory, row)
+) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS failures (
+    directory TEXT PRIMARY KEY, stamp TEXT NOT NULL, suite TEXT NOT NULL, scenario TEXT NOT NULL,
+    position INTEGER NOT NULL, planner TEXT NOT NULL, seed INTEGER NOT NULL,
+    error TEXT NOT NULL, traceback TEXT NOT NULL
+);
+"""
+
+
+def load(root: Path) -> Results:
+    """All runs, scores and failures below a root as they are now.
+
+    Raises:
+        InputError: there is no such folder, or a run in it is damaged.
+    """
+    if not root.is_dir():
+        raise InputError(f"{root}: no folder of results; 'crowdbot campaign' makes one")
+    with ExitStack() as stack:
+        try:
+            store = stack.enter_context(index(root))
+        except (InputError, sqlite3.DatabaseError):
+            store = stack.enter_context(_copy(root))
+        store.synchronise()
+        return store.results()
+
+
+@contextmanager
+def index(root: Path) -> Iterator[Store]:
+    """The index of a root, for the one process that may write it.
+
+    Raises:
+        InputError: it cannot be written, or another process is writing it.
+    """
+    try:
+        root.mkdir(parents=True, exist_ok=True)
+        handle = os.open(root / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
+    except OSError as error:
+        raise InputError(f"{root}: cannot be written: {error.strerror}") from error
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            raise InputError(f"{root}: another campaign is writing there") from error
+        with closing(_opened(root / INDEX)) as database:
+            yield Store(root, database)
+    finally:
+        os.close(handle)
+
+
+@contextmanager
+def _copy(root: Path) -> Iterator[Store]:
+    """The index in memory; an empty one where there is none that can be read."""
+    with closing(sqlite3.connect(":memory:")) as database:
+        with suppress(sqlite3.Error), closing(_reader(root / INDEX)) as original:
+            if original.execute("PRAGMA user_version").fetchone()[0] == VERSION:
+                original.backup(database)
+        _prepare(database)
+        yield Store(root, database)
+
+
+def _reader(file: Path) -> sqlite3.Connection:
+    return sqlite3.connect(f"{file.resolve().as_uri()}?mode=ro", uri=True)
+
+
+def _opened(file: Path) -> sqlite3.Connection:
+    """A usable index; one that is damaged or of another version begins anew."""
+    for _ in range(2):
+        database = sqlite3.connect(file, timeout=30.0)
+        try:
+            database.execute("PRAGMA journal_mode = WAL")
+            database.execute("PRAGMA synchronous = NORMAL")
+            if database.execute("PRAGMA user_version").fetchone()[0] not in (0, VERSION):
+                raise sqlite3.DatabaseError("another version")
+            _prepare(database)
+            return database
+        except sqlite3.DatabaseError as error:
+            database.close()
+            if isinstance(error, sqlite3.OperationalError):
+                raise InputError(f"{file}: cannot be written: {error}") from error
+            for name in (file.name, f"{file.name}-wal", f"{file.name}-shm"):
+                file.with_name(name).unlink(missing_ok=True)
+    raise InputError(f"{file}: cannot be made")
+
+
+def _prepare(database: sqlite3.Connection) -> None:
+    database.execute("PRAGMA foreign_keys = ON")
+    database.executescript(_TABLES)
+    database.execute(f"PRAGMA user_version = {VERSION}")
+    database.commit()
+
+
+class Store:
+    """An open index."""
+
+    def __init__(self, root: Path, database: sqlite3.Connection) -> None:
+        self._root, self._database = root, database
+        database.row_factory = sqlite3.Row
+
+    def synchronise(self) -> None:
+        """Add what is new or changed, remove what is gone; a run that is unchanged is not read.
+
+        Raises:
+            InputError: a run is damaged.
+        """
+        found = dict(_scan(self._root))
+        for table in ("runs", "failures"):
+            there = {d: s for d, s in found.items() if d.endswith(SUFFIX) == (table == "failures")}
+            known = dict(self._database.execute(f"SELECT directory, stamp FROM {table}").fetchall())
+            with self._database:
+                for directory in known.keys() - there.keys():
+                    self._database.execute(f"DELETE FROM {table} WHERE directory = ?", [directory])
+                for directory, stamp in there.items():
+                    if known.get(directory) != stamp:
+                        self._insert(directory, stamp)
+
+    def add(self, directory: str) -> None:
+        """A run has been made; its failure, if there was one, is over."""
+        stamp = _stamp(self._root / directory / files.RECORD)
+        with self._database:
+            failure = directory + SUFFIX
+            self._database.execute("DELETE FROM failures WHERE directory = ?", [failure])
+            self._insert(directory, stamp)
+
+    def add_failure(self, directory: str) -> None:
+        """A run could not be made."""
+        with self._database:
+            self._insert(directory + SUFFIX, _stamp(self._root / (directory + SUFFIX)))
+
+    def results(self) -> Results:
+        """Everything, in the promised order."""
+        order = "ORDER BY suite, position, scenario, planner, seed"
+        runs = self._database.execute(f"SELECT * FROM runs {order}").fetchall()
+        ids = {row["directory"]: row["run_id"] for row in runs}
+        scores: dict[str, list[ScoreRow]] = {d: [] for d in ids}
+        query = "SELECT * FROM scores ORDER BY directory, metric, variant, row"
+        for row in self._database.execute(query):
+            scores[row["directory"]].append(_score(row, ids[row["directory"]]))
+        failures = self._database.execute(f"SELECT * FROM failures {order}").fetchall()
+        return Results(
+            runs=tuple(_run(row) for row in runs),
+            scores=tuple(s for directory in ids for s in scores[directory]),
+            failures=tuple(_failure(row) for row in failures),
+        )
+
+    def _insert(self, directory: str, stamp: str) -> None:
+        if directory.endswith(SUFFIX):
+            self._insert_failure(directory, stamp)
+            return
+        run = self._root / directory
+        record = files.read_record(run)
+        if record is None:
+            return  # replaced at this very moment; the next look finds it
+        self._database.execute("DELETE FROM runs WHERE directory = ?", [directory])
+        self._put("runs", {"directory": directory, "stamp": stamp, **_columns(run, record)})
+        for number, row in enumerate(read_scores_csv(run / files.SCORES)):
+            values = {n: getattr(row.score, n) for n in _SCORE}
+            self._put("scores", {"directory": directory, "row": number, **values})
+
+    def _insert_failure(self, directory: str, stamp: str) -> None:
+        failure = read_failure(self._root / directory)
+        self._database.execute("DELETE FROM failures WHERE directory = ?", [directory])
+        if failure is not None:
+            values = {n: getattr(failure, n) for n in _FAILURE}
+            self._put("failures", {"directory": directory, "stamp": stamp, **values})
+
+    def _put(self, table: str, values: dict[str, Any]) -> None:
+        names = ", ".join(values)
+        marks = ", ".join("?" * len(values))
+        self._database.execute(
+            f"INSERT INTO {table} ({names}) VALUES ({marks})", [*values.values()]
+        )
+
+
+_SCORE = (
+    "category", "metric", "symbol", "variant", "value", "unit", "better", "status", "reason",
+    "lower", "upper",
+)  # fmt: skip
+_FAILURE = ("suite", "scenario", "position", "planner", "seed", "error", "traceback")
+
+
+def _scan(root: Path) -> Iterator[tuple[str, str]]:
+    """Runs and failures below a root with their stamps; calibration runs are no results."""
+    for folder, below, names in os.walk(root):
+        here = Path(folder)
+        if files.RECORD in names:
+            below.clear()
+            with suppress(OSError):
+                yield here.relative_to(root).as_posix(), _stamp(here / files.RECORD)
+            continue
+        if here == root:
+            below[:] = [b for b in below if b != "references"]
+        below[:] = sorted(b for b in below if ".partial" not in b and ".old-" not in b)
+        for name in names:
+            run = here / name.removesuffix(SUFFIX)
+            if name.endswith(SUFFIX) and not (run / files.RECORD).exists():
+                with suppress(OSError):
+                    yield (here / name).relative_to(root).as_posix(), _stamp(here / name)
+
+
+def _stamp(file: Path) -> str:
+    about = file.stat()
+    return f"{about.st_mtime_ns} {about.st_size} {about.st_ino}"
+
+
+def _columns(run: Path, record: dict[str, Any]) -> dict[str, Any]:
+    try:
+        return {
+            **{n: record[n] for n in ("run_id", "suite", "scenario", "seed", "status", "reason")},
+            **{n: record[n] for n in ("goal_time", "sim_time", "wall_time")},
+            "position": record.get("position", 0),
+            "planner": record["planner"]["label"],
+            "axes": json.dumps(record.get("axes") or {}),
+            "density": record.get("density"),
+            **{f"{n}_hash": record["hashes"][n] for n in ("spec", "realisation", "trajectory")},
+            "conditions": json.dumps(conditions(record)),
+            "record": json.dumps(record),
+        }
+    except (KeyError, TypeError) as error:
+        raise InputError(f"{run / files.RECORD}: not a record of a run: {error}") from error
+
+
+def conditions(record: dict[str, Any]) -> dict[str, str]:
+    """What must be equal in runs that are compared, by name."""
+    metrics: dict[str, Any] = record.get("metrics") or {}
+    return {
+        **(record.get("conditions") or {}),
+        **{f"metrics.{n}": json.dumps(p, sort_keys=True) for n, p in metrics.items()},
+        **{f"versions.{n}": str(v) for n, v in record["versions"].items()},
+        "processor": str(record["machine"].get("processor", "")),
+    }
+
+
+def _run(row: sqlite3.Row) -> RunRow:
+    record = json.loads(row["record"])
+    same = (
+        "run_id", "suite", "scenario", "planner", "seed", "status", "reason", "goal_time",
+        "sim_time", "wall_time", "spec_hash", "realisation_hash", "trajectory_hash", "density",
+        "directory",
+    )  # fmt: skip
+    pinned = record.get("pinned", False) and all(p["pinned"] for p in record["plugins"])
+    return RunRow(
+        **{name: row[name] for name in same},
+        axes=json.loads(row["axes"]),
+        privileged=bool(record.get("privileged", row["planner"].endswith("+privileged"))),
+        pinned=bool(pinned),
+        conditions=json.loads(row["conditions"]),
+        record=record,
+    )
+
+
+def _score(row: sqlite3.Row, run_id: str) -> ScoreRow:
+    return ScoreRow(run_id=run_id, **{name: row[name] for name in _SCORE})
+
+
+def _failure(row: sqlite3.Row) -> FailureRow:
+    return FailureRow(**{name: row[name] for name in _FAILURE if name != "position"})

@@ -1,0 +1,1 @@
+"""Campaigns: suites × planners × seeds, in several processes, on one machine or many."""

@@ -1,0 +1,188 @@
+"""Runs a campaign: jobs in order, what fails put on record, the store kept up to date."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+
+from crowdbot.core import run_directory as files
+from crowdbot.core.results.failure import Failure, forget_failure, write_failure
+from crowdbot.core.results.store import Store, index
+from crowdbot.core.sim.campaign.crew import Busy, Crew
+from crowdbot.core.sim.campaign.estimate import Estimate
+from crowdbot.core.sim.campaign.job import Done, Job
+from crowdbot.core.sim.campaign.plan import Plan
+from crowdbot.core.sim.outcome import PLANNER_FAILED
+from crowdbot.errors import PluginError, SimulationError
+
+_LOOK = 0.25
+
+
+@dataclass(slots=True)
+class State:
+    """How far a campaign is.
+
+    Attributes:
+        statuses: of the runs that are there, by key; those of failures are ``failed``.
+        labels: planner of each run, by key.
+        left: jobs that did not end yet.
+        busy: who does what.
+        failures: jobs that failed, with how.
+        began: monotonic time, s.
+        made: runs that were made in this campaign.
+    """
+
+    plan: Plan
+    estimate: Estimate
+    statuses: dict[str, str]
+    labels: dict[str, str]
+    left: dict[str, Job]
+    size: int
+    busy: Sequence[Busy] = ()
+    failures: dict[str, Done] = field(default_factory=dict)
+    began: float = field(default_factory=time.monotonic)
+    made: int = 0
+
+    @property
+    def remaining(self) -> float:
+        """Seconds until the end, as far as one can tell."""
+        seconds = sum(self.estimate.seconds(job) for job in self.left.values())
+        for at_work in self.busy:
+            progress = at_work.progress
+            if at_work.job.key in self.left and progress is not None:
+                share = min(1.0, progress.t / progress.limit)
+                seconds -= share * self.estimate.seconds(at_work.job)
+        return max(0.0, seconds) / max(1, min(self.size, len(self.left)))
+
+    @property
+    def exit_code(self) -> int:
+        """0 when every run is there; 3 when planners or plugins failed, 4 when anything else."""
+        codes = {d.exit_code for d in self.failures.values()}
+        if codes - {PluginError.exit_code}:
+            return SimulationError.exit_code
+        failed = codes or PLANNER_FAILED in self.statuses.values()
+        return PluginError.exit_code if failed else 0
+
+
+Listener = Callable[[State, Job | None, Done | None], None]
+
+
+def run_campaign(plan: Plan, crew: Crew, size: int, listener: Listener) -> State:
+    """Do everything that is missing.
+
+    What is finished stays, whatever interrupts this function.
+
+    Args:
+        plan: from `make_plan`.
+        crew: does the jobs; closed at the end.
+        size: how many work at a time, for the estimate.
+        listener: called with each job that ended, and several times a second without one.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    with ExitStack() as stack:
+        stack.callback(crew.close)
+        store = stack.enter_context(index(plan.out))
+        _relabel(plan)
+        store.synchronise()
+        campaign = _Campaign(plan, crew, size, store)
+        while campaign.state.left:
+            campaign.give()
+            listener(campaign.state, None, None)
+            for job, done in campaign.take():
+                listener(campaign.state, job, done)
+        return campaign.state
+
+
+class _Campaign:
+    """Who waits for whom."""
+
+    def __init__(self, plan: Plan, crew: Crew, size: int, store: Store) -> None:
+        self._crew, self._store, self._out = crew, store, plan.out
+        jobs = {job.key: job for job in plan.jobs}
+        self.state = State(
+            plan=plan,
+            estimate=plan.estimate,
+            statuses={w.key: w.status for w in plan.wanted if w.status},
+            labels={w.key: w.label for w in plan.wanted},
+            left=jobs,
+            size=size,
+        )
+        # A run may begin as soon as its calibration runs are there; others go on meanwhile.
+        self._queue = deque(j for j in jobs.values())
+        self._settled: set[str] = set()
+        self._total = dict(jobs)
+
+    def give(self) -> None:
+        """Hand out as many jobs as there are places for."""
+        for _ in range(self._crew.places()):
+            job = next((j for j in self._queue if self._settled.issuperset(j.needs)), None)
+            if job is None:
+                return
+            self._queue.remove(job)
+            self._crew.give(job)
+
+    def take(self) -> list[tuple[Job, Done]]:
+        """Jobs that ended, with those that can no longer be done."""
+        ended = []
+        for done in self._crew.finished(_LOOK):
+            job = self.state.left.get(done.key)
+            if job is not None:
+                ended += self._end(job, done)
+        self.state.busy = self._crew.busy()
+        return ended
+
+    def _end(self, job: Job, done: Done) -> list[tuple[Job, Done]]:
+        del self.state.left[job.key]
+        self._settled.add(job.key)
+        if done.error:
+            return self._fail(job, done)
+        self.state.estimate.learn(
+            "" if job.kind == "crowd_alone" else job.label, job.cost, done.wall_time
+        )
+        if job.kind == "run":
+            self.state.statuses[job.key] = done.status
+            self.state.made += 1
+            forget_failure(self._out / job.directory)
+            self._store.add(job.directory)
+        return [(job, done)]
+
+    def _fail(self, job: Job, done: Done) -> list[tuple[Job, Done]]:
+        self.state.failures[job.key] = done
+        if job.kind == "run":
+            self.state.statuses[job.key] = "failed"
+            write_failure(self._out / job.directory, _failure(job, done))
+            self._store.add_failure(job.directory)
+        ended = [(job, done)]
+        for other in [j for j in self.state.left.values() if job.key in j.needs]:
+            self._queue.remove(other)
+            because = replace(done, key=other.key, error=f"{job.title}: {done.error}")
+            ended += self._end(other, because)
+        return ended
+
+
+def _failure(job: Job, done: Done) -> Failure:
+    return Failure(
+        run_id=job.key,
+        suite=job.suite,
+        scenario=job.scenario,
+        planner=job.label,
+        seed=job.seed,
+        position=job.index,
+        error=done.error,
+        traceback=done.traceback,
+        exit_code=done.exit_code,
+    )
+
+
+def _relabel(plan: Plan) -> None:
+    """A suite may call its axes otherwise without changing what happens in a run."""
+    for wanted in plan.wanted:
+        says = (wanted.record.get("axes"), wanted.record.get("position"))
+        if wanted.record and says != (wanted.axes, wanted.position):
+            record = {**wanted.record, "axes": wanted.axes, "position": wanted.position}
+            files.write_json(wanted.directory / files.RECORD, record)
