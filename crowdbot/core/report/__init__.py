@@ -1,0 +1,6 @@
+"""The report: one offline HTML page about the runs of a suite, with its tables beside it."""
+
+from crowdbot.core.report.contents import Contents, Heading, gather
+from crowdbot.core.report.page import write_report
+
+__all__ = ["Contents", "Heading", "gather", "write_report"]

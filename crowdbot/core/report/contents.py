@@ -1,0 +1,121 @@
+"""Contents: everything that the page, the CSV and the Markdown of one report are made from."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from crowdbot.core.registry import Registry
+from crowdbot.core.report.cards import cards
+from crowdbot.core.report.encode import Attempt, attempts, axes_of, status_of
+from crowdbot.core.report.figures import Figures, figures
+from crowdbot.core.report.series import Series, all_series
+from crowdbot.core.results.rows import Results, RunRow
+from crowdbot.core.statistics import Table, headline_names
+from crowdbot.errors import InputError
+
+STATUSES = ("arrived", "timeout", "planner_failed", "failed")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Heading:
+    """What stands at the head of a report and in its provenance, told by the caller.
+
+    Attributes:
+        suite: its id.
+        made: when the report was made, as text.
+        command: the command line.
+        accepted: differences between the runs that somebody has accepted, one sentence each.
+        warnings: differences that do not forbid a comparison.
+        references: planners whose scores were given to compare with.
+    """
+
+    suite: str
+    made: str = ""
+    command: str = ""
+    accepted: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    references: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contents:
+    """One report.
+
+    Attributes:
+        attempts: runs, then failures that no run has made good.
+        axes: ``name`` and ``labels`` of each axis.
+        cards: metric -> what its card says.
+        replays: run id -> address of its replay page, relative to the report.
+    """
+
+    heading: Heading
+    results: Results
+    attempts: list[Attempt]
+    axes: list[dict[str, Any]]
+    series: list[Series]
+    figures: Figures
+    cards: dict[str, dict[str, Any]]
+    replays: Mapping[str, str]
+
+    @property
+    def planners(self) -> tuple[str, ...]:
+        """Labels, sorted."""
+        return self.figures.planners
+
+    @property
+    def seeds(self) -> list[int]:
+        """All seeds, in order."""
+        return sorted({a.seed for a in self.attempts})
+
+    def of(self, planner: str) -> list[Attempt]:
+        """What was tried with one planner."""
+        return [a for a in self.attempts if a.planner == planner]
+
+    def counts(self, attempts: Sequence[Attempt] | None = None) -> dict[str, int]:
+        """How many attempts ended in which way; default: of all."""
+        chosen = self.attempts if attempts is None else attempts
+        found = Counter(status_of(a) for a in chosen)
+        return {status: found[status] for status in STATUSES}
+
+    def is_privileged(self, planner: str) -> bool:
+        """Whether a planner was told what no sensor can tell, in any run."""
+        return any(isinstance(a, RunRow) and a.privileged for a in self.of(planner))
+
+    def is_pinned(self, planner: str) -> bool:
+        """Whether everything came from installed distributions, in all its runs."""
+        return all(a.pinned for a in self.of(planner) if isinstance(a, RunRow))
+
+
+def gather(
+    results: Results, registry: Registry, heading: Heading, replays: Mapping[str, str]
+) -> Contents:
+    """Work out what a report shows.
+
+    Args:
+        results: runs of one suite that may be compared.
+        registry: whose metrics' cards are shown.
+        heading: what the caller knows.
+        replays: run id -> address.
+
+    Raises:
+        InputError: there is no run.
+    """
+    if not results.runs:
+        raise InputError("there is no run to report about")
+    axes = axes_of(results)
+    found = cards(registry, dict.fromkeys(s.metric for s in results.scores))
+    ranges = {metric: dict(card["head"]).get("range", "") for metric, card in found.items()}
+    series = all_series(results.scores, headline_names(Table(results)), ranges)
+    return Contents(
+        heading=heading,
+        results=results,
+        attempts=attempts(results),
+        axes=axes,
+        series=series,
+        figures=figures(results, series, axes),
+        cards=found,
+        replays=replays,
+    )

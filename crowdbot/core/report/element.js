@@ -1,0 +1,84 @@
+"use strict";
+// Elements, markers and numbers as text.
+
+const byId = (id) => document.getElementById(id);
+const SVG = "http://www.w3.org/2000/svg";
+
+/** An element of HTML; `text` becomes its text, never markup. */
+function el(tag, attributes = {}, ...children) {
+  return fill(document.createElement(tag), attributes, children);
+}
+
+function svg(tag, attributes = {}, ...children) {
+  return fill(document.createElementNS(SVG, tag), attributes, children);
+}
+
+function fill(node, { text, ...attributes }, children) {
+  if (text !== undefined) node.textContent = text;
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) node[name] = value;
+    else if (value !== null && value !== undefined && value !== false) {
+      node.setAttribute(name, value === true ? "" : value);
+    }
+  }
+  node.append(...children.flat().filter((c) => c !== null && c !== undefined));
+  return node;
+}
+
+const SHAPES = [
+  (r) => `M${-r} 0a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0z`,
+  (r) => `M${-r * 0.9} ${-r * 0.9}h${1.8 * r}v${1.8 * r}h${-1.8 * r}z`,
+  (r) => `M0 ${-1.15 * r}l${1.15 * r} ${2 * r}h${-2.3 * r}z`,
+  (r) => `M0 ${-1.3 * r}l${1.2 * r} ${1.3 * r}l${-1.2 * r} ${1.3 * r}l${-1.2 * r} ${-1.3 * r}z`,
+  (r) => `M${-r * 0.4} ${-r}h${0.8 * r}v${0.6 * r}h${0.6 * r}v${0.8 * r}h${-0.6 * r}v${0.6 * r}` +
+    `h${-0.8 * r}v${-0.6 * r}h${-0.6 * r}v${-0.8 * r}h${0.6 * r}z`,
+  (r) => `M0 ${1.15 * r}l${1.15 * r} ${-2 * r}h${-2.3 * r}z`,
+];
+
+/** The mark of a planner: colour and shape say the same. */
+function marker(planner, x, y, r, extra = "") {
+  return svg("path", {
+    class: `mark p${planner % SHAPES.length} ${extra}`,
+    d: SHAPES[planner % SHAPES.length](r),
+    transform: `translate(${round(x)} ${round(y)})`,
+  });
+}
+
+/** A marker for running text. */
+function badge(planner) {
+  const picture = svg("svg", { class: "badge", viewBox: "-7 -7 14 14", "aria-hidden": "true" });
+  picture.append(marker(planner, 0, 0, 5));
+  return picture;
+}
+
+const round = (x) => Math.round(10 * x) / 10;
+
+/** Decimals that show three digits of the largest number, and two of what the numbers differ by. */
+function decimalsFor(numbers) {
+  const known = numbers.filter(Number.isFinite);
+  const places = (size, digits) => (size > 0 ? digits - 1 - Math.floor(Math.log10(size)) : 0);
+  const largest = Math.max(0, ...known.map(Math.abs));
+  const spread = known.length ? Math.max(...known) - Math.min(...known) : 0;
+  const seen = spread > 1e-6 * largest ? places(spread, 2) : 0;
+  return Math.min(6, Math.max(0, places(largest, 3), seen));
+}
+
+function format(number, decimals) {
+  if (!Number.isFinite(number)) return "–";
+  if (number !== 0 && Math.abs(number) >= 1e6) return number.toExponential(2).replace("-", "−");
+  const text = number.toFixed(decimals);
+  return (Number(text) === 0 ? text.replace("-", "") : text).replace("-", "−");
+}
+
+/** Four significant digits. */
+function digits(number) {
+  if (!Number.isFinite(number)) return "–";
+  if (Number.isInteger(number) && Math.abs(number) < 1e6) return String(number).replace("-", "−");
+  return String(Number(number.toPrecision(4))).replace("-", "−");
+}
+
+const interval = (low, high, decimals) =>
+  Number.isFinite(low) ? `[${format(low, decimals)}, ${format(high, decimals)}]` : "";
+
+const words = (name) => name.replaceAll("_", " ");
+const plural = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;

@@ -1,0 +1,158 @@
+"""Packs results for the page: names as numbers, and columns of numbers as zlib and base64.
+
+`data.js` undoes it.
+"""
+
+from __future__ import annotations
+
+import base64
+import math
+import zlib
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.report.series import Series
+from crowdbot.core.results.rows import FailureRow, Results, RunRow
+
+#: Code of a score that a run does not have.
+ABSENT = 65535
+#: Status of an attempt that left no run.
+FAILED = "failed"
+#: Of a traceback.
+_LINES, _WIDTH = 24, 400
+
+Attempt = RunRow | FailureRow
+
+
+class Names:
+    """Texts by number, in the order of their first use."""
+
+    def __init__(self, *first: str) -> None:
+        self.places = {name: i for i, name in enumerate(first)}
+
+    def place(self, name: str) -> int:
+        """The number of a text; a new one if need be."""
+        return self.places.setdefault(name, len(self.places))
+
+    @property
+    def texts(self) -> list[str]:
+        """All texts, by number."""
+        return list(self.places)
+
+
+def attempts(results: Results) -> list[Attempt]:
+    """Everything that was tried: the runs, and the failures that no run has made good since."""
+    made = {(r.suite, r.scenario, r.planner, r.seed) for r in results.runs}
+    failed = [f for f in results.failures if (f.suite, f.scenario, f.planner, f.seed) not in made]
+    return [*results.runs, *failed]
+
+
+def axes_of(results: Results) -> list[dict[str, Any]]:
+    """Axes of the suite with their labels, in the suite's order."""
+    found: dict[str, dict[str, None]] = {}
+    for run in results.runs:
+        for name, label in run.axes.items():
+            found.setdefault(name, {})[label] = None
+    return [{"name": name, "labels": list(labels)} for name, labels in found.items()]
+
+
+def status_of(attempt: Attempt) -> str:
+    """How an attempt ended."""
+    return attempt.status if isinstance(attempt, RunRow) else FAILED
+
+
+def encode_runs(
+    tried: Sequence[Attempt],
+    planners: Sequence[str],
+    axes: Sequence[Mapping[str, Any]],
+    replays: Mapping[str, str],
+) -> dict[str, Any]:
+    """Columns of runs; ``replays``: run id -> address of its replay page."""
+    scenarios, statuses = Names(), Names("arrived", "timeout", "planner_failed", FAILED)
+    reasons = Names("")
+    known = {a.scenario: a.axes for a in tried if isinstance(a, RunRow)}
+    labels = [known.get(a.scenario, {}) for a in tried]
+    runs = [a if isinstance(a, RunRow) else None for a in tried]
+    columns = {
+        "count": len(tried),
+        "planner": [planners.index(a.planner) for a in tried],
+        "scenario": [scenarios.place(a.scenario) for a in tried],
+        "seed": [a.seed for a in tried],
+        "status": [statuses.place(status_of(a)) for a in tried],
+        "reason": [reasons.place(_reason(a)) for a in tried],
+        "axes": [
+            [_index(axis["labels"], one.get(axis["name"])) for one in labels] for axis in axes
+        ],
+        "time": [None if r is None else round(r.sim_time, 3) for r in runs],
+        "density": [None if r is None else r.density for r in runs],
+        "replay": [None if r is None else replays.get(r.run_id) for r in runs],
+        "traceback": {
+            i: _excerpt(a.traceback) for i, a in enumerate(tried) if isinstance(a, FailureRow)
+        },
+    }
+    names = {"scenarios": scenarios.texts, "statuses": statuses.texts, "reasons": reasons.texts}
+    return {"runs": columns, **names}
+
+
+def _excerpt(traceback: str) -> str:
+    """The end, which says what went wrong; a deep recursion would be most of the page."""
+    lines = traceback.splitlines()
+    cut = [f"… {len(lines) - _LINES} lines …"] if len(lines) > _LINES else []
+    return "\n".join(line[:_WIDTH] for line in [*cut, *lines[-_LINES:]])
+
+
+def _index(labels: Sequence[str], label: str | None) -> int:
+    return -1 if label is None else labels.index(label)
+
+
+def _reason(attempt: Attempt) -> str:
+    return attempt.reason if isinstance(attempt, RunRow) else attempt.error
+
+
+def encode_scores(
+    results: Results, tried: Sequence[Attempt], series: Sequence[Series]
+) -> tuple[list[tuple[str, str]], dict[str, str]]:
+    """States by code, and blobs of (series, run): values, bounds and codes.
+
+    A planner that failed has no score that could be compared, whatever stands in its table.
+    """
+    rows = {(s.run_id, s.metric, s.variant): s for s in results.scores}
+    shape = (len(series), len(tried))
+    values, lower, upper = (np.full(shape, np.nan) for _ in range(3))
+    codes = np.full(shape, ABSENT, np.uint16)
+    states: dict[tuple[str, str], int] = {("ok", ""): 0}
+    for r, attempt in enumerate(tried):
+        failed = status_of(attempt) in (FAILED, "planner_failed")
+        for s, one in enumerate(series):
+            if failed:
+                codes[s, r] = states.setdefault(("failed", status_of(attempt)), len(states))
+                continue
+            assert isinstance(attempt, RunRow)
+            row = rows.get((attempt.run_id, one.metric, one.variant))
+            if row is None:
+                continue
+            codes[s, r] = states.setdefault((row.status, row.reason), len(states))
+            values[s, r], lower[s, r], upper[s, r] = map(_number, (row.value, row.lower, row.upper))
+    return list(states), {
+        "values": pack(values),
+        "lower": pack(lower),
+        "upper": pack(upper),
+        "codes": deflate(codes.astype("<u2").tobytes()),
+    }
+
+
+def _number(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
+def pack(numbers: NDArray[np.float64]) -> str:
+    """Numbers as they are in memory, NaN for none."""
+    return deflate(np.ascontiguousarray(numbers, "<f8").tobytes())
+
+
+def deflate(data: bytes) -> str:
+    """Bytes as zlib and base64."""
+    return base64.b64encode(zlib.compress(data, 9)).decode("ascii")

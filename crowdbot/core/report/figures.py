@@ -1,0 +1,201 @@
+"""Figures: the statistics that a page shows but cannot work out itself, ready to be packed.
+
+Intervals are for all runs and for one label of one axis; comparisons for all runs only, because
+every further selection would be a further chance to find a difference that is not there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.report.series import Series
+from crowdbot.core.results.rows import Results
+from crowdbot.core.statistics import (
+    Comparison,
+    Estimate,
+    Name,
+    Summary,
+    Table,
+    headline_names,
+    summarise,
+)
+from crowdbot.core.statistics.axes import REALISED_DENSITY
+from crowdbot.core.statistics.clusters import Clusters, bootstrap, mean, trimmed_mean
+
+#: What the page is told of a comparison, in this order.
+FIELDS = (
+    "difference", "low", "high", "effect", "effect_low", "effect_high", "improvement",
+    "improvement_low", "improvement_high", "detectable", "p_holm", "pairs", "draws", "undecided",
+    "verdict", "why",
+)  # fmt: skip
+VERDICTS = ("better", "worse", "not distinguishable", "not ranked")
+
+_Triple = tuple[float, float, float]
+_Numbers = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Figures:
+    """Statistics of a report.
+
+    Attributes:
+        headline: of the scores that stand for their metrics, one family of tests; the other
+            variants are another.
+        selections: ``""`` for all runs, ``axis=label`` for a part.
+        intervals: (selection, series, planner, 3): interquartile mean, low, high.
+        pairs: (series, pair, field).
+        effects: (axis, series, planner): eta squared; the last axis is the realised density.
+        whys: reasons of verdicts by number.
+    """
+
+    headline: Summary
+    selections: tuple[str, ...]
+    intervals: _Numbers
+    pairs: _Numbers
+    effects: _Numbers
+    whys: tuple[str, ...]
+
+    @property
+    def planners(self) -> tuple[str, ...]:
+        """Sorted."""
+        return self.headline.planners
+
+
+def figures(
+    results: Results, series: Sequence[Series], axes: Sequence[Mapping[str, Any]]
+) -> Figures:
+    """Work out everything.
+
+    Args:
+        results: runs that may be compared.
+        series: what the page shows.
+        axes: ``name`` and ``labels`` of each axis of the suite.
+    """
+    table = Table(results)
+    chosen = headline_names(table)
+    rest = [s.name for s in series if s.name not in chosen and _has_values(table, s.name)]
+    headline = summarise(results, chosen)
+    both = [headline, summarise(results, rest)] if rest else [headline]
+    whys = tuple(dict.fromkeys(["", *(c.reason for s in both for c in s.comparisons)]))
+    selections = ("", *(f"{axis['name']}={label}" for axis in axes for label in axis["labels"]))
+    return Figures(
+        headline=headline,
+        selections=selections,
+        intervals=_intervals(table, both, series, selections),
+        pairs=_pairs(both, series, table.planners, whys),
+        effects=_effects(both, series, table.planners, axes),
+        whys=whys,
+    )
+
+
+def _has_values(table: Table, name: Name) -> bool:
+    return any(table.column(name, planner).known.any() for planner in table.planners)
+
+
+def _intervals(
+    table: Table, summaries: Sequence[Summary], series: Sequence[Series], selections: Sequence[str]
+) -> _Numbers:
+    place = {s.name: i for i, s in enumerate(series)}
+    found = np.full((len(selections), len(series), len(table.planners), 3), np.nan)
+    for score in (score for summary in summaries for score in summary.scores):
+        row = place[score.metric, score.variant], table.planners.index(score.planner)
+        whole = series[row[0]].centre != "interquartile mean"
+        found[0][row] = _numbers(score.mean if whole else score.iqm)
+    inside = [_inside(table, planner, selections) for planner in table.planners]
+    for s, one in enumerate(series):
+        for p, planner in enumerate(table.planners):
+            for k, numbers in _by_label(table, one, planner, inside[p]):
+                found[k, s, p] = numbers
+    _clip(found, series)
+    return found
+
+
+def _clip(intervals: _Numbers, series: Sequence[Series]) -> None:
+    """A share is not below 0 or above 1, and a count not below 0, whatever its standard error."""
+    for s, one in enumerate(series):
+        ends = intervals[:, s, :, 1:]
+        if one.centre == "share":
+            np.clip(ends, 0.0, 1.0, out=ends)
+        elif one.centre == "mean" and not (intervals[:, s, :, 0] < 0).any():
+            np.maximum(ends, 0.0, out=ends)
+
+
+def _inside(table: Table, planner: str, selections: Sequence[str]) -> NDArray[np.bool_]:
+    """Which rows of the table belong to which selection, (selection, row)."""
+    runs = [table.runs.get((planner, key)) for key in table.keys]
+    labels = [{f"{a}={x}" for a, x in run.axes.items()} if run else set() for run in runs]
+    return np.array([[selection in found for found in labels] for selection in selections])
+
+
+def _by_label(
+    table: Table, one: Series, planner: str, inside: NDArray[np.bool_]
+) -> Iterator[tuple[int, _Triple]]:
+    """What sums up the runs of each label of each axis."""
+    column = table.column(one.name, planner)
+    for k in range(1, len(inside)):
+        chosen = column.known & inside[k]
+        if not chosen.any():
+            continue
+        draws = Clusters.of([d for d, i in zip(table.draws, chosen, strict=True) if i])
+        values = column.low[chosen]
+        if one.centre == "interquartile mean":
+            yield k, _numbers(bootstrap(trimmed_mean(values), draws))
+        else:
+            yield k, _numbers(mean(values, draws))
+
+
+def _pairs(
+    summaries: Sequence[Summary],
+    series: Sequence[Series],
+    planners: Sequence[str],
+    whys: Sequence[str],
+) -> _Numbers:
+    place = {s.name: i for i, s in enumerate(series)}
+    pairs = list(combinations(planners, 2))
+    found = np.full((len(series), len(pairs), len(FIELDS)), np.nan)
+    for comparison in (c for summary in summaries for c in summary.comparisons):
+        row = (
+            place[comparison.metric, comparison.variant],
+            pairs.index((comparison.a, comparison.b)),
+        )
+        found[row] = _fields(comparison, whys)
+    return found
+
+
+def _fields(found: Comparison, whys: Sequence[str]) -> list[float]:
+    estimates = (found.difference, found.standardised, found.improvement)
+    numbers = [x for estimate in estimates for x in _numbers(estimate)]
+    return [
+        *numbers, _number(found.detectable), _number(found.p_holm), found.pairs, found.draws,
+        found.undecided, VERDICTS.index(found.verdict), whys.index(found.reason),
+    ]  # fmt: skip
+
+
+def _effects(
+    summaries: Sequence[Summary],
+    series: Sequence[Series],
+    planners: Sequence[str],
+    axes: Sequence[Mapping[str, Any]],
+) -> _Numbers:
+    names = [*(axis["name"] for axis in axes), REALISED_DENSITY]
+    place = {s.name: i for i, s in enumerate(series)}
+    found = np.full((len(names), len(series), len(planners)), np.nan)
+    for effect in (e for summary in summaries for e in summary.axes):
+        row = place[effect.metric, effect.variant], planners.index(effect.planner)
+        found[names.index(effect.axis)][row] = _number(effect.eta_squared)
+    return found
+
+
+def _numbers(estimate: Estimate) -> _Triple:
+    return _number(estimate.value), _number(estimate.low), _number(estimate.high)
+
+
+def _number(value: float | None) -> float:
+    return math.nan if value is None else float(value)

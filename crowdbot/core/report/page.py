@@ -1,0 +1,152 @@
+"""Writes the report page.
+
+The page is one file that asks the network for nothing: a content security policy allows the one
+style sheet and the one script in it, by hash, and no more.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from importlib import resources
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+from crowdbot.core.aside import write_aside
+from crowdbot.core.report import provenance, tables
+from crowdbot.core.report.cards import reference
+from crowdbot.core.report.contents import Contents
+from crowdbot.core.report.encode import encode_runs, encode_scores, pack
+from crowdbot.core.report.figures import FIELDS, VERDICTS
+from crowdbot.core.results.rows import RunRow
+from crowdbot.core.scores_table import write_table
+
+_SCRIPTS = (
+    "element", "data", "filters", "scale", "table", "cards", "distribution", "scores",
+    "parameters", "pairs", "explorer", "app",
+)  # fmt: skip
+
+
+def write_report(path: Path, contents: Contents) -> dict[str, Path]:
+    """Write the page, and beside it the same as CSV and Markdown; equal input gives equal bytes.
+
+    Args:
+        path: of the page; the tables differ in the suffix.
+        contents: what to show.
+
+    Returns:
+        ``html``, ``csv`` and ``md``: where they are.
+
+    Raises:
+        InputError: they cannot be written there.
+    """
+    paths = {"html": path, "csv": path.with_suffix(".csv"), "md": path.with_suffix(".md")}
+    page = render(contents)
+    write_table(paths["csv"], tables.csv_rows(contents))
+    write_aside(paths["md"], tables.markdown(contents))
+    write_aside(path, page)
+    return paths
+
+
+def render(contents: Contents) -> str:
+    """The page as text."""
+    style, script = _asset("page.css"), "\n".join(_asset(f"{name}.js") for name in _SCRIPTS)
+    states, blobs = encode_scores(contents.results, contents.attempts, contents.series)
+    figures, runs = contents.figures, contents.results.runs
+    blobs |= {name: pack(getattr(figures, name)) for name in ("intervals", "pairs", "effects")}
+    template = _environment().from_string(_asset("page.html.j2"))
+    return template.render(
+        heading=contents.heading,
+        contents=contents,
+        planners=[_planner(contents, p) for p in contents.planners],
+        hashes=provenance.hashes(runs),
+        facts=provenance.facts(runs),
+        scenarios=provenance.scenarios(runs),
+        summary=figures.headline,
+        meta={**_meta(contents), "states": states},
+        blobs=blobs,
+        policy=_policy(style, script),
+        style=Markup(style),
+        script=Markup(script),
+    )
+
+
+def _planner(contents: Contents, planner: str) -> dict[str, Any]:
+    tried = contents.of(planner)
+    return {
+        "label": planner,
+        "count": len(tried),
+        "counts": contents.counts(tried),
+        "privileged": contents.is_privileged(planner),
+        "pinned": contents.is_pinned(planner),
+        "reference": planner in contents.heading.references,
+        "facts": provenance.planner_facts([a for a in tried if isinstance(a, RunRow)]),
+    }
+
+
+def _meta(contents: Contents) -> dict[str, Any]:
+    """What the script reads, apart from the columns of numbers."""
+    marks = {metric: reference(card) for metric, card in contents.cards.items()}
+    series = [{**s._asdict(), "reference": marks.get(s.metric)} for s in contents.series]
+    return {
+        "planners": [{"label": planner} for planner in contents.planners],
+        "seeds": contents.seeds,
+        "axes": contents.axes,
+        "series": series,
+        "first": _first(contents),
+        "cards": contents.cards,
+        "stats": _stats(contents),
+        **encode_runs(contents.attempts, contents.planners, contents.axes, contents.replays),
+    }
+
+
+def _first(contents: Contents) -> int:
+    """The series that is shown first: one that has a value."""
+    known = {(s.metric, s.variant) for s in contents.figures.headline.scores}
+    liked = [i for i, s in enumerate(contents.series) if s.name in known]
+    best = [i for i in liked if contents.series[i].metric == "relative_time_to_goal"]
+    return next(iter([*best, *liked]), 0)
+
+
+def _stats(contents: Contents) -> dict[str, Any]:
+    figures = contents.figures
+    places = range(len(contents.planners))
+    return {
+        "level": round(100 * figures.headline.level, 6),
+        "alpha": figures.headline.alpha,
+        "tests": figures.headline.tests,
+        "selections": figures.selections,
+        "pairs": list(combinations(places, 2)),
+        "fields": FIELDS,
+        "verdicts": VERDICTS,
+        "whys": figures.whys,
+    }
+
+
+def _policy(style: str, script: str) -> str:
+    parts = {
+        "default-src": "'none'",
+        "script-src": _hash(script),
+        "style-src": _hash(style),
+        "base-uri": "'none'",
+        "form-action": "'none'",
+    }
+    return "; ".join(f"{k} {v}" for k, v in parts.items())
+
+
+def _hash(text: str) -> str:
+    digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
+    return f"'sha256-{digest}'"
+
+
+def _asset(name: str) -> str:
+    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
+
+
+def _environment() -> jinja2.Environment:
+    options: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
+    return jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, **options)

@@ -1,0 +1,116 @@
+// Planner against planner: paired by scenario and seed, as Python has worked it out.
+
+/** Comparisons of the planners shown, for a score, in the selection of now or else none. */
+function verdictsOf(series, planners) {
+  return report.stats.pairs.map(([a, b], pair) => ({ a, b, pair, ...comparisonOf(series, pair) }))
+    .filter(({ a, b, verdict }) => verdict !== undefined && planners.includes(a) && planners.includes(b));
+}
+
+/** Who is better than whom, in marks; no order where the difference may be chance. */
+function verdictText(verdicts) {
+  const decided = verdicts.filter(isClear);
+  if (!decided.length) {
+    const none = verdicts.every((v) => v.verdict === "not ranked");
+    return el("small", { text: none ? "not ranked" : "not distinguishable" });
+  }
+  return decided.map(({ a, b, verdict }) => {
+    const [first, second] = verdict === "worse" ? [b, a] : [a, b];
+    const text = `${report.planners[first].label} better than ${report.planners[second].label}`;
+    return el("span", { class: "decided", title: text, role: "img", "aria-label": text },
+      badge(first), el("span", { text: "›" }), badge(second));
+  });
+}
+
+function drawPairs(choosePair) {
+  const planners = shownPlanners();
+  const rows = verdictsOf(state.series, planners);
+  const series = report.series[state.series];
+  const decimals = decimalsFor(rows.flatMap((v) => [v.difference, v.low, v.high]));
+  const columns = [
+    { text: "pair", key: (v) => `${report.planners[v.a].label} ${report.planners[v.b].label}` },
+    { text: `difference${series.unit === "1" ? "" : `, ${series.unit}`}`, numeric: true, key: (v) => v.difference },
+    { text: "effect size", numeric: true, key: (v) => v.effect },
+    { text: "probability of improvement", numeric: true, key: (v) => v.improvement },
+    { text: "p, Holm", numeric: true, key: (v) => v.p_holm },
+    { text: "detectable", numeric: true, key: (v) => v.detectable },
+    { text: "pairs", numeric: true, key: (v) => v.pairs },
+    { text: "verdict", key: (v) => v.verdict },
+  ];
+  sortable(byId("pairs-table"), columns, rows, (v) => el("tr", {},
+    el("th", { scope: "row" }, planned(v.a), el("span", { class: "against", text: " − " }), planned(v.b)),
+    numberCell(format(v.difference, decimals), interval(v.low, v.high, decimals)),
+    numberCell(format(v.effect, 2), interval(v.effect_low, v.effect_high, 2)),
+    numberCell(format(v.improvement, 2), interval(v.improvement_low, v.improvement_high, 2)),
+    numberCell(probability(v.p_holm)), numberCell(format(v.detectable, decimals)),
+    numberCell(format(v.pairs, 0), v.undecided ? `${v.undecided} undecided` : ""),
+    el("td", { class: isClear(v) ? "verdict clear" : "verdict" }, sentence(v), el("small", { text: v.why }))));
+  byId("pairs-table").hidden = !rows.length;
+  byId("pairs-note").textContent = pairsNote(rows);
+  drawForest(planners, choosePair);
+}
+
+function sentence({ a, b, verdict }) {
+  const [one, other] = [a, b].map((p) => report.planners[p].label);
+  return { better: `${one} is better`, worse: `${other} is better` }[verdict] ?? verdict;
+}
+
+const isClear = ({ verdict }) => verdict === "better" || verdict === "worse";
+
+function probability(p) {
+  if (!Number.isFinite(p)) return "–";
+  return p < 0.001 ? "< 0.001" : p.toFixed(3);
+}
+
+function pairsNote(rows) {
+  if (report.planners.length < 2) return "There is one planner only.";
+  if (!rows.length) return "Comparisons are worked out for all runs only: clear the filters of parameters and seeds to see them, and show at least two planners.";
+  const { tests, alpha, level } = report.stats;
+  return `Mean of the differences over pairs of the same scenario and seed; effect size: the same in standard deviations; in brackets ${level} % intervals. ` +
+    "Undefined, censored and failed runs take part in the probability and the test as far as they are known. " +
+    `p: signed ranks, signs flipped for whole crowd draws, corrected for the ${tests} tests of the headline scores; there is a verdict where it is at most ${alpha}. ` +
+    "Other variants are corrected among themselves. Detectable: the mean difference that so many draws would find in four cases of five.";
+}
+
+/** All scores of one pair: probability that the first is better, with its interval. */
+function drawForest(planners, choosePair) {
+  const select = byId("pair");
+  select.replaceChildren(...report.stats.pairs.map(([a, b], i) =>
+    el("option", { value: i, text: `${report.planners[a].label} against ${report.planners[b].label}` })));
+  select.value = state.pair;
+  select.onchange = () => choosePair(Number(select.value));
+  const box = byId("forest");
+  const pair = report.stats.pairs[state.pair];
+  const rows = pair ? shownSeries().map((s) => ({ series: s, ...comparisonOf(s, state.pair) }))
+    .filter((row) => Number.isFinite(row.improvement)) : [];
+  byId("forest-part").hidden = !rows.length;
+  if (!rows.length) return;
+  const [width, left, top, step] = [900, 290, 30, 20];
+  const bottom = top + step * rows.length;
+  const x = scale([0, 1], [left, width - 150], 5);
+  const picture = canvas(width, bottom + 20, bottomAxis(x, top - 6, bottom, { value: 0.5 }));
+  picture.append(ahead(pair[1], left + 2, "start"), ahead(pair[0], width - 152, "end"));
+  rows.forEach((row, i) => picture.append(forestRow(row, pair, x, top + step * i + 10, width)));
+  picture.setAttribute("aria-label", `Probability that ${report.planners[pair[0]].label} does better than ${report.planners[pair[1]].label}, score by score`);
+  box.replaceChildren(picture);
+}
+
+/** Which side of the picture speaks for whom. */
+function ahead(planner, x, anchor) {
+  const name = report.planners[planner].label;
+  return label(anchor === "end" ? `${name} better →` : `← ${name} better`, x, 14, "tick", anchor);
+}
+
+function forestRow(row, pair, x, y, width) {
+  const series = report.series[row.series];
+  const clear = isClear(row);
+  const winner = row.verdict === "worse" ? pair[1] : pair[0];
+  const name = `${words(series.metric)}${series.variant === "corrected" ? "" : `, ${words(series.variant)}`}`;
+  const place = round(x.place(row.improvement));
+  const group = svg("g", { class: clear ? `p${winner % SHAPES.length}` : "unclear" }, label(name, 280, y + 4, "label", "end"));
+  if (Number.isFinite(row.improvement_low)) {
+    group.append(svg("line", { class: "whisker", x1: round(x.place(row.improvement_low)), x2: round(x.place(row.improvement_high)), y1: y, y2: y }));
+  }
+  group.append(clear ? marker(winner, place, y, 4.5, "ringed") : svg("circle", { class: "open", cx: place, cy: y, r: 4 }));
+  group.append(label(clear ? sentence({ a: pair[0], b: pair[1], verdict: row.verdict }) : row.verdict, width - 140, y + 4, clear ? "label" : "tick"));
+  return group;
+}

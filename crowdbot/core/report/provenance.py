@@ -1,0 +1,93 @@
+"""Where the numbers come from: versions, hashes, plugins and machines of the runs."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from crowdbot.core.results.rows import RunRow
+
+
+def facts(runs: Sequence[RunRow]) -> dict[str, dict[str, str]]:
+    """Groups of facts: name -> text, with counts where the runs differ."""
+    records = [run.record for run in runs]
+    groups = {
+        "software": _merged(_texts(r.get("versions")) for r in records),
+        "machine": _merged(_texts(r.get("machine")) for r in records),
+        "plugins": _merged(_plugins(r.get("plugins")) for r in records),
+        "conditions": _merged(run.conditions for run in runs),
+    }
+    return {name: found for name, found in groups.items() if found}
+
+
+def hashes(runs: Sequence[RunRow]) -> dict[str, str]:
+    """What identifies the data: how many of each, and one hash of all."""
+    everything = sorted(f"{run.run_id} {run.trajectory_hash}" for run in runs)
+    digest = hashlib.sha256("\n".join(everything).encode()).hexdigest()
+    return {
+        "scenarios": str(len({run.spec_hash for run in runs})),
+        "crowd draws": str(len({run.realisation_hash for run in runs})),
+        "trajectories": str(len({run.trajectory_hash for run in runs})),
+        "sha256 of all run ids and trajectory hashes": digest,
+    }
+
+
+def scenarios(runs: Sequence[RunRow]) -> list[tuple[str, str, str]]:
+    """Scenario, the beginning of its hash, and of that of its crowd; several where they differ."""
+    found: dict[str, tuple[dict[str, None], dict[str, None]]] = {}
+    for run in runs:
+        specs, draws = found.setdefault(run.scenario, ({}, {}))
+        specs[short(run.spec_hash)] = None
+        draws[short(run.realisation_hash)] = None
+    return [(name, ", ".join(specs), ", ".join(draws)) for name, (specs, draws) in found.items()]
+
+
+def short(hash_: str) -> str:
+    """Enough of a hash to find it by."""
+    return hash_.removeprefix("cb1-sha256:")[:16]
+
+
+def planner_facts(runs: Sequence[RunRow]) -> dict[str, str]:
+    """Kind and parameters of one planner, from its runs."""
+    return _merged(_texts(run.record.get("planner")) for run in runs)
+
+
+def _texts(value: Any) -> dict[str, str]:
+    if not isinstance(value, Mapping):
+        return {}
+    found: dict[str, str] = {}
+    for name, inner in value.items():
+        if isinstance(inner, Mapping):
+            found |= {f"{name}.{k}": text for k, text in _texts(inner).items()}
+        else:
+            found[str(name)] = str(inner)
+    return found
+
+
+def _plugins(value: Any) -> dict[str, str]:
+    """Plugin -> distribution."""
+    if not isinstance(value, Sequence) or isinstance(value, str):
+        return {}
+    plugins = [p for p in value if isinstance(p, Mapping)]
+    return {
+        str(p.get("name")): str(p.get("distribution")) + ("" if p.get("pinned") else ", not pinned")
+        for p in plugins
+    }
+
+
+def _merged(documents: Iterable[Mapping[str, str]]) -> dict[str, str]:
+    """One text for each name; different texts are told with the number of their runs."""
+    counts: dict[str, Counter[str]] = {}
+    for document in documents:
+        for name, text in document.items():
+            counts.setdefault(name, Counter())[text] += 1
+    return {
+        name: next(iter(found)) if len(found) == 1 else _different(found)
+        for name, found in counts.items()
+    }
+
+
+def _different(found: Counter[str]) -> str:
+    return ", ".join(f"{text} ({count} runs)" for text, count in found.most_common())

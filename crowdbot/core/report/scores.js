@@ -1,0 +1,144 @@
+// The table of scores: a row for each score, a column for each planner, and a small picture.
+
+const ARROWS = {
+  higher: ["↑", "higher is better"], lower: ["↓", "lower is better"],
+  reference: ["◎", "like the reference is best"], none: ["", ""],
+};
+const SPREAD = 260;
+
+function drawScores(choose) {
+  const planners = shownPlanners();
+  const runs = Object.fromEntries(planners.map((p) => [p, selectedRuns(p)]));
+  const all = shownSeries().map((s) => scoreRow(s, planners, runs));
+  const rows = all.filter((row) => row.abouts.some((a) => a.ok || a.censored));
+  const compared = rows.some((row) => row.verdicts.length);
+  const columns = [
+    { text: "score", key: (row) => `${report.series[row.series].metric} ${row.series}` },
+    ...planners.map((p, i) => ({ node: [planned(p), endings(runs[p])], numeric: true, key: (row) => row.abouts[i].centre })),
+    { text: "spread", kind: "spread" },
+    ...(compared ? [{ text: "difference", kind: "verdict", key: (row) => row.evidence }] : []),
+  ];
+  const sorted = { metric: { column: 0, up: true }, evidence: compared ? { column: columns.length - 1, up: true } : null };
+  const table = byId("scores-table");
+  table.classList.toggle("many", planners.length > 4);
+  const draw = (row) => drawScoreRow(row, planners, choose);
+  sortable(table, columns, rows, draw, sorted[state.order] ?? { column: -1, up: true });
+  if (state.order === "category") groupByCategory(table, rows);
+  const silent = all.filter((row) => !rows.includes(row));
+  byId("scores-silent").replaceChildren(...silentText(silent));
+  byId("scores-note").textContent = scoresNote();
+}
+
+function scoreRow(series, planners, runs) {
+  const abouts = planners.map((p) => describe(series, runs[p]));
+  const known = planners.map((p) => intervalOf(selectionName(), series, p));
+  const verdicts = verdictsOf(series, planners);
+  const evidence = Math.min(...verdicts.map((v) => v.p_holm).filter(Number.isFinite), Infinity);
+  return { series, abouts, known, verdicts, evidence: Number.isFinite(evidence) ? evidence : null };
+}
+
+function drawScoreRow(row, planners, choose) {
+  const series = report.series[row.series];
+  const decimals = decimalsFor(row.abouts.flatMap((a) => (series.centre === "share" ? [a.centre] : [a.centre, a.q1, a.q3])));
+  const cells = row.abouts.map((about, i) => {
+    const known = row.known[i];
+    const range = known ? interval(known.low, known.high, decimals) : quartileText(about, series, decimals);
+    return el("td", { class: "number" }, el("b", { text: format(about.centre, decimals) }),
+      el("small", { text: range, class: known ? null : "quartile" }), missingChips(about, "failed"));
+  });
+  return el("tr", { "data-score": `${series.metric}.${series.variant}`, class: row.series === state.series ? "chosen" : null },
+    scoreHead(row.series, choose), cells, el("td", { class: "spread" }, spreadPicture(row, planners)),
+    row.verdicts.length ? el("td", { class: "verdict" }, verdictText(row.verdicts)) : null);
+}
+
+/** Quartiles of yes and no say nothing. */
+function quartileText(about, series, decimals) {
+  return series.centre === "share" ? "" : interval(about.q1, about.q3, decimals);
+}
+
+/** Name, symbol, unit and direction of a score; opens its card, and shows it below. */
+function scoreHead(s, choose) {
+  const series = report.series[s];
+  const [arrow, meaning] = ARROWS[series.better];
+  const button = el("button", { type: "button", class: "metric", "data-card": s, onclick: () => choose(s) },
+    words(series.metric));
+  const variant = series.variant === "corrected" ? null : el("span", { class: "variant", text: words(series.variant) });
+  return el("th", { scope: "row" }, button, variant, el("span", { class: "about" },
+    el("i", { text: series.symbol }), series.unit === "1" ? "" : ` in ${series.unit}`,
+    series.centre === "interquartile mean" ? "" : ` · ${series.centre}`,
+    arrow ? el("span", { class: "arrow", title: meaning, role: "img", "aria-label": meaning, text: arrow }) : null));
+}
+
+/** For each planner the middle half of its runs and its interquartile mean on one scale. */
+function spreadPicture(row, planners) {
+  const height = 8 + 13 * planners.length;
+  const { reference, centre } = report.series[row.series];
+  const share = centre === "share";
+  const ends = row.abouts.flatMap((a) => (!a.ok ? [] : share ? [a.centre] : [a.q1, a.q3, a.centre]));
+  const x = scale(wholeSpan(ends, reference ? [reference.value] : []), [8, SPREAD - 8]);
+  const picture = svg("svg", { viewBox: `0 0 ${SPREAD} ${height}`, class: "mini", "aria-hidden": "true" });
+  if (reference && reference.value >= x.low && reference.value <= x.high) {
+    const place = round(x.place(reference.value));
+    picture.append(svg("line", { class: "reference", x1: place, x2: place, y1: 0, y2: height }));
+  }
+  row.abouts.forEach((about, i) => {
+    const y = 10 + 13 * i;
+    if (!about.ok) return;
+    if (!share) {
+      picture.append(svg("line", { class: `middle p${planners[i] % SHAPES.length}`, x1: round(x.place(about.q1)), x2: round(x.place(about.q3)), y1: y, y2: y }));
+    }
+    picture.append(marker(planners[i], x.place(about.centre), y, 4, "ringed"));
+  });
+  return picture;
+}
+
+function groupByCategory(table, rows) {
+  let last = "";
+  rows.forEach((row, i) => {
+    const { category } = report.series[row.series];
+    if (category === last) return;
+    last = category;
+    const head = el("th", { scope: "colgroup", colspan: table.tHead.rows[0].cells.length, text: category });
+    table.querySelector(`tr[data-score="${CSS.escape(`${report.series[rows[i].series].metric}.${report.series[rows[i].series].variant}`)}"]`)
+      .before(el("tr", { class: "category" }, head));
+  });
+}
+
+/** How many runs a column is made of, and how many of them failed. */
+function endings(runs) {
+  const failed = runs.filter((run) => FAILED.includes(report.statuses[report.runs.status[run]])).length;
+  return el("small", { text: plural(runs.length, "run") }, failed ? ` · ${failed} failed` : "");
+}
+
+/** Scores that no run has a value for: named, with the reason. */
+function silentText(rows) {
+  if (!rows.length) return [];
+  const reasons = new Map();
+  for (const { series } of rows) {
+    const found = new Set();
+    for (const p of shownPlanners()) for (const run of selectedRuns(p)) {
+      const { status, reason } = scoreOf(series, run);
+      if (status === "undefined") found.add(reason);
+    }
+    const reason = [...found].filter(Boolean).map(words).join(", ") || "not scored";
+    reasons.set(reason, [...(reasons.get(reason) ?? []), series]);
+  }
+  const parts = [...reasons].map(([reason, list]) => el("li", {}, el("b", { text: `${reason}: ` }),
+    list.map((s) => `${words(report.series[s].metric)} ${words(report.series[s].variant)}`).join(", ")));
+  return [el("p", { text: `${plural(rows.length, "score")} without a value in any run shown:` }), el("ul", {}, parts)];
+}
+
+function scoresNote() {
+  const { stats } = report;
+  const range = selectionName() === null
+    ? "in brackets, in italics, the quartiles of the runs: intervals are worked out for all runs and for one value of one parameter, not for this selection"
+    : `in brackets its ${stats.level} % interval, for which whole crowd draws were resampled`;
+  return `Interquartile mean over the runs with a value; where it says so the mean, of counts and of what is zero in most runs, or the share of yes; ${range}. Hatched: runs without a value, which no number beside them counts; nor are runs in which the planner failed. ${differenceNote()}`;
+}
+
+function differenceNote() {
+  if (shownPlanners().length < 2) return "";
+  return selectionName() === ""
+    ? "Difference: who is better than whom for certain, after Holm's correction."
+    : "Who is better is worked out for all runs only: every further selection would be a further chance to find a difference that is not there.";
+}

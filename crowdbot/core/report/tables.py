@@ -1,0 +1,164 @@
+"""The tables beside the page: every score as tidy CSV, the headline scores as Markdown."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from crowdbot.core.report.contents import Contents
+from crowdbot.core.report.encode import Attempt, status_of
+from crowdbot.core.report.provenance import short
+from crowdbot.core.results.rows import FailureRow, RunRow, ScoreRow
+from crowdbot.core.statistics import Comparison, Counts, Estimate, Summary
+
+_RUN = ("suite", "scenario", "planner", "seed", "run_status", "run_id", "realisation", "density")
+_SCORE = (
+    "category", "metric", "symbol", "variant", "value", "unit", "better", "status", "reason",
+    "lower", "upper",
+)  # fmt: skip
+
+
+def csv_rows(contents: Contents) -> Iterator[Sequence[str]]:
+    """Header, then one row a score; an attempt without scores has one row without a metric."""
+    axes = [axis["name"] for axis in contents.axes]
+    scores: dict[str, list[ScoreRow]] = {}
+    for row in contents.results.scores:
+        scores.setdefault(row.run_id, []).append(row)
+    known = {r.scenario: r.axes for r in contents.results.runs}
+    yield (*_RUN, *(f"axis.{name}" for name in axes), *_SCORE)
+    for attempt in contents.attempts:
+        labels = [known.get(attempt.scenario, {}).get(name, "") for name in axes]
+        head = (*_run_cells(attempt), *labels)
+        found = scores.get(attempt.run_id, []) if isinstance(attempt, RunRow) else []
+        for row in found:
+            yield (*head, *(_cell(getattr(row, name)) for name in _SCORE))
+        if not found:
+            yield (*head, *_without_scores(attempt))
+
+
+def _run_cells(attempt: Attempt) -> tuple[str, ...]:
+    cells = (attempt.suite, attempt.scenario, attempt.planner, str(attempt.seed))
+    if isinstance(attempt, FailureRow):
+        return (*cells, status_of(attempt), "", "", "")
+    more = (
+        attempt.status,
+        short(attempt.run_id),
+        short(attempt.realisation_hash),
+        _cell(attempt.density),
+    )
+    return (*cells, *more)
+
+
+def _without_scores(attempt: Attempt) -> tuple[str, ...]:
+    reason = attempt.error if isinstance(attempt, FailureRow) else "not_scored"
+    cells = {"status": status_of(attempt), "reason": reason}
+    return tuple(cells.get(name, "") for name in _SCORE)
+
+
+def _cell(value: str | float | None) -> str:
+    if value is None:
+        return ""
+    return value if isinstance(value, str) else repr(float(value))
+
+
+# ---------------------------------------------------------------------- Markdown
+def markdown(contents: Contents) -> str:
+    """The headline scores of all runs, and what is better for certain."""
+    summary, heading = contents.figures.headline, contents.heading
+    lines = [f"# {_plain(heading.suite)}", ""]
+    lines += [f"Made {_plain(heading.made)}.", ""] if heading.made else []
+    for text in heading.accepted:
+        lines += [f"**Accepted: {_plain(text)}**", ""]
+    for text in heading.warnings:
+        lines += [f"Warning: {_plain(text)}", ""]
+    lines += [*_table(*_endings(contents)), "", "## Scores", "", _meaning(summary), ""]
+    lines += [*_table(*_scores(contents)), ""]
+    if summary.comparisons:
+        lines += ["## Planner against planner", "", _family(summary), ""]
+        lines += [*_table(*_comparisons(summary)), ""]
+    return "\n".join(lines)
+
+
+def _meaning(summary: Summary) -> str:
+    return (
+        "Interquartile mean over all runs with a value (of counts and rare events the mean, of "
+        f"yes or no the share), and its {100 * summary.level:g} % interval; whole crowd draws "
+        "were resampled. Runs without a value are counted, not dropped."
+    )
+
+
+def _family(summary: Summary) -> str:
+    return (
+        f"Pairs of the same scenario and seed. {summary.tests} tests share the chance "
+        f"{summary.alpha:g} of any false verdict (Holm)."
+    )
+
+
+def _endings(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
+    counts = {p: contents.counts(contents.of(p)) for p in contents.planners}
+    head = ("planner", *(next(iter(counts.values()))))
+    return head, [(_plain(p), *map(str, found.values())) for p, found in counts.items()]
+
+
+def _scores(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
+    summary = contents.figures.headline
+    places = {s.name: i for i, s in enumerate(contents.series)}
+    names = dict.fromkeys((s.metric, s.variant) for s in summary.scores)
+    scores = {(s.metric, s.variant, s.planner): s for s in summary.scores}
+    rows: list[Sequence[str]] = []
+    for metric, variant in names:
+        here = [scores[metric, variant, planner] for planner in summary.planners]
+        unit = "" if here[0].unit == "1" else here[0].unit
+        intervals = contents.figures.intervals[0, places[metric, variant]].tolist()
+        cells = [_score_cell(s.counts, found) for s, found in zip(here, intervals, strict=True)]
+        head = map(_plain, (f"{metric} {variant}".removesuffix(" corrected"), here[0].symbol, unit))
+        rows.append((*head, here[0].better, *cells))
+    return ("score", "symbol", "unit", "better", *map(_plain, summary.planners)), rows
+
+
+def _score_cell(counts: Counts, centre: Sequence[float]) -> str:
+    missing = [
+        f"{count} {name}"
+        for name, count in (
+            ("censored", counts.censored),
+            ("undefined", counts.undefined),
+            ("failed", counts.failed),
+        )
+        if count
+    ]
+    return "; ".join([_numbers(*centre), *missing])
+
+
+def _estimate(found: Estimate) -> str:
+    return _numbers(*(math.nan if x is None else x for x in (found.value, found.low, found.high)))
+
+
+def _numbers(value: float, low: float, high: float) -> str:
+    if math.isnan(value):
+        return "–"
+    interval = f" [{low:.4g}, {high:.4g}]" if math.isfinite(low) and math.isfinite(high) else ""
+    return f"{value:.4g}{interval}"
+
+
+def _comparisons(summary: Summary) -> tuple[Sequence[str], list[Sequence[str]]]:
+    head = ("score", "a", "b", "a − b", "probability that a is better", "p (Holm)", "verdict")
+    return head, [_comparison(c) for c in summary.comparisons]
+
+
+def _comparison(found: Comparison) -> Sequence[str]:
+    verdict = f"a is {found.verdict}" if found.verdict in ("better", "worse") else found.verdict
+    score = f"{found.metric} {found.variant}".removesuffix(" corrected")
+    p_holm = "–" if found.p_holm is None else f"{found.p_holm:.3g}"
+    estimates = (_estimate(found.difference), _estimate(found.improvement))
+    return (*map(_plain, (score, found.a, found.b)), *estimates, p_holm, verdict)
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    lines = [head, ["---"] * len(head), *rows]
+    return [f"| {' | '.join(line)} |" for line in lines]
+
+
+def _plain(text: str) -> str:
+    """Text that Markdown shows as it is: names are user input."""
+    escaped = "".join(f"\\{c}" if c in "\\|*`<>[]#&" else c for c in text)
+    return " ".join(escaped.split())

@@ -1,0 +1,68 @@
+"""What a series is summed up by, and which one stands for its metric."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from crowdbot.core.report.series import all_series
+from crowdbot.core.results.rows import ScoreRow
+
+
+def rows(metric: str, variant: str, *values: float | None, **more: Any) -> list[ScoreRow]:
+    fields = {"category": "a", "symbol": "X", "unit": "1", "better": "lower", "reason": ""} | more
+    return [
+        ScoreRow(
+            run_id=str(i), metric=metric, variant=variant, value=v, lower=None, upper=None,
+            status="undefined" if v is None else "ok", **fields,
+        )
+        for i, v in enumerate(values)
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("range_", "values", "centre"),
+    [
+        ("[0, ∞)", (1.0, 2.0, 0.0), "interquartile mean"),
+        ("[0, ∞)", (0.0, 0.0, 9.0), "mean"),  # a rare event
+        ("[0, ∞)", (0.0, 9.0), "interquartile mean"),
+        ("[0, ∞)", (0.0, None, None, 9.0), "interquartile mean"),
+        ("0, 1, 2, …", (3.0, 4.0), "mean"),
+        ("0 or 1", (0.0, 0.0, 1.0), "share"),
+        ("", (0.0, 1.0), "interquartile mean"),  # no card says that it is yes or no
+        ("", (), "interquartile mean"),
+    ],
+)
+def test_the_centre_has_room_for_rare_events(
+    range_: str, values: tuple[float | None, ...], centre: str
+) -> None:
+    found = all_series(rows("m", "corrected", *values, None), [], {"m": range_})
+    assert [s.centre for s in found] == [centre]
+
+
+def test_headlines_and_plain_variants() -> None:
+    scores = [
+        *rows("has", "literal", 1.0), *rows("has", "corrected", 1.0), *rows("has", "extra", 1.0),
+        *rows("without", "raw", 1.0), *rows("without", "literal", 1.0),
+        *rows("stands_in", "corrected", None), *rows("stands_in", "restricted", 1.0),
+    ]  # fmt: skip
+    found = {s.name: s for s in all_series(scores, [("stands_in", "restricted")], {})}
+    headlines = {name for name, s in found.items() if s.headline}
+    assert headlines == {("has", "corrected"), ("without", "raw"), ("stands_in", "restricted")}
+    plain = {name for name, s in found.items() if s.plain}
+    assert plain == {("has", "corrected"), ("without", "raw"), ("stands_in", "corrected")}
+
+
+def test_known_categories_come_first_and_in_them_the_metrics_of_the_seed() -> None:
+    scores = [
+        *rows("a", "corrected", 1.0, category="questionnaire"),
+        *rows("b", "corrected", 1.0, category="motion"),
+        *rows("c", "corrected", 1.0, category="collision"),
+        *rows("d", "corrected", 1.0, category="collision"),
+        *rows("d", "literal", 1.0, category="collision"),
+        *rows("e", "corrected", 1.0, category="task"),
+    ]
+    names = [f"{s.metric}.{s.variant}" for s in all_series(scores, [], {})]
+    assert names == ["e.corrected", "d.corrected", "d.literal", "c.corrected", "b.corrected",
+                     "a.corrected"]  # fmt: skip
