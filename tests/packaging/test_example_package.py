@@ -50,7 +50,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Site:
     wheels = [_wheel(source, folder / "wheels") for source in (ROOT, EXAMPLE)]
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", folder / "venv"], check=True)
     python = folder / "venv/bin/python"
-    install = [sys.executable, "-m", "pip", "--python", python, "install", "--quiet"]
+    install = [sys.executable, "-m", "pip", "--python", str(python), "install", "--quiet"]
     offline = ["--no-index", "--no-deps", "--no-compile", "--disable-pip-version-check"]
     subprocess.run([*install, *offline, *wheels], check=True)
     work = folder / "work"
