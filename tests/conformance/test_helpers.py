@@ -26,7 +26,9 @@ SCENARIO = """
 crowdbot: 1
 scenario:
   id: mine
-  environment: {kind: corridor, zones: {all: {x: [0 m, 50 m], y: [-5 m, 5 m]}, goal: {x: [8 m, 9 m], y: [-1 m, 1 m]}}}
+  environment:
+    kind: corridor
+    zones: {all: {x: [0 m, 50 m], y: [-5 m, 5 m]}, goal: {x: [8 m, 9 m], y: [-1 m, 1 m]}}
   robots.robot:
     model: {kind: turtlebot2}
     task: {start: [1 m, 0 m, 0 deg], goal: {zone: goal}}
