@@ -58,7 +58,8 @@ def _values(field: FieldInfo) -> st.SearchStrategy[Any]:
     if annotation is float:
         return _floats(field)
     bounds = tuple(m for m in field.metadata if type(m).__module__ == "annotated_types")
-    return st.from_type(Annotated[(annotation, *bounds)] if bounds else annotation)
+    bounded: Any = Annotated[(annotation, *bounds)] if bounds else annotation
+    return st.from_type(bounded)
 
 
 def _floats(field: FieldInfo) -> st.SearchStrategy[float]:

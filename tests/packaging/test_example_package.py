@@ -1,4 +1,4 @@
-"""A third party's day: both wheels in a fresh environment, and everything works from there."""
+"""A third party's day: wheels in a fresh environment, and everything works from there."""
 
 from __future__ import annotations
 
@@ -16,11 +16,12 @@ import pytest
 
 ROOT = Path(__file__).parent.parent.parent
 EXAMPLE = ROOT / "docs/examples/crowdbot-acme"
+TUTORIAL = ROOT / "docs/tutorial/files/crowdbot-careful"
 
 
 @dataclass(frozen=True)
 class Site:
-    """A fresh environment with both wheels, and an empty folder to work in."""
+    """A fresh environment with the wheels, and an empty folder to work in."""
 
     python: Path
     work: Path
@@ -47,7 +48,7 @@ class Site:
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Site:
     folder = tmp_path_factory.mktemp("site")
-    wheels = [_wheel(source, folder / "wheels") for source in (ROOT, EXAMPLE)]
+    wheels = [_wheel(source, folder / "wheels") for source in (ROOT, EXAMPLE, TUTORIAL)]
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", folder / "venv"], check=True)
     python = folder / "venv/bin/python"
     install = [sys.executable, "-m", "pip", "--python", str(python), "install", "--quiet"]
@@ -127,10 +128,22 @@ def test_its_planner_drives_and_its_metric_scores(site: Site) -> None:
     assert 0.0 <= float(row["value"]) <= 1.0
 
 
-def test_its_own_tests_pass(site: Site) -> None:
-    tests = site.work / "tests"
-    shutil.copytree(EXAMPLE / "tests", tests)
-    shutil.copy(EXAMPLE / "pyproject.toml", site.work)
+def test_the_planner_of_the_tutorial(site: Site) -> None:
+    text = site.crowdbot(
+        "simulate", "acme:office", "cart-drift", "--planner", "careful.waiter", "--json", "--quiet",
+        "--record", "used", "--no-references", "--set", "robots.robot.task.time_limit=1",
+    )  # fmt: skip
+    record = json.loads(text)
+    assert record["status"] == "timeout"
+    assert record["pinned"] is True
+    assert "crowdbot-careful 0.1.0" in {p["distribution"] for p in record["plugins"]}
+
+
+@pytest.mark.parametrize("package", [EXAMPLE, TUTORIAL], ids=lambda p: p.name)
+def test_its_own_tests_pass(package: Path, site: Site) -> None:
+    tests = site.work / package.name
+    shutil.copytree(package / "tests", tests)
+    shutil.copy(package / "pyproject.toml", tests)
     done = site.run("pytest", "-q", "-p", "no:cacheprovider", tests)
     assert done.returncode == 0, done.stdout[-4000:]
     assert "skipped" not in done.stdout
