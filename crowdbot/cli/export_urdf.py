@@ -65,4 +65,6 @@ def _robot(registry: Registry, name: str, spec: str, id_: str | None) -> Robot:
 
 
 def _sensors(registry: Registry, robot: Robot) -> Mapping[str, SensorInfo]:
-    return {name: registry.build(spec).info() for name, spec in robot.sensors.items()}
+    from crowdbot.core.sensing.guard import build_sensor
+
+    return {name: build_sensor(registry, spec).info() for name, spec in robot.sensors.items()}

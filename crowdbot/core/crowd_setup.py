@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
 from crowdbot.core.crowd.draws import chosen
 from crowdbot.core.crowd.engine import PolicyFactory
+from crowdbot.core.crowd.guard import KnownPolicy, checked_cost
 from crowdbot.core.crowd.policy import LOOP, PORTAL, REMOVE, STOP
 from crowdbot.core.interfaces import EnvironmentParts
 from crowdbot.core.realisation import Realisation
@@ -39,8 +40,9 @@ def build_crowd(
 
 
 def _factory(group: Crowd | NamedPolicy, registry: Registry) -> PolicyFactory:
-    costs = [registry.build(cost) for cost in group.costs.values()]
-    return lambda agents: registry.build(group.policy, costs, agents)
+    costs = [checked_cost(cost.kind, registry.build(cost)) for cost in group.costs.values()]
+    kind = group.policy.kind
+    return lambda agents: KnownPolicy(kind, registry.build(group.policy, costs, agents))
 
 
 def _flows(drawn: Realisation) -> list[Flow]:

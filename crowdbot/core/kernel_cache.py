@@ -2,6 +2,7 @@
 
 Numba compiles a function again when its own file has changed, but not when a function that it
 calls, in another file, has: after an update it would go on with the old one and say nothing.
+`crowdbot.core.kernel_locator` does the same for plugins.
 """
 
 from __future__ import annotations
@@ -12,11 +13,18 @@ from pathlib import Path
 
 _PACKAGE = Path(__file__).parent.parent
 _VARIABLE = "NUMBA_CACHE_DIR"
+_LOCATORS = "NUMBA_CACHE_LOCATOR_CLASSES"
+#: What numba asks, in turn: where the first has no file or no folder, numba's own.
+_CLASSES = ",".join(
+    ("crowdbot.core.kernel_locator.PackageLocator",
+     "UserWideCacheLocator", "IPythonCacheLocator", "ZipCacheLocator")
+)  # fmt: skip
 
 
 def use_kernel_cache() -> None:
     """Name the folder to numba, which reads it when it is imported; a user's own choice wins."""
     os.environ.setdefault(_VARIABLE, str(kernel_folder()))
+    os.environ.setdefault(_LOCATORS, _CLASSES)
 
 
 def nothing_compiled() -> bool:

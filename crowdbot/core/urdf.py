@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from copy import deepcopy
 from xml.etree import ElementTree as Xml
 
 import numpy as np
@@ -37,7 +38,8 @@ def to_urdf(robot: RobotModel, sensors: Mapping[str, SensorInfo], name: str) -> 
         InputError: the description holds something that URDF cannot say.
     """
     described = read_description(robot.description)
-    document = described.model if described.format == "urdf" else _from_sdf(described)
+    urdf = described.format == "urdf"
+    document = deepcopy(described.model) if urdf else _from_sdf(described)
     document.set("name", name)
     _ground(document, robot, described)
     for sensor, info in sensors.items():

@@ -37,6 +37,43 @@ def test_a_changed_callee_in_another_file_is_compiled_again(tmp_path: Path) -> N
     assert answers == [1, 22]
 
 
+PLUGIN = """
+import sys
+sys.path.insert(0, {here!r})
+import crowdbot.core
+from {name} import outer
+print(outer(), sum(outer.stats.cache_hits.values()))
+"""
+
+
+@pytest.mark.parametrize("name", ["package.caller", "package.deep.caller", "lone_caller"])
+def test_a_plugins_changed_callee_is_compiled_again(name: str, tmp_path: Path) -> None:
+    """And an unchanged one is not."""
+    folder = tmp_path.joinpath(*name.split(".")[:-1])
+    folder.mkdir(parents=True, exist_ok=True)
+    for level in (folder, *folder.parents):
+        if level.is_relative_to(tmp_path) and level != tmp_path:
+            (level / "__init__.py").touch()
+    package = name.rpartition(".")[0].split(".")[0]
+    callee = f"{package}.callee" if package else "callee"
+    (tmp_path / f"{name.replace('.', '/')}.py").write_text(
+        f"from numba import njit\nfrom {callee} import inner\n"
+        "@njit('int64()', cache=True)\ndef outer():\n    return inner()\n"
+    )
+    environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_LOCATOR_CLASSES"}
+    environment["NUMBA_CACHE_DIR"] = str(tmp_path / "kernels")
+    answers = []
+    for number in (1, 22, None):
+        if number is not None:
+            (tmp_path / f"{callee.replace('.', '/')}.py").write_text(CALLEE.format(number))
+        done = subprocess.run(
+            [sys.executable, "-c", PLUGIN.format(here=str(tmp_path), name=name)],
+            capture_output=True, text=True, check=True, env=environment,
+        )  # fmt: skip
+        answers.append(done.stdout.split())
+    assert answers == [["1", "0"], ["22", "0"], ["22", "1"]]
+
+
 def test_equal_sources_share_a_folder(tmp_path: Path) -> None:
     (tmp_path / "a.py").write_text("1")
     before = kernel_folder(tmp_path)

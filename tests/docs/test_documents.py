@@ -19,7 +19,7 @@ from crowdbot.core.library import pick
 
 FILES = sorted(
     f
-    for kind in ("**/*.py", "**/*.yaml", "**/pyproject.toml", "*.csv")
+    for kind in ("**/*.py", "**/*.yaml", "**/*.urdf", "**/pyproject.toml", "*.csv")
     for f in ROOT.glob(f"docs/*/files/{kind}")
 )
 #: Pages whose commands are run where their files are.

@@ -14,6 +14,7 @@ from crowdbot.core.interfaces import EnvironmentParts, Pose, RobotModel, SensorI
 from crowdbot.core.planner_host import HostedCommand, PlannerHost
 from crowdbot.core.registry import Registry
 from crowdbot.core.run_log import RunLog
+from crowdbot.core.sensing.guard import build_sensor
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control import ControlledRobot, add_robot
@@ -94,7 +95,7 @@ def build_diagram(
 
     # Sensors, odometry among them.
     scene = _scene(scenario, parts, engine)
-    built = {n: registry.build(x) for n, x in robot.sensors.items() if n in sensors}
+    built = {n: build_sensor(registry, x) for n, x in robot.sensors.items() if n in sensors}
     bank = builder.AddNamedSystem(
         "sensors",
         SensorBank(

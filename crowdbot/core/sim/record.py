@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd_run import run_crowd
 from crowdbot.core.crowd_setup import build_crowd
+from crowdbot.core.environments import build_environment
 from crowdbot.core.interfaces import (
-    EnvironmentParts,
     HolonomicDrive,
     Observation,
     Planner,
@@ -32,6 +32,7 @@ from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWrit
 from crowdbot.core.registry import Registry
 from crowdbot.core.robots import build_robot
 from crowdbot.core.run_log import RunLog
+from crowdbot.core.sensing.guard import build_sensor
 from crowdbot.core.sim.diagram import build_diagram, robot_task
 from crowdbot.core.sim.runner import INTERRUPTED, TIMEOUT, Outcome, Progress, run
 from crowdbot.core.watchdog import Watchdog
@@ -65,10 +66,10 @@ def record_robot(setup: RunSetup) -> Outcome:
     """
     scenario, registry = setup.scenario, setup.registry
     ((name, robot),) = scenario.robots.items()
-    parts: EnvironmentParts = registry.build(scenario.environment)
+    parts = build_environment(registry, scenario.environment)
     model = build_robot(registry, robot)
     engine = build_crowd(scenario, setup.agents, parts, registry)
-    infos = {n: _framed(n, registry.build(x).info()) for n, x in robot.sensors.items()}
+    infos = {n: _framed(n, build_sensor(registry, x).info()) for n, x in robot.sensors.items()}
     choice = setup.choice
     visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
     sensors = set(infos) if setup.record == "all" else {*visible, *_odometry(infos)}
@@ -108,7 +109,7 @@ def record_robot(setup: RunSetup) -> Outcome:
 def record_crowd(setup: RunSetup, duration: float) -> Outcome:
     """Simulate the scenario's people without a robot, and without Drake."""
     scenario, registry = setup.scenario, setup.registry
-    parts: EnvironmentParts = registry.build(scenario.environment)
+    parts = build_environment(registry, scenario.environment)
     engine = build_crowd(scenario, setup.agents, parts, registry)
     if engine is None:
         raise InputError(f"{scenario.id} has no crowd")

@@ -10,6 +10,7 @@ from typing import Any
 
 from crowdbot.core import provenance
 from crowdbot.core import run_directory as files
+from crowdbot.core.environments import build_environment
 from crowdbot.core.evaluate import Scores, score
 from crowdbot.core.lock import Population, population
 from crowdbot.core.planner_source import resolve_planner, select_sensors
@@ -18,6 +19,7 @@ from crowdbot.core.registry import Registry
 from crowdbot.core.replay import write_replay
 from crowdbot.core.robots import build_robot
 from crowdbot.core.scores_table import write_scores_csv
+from crowdbot.core.sensing.guard import build_sensor
 from crowdbot.core.sim.record import RunSetup, record_crowd, record_robot
 from crowdbot.core.sim.request import Request, Run, read_references
 from crowdbot.core.sim.runner import INTERRUPTED, PLANNER_FAILED, Outcome
@@ -87,12 +89,13 @@ def _check_needs(request: Request) -> None:
     Raises:
         InputError: the robot lacks a sensor that the planner needs, or its control mode does not
             fit its drive.
-        PluginError: the robot cannot be built.
+        PluginError: environment, robot or a sensor cannot be built.
         MissingLibraryError: colour images are wanted where they cannot be drawn.
     """
     (robot,) = request.scenario.robots.values()
+    build_environment(request.registry, request.scenario.environment)
     build_robot(request.registry, robot)
-    infos = {n: request.registry.build(x).info() for n, x in robot.sensors.items()}
+    infos = {n: build_sensor(request.registry, x).info() for n, x in robot.sensors.items()}
     choice = request.choice
     visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
     cameras = [infos[n].camera for n in (infos if request.record == "all" else visible)]

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from crowdbot.core.environments import build_environment
 from crowdbot.core.realisation import Realisation
 from crowdbot.core.registry import Registry
 from crowdbot.core.robots import build_model
@@ -28,7 +29,7 @@ def build_scene(scenario: Scenario, people: Realisation, registry: Registry) -> 
     """
     areas = {} if scenario.crowd is None else _areas(scenario.crowd)
     return Scene(
-        parts=registry.build(scenario.environment),
+        parts=build_environment(registry, scenario.environment),
         people=people,
         robots=tuple(_robot(n, r, registry) for n, r in scenario.robots.items()),
         areas=areas,
