@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from functools import cache
+from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
@@ -207,7 +208,17 @@ def _is_unit(text: str) -> bool:
 @cache
 def _loaded_by(module: str) -> frozenset[str]:
     """Modules in memory after a fresh interpreter imported one."""
-    code = f"import sys; sys.path[:] = {sys.path!r}; import {module}; print(*sys.modules)"
+    path = [*sys.path, *_folder_of(module.partition(".")[0])]
+    code = f"import sys; sys.path[:] = {path!r}; import {module}; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"import {module} fails: {done.stderr.strip()}"
     return frozenset(done.stdout.split())
+
+
+def _folder_of(top: str) -> list[str]:
+    """Where a module or package lies that was loaded by its path and not found by its name."""
+    file = getattr(sys.modules.get(top), "__file__", None)
+    if file is None:
+        return []
+    own = Path(file)
+    return [str(own.parent.parent if own.name == "__init__.py" else own.parent)]
