@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -147,3 +148,23 @@ def test_its_own_tests_pass(package: Path, site: Site) -> None:
     done = site.run("pytest", "-q", "-p", "no:cacheprovider", tests)
     assert done.returncode == 0, done.stdout[-4000:]
     assert "skipped" not in done.stdout
+
+
+def test_the_planner_that_does_not_clamp(site: Site) -> None:
+    """What the tutorial says about leaving one line out."""
+    page = (ROOT / "docs/tutorial/package_a_planner.md").read_text(encoding="utf-8")
+    broken = site.work / "broken"
+    shutil.copytree(TUTORIAL, broken)
+    deeds = broken / "crowdbot_careful/waiter_build.py"
+    text = deeds.read_text(encoding="utf-8")
+    line = "        w = max(-self.limits.w_max, min(self.limits.w_max, 2.0 * error))\n"
+    assert line in text
+    deeds.write_text(text.replace(line, "        w = 2.0 * error\n"), encoding="utf-8")
+    test = "tests/test_waiter.py::test_conformance[careful.waiter-check_commands_are_within_limits]"
+    code = f"import sys, pytest; sys.path.insert(0, {str(broken)!r}); pytest.main(['-q', {test!r}])"
+    done = subprocess.run(
+        [site.python, "-c", code], cwd=broken, capture_output=True, text=True, check=False
+    )
+    found = re.search(r"AssertionError: (.*) commands were beyond the limits", done.stdout)
+    assert found, done.stdout
+    assert f'"{found[1]} commands were beyond the limits"' in page
