@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from functools import cache
+from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
@@ -15,11 +16,12 @@ from pydantic.fields import FieldInfo
 from ruamel.yaml import YAML
 
 from crowdbot.core.component import Component
-from crowdbot.core.registry import discover
+from crowdbot.core.registry import Registry
 from crowdbot.dsl.base import ComponentSpec
 from crowdbot.dsl.canonical import to_yaml
 from crowdbot.dsl.quantities import UNITS, Quantity
 from crowdbot.dsl.validation import nested_model
+from crowdbot.testing.around import installed
 
 #: Loaded in a fraction of a second or not at all by whoever only validates.
 HEAVY = frozenset({"numba", "numpy", "pydrake"})
@@ -137,19 +139,21 @@ def check_words_are_light(component: Component[Any]) -> None:
     assert not heavy, f"import {module} imports {', '.join(heavy)}"
 
 
-def check_entry_point_yields_it(component: Component[Any]) -> None:
+def check_entry_point_yields_it(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
     """The installed plugin really provides the component.
 
     If this fails, look at ``crowdbot plugins``: the distribution is not installed, its entry point
     in the group ``crowdbot`` names another module, or no hook returns the component.
     """
-    registry = discover()
-    failed = [f"{p.name}: {p.error}" for p in registry.plugins if p.error]
-    assert component.kind in registry.components(component.category), (
+    known = registry or installed()
+    failed = [f"{p.name}: {p.error}" for p in known.plugins if p.error]
+    assert component.kind in known.components(component.category), (
         f"no installed plugin provides it{'; ' + '; '.join(failed) if failed else ''}"
     )
-    found = registry.find(component.category, component.kind)
-    assert found == component, f"{registry.owner(found).distribution} provides another {found.kind}"
+    found = known.find(component.category, component.kind)
+    assert found == component, f"{known.owner(found).distribution} provides another {found.kind}"
 
 
 CHECKS = (
@@ -204,7 +208,17 @@ def _is_unit(text: str) -> bool:
 @cache
 def _loaded_by(module: str) -> frozenset[str]:
     """Modules in memory after a fresh interpreter imported one."""
-    code = f"import sys; sys.path[:] = {sys.path!r}; import {module}; print(*sys.modules)"
+    path = [*sys.path, *_folder_of(module.partition(".")[0])]
+    code = f"import sys; sys.path[:] = {path!r}; import {module}; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"import {module} fails: {done.stderr.strip()}"
     return frozenset(done.stdout.split())
+
+
+def _folder_of(top: str) -> list[str]:
+    """Where a module or package lies that was loaded by its path and not found by its name."""
+    file = getattr(sys.modules.get(top), "__file__", None)
+    if file is None:
+        return []
+    own = Path(file)
+    return [str(own.parent.parent if own.name == "__init__.py" else own.parent)]

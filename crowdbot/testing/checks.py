@@ -18,6 +18,7 @@ from crowdbot.testing import (
     metric,
     noise,
     planner,
+    robot,
     robot_kind,
     sensor,
 )
@@ -32,7 +33,7 @@ BY_CATEGORY: Mapping[str, tuple[Check, ...]] = {
     "metric": metric.CHECKS,
     "noise": noise.CHECKS,
     "planner": planner.CHECKS,
-    "robot": robot_kind.CHECKS,
+    "robot": (*robot_kind.CHECKS, *robot.CHECKS),
     "sensor": sensor.CHECKS,
 }
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,8 +20,9 @@ from crowdbot.core.laws import Laws
 from crowdbot.core.score import Score
 from crowdbot.core.score_label import MetricComponent, ScoreLabel
 from crowdbot.core.trajectory import Trajectories
-from crowdbot.dsl.base import MetricSpec
+from crowdbot.dsl.base import CATEGORIES, MetricSpec
 from crowdbot.testing import all_kinds, card, checks_of, metric, parametrize_with_checks
+from crowdbot.testing.checks import BY_CATEGORY
 
 DOCS = Path(__file__).parents[2] / "docs/reference"
 LABEL = ScoreLabel(metric="acme.x", symbol="x", category="c", unit="m", better="none")
@@ -188,9 +190,20 @@ def test_laws_are_checked() -> None:
 
 def test_checks_say_what_to_do_and_the_page_lists_them() -> None:
     page = (DOCS / "conformance.md").read_text(encoding="utf-8")
-    for check in (*all_kinds.CHECKS, *metric.CHECKS):
+    groups = [all_kinds.CHECKS, *BY_CATEGORY.values()]
+    for check in (c for group in groups for c in group):
         text = inspect.getdoc(check)
         assert text is not None
         what, _, then = text.partition("If this fails, ")
         assert then.strip().endswith("."), check.__name__
         assert f"| `{check.__name__}` | {' '.join(what.split())} |" in page
+    rows = re.findall(r"^\| `(check_\w+)` \|", page, re.MULTILINE)
+    assert rows == [c.__name__ for group in _as_listed() for c in group]
+
+
+def _as_listed() -> list[tuple[Any, ...]]:
+    """The groups of checks in the order of the page."""
+    order = ("environment", "robot", "sensor", "noise", "planner", "crowd policy", "cost function",
+             "metric")  # fmt: skip
+    assert set(order) == set(BY_CATEGORY) == {c.category for c in CATEGORIES}
+    return [all_kinds.CHECKS, *(BY_CATEGORY[c] for c in order)]

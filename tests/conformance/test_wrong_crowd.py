@@ -78,7 +78,7 @@ def _flips(view: CrowdView, dt: float) -> Array:
         (crowd_policy.check_same_view_twice, _flips, "answered differently"),
         (crowd_policy.check_permutation_equivariant, _one_after_the_other, "another order"),
         (crowd_policy.check_translation_invariant, lambda v, dt: -v.position, "along x"),
-        (crowd_policy.check_rotation_equivariant, lambda v, dt: preferred(v) + [0.3, 0], "turned"),
+        (crowd_policy.check_rotation_equivariant, lambda v, dt: preferred(v) + 0.3, "turned"),
         (crowd_policy.check_time_step_is_no_unit, lambda v, dt: 16.0 * preferred(v) * dt, "twice"),
     ],
 )  # fmt: skip
@@ -176,7 +176,7 @@ def _impatient(ux: float, uy: float, budget: float, agent: Any, work: Any, param
 def _counting(ux: float, uy: float, budget: float, agent: Any, work: Any, params: Any) -> float:
     table = work_table(work)
     table[0, 0] += 1.0
-    return table[0, 0]
+    return float(table[0, 0])
 
 
 @njit(EXCESS, error_model="numpy")

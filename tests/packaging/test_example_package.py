@@ -1,10 +1,11 @@
-"""A third party's day: both wheels in a fresh environment, and everything works from there."""
+"""A third party's day: wheels in a fresh environment, and everything works from there."""
 
 from __future__ import annotations
 
 import csv
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -16,11 +17,12 @@ import pytest
 
 ROOT = Path(__file__).parent.parent.parent
 EXAMPLE = ROOT / "docs/examples/crowdbot-acme"
+TUTORIAL = ROOT / "docs/tutorial/files/crowdbot-careful"
 
 
 @dataclass(frozen=True)
 class Site:
-    """A fresh environment with both wheels, and an empty folder to work in."""
+    """A fresh environment with the wheels, and an empty folder to work in."""
 
     python: Path
     work: Path
@@ -47,10 +49,10 @@ class Site:
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Site:
     folder = tmp_path_factory.mktemp("site")
-    wheels = [_wheel(source, folder / "wheels") for source in (ROOT, EXAMPLE)]
+    wheels = [_wheel(source, folder / "wheels") for source in (ROOT, EXAMPLE, TUTORIAL)]
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", folder / "venv"], check=True)
     python = folder / "venv/bin/python"
-    install = [sys.executable, "-m", "pip", "--python", python, "install", "--quiet"]
+    install = [sys.executable, "-m", "pip", "--python", str(python), "install", "--quiet"]
     offline = ["--no-index", "--no-deps", "--no-compile", "--disable-pip-version-check"]
     subprocess.run([*install, *offline, *wheels], check=True)
     work = folder / "work"
@@ -127,10 +129,42 @@ def test_its_planner_drives_and_its_metric_scores(site: Site) -> None:
     assert 0.0 <= float(row["value"]) <= 1.0
 
 
-def test_its_own_tests_pass(site: Site) -> None:
-    tests = site.work / "tests"
-    shutil.copytree(EXAMPLE / "tests", tests)
-    shutil.copy(EXAMPLE / "pyproject.toml", site.work)
+def test_the_planner_of_the_tutorial(site: Site) -> None:
+    text = site.crowdbot(
+        "simulate", "acme:office", "cart-drift", "--planner", "careful.waiter", "--json", "--quiet",
+        "--record", "used", "--no-references", "--set", "robots.robot.task.time_limit=1",
+    )  # fmt: skip
+    record = json.loads(text)
+    assert record["status"] == "timeout"
+    assert record["pinned"] is True
+    assert "crowdbot-careful 0.1.0" in {p["distribution"] for p in record["plugins"]}
+
+
+@pytest.mark.parametrize("package", [EXAMPLE, TUTORIAL], ids=lambda p: p.name)
+def test_its_own_tests_pass(package: Path, site: Site) -> None:
+    tests = site.work / package.name
+    shutil.copytree(package / "tests", tests)
+    shutil.copy(package / "pyproject.toml", tests)
     done = site.run("pytest", "-q", "-p", "no:cacheprovider", tests)
     assert done.returncode == 0, done.stdout[-4000:]
     assert "skipped" not in done.stdout
+
+
+def test_the_planner_that_does_not_clamp(site: Site) -> None:
+    """What the tutorial says about leaving one line out."""
+    page = (ROOT / "docs/tutorial/package_a_planner.md").read_text(encoding="utf-8")
+    broken = site.work / "broken"
+    shutil.copytree(TUTORIAL, broken)
+    deeds = broken / "crowdbot_careful/waiter_build.py"
+    text = deeds.read_text(encoding="utf-8")
+    line = "        w = max(-self.limits.w_max, min(self.limits.w_max, 2.0 * error))\n"
+    assert line in text
+    deeds.write_text(text.replace(line, "        w = 2.0 * error\n"), encoding="utf-8")
+    test = "tests/test_waiter.py::test_conformance[careful.waiter-check_commands_are_within_limits]"
+    code = f"import sys, pytest; sys.path.insert(0, {str(broken)!r}); pytest.main(['-q', {test!r}])"
+    done = subprocess.run(
+        [site.python, "-c", code], cwd=broken, capture_output=True, text=True, check=False
+    )
+    found = re.search(r"AssertionError: (.*) commands were beyond the limits", done.stdout)
+    assert found, done.stdout
+    assert f'"{found[1]} commands were beyond the limits"' in page

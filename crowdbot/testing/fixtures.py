@@ -1,0 +1,53 @@
+"""Fixtures for tests of plugins: ``pytest_plugins = ("crowdbot.testing.fixtures",)``. Needs pytest.
+
+They see crowdbot's own components only; `crowdbot.testing.around.around` adds one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from crowdbot.core.library import open_spec
+from crowdbot.core.registry import Registry, discover
+from crowdbot.dsl.scenario import Scenario
+from crowdbot.testing import tiny
+
+
+@pytest.fixture(scope="session")
+def registry() -> Registry:
+    """Only what crowdbot itself brings, whatever else is installed."""
+    return discover(allow=(), entry_points=False)
+
+
+@pytest.fixture(scope="session")
+def tiny_scenario(registry: Registry) -> Scenario:
+    """A robot that is to cross an empty room, for a second."""
+    return tiny.tiny_scenario(registry)
+
+
+@pytest.fixture
+def expand_one(registry: Registry, tmp_path: Path) -> Callable[[str], Scenario]:
+    """A function that makes a scenario of the text of a document that holds one."""
+
+    def expand(text: str) -> Scenario:
+        file = tmp_path / "one.yaml"
+        file.write_text(text, encoding="utf-8")
+        (scenario,) = open_spec(str(file), registry).scenarios
+        return scenario
+
+    return expand
+
+
+@pytest.fixture(scope="session")
+def run_directory(
+    registry: Registry, tiny_scenario: Scenario, tmp_path_factory: pytest.TempPathFactory
+) -> Path:
+    """A complete run of the tiny scenario, with its recording and scores."""
+    from crowdbot.core.sim.simulate import simulate
+
+    out = tmp_path_factory.mktemp("runs")
+    run = simulate(tiny_scenario, registry, planner="goal_seek", out=out, references=False)
+    return run.directory
