@@ -20,6 +20,8 @@ results = typer.Typer(
 _Out = Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")]
 _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 _ROOT = Path("runs")
+#: Wide enough for every table; a terminal wraps what it cannot hold.
+_WIDTH = 240
 #: What is shown of every planner when nobody asks for more.
 _HEADLINES = (
     "success", "collision_count", "min_clearance", "path_efficiency", "relative_time_to_goal",
@@ -224,10 +226,10 @@ def _print_table(lines: list[dict[str, Any]]) -> None:
 
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for name in lines[0]:
-        table.add_column(name, overflow="fold")
+        table.add_column(name, no_wrap=True)
     for line in lines:
         table.add_row(*(Text(_shown(v)) for v in line.values()))
-    Console().print(table)
+    Console(width=_WIDTH).print(table)
 
 
 def _shown(value: Any) -> str:

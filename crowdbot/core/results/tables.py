@@ -24,6 +24,7 @@ _SCORE = (
     "lower", "upper",
 )  # fmt: skip
 
+_NUMBERS = ("goal_time", "sim_time", "wall_time", "density", "value", "lower", "upper")
 _NULL = "\\N"
 
 
@@ -83,7 +84,7 @@ def write_parquet(path: Path, lines: Sequence[Line]) -> None:
         text = "Parquet needs DuckDB; install it with 'pip install crowdbot[analysis]'"
         raise MissingLibraryError(text) from error
     names = _names(lines)
-    columns = {name: _type(line[name] for line in lines) for name in names}
+    columns = {name: _type(name, (line[name] for line in lines)) for name in names}
     part, plain = (path.with_name(f".{path.name}.{kind}") for kind in ("part", "csv"))
     try:
         cells = ([_NULL if line[n] is None else _cell(line[n]) for n in names] for line in lines)
@@ -195,10 +196,12 @@ def _cell(value: Any) -> str:
     return repr(value) if isinstance(value, float) else str(value)
 
 
-def _type(values: Iterable[Any]) -> str:
+def _type(name: str, values: Iterable[Any]) -> str:
+    if name in _NUMBERS:
+        return "DOUBLE"
     kinds = {type(v) for v in values if v is not None}
     if kinds == {bool}:
         return "BOOLEAN"
     if kinds and kinds <= {int}:
         return "BIGINT"
-    return "DOUBLE" if kinds and kinds <= {int, float} else "VARCHAR"
+    return "VARCHAR"
