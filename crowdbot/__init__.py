@@ -9,7 +9,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from crowdbot.api import evaluate, expand, load, score, simulate
+    from crowdbot.api import evaluate, expand, load, results, score, simulate
     from crowdbot.core.commands import Commands
     from crowdbot.core.evaluate import Scores
     from crowdbot.core.questionnaires import Questionnaires
@@ -33,6 +33,7 @@ _HOMES = {
     "evaluate": "crowdbot.api",
     "expand": "crowdbot.api",
     "load": "crowdbot.api",
+    "results": "crowdbot.api",
     "score": "crowdbot.api",
     "simulate": "crowdbot.api",
 }
@@ -50,6 +51,7 @@ __all__ = [
     "evaluate",
     "expand",
     "load",
+    "results",
     "score",
     "simulate",
 ]

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from crowdbot.core.commands import Commands
     from crowdbot.core.evaluate import MetricParameters, Scores
     from crowdbot.core.questionnaires import Questionnaires
+    from crowdbot.core.results.rows import Results
     from crowdbot.core.sim.outcome import Progress
     from crowdbot.core.sim.request import Run
     from crowdbot.core.trajectory import Trajectories
@@ -104,3 +105,10 @@ def score(
         variants,
         parameters,
     )
+
+
+def results(root: str | Path = "runs") -> Results:
+    """All runs, scores and failures of a campaign; see `crowdbot.core.results.store.load`."""
+    from crowdbot.core.results.store import load as load_results
+
+    return load_results(Path(root))

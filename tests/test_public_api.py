@@ -22,6 +22,7 @@ NAMES = [
     "evaluate",
     "expand",
     "load",
+    "results",
     "score",
     "simulate",
 ]

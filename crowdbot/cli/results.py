@@ -1,0 +1,238 @@
+"""``crowdbot results``: quick questions to the results of a campaign."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+if TYPE_CHECKING:
+    from crowdbot.core.results.rows import Results
+    from crowdbot.core.results.tables import Summary
+
+results = typer.Typer(
+    add_completion=False, invoke_without_command=True, pretty_exceptions_enable=False
+)
+
+_Out = Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")]
+_Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
+_ROOT = Path("runs")
+#: Wide enough for every table; a terminal wraps what it cannot hold.
+_WIDTH = 240
+#: What is shown of every planner when nobody asks for more.
+_HEADLINES = (
+    "success", "collision_count", "min_clearance", "path_efficiency", "relative_time_to_goal",
+    "proximity", "risk",
+)  # fmt: skip
+
+
+@results.callback()
+def show(
+    context: typer.Context,
+    out: _Out = _ROOT,
+    metric: Annotated[
+        str | None, typer.Option(metavar="GLOB", help="Metrics; default: a few headlines.")
+    ] = None,
+    variant: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Variant; default: corrected.")
+    ] = None,
+    by: Annotated[
+        str, typer.Option(metavar="AXIS,AXIS", help="Groups: axes, planner, seed, status.")
+    ] = "planner",
+    planner: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Only this planner; repeatable.")
+    ] = None,
+    status: Annotated[
+        str | None, typer.Option(metavar="STATUS", help="Only runs that ended like this.")
+    ] = None,
+    worst: Annotated[
+        int, typer.Option(min=0, metavar="N", help="The N worst runs by --metric instead.")
+    ] = 0,
+    as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
+    as_json: _Json = False,
+) -> None:
+    """Show what planners reached, by metric and group.
+
+    Example: crowdbot results --out runs --metric 'collision*' --by planner,density
+    """
+    if context.invoked_subcommand is not None:
+        return
+    from crowdbot.core.results.store import load
+    from crowdbot.core.results.tables import summarise
+    from crowdbot.errors import UsageError
+
+    found = _only(load(out), planner, status)
+    if worst:
+        if metric is None:
+            raise UsageError("--worst needs --metric NAME")
+        _print(_worst(found, metric, variant, worst), as_csv=as_csv, as_json=as_json)
+        return
+    groups = [name.strip() for name in by.split(",") if name.strip()]
+    known = {s.metric for s in found.scores}
+    wanted = [metric] if metric is not None else [m for m in _HEADLINES if m in known]
+    summaries = [s for m in wanted for s in summarise(found, m, groups, variant)]
+    _print([_line(s) for s in summaries], as_csv=as_csv, as_json=as_json)
+    if not (as_csv or as_json):
+        typer.echo(f"{len(found.runs)} runs, {len(found.failures)} failures")
+
+
+@results.command()
+def export(
+    out: _Out = _ROOT,
+    csv: Annotated[Path | None, typer.Option(metavar="FILE", help="Write CSV.")] = None,
+    parquet: Annotated[Path | None, typer.Option(metavar="FILE", help="Write Parquet.")] = None,
+    table: Annotated[Literal["scores", "runs"], typer.Option(help="Which table.")] = "scores",
+) -> None:
+    """Write all scores, or all runs, as one table.
+
+    Example: crowdbot results export --out runs --csv scores.csv
+    """
+    from crowdbot.core.results import tables
+    from crowdbot.core.results.store import load
+    from crowdbot.errors import UsageError
+
+    if csv is None and parquet is None:
+        raise UsageError("write --csv FILE or --parquet FILE")
+    found = load(out)
+    lines = tables.score_lines(found) if table == "scores" else tables.run_lines(found)
+    if csv is not None:
+        tables.write_csv(csv, lines)
+    if parquet is not None:
+        tables.write_parquet(parquet, lines)
+
+
+@results.command()
+def failures(
+    out: _Out = _ROOT,
+    traceback: Annotated[bool, typer.Option("--traceback", help="What Python said.")] = False,
+    as_json: _Json = False,
+) -> None:
+    """List the runs that a campaign could not make.
+
+    Example: crowdbot results failures --out runs --traceback
+    """
+    from crowdbot.core.results.store import load
+
+    found = load(out).failures
+    if as_json:
+        typer.echo(json.dumps([asdict(f) for f in found], indent=2))
+        return
+    for failure in found:
+        name = f"{failure.suite}/{failure.scenario} {failure.planner} seed {failure.seed}"
+        typer.echo(f"{name}: {failure.error}")
+        if traceback:
+            typer.echo(failure.traceback)
+    if not found:
+        typer.echo("no failures")
+
+
+def _only(found: Results, planners: list[str] | None, status: str | None) -> Results:
+    """Runs of some planners that ended in some way, with their scores and failures.
+
+    Raises:
+        UnknownNameError: no run has such a planner or status.
+    """
+    from crowdbot.errors import UnknownNameError
+
+    labels = {r.planner for r in found.runs} | {f.planner for f in found.failures}
+    for name in planners or ():
+        if name not in labels:
+            raise UnknownNameError("planner", name, labels)
+    statuses = ("arrived", "timeout", "planner_failed")
+    if status is not None and status not in statuses:
+        raise UnknownNameError("status", status, statuses)
+    runs = tuple(
+        r
+        for r in found.runs
+        if (not planners or r.planner in planners) and status in (None, r.status)
+    )
+    ids = {r.run_id for r in runs}
+    return replace(
+        found,
+        runs=runs,
+        scores=tuple(s for s in found.scores if s.run_id in ids),
+        failures=tuple(f for f in found.failures if not planners or f.planner in planners),
+    )
+
+
+def _line(summary: Summary) -> dict[str, Any]:
+    return {
+        **summary.group,
+        "metric": summary.metric,
+        "variant": summary.variant,
+        "unit": summary.unit,
+        "mean": summary.mean,
+        "median": summary.median,
+        "n": summary.count,
+        "undefined": summary.undefined,
+        "censored": summary.censored,
+    }
+
+
+def _worst(found: Results, metric: str, variant: str | None, count: int) -> list[dict[str, Any]]:
+    """Runs with the worst values of one metric; those without a value come first."""
+    from crowdbot.core.results.tables import score_lines, summarise
+
+    summaries = summarise(found, metric, (), variant)
+    if len(summaries) != 1:
+        from crowdbot.errors import InputError
+
+        names = ", ".join(s.metric for s in summaries) or "no metric"
+        raise InputError(f"--worst wants one metric; '{metric}' fits {names}")
+    (summary,) = summaries
+    lines = [
+        line
+        for line in score_lines(found)
+        if (line["metric"], line["variant"]) == (summary.metric, summary.variant)
+    ]
+    sign = 1.0 if summary.better == "higher" else -1.0
+    lines.sort(key=lambda n: (n["value"] is not None, sign * (n["value"] or 0.0)))
+    directories = {r.run_id: r.directory for r in found.runs}
+    kept = ("scenario", "planner", "seed", "run_status", "value", "unit", "status", "reason")
+    return [
+        {**{k: line[k] for k in kept}, "directory": directories[line["run_id"]]}
+        for line in lines[:count]
+    ]
+
+
+def _print(lines: list[dict[str, Any]], *, as_csv: bool, as_json: bool) -> None:
+    if as_json:
+        typer.echo(json.dumps(lines, indent=2))
+    elif as_csv:
+        _print_csv(lines)
+    elif lines:
+        _print_table(lines)
+
+
+def _print_csv(lines: list[dict[str, Any]]) -> None:
+    import csv
+    import sys
+
+    writer = csv.writer(sys.stdout)
+    if lines:
+        writer.writerow(lines[0])
+    for line in lines:
+        writer.writerow(["" if v is None else v for v in line.values()])
+
+
+def _print_table(lines: list[dict[str, Any]]) -> None:
+    from rich.box import SIMPLE_HEAD
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for name in lines[0]:
+        table.add_column(name, no_wrap=True)
+    for line in lines:
+        table.add_row(*(Text(_shown(v)) for v in line.values()))
+    Console(width=_WIDTH).print(table)
+
+
+def _shown(value: Any) -> str:
+    if value is None:
+        return "–"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
