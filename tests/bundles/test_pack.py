@@ -150,6 +150,8 @@ def test_a_changed_score_is_noticed(bundle: Path) -> None:
     ({"versions": {"crowdbot": "9.9"}}, "its versions are not those of the manifest"),
     ({"privileged": True}, "the manifest says 'sensors only', the run does not"),
     ({"hashes": {"spec": "a", "trajectory": "b"}}, "the trajectory's hash"),
+    ({"hashes": {"realisation": "a"}}, "its people are not those of the lock"),
+    ({"hashes": {"spec": "a"}}, "its hash is not that of the scenario that is installed here"),
     ({"hashes": 3}, "its run_id is not the hash"),
 ])  # fmt: skip
 def test_a_forged_record_contradicts_itself(bundle: Path, change: Any, why: str) -> None:
@@ -162,6 +164,11 @@ def test_another_scenario_is_noticed(bundle: Path) -> None:
     name = members(bundle, "scenario.yaml")[0]
     easier = rewrite(bundle, {name: lambda c: c + b"\n# easier\n"}, honest=True)
     assert any("is not the scenario that its hash stands for" in p for p in problems(easier))
+
+
+def test_another_lock_is_another_edition(bundle: Path) -> None:
+    other = rewrite(bundle, {"suite.lock.json": lambda c: c + b" "}, honest=True)
+    assert problems(other) == ["the edition is not that of suite.lock.json"]
 
 
 def test_runs_that_the_manifest_forgets_are_noticed(bundle: Path) -> None:

@@ -73,6 +73,9 @@ def check_suite(archive: Archive, expansion: Expansion, registry: Registry) -> I
         yield "a run is listed twice"
     if not manifest.runs:
         yield "there is no run in it"
+    lock = manifest.members.get(LOCK)
+    if manifest.edition.lock != (lock.sha256 if lock else ""):
+        yield f"the edition is not that of {LOCK}"
     for seed in manifest.seeds:
         lacking = [i for i in known if (i, seed) not in there]
         lacking = [i for i in lacking if f"{i} seed-{seed}" not in manifest.missing]
@@ -84,22 +87,6 @@ def check_suite(archive: Archive, expansion: Expansion, registry: Registry) -> I
             yield f"{run.scenario} is no scenario of {expansion.suite_id}"
             continue
         yield from _scenario_problems(archive, run, known[run.scenario], registry)
-
-
-def realisations(archive: Archive) -> dict[str, str]:
-    """Id -> hash of its people, as the lock in the bundle says; empty without one.
-
-    Raises:
-        InputError: the lock is none.
-    """
-    if LOCK not in archive.names:
-        return {}
-    document = read_json(archive.text(LOCK), LOCK)
-    scenarios = document.get("scenarios")
-    if not isinstance(scenarios, dict):
-        raise InputError(f"{archive.path}: {LOCK} is no lock")
-    return {str(k): str(v.get("realisation", "")) for k, v in scenarios.items()
-            if isinstance(v, dict)}  # fmt: skip
 
 
 def _claimed(archive: Archive, entry: BundledRun) -> ClaimedRun:
@@ -144,8 +131,11 @@ def _scenario_problems(
     except InputError:
         return  # told already
     hashes = record.get("hashes")
-    claimed = hashes.get("spec") if isinstance(hashes, dict) else None
-    if claimed != spec_of(scenario, registry):
+    hashes = hashes if isinstance(hashes, dict) else {}
+    locked = scenario.locked.files.lock.scenarios.get(run.scenario) if scenario.locked else None
+    if locked is not None and hashes.get("realisation") != locked.realisation:
+        yield f"{run.scenario}: its people are not those of the lock that is installed here"
+    if hashes.get("spec") != spec_of(scenario, registry):
         yield f"{run.scenario}: its hash is not that of the scenario that is installed here"
     elif text != dump_scenario_yaml(scenario, registry.spec_versions(scenario)):
         yield f"{name} is not the scenario that its hash stands for"

@@ -48,8 +48,7 @@ def p_value(ranks: NDArray[np.int64], clusters: Clusters) -> float:
     if parts.sum() <= _EXACT_TOTAL:
         return _by_sums(parts, seen)
     spread = float(np.sqrt(np.sum(parts.astype(float) ** 2)))
-    tails: float = math.erfc(seen / spread / math.sqrt(2))
-    return tails
+    return math.erfc(seen / spread / math.sqrt(2))
 
 
 def _by_halves(parts: NDArray[np.int64], seen: int) -> float:
@@ -57,7 +56,7 @@ def _by_halves(parts: NDArray[np.int64], seen: int) -> float:
     half = len(parts) // 2
     first, second = _all_sums(parts[:half]), np.sort(_all_sums(parts[half:]))
     reached = len(second) - np.searchsorted(second, seen - first, side="left")
-    return min(1.0, 2 * float(reached.sum()) / 2 ** len(parts))
+    return min(1.0, float(reached.sum()) * 2.0 ** (1 - len(parts)))
 
 
 def _all_sums(parts: NDArray[np.int64]) -> NDArray[np.int64]:
