@@ -149,10 +149,8 @@ def _from_kind(
         pinned=owner.pinned,
         origin=whose,
         needs=_needs(component.spec),
-        label=_label(
-            kind if _is_default(component, spec) else f"{kind}+{_digest(spec)}", component.spec
-        ),
-        privileged=_is_privileged(component.spec),
+        label=_label(kind if _is_default(component, spec) else f"{kind}+{_digest(spec)}", spec),
+        privileged=_is_privileged(spec),
     )
 
 
@@ -197,11 +195,12 @@ def _needs(holder: type) -> tuple[str, ...] | None:
     return None if needs is None else tuple(str(n) for n in needs)
 
 
-def _is_privileged(holder: type) -> bool:
+def _is_privileged(holder: object) -> bool:
+    """Whether a planner class, or a spec, in a class variable or a field, says so."""
     return getattr(holder, "privileged", False) is True
 
 
-def _label(label: str, holder: type) -> str:
+def _label(label: str, holder: object) -> str:
     return f"{label}+privileged" if _is_privileged(holder) else label
 
 

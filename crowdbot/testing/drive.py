@@ -24,6 +24,7 @@ from crowdbot.core.interfaces import (
     RobotState,
     SensorInfo,
     Task,
+    Truth,
 )
 from crowdbot.core.planner_host import PlannerHost
 from crowdbot.core.registry import Registry
@@ -38,6 +39,7 @@ SLOW = RobotLimits(v_min=0.0, v_max=0.2, w_max=0.5, a_max=0.3, alpha_max=0.5)
 _ORIGIN = Pose(0.0, 0.0, 0.0)
 _ROOM = [[-2, -3, 10, -3], [10, -3, 10, 3], [10, 3, -2, 3], [-2, 3, -2, -3]]
 _CELL = [[6, -1, 8, -1], [8, -1, 8, 1], [8, 1, 6, 1], [6, 1, 6, -1]]
+_RADIUS = 0.25  # of people, m
 #: x, y, vx, vy of people who walk on through walls and robots.
 _PEOPLE = np.array([[3.0, 1.0, -0.5, -0.2], [5.0, -1.5, 0.0, 0.4], [6.0, 0.4, -1.0, 0.0]])
 
@@ -112,7 +114,7 @@ def _answering(need: str, registry: Registry) -> Any:
 
 
 class Driven:
-    """A planner behind its host, on a course.
+    """A planner behind its host, on a course; one that is privileged is told the truth.
 
     Attributes:
         host: checks and clamps commands, and counts.
@@ -120,16 +122,23 @@ class Driven:
     """
 
     def __init__(
-        self, planner: Planner, name: str, course: Course, sensors: Mapping[str, Any]
+        self,
+        planner: Planner,
+        name: str,
+        course: Course,
+        sensors: Mapping[str, Any],
+        *,
+        privileged: bool = False,
     ) -> None:
         self.host = PlannerHost(planner, name, course.limits)
+        self._privileged = privileged
         self.commands: list[Command] = []
         self.signals: list[tuple[str, float]] = []
         self._course, self._sensors = course, dict(sensors)
         count = len(course.people)
         self._scene = Scene(
             np.array(course.walls, np.float64).reshape(-1, 4), [0.0, 2.5],
-            np.full(count, 0.25), np.full(count, 1.7),
+            np.full(count, _RADIUS), np.full(count, 1.7),
         )  # fmt: skip
 
     def run(self, steps: int, seed: int = 1) -> list[Command]:
@@ -153,9 +162,13 @@ class Driven:
             pose = _after(pose, twist)
         return self.commands
 
-    def _show(self, t: float, pose: Pose, twist: Command) -> None:
+    def _people(self, t: float) -> Array:
         people = self._course.people.copy()
         people[:, :2] += t * people[:, 2:]
+        return people
+
+    def _show(self, t: float, pose: Pose, twist: Command) -> None:
+        people = self._people(t)
         c, s = math.cos(pose.yaw), math.sin(pose.yaw)
         robot = RobotState(
             pose.x, pose.y, pose.yaw, c * twist.v - s * twist.vy, s * twist.v + c * twist.vy,
@@ -191,6 +204,18 @@ class Driven:
             goal_zone=task.goal_zone,
             readings=dict(readings),
             log=lambda name, value: self.signals.append((name, value)),
+            truth=self._truth(k / RATE, pose, twist) if self._privileged else None,
+        )
+
+    def _truth(self, t: float, pose: Pose, twist: Command) -> Truth:
+        people, (c, s) = self._people(t), (math.cos(pose.yaw), math.sin(pose.yaw))
+        return Truth(
+            pose=pose,
+            velocity=(c * twist.v - s * twist.vy, s * twist.v + c * twist.vy, twist.w),
+            people=people[:, :2],
+            people_velocity=people[:, 2:],
+            people_radius=np.full(len(people), _RADIUS),
+            people_id=np.arange(len(people)),
         )
 
 

@@ -109,7 +109,8 @@ def _drivers(
 def _driver(
     kind: str, spec: ComponentSpec, known: Registry, sensors: Mapping[str, Any]
 ) -> Callable[[Course], Driven]:
-    return lambda course: Driven(built(known, spec), kind, course, sensors)
+    privileged = getattr(spec, "privileged", False) is True
+    return lambda course: Driven(built(known, spec), kind, course, sensors, privileged=privileged)
 
 
 def _drive(name: str, driven: Driven) -> list[Any]:

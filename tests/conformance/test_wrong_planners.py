@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 from unittest import SkipTest
 
 import numpy as np
@@ -83,11 +83,32 @@ def test_sound_planners_pass(step: Step) -> None:
         check(driver(step), BUILT_IN)
 
 
+@pytest.mark.parametrize("told", [True, False])
+def test_only_privileged_planners_are_told_the_truth(told: bool) -> None:
+    class Told(WrongPlanner):
+        """Is told where people are, or is not."""
+
+        privileged: ClassVar[bool] = told
+
+    seen: list[bool] = []
+
+    class Planner:
+        def reset(self, *given: Any) -> None:
+            del given
+
+        def step(self, obs: Observation) -> Any:
+            seen.append(obs.truth is not None and obs.truth.pose == obs.pose)
+            return Command(0.0, 0.0)
+
+    planner.check_commands_are_numbers(made(Told, lambda _: Planner()), BUILT_IN)
+    assert set(seen) == {told}
+
+
 def test_a_sensor_that_nobody_has() -> None:
     class Nosy(WrongPlanner):
         """Wants to smell."""
 
-        needs = ("nose",)
+        needs: ClassVar[tuple[str, ...]] = ("nose",)
 
     component = made(Nosy, lambda _: None)
     with pytest.raises(SkipTest, match="'nose'"):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp  # type: ignore[import-untyped]
+from scipy.integrate import solve_ivp
 
 Array = NDArray[np.float64]
 ROBOT_RADIUS, PERSON_RADIUS = 0.178, 0.33
