@@ -1,0 +1,245 @@
+"""`crowdbot campaign` and `crowdbot results`, from the command line to the tables."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from campaign_cases import TINY, outcome, run, start
+
+from crowdbot import cli
+from crowdbot.cli.campaign import read_seeds
+from crowdbot.core.results.store import INDEX, load
+from crowdbot.errors import UsageError
+
+BAD = """
+import ctypes, os, signal
+class Base:
+    needs = ()
+    def reset(self, task, limits, sensors, seed): pass
+class Dies(Base):
+    def step(self, obs): os.kill(os.getpid(), signal.SIGKILL)
+class Hangs(Base):
+    def step(self, obs): ctypes.PyDLL(None).sleep(1000)
+class Raises(Base):
+    def step(self, obs): raise ValueError("lost")
+"""
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Three scenarios, two seeds, undisturbed."""
+    out = tmp_path_factory.mktemp("whole")
+    code, summary, err = run(out, "--planner", "goal_seek", "--seeds", "0,1")
+    assert code == 0, err
+    assert summary["statuses"] == {"timeout": 6}
+    assert summary["made"] == 6
+    return out
+
+
+def test_references_are_shared_and_replays_left_out(whole: Path) -> None:
+    names = sorted(p.name.partition("-")[0] for p in (whole / "references").iterdir())
+    assert names == ["crowd_alone"] * 3 + ["robot_alone"] * 2
+    assert not list(whole.rglob("replay.html"))
+    assert not list(whole.rglob("*.partial"))
+
+
+def test_a_second_call_runs_nothing_and_needs_no_drake(whole: Path) -> None:
+    code = (
+        "import sys; from crowdbot.cli import main; "
+        f"print(main({['campaign', *TINY, '--planner', 'goal_seek', '--out', str(whole)]!r})); "
+        "print('pydrake' in sys.modules, 'numba' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["0", "False", "False"]
+    assert "3 runs, 3 complete, 0 jobs" in done.stderr
+
+
+def test_the_plan_is_printed_and_nothing_is_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "new"
+    argv = ["campaign", *TINY, "--planner", "goal_seek", "--seeds", "0..2", "--out", str(out)]
+    assert cli.main([*argv, "--dry-run", "--json"]) == 0
+    plan = json.loads(capsys.readouterr().out)
+    assert (plan["runs"], plan["complete"], plan["to_run"]) == (9, 0, 9)
+    assert plan["references"] == plan["references_to_run"] == 6  # 3 crowds, 3 seeds
+    assert plan["seconds"] > 0
+    assert not out.exists()
+
+
+def test_results_know_axes_density_and_conditions(whole: Path) -> None:
+    results = load(whole)
+    assert [r.axes["range"] for r in results.runs] == ["r02", "r02", "r05", "r05", "r10", "r10"]
+    assert [r.seed for r in results.runs] == [0, 1, 0, 1, 0, 1]
+    first = results.runs[0]
+    assert list(first.axes) == ["flow", "density", "speed", "coeff", "range"]
+    assert first.density == pytest.approx(0.125, rel=0.1)
+    assert first.conditions["rates.planner"] == "16 Hz"
+    assert first.conditions["versions.crowdbot"]
+    assert first.conditions["processor"]
+    assert first.pinned
+    assert {s.run_id for s in results.scores} == {r.run_id for r in results.runs}
+
+
+def test_the_index_can_be_lost_damaged_or_in_use(whole: Path) -> None:
+    before = load(whole)
+    (whole / INDEX).write_bytes(b"this is no database" * 100)
+    assert load(whole) == before
+    for file in whole.glob(f"{INDEX}*"):
+        file.unlink()
+    assert load(whole) == before
+    from crowdbot.core.results.store import index
+
+    with index(whole):
+        assert load(whole) == before
+    with sqlite3.connect(whole / INDEX) as database:
+        assert database.execute("PRAGMA journal_mode").fetchone() == ("wal",)
+
+
+def test_questions(whole: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    def ask(*argv: str) -> Any:
+        assert cli.main(["results", *argv]) == 0
+        return capsys.readouterr().out
+
+    shown = json.loads(
+        ask("--out", str(whole), "--metric", "relative_time_to_goal", "--by", "range", "--json")
+    )
+    assert [(s["range"], s["n"], s["undefined"]) for s in shown] == [
+        ("r02", 0, 2), ("r05", 0, 2), ("r10", 0, 2),
+    ]  # fmt: skip
+    worst = json.loads(
+        ask("--out", str(whole), "--metric", "min_clearance", "--worst", "2", "--json")
+    )
+    assert len(worst) == 2
+    assert worst[0]["value"] <= worst[1]["value"]
+    assert "goal_seek" in ask("--out", str(whole))
+    file = tmp_path / "runs.parquet"
+    ask("export", "--out", str(whole), "--parquet", str(file), "--table", "runs")
+    import duckdb
+
+    with duckdb.connect() as database:
+        query = "SELECT axis_range, density, seed FROM read_parquet(?)"
+        rows = database.execute(query, [str(file)]).fetchall()
+    assert len(rows) == 6
+    assert all(isinstance(r[1], float) and isinstance(r[2], int) for r in rows)
+    assert ask("failures", "--out", str(whole)) == "no failures\n"
+
+
+def test_failures_are_on_record_and_stop_nobody(tmp_path: Path) -> None:
+    file = tmp_path / "bad.py"
+    file.write_text(BAD)
+    planners = [f"{file}:{name}" for name in ("Dies", "Hangs", "Raises")]
+    argv = [word for name in planners for word in ("--planner", name)]
+    only = ["--only", "in-d0125-slow-c01-r02"]
+    code, summary, _ = run(tmp_path / "runs", *only, *argv, "--planner", "goal_seek")
+    assert code == 4
+    assert summary["statuses"] == {"failed": 2, "planner_failed": 1, "timeout": 1}
+    results = load(tmp_path / "runs")
+    errors = {f.planner: f.error for f in results.failures}
+    assert "died 3 times (signal 9)" in errors["Dies"]
+    assert "PlannerHungError" in errors["Hangs"]
+    (failed,) = (r for r in results.runs if r.planner == "Raises")
+    assert (failed.status, failed.pinned) == ("planner_failed", False)
+    code, summary, _ = run(tmp_path / "runs", *only, "--planner", planners[2])
+    assert (code, summary["made"]) == (3, 0)
+
+
+def _descendants(pid: int) -> list[int]:
+    found = []
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = status.read_text().rpartition(")")[2].split()
+        except OSError:
+            continue
+        if int(fields[1]) == pid and fields[0] != "Z":
+            found.append(int(status.parent.name))
+    return found
+
+
+def _alive(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_killed_and_resumed_it_ends_the_same(whole: Path, tmp_path: Path) -> None:
+    """Twice SIGKILL to the parent, with jobs under way; no worker survives it."""
+    out = tmp_path / "runs"
+    for wanted in (2, 5):
+        running = start(out, "--planner", "goal_seek", "--seeds", "0,1")
+        end = time.monotonic() + 120.0
+        while len(list(out.rglob("run.json"))) < wanted and time.monotonic() < end:
+            time.sleep(0.05)
+        workers = _descendants(running.pid)
+        assert workers
+        os.kill(running.pid, signal.SIGKILL)
+        running.communicate(timeout=30.0)
+        end = time.monotonic() + 10.0
+        while any(map(_alive, workers)) and time.monotonic() < end:
+            time.sleep(0.05)
+        assert not any(map(_alive, workers))
+    code, summary, err = run(out, "--planner", "goal_seek", "--seeds", "0,1")
+    assert code == 0, err
+    assert summary["made"] < 6 or len(outcome(out)) == 6
+    assert outcome(out) == outcome(whole)
+    assert len(load(out).runs) == 6
+
+
+def test_ctrl_c_ends_workers_and_keeps_what_is_finished(tmp_path: Path) -> None:
+    out = tmp_path / "runs"
+    running = start(out, "--planner", "goal_seek", "--seeds", "0,1")
+    end = time.monotonic() + 120.0
+    while not list(out.rglob("run.json")) and time.monotonic() < end:
+        time.sleep(0.05)
+    workers = _descendants(running.pid)
+    os.killpg(running.pid, signal.SIGINT)
+    said, err = running.communicate(timeout=30.0)
+    assert running.returncode == 130, said + err
+    assert "Traceback" not in said + err
+    assert not any(map(_alive, workers))
+    assert list(out.rglob("run.json"))
+
+
+@pytest.mark.parametrize(
+    ("argv", "code", "text"),
+    [
+        ([], 2, "which planner"),
+        (["--planner", "dwaa"], 1, "did you mean 'dwa'"),
+        (["--planner", "dwa", "--only", "nothing*"], 1, "unknown scenario"),
+        (["--planner", "dwa", "--seeds", "3..1"], 2, "--seeds"),
+        (["--planner", "dwa", "--set", "crowd.flow.density=9"], 1, "people fit"),
+        (["--planner", "dwa", "--cluster", "tcp://127.0.0.1:1"], 1, "no Dask scheduler"),
+    ],
+)
+def test_wrong_input_runs_nothing(
+    argv: list[str],
+    code: int,
+    text: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("crowdbot.core.sim.campaign.cluster._PATIENCE", 1.0)
+    out = tmp_path / "runs"
+    assert cli.main(["campaign", "challenge-2020", *argv, "--out", str(out)]) == code
+    assert text in capsys.readouterr().err
+    assert not list(tmp_path.rglob("run.json"))
+
+
+def test_seeds() -> None:
+    assert read_seeds("0,1,2") == [0, 1, 2]
+    assert read_seeds("0..3, 7") == [0, 1, 2, 3, 7]
+    for text in ("", "a", "1..", "-1", "2..1"):
+        with pytest.raises(UsageError):
+            read_seeds(text)
