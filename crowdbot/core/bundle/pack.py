@@ -140,9 +140,7 @@ def _check_fits(found: Sequence[_Found], expansion: Expansion, registry: Registr
 def _check_alike(found: Sequence[_Found]) -> None:
     """Refuse a bundle of runs that must not be compared with each other."""
     first = found[0]
-    for name in ("planner", "versions", "pinned", "recorded"):
-        if name == "recorded":
-            continue
+    for name in ("planner", "versions", "pinned"):
         for run in found[1:]:
             if run.record.get(name) != first.record.get(name):
                 raise InputError(

@@ -11,7 +11,7 @@ from one published number for each score, its ``spread``:
 The spread of a score is twice the root mean square by which two runs of one scenario differ that
 have come apart for good: 12 scenarios of challenge-2020, planner dwa, two seeds
 (benchmarks/processor_targets.py, way ``seed``). Rounding alone did far less: at most 2e-6 in any
-of these scores but two. Scores without a spread are not judged.
+of these scores but one. Scores without a spread are not judged.
 """
 
 from __future__ import annotations
