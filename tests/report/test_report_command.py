@@ -8,13 +8,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from report_cases import campaign
-from test_page import Page, small
+from test_page import SMALL_AXES, Page, small
 
 from crowdbot.cli import main
 from crowdbot.core.results import store
 from crowdbot.core.results.rows import Results
+from crowdbot.core.score import Score
+from crowdbot.core.scores_table import write_scores_csv
 
 
 @pytest.fixture
@@ -160,3 +163,46 @@ def test_what_is_wrong_is_said(
     said = capsys.readouterr().err
     assert words in said
     assert "Traceback" not in said
+
+
+def test_runs_on_a_disk_are_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    results = small(failures=0)
+    for run in results.runs:
+        folder = tmp_path / run.directory
+        folder.mkdir(parents=True)
+        kept = ("run_id", "suite", "scenario", "seed", "status", "reason", "goal_time",
+                "sim_time", "wall_time", "density")  # fmt: skip
+        record = {
+            **{name: getattr(run, name) for name in kept},
+            **run.record,
+            "axes": dict(run.axes),
+            "pinned": True,
+            "conditions": {"rates.log": "16 Hz"},
+            "metrics": {"risk": {"horizon": 5.0}},
+            "hashes": {
+                "spec": run.spec_hash,
+                "realisation": run.realisation_hash,
+                "trajectory": run.trajectory_hash,
+            },
+        }
+        (folder / "run.json").write_text(json.dumps(record), encoding="utf-8")
+        names = ("metric", "symbol", "category", "variant", "unit", "better", "status", "value",
+                 "reason", "lower", "upper")  # fmt: skip
+        scores = [
+            Score(**{n: getattr(s, n) for n in names})
+            for s in results.scores
+            if s.run_id == run.run_id
+        ]
+        write_scores_csv(folder / "scores.csv", scores, run.scenario, run.planner, run.seed)
+    out = tmp_path / "report.html"
+    assert main(["report", str(tmp_path), "--out", str(out)]) == 0, capsys.readouterr().err
+    page = Page(out.read_text(encoding="utf-8"))
+    assert page.meta["runs"]["count"] == len(results.runs)
+    assert {a["name"]: set(a["labels"]) for a in page.meta["axes"]} == {
+        name: set(labels) for name, labels in SMALL_AXES.items()
+    }
+    values = page.numbers("values")
+    ended = {r.run_id for r in results.runs if r.status != "planner_failed"}
+    given = [s.value for s in results.scores if s.run_id in ended and s.value is not None]
+    assert sorted(values[~np.isnan(values)]) == sorted(given)
+    assert "horizon" in page.words

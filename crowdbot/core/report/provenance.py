@@ -17,7 +17,8 @@ def facts(runs: Sequence[RunRow]) -> dict[str, dict[str, str]]:
         "software": _merged(_texts(r.get("versions")) for r in records),
         "machine": _merged(_texts(r.get("machine")) for r in records),
         "plugins": _merged(_plugins(r.get("plugins")) for r in records),
-        "conditions": _merged(run.conditions for run in runs),
+        "conditions": _merged(_conditions(run, metrics=False) for run in runs),
+        "metrics": _merged(_conditions(run, metrics=True) for run in runs),
     }
     return {name: found for name, found in groups.items() if found}
 
@@ -52,6 +53,16 @@ def short(hash_: str) -> str:
 def planner_facts(runs: Sequence[RunRow]) -> dict[str, str]:
     """Kind and parameters of one planner, from its runs."""
     return _merged(_texts(run.record.get("planner")) for run in runs)
+
+
+def _conditions(run: RunRow, *, metrics: bool) -> dict[str, str]:
+    """The parameters of metrics, or the rest but what is told as software and machine."""
+    if metrics:
+        names = {n: n.removeprefix("metrics.") for n in run.conditions if n.startswith("metrics.")}
+    else:
+        told = ("metrics.", "versions.", "processor")
+        names = {n: n for n in run.conditions if not n.startswith(told)}
+    return {name: run.conditions[n] for n, name in names.items()}
 
 
 def _texts(value: Any) -> dict[str, str]:
