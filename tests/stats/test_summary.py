@@ -60,7 +60,7 @@ def test_taking_runs_for_draws_would_find_differences() -> None:
 
 @pytest.mark.parametrize("spread", [(0.0, 1.0), (1.0, 1.0), (2.0, 0.5)])
 def test_intervals_cover_with_shared_draws(spread: tuple[float, float]) -> None:
-    """Nominal 95 %; benchmarks/coverage.py looks closer."""
+    """Nominal 95 %; benchmarks/interval_coverage.py looks closer."""
     rng = np.random.default_rng(22)
     groups = Clusters.of([draw for _, draw, _ in cells()])
     covered = np.zeros(3)

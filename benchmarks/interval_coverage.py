@@ -5,7 +5,7 @@ in several proportions, symmetric and skewed. Prints how often 95 % intervals co
 how often the test finds a difference that is not there (symmetric only: the test asks whether one
 planner is better more often, not about means).
 
-    python benchmarks/coverage.py --repetitions 1000
+    python benchmarks/interval_coverage.py --repetitions 1000
 """
 
 from __future__ import annotations
