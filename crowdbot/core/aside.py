@@ -3,10 +3,29 @@
 from __future__ import annotations
 
 import os
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from crowdbot.errors import InputError
+
+
+@contextmanager
+def aside(path: Path) -> Iterator[Path]:
+    """A path beside ``path`` to write to, renamed to it at the end; gone when the body fails.
+
+    Raises:
+        InputError: the path cannot be written.
+    """
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        yield part
+        part.replace(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+    finally:
+        with suppress(OSError):
+            part.unlink()
 
 
 def write_aside(path: Path, content: str | bytes) -> None:
@@ -16,12 +35,5 @@ def write_aside(path: Path, content: str | bytes) -> None:
         InputError: the path cannot be written.
     """
     data = content.encode() if isinstance(content, str) else content
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
+    with aside(path) as part:
         part.write_bytes(data)
-        part.replace(path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
-    finally:
-        with suppress(OSError):
-            part.unlink()

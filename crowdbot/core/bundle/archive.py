@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import re
 import stat
 import zipfile
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
+from crowdbot.core.aside import aside
 from crowdbot.core.bundle.manifest import MANIFEST, Manifest, Member, parse_manifest
 from crowdbot.errors import InputError
 
@@ -45,18 +45,10 @@ def write_archive(path: Path, manifest: Manifest, files: Mapping[str, Path | byt
     Raises:
         InputError: the path cannot be written, or a file cannot be read.
     """
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with zipfile.ZipFile(part, "w", strict_timestamps=True) as archive:
-            _add(archive, MANIFEST, manifest.text().encode())
-            for name in sorted(files):
-                _add(archive, name, files[name])
-        part.replace(path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
-    finally:
-        with suppress(OSError):
-            part.unlink()
+    with aside(path) as part, zipfile.ZipFile(part, "w", strict_timestamps=True) as archive:
+        _add(archive, MANIFEST, manifest.text().encode())
+        for name in sorted(files):
+            _add(archive, name, files[name])
 
 
 def _add(archive: zipfile.ZipFile, name: str, content: Path | bytes) -> None:

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import base64
-import hashlib
 from collections.abc import Mapping, Sequence
-from importlib import metadata, resources
+from importlib import metadata
 from pathlib import Path
 from typing import Any
-
-import jinja2
-from markupsafe import Markup
 
 from crowdbot.core.aside import write_aside
 from crowdbot.core.bundle.entries import Entry
 from crowdbot.core.bundle.manifest import RULES, RULES_TEXT
 from crowdbot.core.bundle.standings import Standings
+from crowdbot.core.offline_page import render_page
 from crowdbot.core.statistics import OUTCOMES, Estimate
 
 _ARROWS = {"higher": "↑", "lower": "↓", "reference": "=", "none": ""}
@@ -29,16 +25,9 @@ def write_leaderboard(
     Raises:
         InputError: the path cannot be written.
     """
-    style = _asset("page.css")
-    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode("ascii")
-    template = jinja2.Environment(
-        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    ).from_string(_asset("page.html.j2"))
-    text = template.render(
+    text = render_page(
+        __package__,
         title=title,
-        policy=f"default-src 'none'; style-src 'sha256-{digest}'; base-uri 'none'; "
-        "form-action 'none'",
-        style=Markup(style),
         tables=[_table(t) for t in tables],
         left_out=left_out,
         rules=RULES_TEXT,
@@ -134,7 +123,3 @@ def _interval(found: Estimate) -> str:
 
 def _number(value: float | None) -> str:
     return "—" if value is None else f"{value:.4g}"
-
-
-def _asset(name: str) -> str:
-    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")

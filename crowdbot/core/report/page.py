@@ -1,22 +1,13 @@
-"""Writes the report page.
-
-The page is one file that asks the network for nothing: a content security policy allows the one
-style sheet and the one script in it, by hash, and no more.
-"""
+"""Writes the report page."""
 
 from __future__ import annotations
 
-import base64
-import hashlib
-from importlib import resources
 from itertools import combinations
 from pathlib import Path
 from typing import Any
 
-import jinja2
-from markupsafe import Markup
-
 from crowdbot.core.aside import write_aside
+from crowdbot.core.offline_page import render_page
 from crowdbot.core.report import provenance, tables
 from crowdbot.core.report.cards import reference
 from crowdbot.core.report.contents import Contents
@@ -54,12 +45,12 @@ def write_report(path: Path, contents: Contents) -> dict[str, Path]:
 
 def render(contents: Contents) -> str:
     """The page as text."""
-    style, script = _asset("page.css"), "\n".join(_asset(f"{name}.js") for name in _SCRIPTS)
     states, blobs = encode_scores(contents.results, contents.attempts, contents.series)
     figures, runs = contents.figures, contents.results.runs
     blobs |= {name: pack(getattr(figures, name)) for name in ("intervals", "pairs", "effects")}
-    template = _environment().from_string(_asset("page.html.j2"))
-    return template.render(
+    return render_page(
+        __package__,
+        scripts=[f"{name}.js" for name in _SCRIPTS],
         heading=contents.heading,
         contents=contents,
         planners=[_planner(contents, p) for p in contents.planners],
@@ -69,9 +60,6 @@ def render(contents: Contents) -> str:
         summary=figures.headline,
         meta={**_meta(contents), "states": states},
         blobs=blobs,
-        policy=_policy(style, script),
-        style=Markup(style),
-        script=Markup(script),
     )
 
 
@@ -125,28 +113,3 @@ def _stats(contents: Contents) -> dict[str, Any]:
         "verdicts": VERDICTS,
         "whys": figures.whys,
     }
-
-
-def _policy(style: str, script: str) -> str:
-    parts = {
-        "default-src": "'none'",
-        "script-src": _hash(script),
-        "style-src": _hash(style),
-        "base-uri": "'none'",
-        "form-action": "'none'",
-    }
-    return "; ".join(f"{k} {v}" for k, v in parts.items())
-
-
-def _hash(text: str) -> str:
-    digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
-    return f"'sha256-{digest}'"
-
-
-def _asset(name: str) -> str:
-    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
-
-
-def _environment() -> jinja2.Environment:
-    options: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
-    return jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, **options)

@@ -1,0 +1,55 @@
+"""One HTML page in one file, which asks the network for nothing.
+
+A package holds the parts: ``page.html.j2``, ``page.css`` and scripts. The content security policy
+of the page allows its own style sheet and script, by hash, and nothing else.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from collections.abc import Sequence
+from importlib import resources
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+
+def render_page(
+    package: str, *, scripts: Sequence[str] = (), more_style: str = "", **values: Any
+) -> str:
+    """Fill in the page of a package; equal input gives equal text.
+
+    Args:
+        package: whose folder holds the parts.
+        scripts: names of its files, in the order in which they run.
+        more_style: rules to add to ``page.css``.
+        values: what the template names, beside ``policy``, ``style`` and ``script``. Text is
+            escaped.
+    """
+    style = "\n".join(filter(None, [_part(package, "page.css"), more_style]))
+    script = "\n".join(_part(package, name) for name in scripts)
+    template = jinja2.Environment(
+        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    ).from_string(_part(package, "page.html.j2"))
+    return template.render(
+        policy=_policy(style, script), style=Markup(style), script=Markup(script), **values
+    )
+
+
+def _policy(style: str, script: str) -> str:
+    scripts = f"script-src {_hash(script)}; " if script else ""
+    return (
+        f"default-src 'none'; {scripts}style-src {_hash(style)}; "
+        "base-uri 'none'; form-action 'none'"
+    )
+
+
+def _hash(text: str) -> str:
+    digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
+    return f"'sha256-{digest}'"
+
+
+def _part(package: str, name: str) -> str:
+    return resources.files(package).joinpath(name).read_text(encoding="utf-8")
