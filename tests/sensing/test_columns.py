@@ -68,12 +68,13 @@ def test_no_rays() -> None:
     assert [len(x) for x in scene.cast(np.empty((0, 3)), np.empty((0, 3)), 9.0)] == [0, 0, 0]
 
 
-def test_more_bodies_than_a_column_holds() -> None:
-    """The nearest are kept, whatever the order in which they come."""
+@pytest.mark.parametrize("rise", [[0.0], [0.0, 1e-3]])
+def test_more_bodies_than_a_column_holds(rise: list[float]) -> None:
+    """The nearest are kept, whatever the order in which they come; level rays need but one."""
     x = 1.0 + 0.5 * np.random.default_rng(0).permutation(3 * DEEPEST)
     pillars = np.column_stack([x, np.zeros_like(x), np.full_like(x, 0.2)])
     distance, _, body = scene_of(pillars=pillars).cast_grid(
-        Grid([0.0], [0.0]), (0.0, 0.0, 0.3), 0.0, 99.0
+        Grid([0.0], rise), (0.0, 0.0, 0.3), 0.0, 99.0
     )
     assert distance[0, 0] == pytest.approx(0.8)
     assert body[0, 0] == -2 - int(np.argmin(x))

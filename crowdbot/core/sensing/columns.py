@@ -38,6 +38,7 @@ class Grid:
         azimuth: (C,) rising, within one turn, rad; 0 is straight ahead.
         rise: (R,).
         lean: (C,).
+        work: scratch of `cast_columns`.
     """
 
     def __init__(self, azimuth: ArrayLike, rise: ArrayLike, lean: ArrayLike | None = None) -> None:
@@ -45,7 +46,9 @@ class Grid:
         self.rise = np.array(rise, dtype=np.float64)
         self.lean = np.ones_like(self.azimuth) if lean is None else np.array(lean, np.float64)
         self.cos, self.sin = np.cos(self.azimuth), np.sin(self.azimuth)
-        self.work = np.empty((len(self.azimuth), DEEPEST, WORK_COLUMNS))
+        # What a level ray meets hides all behind it, and memory that nobody touches stays cached.
+        deepest = DEEPEST if np.any(self.rise) else 1
+        self.work = np.empty((len(self.azimuth), deepest, WORK_COLUMNS))
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -94,7 +97,7 @@ def _insert(
 ) -> None:  # fmt: skip
     """Put a body into column c, nearest first; equal distances keep the order of insertion."""
     n = count[c]
-    if n == DEEPEST:
+    if n == work.shape[1]:
         if near >= work[c, n - 1, NEAR]:
             return
         n -= 1
@@ -191,7 +194,7 @@ def fill_columns(
         max_range: m; what is farther is left out.
         walls, wall_heights: (S, 4), (S, 2).
         discs, owner: (D, 5), (D,) upright cylinders and the bodies that they belong to.
-        work: (C, `DEEPEST`, `WORK_COLUMNS`) output, nearest first.
+        work: (C, K, `WORK_COLUMNS`) output, the K nearest of each column, nearest first.
 
     Returns:
         (C,) how many bodies each column holds.
@@ -268,7 +271,7 @@ def cast_columns(
         floor: whether the floor z = 0 is hit.
         walls, wall_heights: (S, 4), (S, 2).
         discs, owner: (D, 5), (D,) upright cylinders and the bodies that they belong to.
-        work: (C, `DEEPEST`, `WORK_COLUMNS`) scratch.
+        work: (C, K, `WORK_COLUMNS`) scratch, K as many bodies as one column may hold.
         distance: (R, C) result, m; inf without a hit.
         incidence: (R, C) result, angle to the normal, rad, 0 without a hit; or (0, 0).
         body: (R, C) result: owner, -(2 + index) of a wall, -1 for nothing and the floor; or (0, 0).
