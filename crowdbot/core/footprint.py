@@ -14,6 +14,8 @@ from crowdbot.core.trajectory import Array, Trajectories
 if TYPE_CHECKING:
     from crowdbot.core.interfaces import RobotModel
 
+_STRAIGHT = 1e-12  # rad; a corner on an edge may turn back by rounding
+
 
 @dataclass(frozen=True, slots=True)
 class Footprint:
@@ -100,21 +102,28 @@ def footprint_of_model(robot: RobotModel) -> Footprint:
     corners = np.ascontiguousarray(robot.footprint, np.float64)
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 2:
         raise ValueError(f"a footprint has shape (K, 2), K >= 2, not {corners.shape}")
+    if not np.all(np.isfinite(corners)):
+        raise ValueError("the footprint has corners that are not finite")
     if len(corners) == 2:
         return Footprint(corners, robot.footprint_radius)
     turns = _turns(corners)
-    if np.all(turns <= 0.0):
-        corners, turns = np.ascontiguousarray(corners[::-1]), -turns
-    if not (np.all(np.isfinite(corners)) and np.all(turns >= 0.0) and np.any(turns > 0.0)):
-        raise ValueError("the footprint is no convex polygon")
+    if np.sum(turns) < 0.0:
+        corners, turns = np.ascontiguousarray(corners[::-1]), -turns[::-1]
+    # One that crosses itself may turn left at all corners, but then goes round more than once.
+    onwards = np.all((turns > -_STRAIGHT) & (turns < math.pi - _STRAIGHT))
+    if not (onwards and math.isclose(np.sum(turns), 2.0 * math.pi)):
+        raise ValueError("the footprint is no convex polygon: its edges turn back or cross")
     return Footprint(corners, 0.0)
 
 
 def _turns(corners: Array) -> Array:
-    """Sine of the turn at each corner times both edges; positive to the left."""
+    """Angle of the turn after each edge, rad, positive to the left; edges without length: 0."""
     edge = np.roll(corners, -1, axis=0) - corners
+    edge = edge[np.any(edge != 0.0, axis=1)]
     following = np.roll(edge, -1, axis=0)
-    return np.asarray(edge[:, 0] * following[:, 1] - edge[:, 1] * following[:, 0])
+    across = edge[:, 0] * following[:, 1] - edge[:, 1] * following[:, 0]
+    along = np.sum(edge * following, axis=1)
+    return np.asarray(np.arctan2(across, along))
 
 
 def body_side(bearing: float) -> str:

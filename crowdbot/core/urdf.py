@@ -14,8 +14,9 @@ from xml.etree import ElementTree as Xml
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import RobotModel, SensorInfo
+from crowdbot.core.interfaces import DifferentialDrive, RobotModel, SensorInfo
 from crowdbot.core.optical import OPTICAL_RPY, optical
+from crowdbot.core.recording.writer import FRAMES
 from crowdbot.core.robots import Description, read_description
 from crowdbot.core.robots.xml import matrix, name_of, pose_of
 from crowdbot.errors import InputError
@@ -23,6 +24,8 @@ from crowdbot.errors import InputError
 Array = NDArray[np.float64]
 FOOTPRINT, BASE = "base_footprint", "base_link"
 _SAME = 1e-3  # m, and of the entries of a rotation
+#: URDF must name limits that SDFormat may leave out, which there means that there are none.
+_UNLIMITED = 1e9
 LEVEL = (0.0, 0.0, 0.0)
 _SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
 
@@ -35,20 +38,20 @@ def to_urdf(robot: RobotModel, sensors: Mapping[str, SensorInfo], name: str) -> 
         name: what the document calls the robot.
 
     Raises:
-        InputError: the description holds something that URDF cannot say.
+        InputError: the description holds something that URDF cannot say, or `check_frames`
+            refuses a sensor.
     """
+    check_frames(robot, sensors)
     described = read_description(robot.description)
     urdf = described.format == "urdf"
-    document = deepcopy(described.model) if urdf else _from_sdf(described)
+    document = deepcopy(described.model) if urdf else _from_sdf(described, wheel_rates(robot))
     document.set("name", name)
     _ground(document, robot, described)
     for sensor, info in sensors.items():
         if info.category == "odometry":
             continue
         x, y, z, yaw = info.mount
-        if sensor in described.links:
-            _check_same(sensor, info, described, robot.base)
-        else:
+        if sensor not in described.links:
             _frame(document, BASE, sensor, f"{sensor}_joint", (x, y, z), (0.0, 0.0, yaw))
         if info.camera is not None:
             eye = optical(sensor)
@@ -72,6 +75,26 @@ def _ground(document: Xml.Element, robot: RobotModel, described: Description) ->
     rise = float(described.pose(robot.base, described.root)[2, 3])
     at = (0.0, 0.0, robot.base_height - rise)
     _frame(document, FOOTPRINT, described.root, f"{FOOTPRINT}_joint", at, LEVEL)
+
+
+def check_frames(robot: RobotModel, sensors: Mapping[str, SensorInfo]) -> None:
+    """Refuse sensors whose frames would not be theirs alone.
+
+    Raises:
+        InputError: one has the name of a frame that every recording has, of another sensor's
+            optical frame, or of a link that is elsewhere.
+    """
+    described = read_description(robot.description)
+    framed = {n: info for n, info in sensors.items() if info.category != "odometry"}
+    eyes = {optical(n) for n, info in framed.items() if info.camera is not None}
+    for sensor, info in framed.items():
+        if sensor in FRAMES or sensor in eyes:
+            raise InputError(
+                f"sensor '{sensor}' has the name of another frame of the recording: "
+                "give it another name"
+            )
+        if sensor in described.links:
+            _check_same(sensor, info, described, robot.base)
 
 
 def _check_same(sensor: str, info: SensorInfo, described: Description, base: str) -> None:
@@ -109,12 +132,21 @@ def _origin(parent: Xml.Element, pose: list[float]) -> None:
 
 
 # ---------------------------------------------------------------------------- SDFormat
-def _from_sdf(described: Description) -> Xml.Element:
+def wheel_rates(robot: RobotModel) -> dict[str, float]:
+    """How fast each driven wheel turns at the robot's limits, rad/s, by its joint's name."""
+    drive, limits = robot.drive, robot.limits
+    if not isinstance(drive, DifferentialDrive):
+        return {}
+    rim = max(-limits.v_min, limits.v_max) + 0.5 * drive.track * limits.w_max
+    return dict.fromkeys((drive.left_joint, drive.right_joint), rim / drive.command_radius)
+
+
+def _from_sdf(described: Description, rates: Mapping[str, float]) -> Xml.Element:
     document = Xml.Element("robot")
     for name, link in described.links.items():
         _link(Xml.SubElement(document, "link", name=name), link)
     for joint in described.model.findall("joint"):
-        _joint(document, joint, described)
+        _joint(document, joint, described, rates.get(name_of(joint), _UNLIMITED))
     return document
 
 
@@ -159,7 +191,10 @@ def _material(part: Xml.Element, source: Xml.Element) -> None:
         Xml.SubElement(material, "color", rgba=colour.strip())
 
 
-def _joint(document: Xml.Element, source: Xml.Element, described: Description) -> None:
+def _joint(
+    document: Xml.Element, source: Xml.Element, described: Description, fastest: float
+) -> None:
+    """One joint; ``fastest`` (rad/s) is its limit of velocity where the description has none."""
     found = described.joints[name_of(source)]
     name, kind = found.name, "continuous" if found.free else found.kind
     if any(pose_of(source)):
@@ -177,7 +212,8 @@ def _joint(document: Xml.Element, source: Xml.Element, described: Description) -
         if (v := source.findtext(f"axis/limit/{k}")) is not None
     }
     if limits:
-        Xml.SubElement(joint, "limit", {"effort": "0", "velocity": "0", **limits})
+        whole = {"effort": f"{_UNLIMITED:g}", "velocity": f"{fastest:.12g}", **limits}
+        Xml.SubElement(joint, "limit", whole)
 
 
 def _six(matrix: Array) -> list[float]:

@@ -42,6 +42,7 @@ def test_an_independent_parser_agrees(capsys: pytest.CaptureFixture[str]) -> Non
         assert wheel.origin.rpy == pytest.approx([-math.pi / 2, 0.0, 0.0])
         assert wheel.axis == pytest.approx([0.0, 0.0, 1.0])
         assert wheel.limit.effort == 1.0
+        assert wheel.limit.velocity == pytest.approx((0.65 + 0.115 * 3.14) / 0.0352)
     assert joints["base_footprint_joint"].origin.xyz == pytest.approx([0, 0, 0.0102])
     for name, x, yaw in (("front_lidar", 0.17, 0.0), ("rear_lidar", -0.17, math.pi)):
         mounted = joints[f"{name}_joint"]

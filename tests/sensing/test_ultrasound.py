@@ -70,6 +70,43 @@ def test_the_edge_of_the_drop(bearing: float) -> None:
             assert math.isinf(scalar(one, far))
 
 
+@pytest.mark.parametrize("resolution", ["2 deg", "1.3 deg", "0.5 deg", "10 deg"])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_the_zone_is_searched_up_to_its_very_edge(resolution: str, side: float) -> None:
+    """A plate across the edge, of which a hundredth of a degree is inside; and one outside."""
+    one = sensor("ultrasound", resolution=resolution)
+    for begin, seen in ((HALF - 2e-4, True), (HALF + 2e-4, False)):
+        near, far = (1.5 * np.array([math.cos(a), side * math.sin(a)]) for a in (begin, 0.6))
+        got = scalar(one, scene_of(walls=[[*near, *far]]))
+        assert math.isfinite(got) is seen
+
+
+@pytest.mark.parametrize("resolution", [2.0, 0.5])
+@settings(max_examples=60, deadline=None)
+@given(tilt=st.floats(-1.4, 1.4), away=st.floats(0.3, 4.4))
+def test_a_slanted_wall_reads_too_far_by_no_more_than_a_ray_may_miss(
+    resolution: float, tilt: float, away: float
+) -> None:
+    """Against a search of the zone a hundred times as dense, by the design's formula."""
+    angle = np.linspace(-HALF, HALF, 4001)
+    with np.errstate(divide="ignore"):
+        hit = away / np.cos(angle - tilt)
+    hit = np.where((hit > 0.0) & (hit <= zone_length(np.abs(angle), LENGTH, RADIUS)), hit, np.inf)
+    best = int(np.argmin(hit))
+    c, s = math.cos(tilt), math.sin(tilt)
+    wall = [[away * c + 60 * s, away * s - 60 * c, away * c - 60 * s, away * s + 60 * c]]
+    got = scalar(sensor("ultrasound", resolution=f"{resolution} deg"), scene_of(walls=wall))
+    wide = np.isfinite(hit).sum() * (angle[1] - angle[0])  # of what is inside the zone
+    if np.isinf(hit[best]):
+        assert math.isinf(got)
+    elif math.isinf(got):
+        assert wide < 1.01 * math.radians(resolution)
+    else:
+        step = math.radians(resolution)
+        worst = math.cos(angle[best] - tilt) / math.cos(min(1.57, abs(angle[best] - tilt) + step))
+        assert 1.0 - 1e-3 <= got / max(hit[best], 0.2) <= worst + 1e-3
+
+
 @pytest.mark.parametrize("tilt", [0.0, 0.1, 0.25])
 def test_a_wall_at_an_angle_reads_its_nearest_point_in_the_zone(tilt: float) -> None:
     """The foot of the perpendicular lies inside: that is the reading, not the axis' hit."""

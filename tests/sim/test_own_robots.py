@@ -282,6 +282,12 @@ def test_the_exported_urdf_has_one_root_and_the_sensors() -> None:
     clash = {"mast": infos["lidar"]}
     with pytest.raises(InputError, match="has the name of a link"):
         to_urdf(named, clash, "trolley")
+    for taken in ("map", "odom", "base_footprint", "base_link"):
+        with pytest.raises(InputError, match=f"'{taken}' has the name of another frame"):
+            to_urdf(model(PUCK), {taken: infos["lidar"]}, "puck")
+    camera = registry.build(registry.find("sensor", "rgbd_camera").spec()).info()
+    with pytest.raises(InputError, match="'eye_optical' has the name of another frame"):
+        to_urdf(model(PUCK), {"eye": camera, "eye_optical": infos["lidar"]}, "puck")
 
 
 def test_commands_do_not_jump() -> None:

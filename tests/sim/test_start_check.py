@@ -16,11 +16,12 @@ from crowdbot.core.interfaces import EnvironmentParts, Pose, RobotModel
 from crowdbot.core.lock import population
 from crowdbot.core.planner_source import resolve_planner
 from crowdbot.core.recording import read_trajectories
+from crowdbot.core.robots.check import check_model
 from crowdbot.core.sim.record import record_robot
 from crowdbot.core.sim.record_crowd import RunSetup
 from crowdbot.core.sim.start_check import check_start
 from crowdbot.dsl.scenario import Scenario
-from crowdbot.errors import InputError
+from crowdbot.errors import InputError, PluginError
 
 BOX = np.array([[0.3, -0.2], [0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2]])
 AXIS = np.array([[-0.3, 0.0], [0.3, 0.0]])
@@ -84,11 +85,24 @@ def test_a_robot_on_a_person() -> None:
 
 @pytest.mark.parametrize(
     "outline",
-    [np.zeros(2), np.zeros((1, 2)), [[0, 0], [1, 0], [0.1, 0.1], [0, 1]], [[0, 0], [1, 0], [2, 0]]],
+    [
+        np.zeros(2),
+        np.zeros((1, 2)),
+        [[0, 0], [1, 0], [0.1, 0.1], [0, 1]],
+        [[0, 0], [1, 0], [2, 0]],
+        [[0, 0], [2, 0], [1, 0]],
+        [[0, 0], [0, 0], [0, 0]],
+        [[0, 0], [1, 1], [1, 0], [0, 1]],
+        [[math.cos(2.0 * a), math.sin(2.0 * a)] for a in np.arange(5) * math.tau / 5],
+        [[0, 0], [1, 0], [math.nan, 1]],
+        [[0, 0], [math.inf, 0]],
+    ],
 )
 def test_outlines_that_are_none(outline: Any) -> None:
     with pytest.raises(ValueError, match="footprint"):
         footprint_of_model(_model(footprint=np.array(outline, np.float64)))
+    with pytest.raises(PluginError, match="footprint"):
+        check_model(_model(footprint=np.array(outline, np.float64)))
 
 
 def test_outlines_are_put_in_order() -> None:

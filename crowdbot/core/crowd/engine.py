@@ -96,7 +96,9 @@ class CrowdEngine:
         rows[:, s.DIR_X : s.DIR_Y + 1] = facing
         return flat
 
-    def advance(self, flat: Array, robots: Array = NOBODY, outline: Array = DISC) -> None:
+    def advance(
+        self, flat: Array, robots: Array = NOBODY, outline: Array = DISC, dt: float = TICK
+    ) -> None:
         """One tick of 1/128 s, in place; decides first when a decision is due.
 
         Args:
@@ -104,6 +106,8 @@ class CrowdEngine:
             robots: (R, 8) x, y, vx, vy, physical and perceived radius, heading, yaw rate; the
                 last two may be left out.
             outline: (K, 2) of robots that are no discs, see `robot_contact`.
+            dt: length of a tick, s. Another one is for studies of contacts: it is the engine's
+                clock too, so that decisions come every so many ticks, not seconds.
         """
         if robots.shape[1] < 8:
             robots = np.pad(robots, ((0, 0), (0, 8 - robots.shape[1])))
@@ -116,7 +120,7 @@ class CrowdEngine:
             flat, s.AGENT_COLUMNS, robots, outline, a.id, self._in_turn, a.radius, a.mass,
             a.preferred_speed, a.max_speed, a.start_time, self._heeds, a.at_goal, a.flow,
             a.route, a.first, w.entrance, w.out, w.exit_point == "offset", self._torus,
-            not w.parity, w.response, w.stiffness, w.dissipation, self._key, TICK, self._reaction,
+            not w.parity, w.response, w.stiffness, w.dissipation, self._key, dt, self._reaction,
         )  # fmt: skip
 
     def run(self, duration: float, sample_rate: float = 16.0) -> tuple[Array, Array]:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from crowdbot.core.footprint import footprint_of_model
 from crowdbot.core.interfaces import DifferentialDrive, HolonomicDrive, RobotModel
 from crowdbot.core.robots.description import Description, read_description
 from crowdbot.core.robots.xml import Array
@@ -27,6 +28,10 @@ def check_model(model: object) -> RobotModel:
     if not isinstance(model, RobotModel):
         raise PluginError(f"a RobotModel is wanted, not {type(model).__name__}")
     _check_numbers(model)
+    try:
+        footprint_of_model(model)
+    except ValueError as error:
+        raise PluginError(str(error)) from error
     described = read_description(model.description)
     _check_base(model, described)
     if abs(described.mass - model.mass) > _SHARE * model.mass:

@@ -29,6 +29,7 @@ from crowdbot.core.sim.outcome import Outcome
 from crowdbot.core.sim.record_crowd import RunSetup, agents, ids, recording
 from crowdbot.core.sim.runner import run
 from crowdbot.core.sim.start_check import check_start
+from crowdbot.core.urdf import check_frames
 from crowdbot.core.watchdog import Watchdog
 from crowdbot.dsl.seeds import stream_seed
 from crowdbot.errors import PlannerError, PlannerHungError
@@ -38,7 +39,8 @@ def record_robot(setup: RunSetup) -> Outcome:
     """Simulate the scenario's robot with the planner; people too if the scenario has any.
 
     Raises:
-        InputError: the robot would start in a wall, an obstacle or a person.
+        InputError: the robot would start in a wall, an obstacle or a person, or a sensor has the
+            name of a frame that is not its own.
         PlannerHungError: a planner step never returned; the recording is closed all the same.
     """
     scenario, registry = setup.scenario, setup.registry
@@ -47,6 +49,7 @@ def record_robot(setup: RunSetup) -> Outcome:
     model = build_robot(registry, robot)
     engine = build_crowd(scenario, setup.agents, parts, registry)
     infos = {n: _framed(n, build_sensor(registry, x).info()) for n, x in robot.sensors.items()}
+    check_frames(model, infos)
     choice = setup.choice
     visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
     sensors = set(infos) if setup.record == "all" else {*visible, *_odometry(infos)}

@@ -22,6 +22,7 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugins.sensors.ultrasound import UltrasoundSpec
 
 Array = NDArray[np.float64]
+_ROUNDING = 1e-12  # the tangent of the zone's own edge is within it
 
 
 def zone_length(angle: Array, length: float, radius: float) -> Array:
@@ -29,17 +30,20 @@ def zone_length(angle: Array, length: float, radius: float) -> Array:
     sine = np.tan(angle) * 3.0 * math.sqrt(3.0) * length / (8.0 * radius)
     t = math.pi - np.arcsin(np.minimum(sine, 1.0))
     reach: Array = 0.5 * length * (1.0 - np.cos(t)) / np.cos(angle)
-    return np.where(sine <= 1.0, reach, 0.0)
+    return np.where(sine <= 1.0 + _ROUNDING, reach, 0.0)
 
 
 class Ultrasound:
-    """Rays on a regular grid of azimuth and elevation, its middle on the axis."""
+    """Rays on a regular grid of azimuth and elevation, its middle on the axis.
+
+    The outermost rays are the zone's tangents at the sensor.
+    """
 
     def __init__(self, spec: UltrasoundSpec, noise: Sequence[NoiseGenerator] = ()) -> None:
         self._spec, self._proximity = spec, Proximity(spec, noise)
         half = spec.half_angle
-        steps = math.floor(half / spec.resolution + 1e-9)
-        angles = spec.resolution * np.arange(-steps, steps + 1)
+        steps = math.ceil(half / spec.resolution - 1e-9)
+        angles = half * np.arange(-steps, steps + 1) / steps
         self._grid = Grid(angles, np.tan(angles))
         to_axis = np.arccos(np.cos(angles)[:, np.newaxis] * np.cos(angles))
         self._reach = zone_length(to_axis, spec.range_max, spec.radius)
