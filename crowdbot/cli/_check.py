@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import inspect
 import unittest
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
-from functools import partial
 from typing import Any
 
 from crowdbot.cli._plugin_table import table
@@ -91,7 +89,7 @@ def run_checks(component: Component[Any], registry: Registry) -> Iterator[Result
         if name in _INSTALLED_ONLY and not owner.pinned:
             result, reason = "skipped", "given by --plugin, not installed"
         else:
-            result, reason = _outcome(_bound(check, component, registry), expected)
+            result, reason = _outcome(_bind(check, component, registry), expected)
         advice = _advice(check) if result == "failed" else ""
         yield Result(
             plugin=owner.name,
@@ -140,13 +138,12 @@ def _checks(component: Component[Any]) -> tuple[Callable[..., None], ...]:
     return checks_of(component)
 
 
-def _bound(
+def _bind(
     check: Callable[..., None], component: Component[Any], registry: Registry
 ) -> Callable[[], None]:
-    """Some checks ask for what else is installed."""
-    if "registry" in inspect.signature(check).parameters:
-        return partial(check, component, registry)
-    return partial(check, component)
+    from crowdbot.testing.checks import bind
+
+    return bind(check, component, registry)
 
 
 def _exceptions(component: Component[Any]) -> Mapping[str, str]:

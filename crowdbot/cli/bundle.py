@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from crowdbot.cli._options import Plugins
+from crowdbot.cli._options import NoPlugins, Plugins, installed
 
 
 def bundle(
@@ -33,6 +33,7 @@ def bundle(
         bool, typer.Option("--recordings", help="Pack the recordings, too.")
     ] = False,
     plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="The manifest as JSON on stdout.")
     ] = False,
@@ -46,9 +47,8 @@ def bundle(
     """
     from crowdbot.core.bundle.pack import Submission, pack
     from crowdbot.core.library import open_suite
-    from crowdbot.core.registry import discover
 
-    registry = discover(extra=plugin or ())
+    registry = installed(plugin, no_plugins)
     expansion, lock = open_suite(suite, registry)
     submission = Submission(
         root=root, planner=planner, team=team, contact=contact, partial=partial,

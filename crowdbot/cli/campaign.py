@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crowdbot.cli._options import Plugins
+from crowdbot.cli._options import NoPlugins, Plugins, installed
 from crowdbot.cli.simulate import Record
 
 if TYPE_CHECKING:
@@ -54,16 +54,17 @@ def campaign(
         str | None, typer.Option(metavar="tcp://HOST:PORT", help="A Dask scheduler.")
     ] = None,
     plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
     """Run every scenario with every planner and seed; what is complete is not run again.
 
     Example: crowdbot campaign challenge-2020 --planner dwa --planner goal_seek --jobs 2
     """
-    from crowdbot.core.registry import discover
     from crowdbot.core.sim.campaign.order import Order
     from crowdbot.core.sim.campaign.plan import make_plan
 
+    registry = installed(plugin, no_plugins)
     order = Order(
         suites=suites,
         planners=planner or (),
@@ -77,7 +78,7 @@ def campaign(
         plugins=plugin or (),
         retry_failed=retry_failed,
     )
-    plan = make_plan(order, discover(extra=plugin or ()))
+    plan = make_plan(order, registry)
     size = _size(jobs)
     if dry_run:
         _print_plan(plan, size, as_json=as_json)

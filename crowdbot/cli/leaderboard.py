@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from crowdbot.cli._options import Plugins
+from crowdbot.cli._options import NoPlugins, Plugins, installed
 
 
 def leaderboard(
@@ -23,6 +23,7 @@ def leaderboard(
         typer.Option(metavar="NAME", help="Compare although this differs; repeatable."),
     ] = None,
     plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="The order as JSON on stdout.")] = False,
 ) -> None:
     """Rank the bundles of a folder, by edition and class, on one offline page.
@@ -35,10 +36,9 @@ def leaderboard(
     from crowdbot.core.bundle.entries import load_entries
     from crowdbot.core.bundle.leaderboard import write_leaderboard
     from crowdbot.core.bundle.standings import standings
-    from crowdbot.core.registry import discover
     from crowdbot.errors import UnknownNameError
 
-    registry = discover(extra=plugin or ())
+    registry = installed(plugin, no_plugins)
     if by not in registry.components("metric"):
         raise UnknownNameError("metric", by, registry.components("metric"))
     entries, left_out = load_entries(folder, registry)

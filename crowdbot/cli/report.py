@@ -16,7 +16,7 @@ from urllib.parse import quote
 
 import typer
 
-from crowdbot.cli._options import Plugins
+from crowdbot.cli._options import NoPlugins, Plugins, installed
 from crowdbot.errors import InputError, UnknownNameError, UsageError
 
 if TYPE_CHECKING:
@@ -53,13 +53,13 @@ def report(
         bool, typer.Option("--no-replay-links", help="For a page that is moved elsewhere.")
     ] = False,
     plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="What was written, as JSON.")] = False,
 ) -> None:
     """Write one offline page with the scores of planners, and its CSV and Markdown beside it.
 
     Example: crowdbot report runs --suite challenge-2020 --planner 'dwa*' --out report.html
     """
-    from crowdbot.core.registry import discover
     from crowdbot.core.report import Heading, gather, write_report
     from crowdbot.core.results.confounds import check_comparable, confounds
     from crowdbot.core.results.store import load
@@ -79,7 +79,7 @@ def report(
         warnings=tuple(str(f) for f in findings if not f.accepted),
         references=known,
     )
-    contents = gather(results, discover(extra=plugin or ()), heading, links)
+    contents = gather(results, installed(plugin, no_plugins), heading, links)
     _tell(write_report(out, contents), contents, findings, as_json)
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crowdbot.cli._options import Plugins
+from crowdbot.cli._options import NoPlugins, Plugins, installed
 
 if TYPE_CHECKING:
     from crowdbot.core.bundle.archive import Archive
@@ -50,6 +50,7 @@ def verify(
         bool, typer.Option("--save", help="Write the outcome to NAME.verified.json beside it.")
     ] = False,
     plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
     """Check a bundle, and make some of its runs again; exit code 1 if anything does not fit.
@@ -58,9 +59,8 @@ def verify(
     """
     from crowdbot.core.bundle.archive import open_archive
     from crowdbot.core.bundle.verification import content_hash, save_verification
-    from crowdbot.core.registry import discover
 
-    registry = discover(extra=plugin or ())
+    registry = installed(plugin, no_plugins)
     seed = secrets.randbelow(2**32) if seed is None else seed
     size = None if everything else sample
     with open_archive(bundle) as archive:

@@ -19,6 +19,7 @@ from crowdbot.core.component import Component
 from crowdbot.core.registry import Registry
 from crowdbot.dsl.base import ComponentSpec
 from crowdbot.dsl.canonical import to_yaml
+from crowdbot.dsl.proximity import ProximitySpec
 from crowdbot.dsl.quantities import UNITS, Quantity
 from crowdbot.dsl.validation import nested_model
 from crowdbot.testing.around import installed
@@ -68,7 +69,7 @@ def check_examples_validate(component: Component[Any]) -> None:
     assert component.examples, "no example"
     for example in component.examples:
         assert "kind" not in example, "the example repeats 'kind'"
-        _validated(component, example)
+        _example(component, example)
 
 
 def check_round_trip(component: Component[Any]) -> None:
@@ -78,7 +79,7 @@ def check_round_trip(component: Component[Any]) -> None:
     are not idempotent and for types that JSON does not have.
     """
     for example in component.examples:
-        spec = _validated(component, example)
+        spec = _example(component, example)
         text = to_yaml(spec.model_dump(mode="json"))
         again = component.spec.model_validate(YAML(typ="safe", pure=True).load(text))
         assert again == spec, f"{spec!r} came back as {again!r}"
@@ -111,19 +112,31 @@ def check_unknown_field_is_refused(component: Component[Any]) -> None:
 
 
 def check_build_resolves(component: Component[Any]) -> None:
-    """``build`` names a function that takes the spec first.
+    """``build`` names a function that can be called as that of its category is.
 
-    If this fails, correct ``Component(build="module:function")``.
+    If this fails, correct ``Component(build="module:function")``, or what the function takes:
+    ``build(spec)``; ``build(spec, noise)`` of a sensor of distances; ``build(spec, costs, agents)``
+    of a crowd policy.
     """
     build = component.load_build()
-    assert callable(build), f"{component.build} is no function"
     try:
-        parameters = list(inspect.signature(build).parameters.values())
+        signature = inspect.signature(build)
     except ValueError:  # written in C: nothing to look at
         return
-    positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
-    takes_spec = bool(parameters) and parameters[0].kind in positional
-    assert takes_spec, f"{component.build} takes no spec"
+    given = _given(component)
+    try:
+        signature.bind(*given)
+    except TypeError as error:
+        raise AssertionError(
+            f"{component.build} cannot be called as build({', '.join(given)}): {error}"
+        ) from error
+
+
+def _given(component: Component[Any]) -> tuple[str, ...]:
+    """What the build function of a component is called with."""
+    if issubclass(component.spec, ProximitySpec):
+        return ("spec", "noise")
+    return ("spec", "costs", "agents") if component.category == "crowd policy" else ("spec",)
 
 
 def check_words_are_light(component: Component[Any]) -> None:
@@ -171,6 +184,16 @@ CHECKS = (
 
 def _is_built_in(component: Component[Any]) -> bool:
     return component.spec.__module__.startswith("crowdbot.plugins.")
+
+
+def _example(component: Component[Any], example: Any) -> ComponentSpec:
+    try:
+        return _validated(component, example)
+    except ValidationError as error:
+        wrong = "; ".join(
+            f"{'.'.join(map(str, e['loc'])) or 'the whole'}: {e['msg']}" for e in error.errors()
+        )
+        raise AssertionError(f"the example {example} is not valid: {wrong}") from error
 
 
 def _validated(component: Component[Any], example: Any) -> ComponentSpec:

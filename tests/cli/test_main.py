@@ -135,3 +135,10 @@ def test_no_colours_without_a_terminal() -> None:
 def test_output_in_any_encoding() -> None:
     done = run("-m", "crowdbot", "plugins", "show", "lidar2d", PYTHONIOENCODING="ascii")
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("command", cli.command_names())
+def test_who_adds_plugins_can_leave_out_the_installed_ones(command: str) -> None:
+    for name, one in {command: (top := cli._load(command)), **getattr(top, "commands", {})}.items():
+        options = {text for param in one.params for text in param.opts}
+        assert ("--plugin" in options) == ("--no-plugins" in options), name

@@ -19,11 +19,13 @@ class Document:
         spec: absolute path, or the name of a packaged suite.
         overrides: ``key=value`` texts.
         plugins: absolute paths of plugins that are not installed.
+        allowed: the allow-list of installed plugins; None allows all.
     """
 
     spec: str
     overrides: tuple[str, ...] = ()
     plugins: tuple[str, ...] = ()
+    allowed: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

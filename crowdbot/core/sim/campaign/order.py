@@ -74,7 +74,12 @@ def open_suites(order: Order, registry: Registry) -> list[Suite]:
     plugins = tuple(str(p.resolve()) for p in order.plugins)
     for spec in dict.fromkeys(order.suites):
         expansion = open_spec(spec, registry, order.overrides)
-        document = Document(spec=_absolute(spec), overrides=tuple(order.overrides), plugins=plugins)
+        document = Document(
+            spec=_absolute(spec),
+            overrides=tuple(order.overrides),
+            plugins=plugins,
+            allowed=registry.allowed,
+        )
         chosen = expansion.scenarios if order.only is None else select(expansion, order.only)
         suites.append(Suite(document=document, expansion=expansion, scenarios=chosen))
     _check_folders(suites)

@@ -62,7 +62,7 @@ def _do(
     on_hang: Callable[[], object] | None,
 ) -> str:
     request = replace(_request(job), progress=progress, on_hang=on_hang)
-    registry, populate = _registry(job.document.plugins), _populate(job.document)
+    registry, populate = _registry(job.document), _populate(job.document)
     prepared = prepare(request.scenario, registry, populate=populate)
     if job.kind == "run":
         if prepared.run.spec != job.spec_hash:
@@ -78,7 +78,7 @@ def _do(
 
 
 def _request(job: Job) -> Request:
-    registry = _registry(job.document.plugins)
+    registry = _registry(job.document)
     expansion = _open(job.document)
     scenario = expansion.scenarios[job.index] if job.index < len(expansion.scenarios) else None
     if scenario is None or scenario.id != job.scenario:
@@ -86,7 +86,7 @@ def _request(job: Job) -> Request:
     out = Path(job.out)
     request = Request(
         scenario=scenario,
-        choice=_choice(job.planner, job.settings, job.document.plugins),
+        choice=_choice(job.planner, job.settings, job.document),
         registry=registry,
         seed=job.seed,
         out=out,
@@ -105,14 +105,18 @@ def _request(job: Job) -> Request:
     return request
 
 
+def _registry(document: Document) -> Registry:
+    return _discovered(document.plugins, document.allowed)
+
+
 @cache
-def _registry(plugins: tuple[str, ...]) -> Registry:
-    return discover(extra=[Path(p) for p in plugins])
+def _discovered(plugins: tuple[str, ...], allowed: tuple[str, ...] | None) -> Registry:
+    return discover(extra=[Path(p) for p in plugins], allow=allowed)
 
 
 @cache
 def _open(document: Document) -> Expansion:
-    return open_spec(document.spec, _registry(document.plugins), document.overrides)
+    return open_spec(document.spec, _registry(document), document.overrides)
 
 
 @cache
@@ -122,5 +126,5 @@ def _populate(document: Document) -> Populate:
 
 
 @cache
-def _choice(planner: str, settings: tuple[str, ...], plugins: tuple[str, ...]) -> PlannerChoice:
-    return resolve_planner(planner, _registry(plugins), settings)
+def _choice(planner: str, settings: tuple[str, ...], document: Document) -> PlannerChoice:
+    return resolve_planner(planner, _registry(document), settings)
