@@ -35,7 +35,7 @@ def main() -> int:
         length = time.monotonic() - began
         for number in range(chosen.kills):
             running = _start(killed, chosen.seconds)
-            time.sleep(draw.uniform(0.0, length / 2.0))
+            time.sleep(draw.uniform(0.0, length))
             os.kill(running.pid, signal.SIGKILL)
             running.wait()
             print(f"kill {number + 1}: {len(_outcome(killed))} runs there", flush=True)

@@ -28,7 +28,9 @@ class Base:
 class Dies(Base):
     def step(self, obs): os.kill(os.getpid(), signal.SIGKILL)
 class Hangs(Base):
-    def step(self, obs): ctypes.PyDLL(None).sleep(1000)
+    def step(self, obs):
+        if obs.t > 0.3: ctypes.PyDLL(None).sleep(1000)  # keeps the interpreter lock
+        return (0.1, 0.0)
 class Raises(Base):
     def step(self, obs): raise ValueError("lost")
 """
