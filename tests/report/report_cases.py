@@ -52,7 +52,7 @@ def campaign(
     for labels, planner, seed in cells:
         named = dict(zip(axes, labels, strict=True))
         if (labels, planner, seed) in doomed:
-            failed.append(_failure(suite, labels, planner, seed))
+            failed.append(_failure(suite, named, planner, seed))
             continue
         run = _run(suite, named, planner, seed, planners[planner])
         runs.append(run)
@@ -60,12 +60,13 @@ def campaign(
     return Results(runs=tuple(runs), scores=tuple(scores), failures=tuple(failed))
 
 
-def _failure(suite: str, labels: Sequence[str], planner: str, seed: int) -> FailureRow:
+def _failure(suite: str, named: dict[str, str], planner: str, seed: int) -> FailureRow:
     return FailureRow(
         suite=suite,
-        scenario="-".join(labels),
+        scenario="-".join(named.values()),
         planner=planner,
         seed=seed,
+        axes=named,
         error="MemoryError: 2 GiB are not enough",
         traceback='Traceback (most recent call last):\n  File "worker.py", line 12, in work\n'
         "MemoryError: 2 GiB are not enough\n",

@@ -202,7 +202,6 @@ def test_runs_on_a_disk_are_reported(tmp_path: Path, capsys: pytest.CaptureFixtu
         name: set(labels) for name, labels in SMALL_AXES.items()
     }
     values = page.numbers("values")
-    ended = {r.run_id for r in results.runs if r.status != "planner_failed"}
-    given = [s.value for s in results.scores if s.run_id in ended and s.value is not None]
+    given = [s.value for s in results.scores if s.value is not None]
     assert sorted(values[~np.isnan(values)]) == sorted(given)
     assert "horizon" in page.words

@@ -49,14 +49,14 @@ def censored(of: RunRow, lower: float | None = None, upper: float | None = None,
 
 
 def pairs(a: Sequence[float], b: Sequence[float], draws: Sequence[str] | None = None,
-          better: str = "higher") -> Results:  # fmt: skip
+          better: str = "higher", **more: Any) -> Results:  # fmt: skip
     """Two planners with one score; each pair has a draw of its own unless others are given."""
     runs, scores = [], []
     for planner, values in (("a", a), ("b", b)):
         for i, value in enumerate(values):
             draw = f"d{i}" if draws is None else draws[i]
             runs.append(run(planner, f"s{i}", draw))
-            scores.append(score(runs[-1], value, better=better))
+            scores.append(score(runs[-1], value, better=better, **more))
     return Results(runs=tuple(runs), scores=tuple(scores))
 
 

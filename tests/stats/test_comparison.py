@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from made_up_results import cells, censored, challenge, pairs, run, score
 
-from crowdbot.core.results.rows import FailureRow, Results, ScoreRow
+from crowdbot.core.results.rows import FailureRow, Results, RunRow, ScoreRow
 from crowdbot.core.statistics import Comparison, summarise
 
 RNG = np.random.default_rng(11)
@@ -128,8 +128,45 @@ def test_failed_runs_lose() -> None:
     results = pairs(HIGH, LOW)
     runs = [replace(r, status="planner_failed") if r.planner == "a" else r for r in results.runs]
     found = only(replace(results, runs=tuple(runs)))
-    assert (found.verdict, found.losses) == ("worse", 20)
-    assert found.counts_a.failed == 20
+    assert (found.verdict, found.losses) == ("worse", 20)  # though its values are the better ones
+    assert (found.counts_a.ok, found.counts_a.failed) == (20, 0)
+    assert found.difference.value == pytest.approx(only(results).difference.value)
+
+
+def test_nobody_gains_by_failing() -> None:
+    """b drives better; a fails in each run, at once or when it is about to lose."""
+    results = pairs(LOW, HIGH)
+    assert only(results).verdict == "worse"
+    for failing in (20, 10):
+        runs = [
+            replace(r, status="planner_failed")
+            if r.planner == "a" and int(r.scenario[1:]) < failing
+            else r
+            for r in results.runs
+        ]
+        early = tuple(
+            replace(s, value=1e3) if s.run_id in {r.run_id for r in runs if _failed(r)} else s
+            for s in results.scores
+        )
+        found = only(replace(results, runs=tuple(runs), scores=early))
+        assert found.verdict == "worse"
+        assert found.difference.value is not None
+        assert found.difference.value > 0  # the mean is honest about what the values are
+
+
+def _failed(run: RunRow) -> bool:
+    return run.status == "planner_failed"
+
+
+def test_what_left_no_run_is_no_success() -> None:
+    results = pairs([1.0] * 20, [1.0] * 20, metric="success", unit="1")
+    failure = FailureRow(
+        suite="suite", scenario="s0", planner="a", seed=0, error="boom", traceback=""
+    )
+    kept = tuple(r for r in results.runs if r.run_id != "a/s0/0")
+    found = only(replace(results, runs=kept, failures=(failure,)))
+    assert (found.counts_a.ok, found.losses) == (20, 1)
+    assert found.difference.value == pytest.approx(-1 / 20)
 
 
 def test_runs_that_could_not_be_made_lose_and_both_failing_is_a_tie() -> None:

@@ -90,16 +90,17 @@ def test_a_difference_beyond_the_noise_is_found() -> None:
 def test_counts_show_every_run() -> None:
     runs = tuple(run("a", f"s{i}", f"d{i}") for i in range(4))
     failed = run("a", "s9", "d9", status="planner_failed")
+    worse = run("a", "s8", "d8", status="planner_failed")
     scores = (score(runs[0], 1.0), score(runs[1], reason="no_agents"), censored(runs[2], 0.5))
-    after = (*scores, score(failed, 0.0))
-    (found,) = summarise(Results(runs=(*runs, failed), scores=after)).scores
+    after = (*scores, score(failed, 0.0), censored(worse, 0.5))
+    (found,) = summarise(Results(runs=(*runs, failed, worse), scores=after)).scores
     counts = found.counts
-    assert (counts.ok, counts.undefined, counts.censored, counts.failed) == (1, 2, 1, 1)
-    assert counts.tried == 5
+    assert (counts.ok, counts.undefined, counts.censored, counts.failed) == (2, 2, 1, 1)
+    assert counts.tried == 6
     assert found.reasons == {
         "goal_not_reached": 1, "no_agents": 1, "not_scored": 1, "planner_failed": 1,
     }  # fmt: skip
-    assert (found.mean.value, found.least, found.most) == (1.0, 1.0, 1.0)
+    assert (found.mean.value, found.least, found.most) == (0.5, 0.0, 1.0)
 
 
 def test_headlines_take_restricted_where_it_knows_more() -> None:

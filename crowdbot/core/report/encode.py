@@ -16,11 +16,14 @@ from numpy.typing import NDArray
 
 from crowdbot.core.report.series import Series
 from crowdbot.core.results.rows import FailureRow, Results, RunRow
+from crowdbot.core.statistics.table import PLANNER_FAILED, WITHOUT_RUN
 
 #: Code of a score that a run does not have.
 ABSENT = 65535
 #: Status of an attempt that left no run.
 FAILED = "failed"
+#: State of a score with a value.
+OK = ("ok", "")
 #: Of a traceback.
 _LINES, _WIDTH = 24, 400
 
@@ -53,8 +56,8 @@ def attempts(results: Results) -> list[Attempt]:
 def axes_of(results: Results) -> list[dict[str, Any]]:
     """Axes of the suite with their labels, in the suite's order."""
     found: dict[str, dict[str, None]] = {}
-    for run in results.runs:
-        for name, label in run.axes.items():
+    for one in (*results.runs, *results.failures):
+        for name, label in one.axes.items():
             found.setdefault(name, {})[label] = None
     return [{"name": name, "labels": list(labels)} for name, labels in found.items()]
 
@@ -71,10 +74,9 @@ def encode_runs(
     replays: Mapping[str, str],
 ) -> dict[str, Any]:
     """Columns of runs; ``replays``: run id -> address of its replay page."""
-    scenarios, statuses = Names(), Names("arrived", "timeout", "planner_failed", FAILED)
+    scenarios, statuses = Names(), Names("arrived", "timeout", PLANNER_FAILED, FAILED)
     reasons = Names("")
-    known = {a.scenario: a.axes for a in tried if isinstance(a, RunRow)}
-    labels = [known.get(a.scenario, {}) for a in tried]
+    labels = [a.axes for a in tried]
     runs = [a if isinstance(a, RunRow) else None for a in tried]
     columns = {
         "count": len(tried),
@@ -117,25 +119,28 @@ def encode_scores(
 ) -> tuple[list[tuple[str, str]], dict[str, str]]:
     """States by code, and blobs of (series, run): values, bounds and codes.
 
-    A planner that failed has no score that could be compared, whatever stands in its table.
+    A run whose planner failed shows the values that it has; what is without one is ``failed``.
     """
     rows = {(s.run_id, s.metric, s.variant): s for s in results.scores}
     shape = (len(series), len(tried))
     values, lower, upper = (np.full(shape, np.nan) for _ in range(3))
     codes = np.full(shape, ABSENT, np.uint16)
-    states: dict[tuple[str, str], int] = {("ok", ""): 0}
+    states: dict[tuple[str, str], int] = {OK: 0}
     for r, attempt in enumerate(tried):
-        failed = status_of(attempt) in (FAILED, "planner_failed")
+        failed = ("failed", status_of(attempt))
         for s, one in enumerate(series):
-            if failed:
-                codes[s, r] = states.setdefault(("failed", status_of(attempt)), len(states))
+            if isinstance(attempt, FailureRow):
+                value = WITHOUT_RUN.get(one.metric)
+                codes[s, r] = states.setdefault(failed if value is None else OK, len(states))
+                values[s, r] = _number(value)
                 continue
-            assert isinstance(attempt, RunRow)
             row = rows.get((attempt.run_id, one.metric, one.variant))
-            if row is None:
-                continue
-            codes[s, r] = states.setdefault((row.status, row.reason), len(states))
-            values[s, r], lower[s, r], upper[s, r] = map(_number, (row.value, row.lower, row.upper))
+            if attempt.status == PLANNER_FAILED and (row is None or row.status != "ok"):
+                codes[s, r] = states.setdefault(failed, len(states))
+            elif row is not None:
+                codes[s, r] = states.setdefault((row.status, row.reason), len(states))
+                ends = (row.value, row.lower, row.upper)
+                values[s, r], lower[s, r], upper[s, r] = map(_number, ends)
     return list(states), {
         "values": pack(values),
         "lower": pack(lower),

@@ -133,7 +133,7 @@ function scoresNote() {
   const range = selectionName() === null
     ? "in brackets, in italics, the quartiles of the runs: intervals are worked out for all runs and for one value of one parameter, not for this selection"
     : `in brackets its ${stats.level} % interval, for which whole crowd draws were resampled`;
-  return `Interquartile mean over the runs with a value; where it says so the mean, of counts and of what is zero in most runs, or the share of yes; ${range}. Hatched: runs without a value, which no number beside them counts; nor are runs in which the planner failed. ${differenceNote()}`;
+  return `Interquartile mean over the runs with a value; where it says so the mean, of counts and of what is zero in most runs, or the share of yes; ${range}. Hatched: runs without a value, which no number beside them counts. Runs in which the planner failed count with the values that they have, and where planners are compared as worse than any other. ${differenceNote()}`;
 }
 
 function differenceNote() {

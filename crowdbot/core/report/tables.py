@@ -24,10 +24,9 @@ def csv_rows(contents: Contents) -> Iterator[Sequence[str]]:
     scores: dict[str, list[ScoreRow]] = {}
     for row in contents.results.scores:
         scores.setdefault(row.run_id, []).append(row)
-    known = {r.scenario: r.axes for r in contents.results.runs}
     yield (*_RUN, *(f"axis.{name}" for name in axes), *_SCORE)
     for attempt in contents.attempts:
-        labels = [known.get(attempt.scenario, {}).get(name, "") for name in axes]
+        labels = [attempt.axes.get(name, "") for name in axes]
         head = (*_run_cells(attempt), *labels)
         found = scores.get(attempt.run_id, []) if isinstance(attempt, RunRow) else []
         for row in found:

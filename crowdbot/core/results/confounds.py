@@ -75,12 +75,13 @@ def confounds(results: Results, accept: Iterable[str] = ()) -> tuple[Finding, ..
 
     Args:
         results: the runs that are compared.
-        accept: names of confounds that are known and accepted.
+        accept: names of confounds that are known and accepted; several in one text have commas
+            between them.
 
     Raises:
         UnknownNameError: there is no confound of such a name.
     """
-    accepted = set(accept)
+    accepted = {name.strip() for text in accept for name in text.split(",")}
     for name in sorted(accepted - set(KINDS)):
         raise UnknownNameError("confound", name, KINDS)
     found = [f for f in _merged(_all(results.runs)) if len(f.values) > 1 or f.kind == "unpinned"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
@@ -25,6 +26,7 @@ class Failure:
     error: str
     traceback: str
     exit_code: int
+    axes: Mapping[str, str]
 
 
 def write_failure(run: Path, failure: Failure) -> None:
@@ -41,8 +43,9 @@ def read_failure(file: Path) -> Failure | None:
     """What `write_failure` wrote; None for anything else."""
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
+        content.setdefault("axes", {})  # records of earlier versions have none
         return Failure(**{f.name: content[f.name] for f in fields(Failure)})
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
 
 

@@ -84,12 +84,13 @@ class ScoreRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FailureRow:
-    """A run that a campaign could not make, with what Python said."""
+    """A run that a campaign could not make, with what Python said; ``axes`` as in `RunRow`."""
 
     suite: str
     scenario: str
     planner: str
     seed: int
+    axes: Mapping[str, str] = field(default_factory=dict)
     error: str
     traceback: str
 

@@ -23,7 +23,7 @@ from crowdbot.errors import InputError
 
 INDEX, LOCK = "results.sqlite", "results.lock"
 #: Of the tables; an index of another version is rebuilt.
-VERSION = 1
+VERSION = 2
 
 _TABLES = """
 CREATE TABLE IF NOT EXISTS runs (
@@ -43,7 +43,7 @@ CREATE TABLE IF NOT EXISTS scores (
 CREATE TABLE IF NOT EXISTS failures (
     directory TEXT PRIMARY KEY, stamp TEXT NOT NULL, suite TEXT NOT NULL, scenario TEXT NOT NULL,
     position INTEGER NOT NULL, planner TEXT NOT NULL, seed INTEGER NOT NULL,
-    error TEXT NOT NULL, traceback TEXT NOT NULL
+    axes TEXT NOT NULL, error TEXT NOT NULL, traceback TEXT NOT NULL
 );
 """
 
@@ -202,6 +202,7 @@ class Store:
         self._database.execute("DELETE FROM failures WHERE directory = ?", [directory])
         if failure is not None:
             values = {n: getattr(failure, n) for n in _FAILURE}
+            values["axes"] = json.dumps(values["axes"])
             self._put("failures", {"directory": directory, "stamp": stamp, **values})
 
     def _put(self, table: str, values: dict[str, Any]) -> None:
@@ -216,7 +217,7 @@ _SCORE = (
     "category", "metric", "symbol", "variant", "value", "unit", "better", "status", "reason",
     "lower", "upper",
 )  # fmt: skip
-_FAILURE = ("suite", "scenario", "position", "planner", "seed", "error", "traceback")
+_FAILURE = ("suite", "scenario", "position", "planner", "seed", "axes", "error", "traceback")
 
 
 def _scan(root: Path) -> Iterator[tuple[str, str]]:
@@ -294,4 +295,5 @@ def _score(row: sqlite3.Row, run_id: str) -> ScoreRow:
 
 
 def _failure(row: sqlite3.Row) -> FailureRow:
-    return FailureRow(**{name: row[name] for name in _FAILURE if name != "position"})
+    values = {name: row[name] for name in _FAILURE if name != "position"}
+    return FailureRow(**{**values, "axes": json.loads(row["axes"])})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from crowdbot.core.statistics import clusters as c
 from crowdbot.core.statistics.clusters import Clusters, Floats
 from crowdbot.core.statistics.estimate import NOTHING, Counts, Estimate
 from crowdbot.core.statistics.signed_rank import double_ranks, least_p, p_value, signed_ranks
-from crowdbot.core.statistics.table import FAILED, MISSING, UNDEFINED, Column, Name, Table
+from crowdbot.core.statistics.table import MISSING, UNDEFINED, Column, Name, Table
 
 Verdict = Literal["better", "worse", "not distinguishable", "not ranked"]
 
@@ -75,14 +75,21 @@ class Comparison:
     reason: str = ""
 
 
+class Leaning(NamedTuple):
+    """Which way a comparison points, before it is known how surely.
+
+    ``ranks``: sign of their sum, 1 where ``a`` looks better. ``means``: the difference without
+    runs that failed: who fails before anything can happen must not gain by it.
+    """
+
+    ranks: int = 0
+    means: Estimate = NOTHING
+
+
 def compare(
     table: Table, name: Name, a: str, b: str, *, level: float = 0.95
-) -> tuple[Comparison, int]:
-    """Compare two planners; the verdict is given by `judged`, when all p values are known.
-
-    Returns:
-        The comparison, and the sign of its ranks: 1 where ``a`` looks better.
-    """
+) -> tuple[Comparison, Leaning]:
+    """Compare two planners; the verdict is given by `judged`, when all p values are known."""
     label = table.label(name)
     sides = table.column(name, a), table.column(name, b)
     there = (sides[0].outcome != MISSING) & (sides[1].outcome != MISSING)
@@ -93,19 +100,22 @@ def compare(
         counts_a=sides[0].counts, counts_b=sides[1].counts,
     )  # fmt: skip
     if not there.any():
-        return replace(head, reason="no scenario and seed was run with both"), 0
+        return replace(head, reason="no scenario and seed was run with both"), Leaning()
     reference = table.reference(name)
     if label.better == "reference" and reference is None:
-        return replace(head, verdict="not ranked", reason=NO_REFERENCE), 0
+        return replace(head, verdict="not ranked", reason=NO_REFERENCE), Leaning()
     pair = _Pair(*(_Side.of(s, there, label.better, reference) for s in sides))
     sign = 1.0 if label.better in ("higher", "none") else -1.0
     found = _differences(head, pair, groups, sign, level)
     if label.better == "none":
-        return replace(found, verdict="not ranked", reason=NO_DIRECTION), 0
-    return _ranked(found, pair, groups, level)
+        return replace(found, verdict="not ranked", reason=NO_DIRECTION), Leaning()
+    found, ranks = _ranked(found, pair, groups, level)
+    return found, Leaning(ranks, _sound_means(found, pair, groups, sign, level))
 
 
-def judged(found: Comparison, direction: int, p_holm: float | None, alpha: float) -> Comparison:
+def judged(
+    found: Comparison, leaning: Leaning, p_holm: float | None, alpha: float
+) -> Comparison:
     """The comparison with its verdict.
 
     A verdict takes ranks that chance does not explain and a mean that does not contradict them.
@@ -114,9 +124,9 @@ def judged(found: Comparison, direction: int, p_holm: float | None, alpha: float
         return found
     verdict: Verdict = "not distinguishable"
     reason = ""
-    if p_holm is not None and p_holm <= alpha and direction:
-        verdict = "better" if direction > 0 else "worse"
-        if _contradicts(found, direction):
+    if p_holm is not None and p_holm <= alpha and leaning.ranks:
+        verdict = "better" if leaning.ranks > 0 else "worse"
+        if _contradicts(leaning, found.better):
             verdict, reason = "not distinguishable", "ranks and means point to different sides"
     elif least_p(found.draws) > alpha:
         reason = f"too few crowd draws: {found.draws}; no difference could be told from chance"
@@ -140,7 +150,7 @@ class _Side:
     def of(column: Column, there: NDArray[np.bool_], better: str, reference: float | None) -> _Side:
         low, high = _utility(column.low[there], column.high[there], better, reference)
         outcome = column.outcome[there]
-        return _Side(low, high, column.known[there], outcome == UNDEFINED, outcome == FAILED)
+        return _Side(low, high, column.known[there], outcome == UNDEFINED, column.failed[there])
 
 
 def _utility(
@@ -211,6 +221,17 @@ def _differences(
     )
 
 
+def _sound_means(
+    found: Comparison, pair: _Pair, groups: Clusters, sign: float, level: float
+) -> Estimate:
+    """The mean difference over pairs in which neither planner failed."""
+    failed = pair.a.failed | pair.b.failed
+    if not failed.any():
+        return found.difference
+    sound = pair.known & ~failed
+    return c.mean(sign * pair.least[sound], groups.part(sound), level)
+
+
 def _finite(number: float) -> float | None:
     return number if math.isfinite(number) else None
 
@@ -271,9 +292,9 @@ def _clipped(found: Estimate, least: float, most: float) -> Estimate:
     return Estimate(value=found.value, low=low, high=high, reason=found.reason)
 
 
-def _contradicts(found: Comparison, direction: int) -> bool:
-    sign = direction if found.better == "higher" else -direction
-    low, high = found.difference.low, found.difference.high
+def _contradicts(leaning: Leaning, better: str) -> bool:
+    sign = leaning.ranks if better == "higher" else -leaning.ranks
+    low, high = leaning.means.low, leaning.means.high
     if low is None or high is None:
         return False
     return high < 0 if sign > 0 else low > 0

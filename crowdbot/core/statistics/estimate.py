@@ -7,7 +7,8 @@ from typing import Literal
 
 #: What can come of one score of one run.
 #:
-#: ``failed``: the planner failed, or the run could not be made: worse than anything else.
+#: ``failed``: without a value because the planner failed or the run could not be made. Where such
+#: a run has one it is ``ok``; in ranks it is worse than anything else all the same.
 #: ``missing``: nobody has tried yet; not compared, but told.
 Outcome = Literal["ok", "censored", "undefined", "failed", "missing"]
 OUTCOMES: tuple[Outcome, ...] = ("ok", "censored", "undefined", "failed", "missing")

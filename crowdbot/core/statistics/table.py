@@ -20,11 +20,17 @@ Key = tuple[str, str, int]
 #: Metric and variant.
 Name = tuple[str, str]
 
+_Read = tuple[int, str, tuple[float, float]]
+
 OK, CENSORED, UNDEFINED, FAILED, MISSING = range(len(OUTCOMES))
 
 #: What people score in metrics that compare with them, where it is not 1, the ratio of equals.
 #: None: it is not among the scores, so that no distance can be told.
 REFERENCES: Mapping[str, float | None] = {"overtaking_count": None}
+#: What is known of an attempt that left no run: its robot did not arrive.
+WITHOUT_RUN: Mapping[str, float] = {"success": 0.0, "success_no_collision": 0.0}
+#: Status of a run whose planner failed.
+PLANNER_FAILED = "planner_failed"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,12 +40,14 @@ class Column:
     Attributes:
         outcome: (n,) index into `OUTCOMES`.
         low, high: (n,) bounds of the value: equal where it is known, infinite where nothing is.
+        failed: (n,) where the planner failed or no run could be made; there may be a value.
         reasons: why values are missing -> how often.
     """
 
     outcome: NDArray[np.int8]
     low: Floats
     high: Floats
+    failed: NDArray[np.bool_]
     reasons: Mapping[str, int]
 
     @property
@@ -57,7 +65,8 @@ class Column:
 class Table:
     """Rows are scenario x seed, columns planner x score.
 
-    A run that could not be made (`Results.failures`) counts as failed unless it was made after all.
+    A run whose planner failed keeps its values: it is a run whose robot did not arrive. One that
+    could not be made (`Results.failures`) counts as failed unless it was made after all.
     """
 
     def __init__(self, results: Results) -> None:
@@ -100,14 +109,18 @@ class Table:
         rows, reasons = self._rows.get(name, {}), Counter[str]()
         outcome = np.full(len(self.keys), MISSING, dtype=np.int8)
         low, high = np.full(len(self.keys), -math.inf), np.full(len(self.keys), math.inf)
+        failed = np.zeros(len(self.keys), dtype=np.bool_)
         for place, key in enumerate(self.keys):
             run = self.runs.get((planner, key))
-            kind, why, bounds = _read(run, rows.get(run.run_id) if run else None)
             if run is None and (planner, key) in self.failures:
-                kind, why = FAILED, "no_run"
+                kind, why, bounds = _without_run(name[0])
+                failed[place] = True
+            else:
+                kind, why, bounds = _read(run, rows.get(run.run_id) if run else None)
+                failed[place] = run is not None and run.status == PLANNER_FAILED
             outcome[place], (low[place], high[place]) = kind, bounds
             reasons.update([why] if why else [])
-        return Column(outcome, low, high, dict(sorted(reasons.items())))
+        return Column(outcome, low, high, failed, dict(sorted(reasons.items())))
 
 
 def _by_score(scores: Sequence[ScoreRow]) -> dict[Name, dict[str, ScoreRow]]:
@@ -127,13 +140,21 @@ def _draw(run: RunRow) -> str:
     return f"{run.suite}/{run.scenario}" if nobody else run.realisation_hash
 
 
-def _read(run: RunRow | None, score: ScoreRow | None) -> tuple[int, str, tuple[float, float]]:
+def _without_run(metric: str) -> _Read:
+    """Outcome, reason and bounds of a score of an attempt that left no run."""
+    if metric in WITHOUT_RUN:
+        return OK, "", (WITHOUT_RUN[metric], WITHOUT_RUN[metric])
+    return FAILED, "no_run", (-math.inf, math.inf)
+
+
+def _read(run: RunRow | None, score: ScoreRow | None) -> _Read:
     """Outcome, reason and bounds of one score of one run."""
     nothing = (-math.inf, math.inf)
     if run is None:
         return MISSING, "", nothing
-    if run.status == "planner_failed":
-        return FAILED, "planner_failed", nothing
+    has_value = score is not None and score.status == "ok" and score.value is not None
+    if run.status == PLANNER_FAILED and not has_value:
+        return FAILED, PLANNER_FAILED, nothing
     if score is None:
         return UNDEFINED, "not_scored", nothing
     if score.status == "censored":

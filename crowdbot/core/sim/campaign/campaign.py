@@ -79,7 +79,8 @@ def run_campaign(plan: Plan, crew: Crew, size: int, listener: Listener) -> State
         plan: from `make_plan`.
         crew: does the jobs; closed at the end.
         size: how many work at a time, for the estimate.
-        listener: called with each job that ended, and several times a second without one.
+        listener: called at the beginning, with each job that ended, and several times a second
+            without one.
 
     Raises:
         InputError: the folder cannot be written.
@@ -90,6 +91,7 @@ def run_campaign(plan: Plan, crew: Crew, size: int, listener: Listener) -> State
         _relabel(plan)
         store.synchronise()
         campaign = _Campaign(plan, crew, size, store)
+        listener(campaign.state, None, None)
         while campaign.state.left:
             campaign.give()
             listener(campaign.state, None, None)
@@ -115,7 +117,7 @@ class _Campaign:
         # A run may begin as soon as its calibration runs are there; others go on meanwhile.
         self._queue = deque(j for j in jobs.values())
         self._settled: set[str] = set()
-        self._total = dict(jobs)
+        self._axes = {w.key: w.axes for w in plan.wanted}
 
     def give(self) -> None:
         """Hand out as many jobs as there are places for."""
@@ -155,7 +157,7 @@ class _Campaign:
         self.state.failures[job.key] = done
         if job.kind == "run":
             self.state.statuses[job.key] = "failed"
-            write_failure(self._out / job.directory, _failure(job, done))
+            write_failure(self._out / job.directory, _failure(job, done, self._axes[job.key]))
             self._store.add_failure(job.directory)
         ended = [(job, done)]
         for other in [j for j in self.state.left.values() if job.key in j.needs]:
@@ -165,7 +167,7 @@ class _Campaign:
         return ended
 
 
-def _failure(job: Job, done: Done) -> Failure:
+def _failure(job: Job, done: Done, axes: dict[str, str]) -> Failure:
     return Failure(
         run_id=job.key,
         suite=job.suite,
@@ -176,6 +178,7 @@ def _failure(job: Job, done: Done) -> Failure:
         error=done.error,
         traceback=done.traceback,
         exit_code=done.exit_code,
+        axes=axes,
     )
 
 
