@@ -77,7 +77,7 @@ def test_versions_and_plugins() -> None:
     assert builtin["name"] == "builtin"
     assert builtin["pinned"] is True
     machine = provenance.machine()
-    assert set(machine) == {"system", "machine", "processor"}
+    assert set(machine) == {"system", "machine", "processor", "rounding"}
     assert all(machine.values())
 
 

@@ -196,7 +196,7 @@ WRONG = [
     ("crowd.costs.odd.way=compiled", "odd.cost: base is compiled for"),
     ("crowd.costs.odd.way=plain", "odd.cost: base is not compiled"),
     ("crowd.costs.odd.way=none", "odd.cost: build returned a NoneType"),
-    ("crowd.policy={kind: odd.policy, way: raises}", "odd.policy: KeyError: 'gait'"),
+    ("crowd.policy={kind: odd.policy, way: raises}", "odd.policy at t = 0 s: KeyError: 'gait'"),
     ("crowd.policy={kind: odd.policy, way: nan}", "odd.policy returned [nan, nan] for agent 0"),
     ("crowd.policy={kind: odd.policy, way: shape}", "odd.policy returned shape (3,)"),
     ("crowd.policy={kind: odd.policy, way: push_nan}", "odd.policy returned [nan, nan]"),
@@ -208,7 +208,7 @@ WRONG = [
     ("robots.robot.sensors.beam.way=rate", "odd.look: info(): rate is 200.0 Hz"),
     ("robots.robot.sensors.beam.way=frame", "odd.look: info(): frame is ''"),
     ("robots.robot.sensors.beam.way=info_raises", "odd.look: OSError: unplugged"),
-    ("robots.robot.sensors.beam.way=raises", "odd.look: ValueError: fog"),
+    ("robots.robot.sensors.beam.way=raises", "odd.look at t = 0 s: ValueError: fog"),
     ("robots.robot.sensors.beam.way=shape", "odd.look returned shape (4,); info() says (1,)"),
     ("robots.robot.sensors.beam.way=nan", "odd.look returned NaN"),
 ]

@@ -56,8 +56,8 @@ def attempts(results: Results) -> list[Attempt]:
 def axes_of(results: Results) -> list[dict[str, Any]]:
     """Axes of the suite with their labels, in the suite's order."""
     found: dict[str, dict[str, None]] = {}
-    for one in (*results.runs, *results.failures):
-        for name, label in one.axes.items():
+    for axes in [r.axes for r in results.runs] + [f.axes for f in results.failures]:
+        for name, label in axes.items():
             found.setdefault(name, {})[label] = None
     return [{"name": name, "labels": list(labels)} for name, labels in found.items()]
 
