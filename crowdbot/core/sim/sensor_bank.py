@@ -209,5 +209,5 @@ class SensorBank(LeafSystem):
         else:
             values = sensor.read(self._scene, pose, t, rng)  # type: ignore[call-arg]
         bank[slot.stamp] = t
-        bank[slot.values] = np.ravel(values)
-        self._on_reading(name, slot.reading(bank))
+        bank[slot.values] = values if values.ndim == 1 else values.ravel()
+        self._on_reading(name, Reading(t, values))
