@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld, policy_of
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.contact import DISC, push_apart
+from crowdbot.core.crowd.contact import DISC
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdView
 from crowdbot.core.crowd.step import tick
 from crowdbot.core.crowd.torus import ENDLESS
@@ -70,13 +70,12 @@ def whole_step(
             present=everybody, robot=robots[:, :5], walls=walls, dt=DT, decides=everybody,
         )  # fmt: skip
         rows[:, s.AX : s.AY + 1] = willed(chosen, view)
-        push_apart(rows, agents.radius, order, walls, world.pillars, stiffness)
         tick(
             flat, s.AGENT_COLUMNS, robots, DISC, agents.id, in_turn, agents.radius, agents.mass,
             agents.preferred_speed, agents.max_speed, agents.start_time, everybody,
             agents.at_goal, agents.flow, agents.route, agents.first, world.entrance, world.out,
             False, ENDLESS, True, world.response, world.stiffness, world.dissipation,
-            np.uint64(0), DT, reaction,
+            walls, world.pillars, stiffness, order, np.uint64(0), DT, reaction,
         )  # fmt: skip
 
     return step

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.agents import PORTAL, Agents
-from crowdbot.core.crowd.contact import DISC, push_apart
+from crowdbot.core.crowd.contact import DISC
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdPolicy, CrowdView
 from crowdbot.core.crowd.portals import draw_goal, enter
 from crowdbot.core.crowd.routes import head_for
@@ -69,7 +69,7 @@ class CrowdEngine:
         self._key = np.uint64(world.goal_key)
         self._torus = ENDLESS if world.torus is None else np.array(world.torus, np.float64)
         self._in_turn = np.argsort(agents.id, kind="stable")
-        self._order = np.arange(len(agents))  # scratch, see `push_apart`
+        self._order = np.arange(len(agents))  # scratch, see `tick`
         self._heeds = ~agents.ignores_robot
         self._reaction = np.zeros((len(agents), 2))
 
@@ -115,12 +115,12 @@ class CrowdEngine:
             self._decide(flat, robots)
         a, w = self.agents, self.world
         _, rows = s.view(flat)
-        push_apart(rows, a.radius, self._order, w.walls, self._fixed(rows), self._push)
         tick(
             flat, s.AGENT_COLUMNS, robots, outline, a.id, self._in_turn, a.radius, a.mass,
             a.preferred_speed, a.max_speed, a.start_time, self._heeds, a.at_goal, a.flow,
             a.route, a.first, w.entrance, w.out, w.exit_point == "offset", self._torus,
-            not w.parity, w.response, w.stiffness, w.dissipation, self._key, dt, self._reaction,
+            not w.parity, w.response, w.stiffness, w.dissipation, w.walls, self._fixed(rows),
+            self._push, self._order, self._key, dt, self._reaction,
         )  # fmt: skip
 
     def run(self, duration: float, sample_rate: float = 16.0) -> tuple[Array, Array]:
@@ -153,7 +153,8 @@ class CrowdEngine:
         nobody = seen[:0]
         for group in self._groups:
             view = self._view(flat, rows, group.members, seen if group.heeds_robot else nobody)
-            rows[view.decides, s.AX : s.AY + 1] = willed(group.policy, view)[view.decides]
+            decides = np.asarray(view.decides)[:, np.newaxis]
+            np.copyto(rows[:, s.AX : s.AY + 1], willed(group.policy, view), where=decides)
 
     def _view(
         self, flat: Array, rows: Array, members: NDArray[np.bool_], robots: Array

@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import PORTAL
-from crowdbot.core.crowd.contact import keep_off, robot_contact
+from crowdbot.core.crowd.contact import keep_off, push_apart, robot_contact
 from crowdbot.core.crowd.portals import enter, entry_fraction, is_free, leave, try_to_re_enter
 from crowdbot.core.crowd.routes import end_trip, next_goal, reach_fraction
 from crowdbot.core.crowd.state import (
@@ -72,13 +72,17 @@ def tick(
     response: Array,
     stiffness: float,
     dissipation: float,
+    walls: Array,
+    discs: Array,
+    push: Array,
+    order: Rows,
     key: np.uint64,
     dt: float,
     reaction: Array,
 ) -> None:
     """Advance from tick k to k + 1.
 
-    Forces between the robot and people come from the state at k; they act on both during the
+    All forces come from the state at k. Those between the robot and people act on both during the
     tick, so that impulses balance exactly.
 
     Args:
@@ -86,12 +90,14 @@ def tick(
         robots, outline: (R, 8), (K, 2) as in `crowdbot.core.crowd.contact`.
         in_turn: (N,) rows of agents by id: the order in which they enter.
         torus: (4,) x0, x1, y0, y1, infinite where there is no border.
+        walls, discs, push, order: what pushes, and how much, as in `push_apart`.
         reaction: (N, 2) scratch.
 
     Everything else is as in `Agents` and `CrowdWorld`.
     """
     header, agents = flat[:HEADER_SIZE], flat[HEADER_SIZE:].reshape(-1, columns)
     now = header[TICK] * dt
+    push_apart(agents, radius, order, walls, discs, push)
     for r in range(robots.shape[0]):
         robot_contact(
             header, agents, radius, robots[r], outline, stiffness, dissipation, now, dt, reaction

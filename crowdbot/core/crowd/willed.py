@@ -44,8 +44,11 @@ def _answer(policy: CrowdPolicy, ask: Callable[[], object], view: CrowdView) -> 
         raise PluginError(
             f"crowd policy {name} returned shape {answer.shape} instead of {view.position.shape}"
         )
+    finite = np.isfinite(answer)
+    if finite.all():
+        return answer
+    finite = np.all(finite, axis=1)
     decides = view.present if view.decides is None else view.decides
-    finite = np.all(np.isfinite(answer), axis=1)
     if not np.all(finite[decides]):
         row = int(np.flatnonzero(decides & ~finite)[0])
         raise PluginError(

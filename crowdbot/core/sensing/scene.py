@@ -12,6 +12,8 @@ from crowdbot.core.sensing.depth import paint_depth
 from crowdbot.core.sensing.raycast import cast_rays
 
 Array = NDArray[np.float64]
+#: In place of details that are not wanted.
+_NO_ANGLES, _NOBODY = np.empty((0, 0)), np.empty((0, 0), dtype=np.int64)
 
 
 def _constant(values: ArrayLike, shape: tuple[int, ...]) -> Array:
@@ -170,8 +172,9 @@ class Scene:
             distance, incidence, body as in `cast`, each (R, C).
         """
         distance = np.empty(grid.shape)
-        incidence = np.empty(grid.shape if details else (0, 0))
-        body = np.empty(incidence.shape, dtype=np.int64)
+        incidence, body = _NO_ANGLES, _NOBODY
+        if details:
+            incidence, body = np.empty(grid.shape), np.empty(grid.shape, dtype=np.int64)
         if distance.size:
             discs, owner = self._bodies()
             cast_columns(

@@ -142,7 +142,7 @@ class SensorBank(LeafSystem):
         rates = {n: x.info.rate for n, x in self.slots.items()}
         self._step = ticks_between(rates.values())
         self._due = Timetable(rates)
-        self._blind = {n for n, x in self.slots.items() if not x.info.sees}
+        self._blind = {n for n, x in self.slots.items() if not (x.info.sees or x.info.camera)}
         self.DeclarePeriodicUnrestrictedUpdateEvent(self._step * TICK, 0.0, self._update)
 
     def reading(self, name: str, bank: Array) -> Reading:
@@ -165,31 +165,31 @@ class SensorBank(LeafSystem):
         due = self._due(tick)
         if not due:
             return
-        robot = RobotState(*self._robot.Eval(context).tolist())
+        robot, people = RobotState(*self._robot.Eval(context).tolist()), None
         if self._blind.issuperset(due):
             self._scene.move_robot(robot)
         else:
-            self._see(context, robot)
+            people = self._see(context, robot)
         pose = Pose(robot.x, robot.y, robot.yaw)
         for name in due:
             if name in self._images:
-                self._photograph(name, context, bank, robot, tick * TICK)
+                self._photograph(name, people, bank, robot, tick * TICK)
             else:
                 self._read(name, bank, pose, tick)
 
     def _photograph(
-        self, name: str, context: Context, bank: Array, robot: RobotState, t: float
+        self, name: str, people: Array | None, bank: Array, robot: RobotState, t: float
     ) -> None:
         slot = self.slots[name]
-        people = None if self._crowd is None else s.view(self._crowd.Eval(context))[1]
         bank[slot.stamp] = t
         capture(robot, people, bank[slot.values])
         self._on_reading(name, self._images[name].take(self._scene, t, bank[slot.values]))
 
-    def _see(self, context: Context, robot: RobotState) -> None:
+    def _see(self, context: Context, robot: RobotState) -> Array | None:
+        """Show the scene as it is now; returns the crowd's rows, if any."""
         if self._crowd is None:
             self._scene.update(robot, np.zeros((0, 4)), np.zeros(0, np.bool_))
-            return
+            return None
         _, rows = s.view(self._crowd.Eval(context))
         self._scene.update(
             robot,
@@ -198,6 +198,7 @@ class SensorBank(LeafSystem):
             rows[:, s.DIR_X : s.DIR_Y + 1],
             rows[:, s.WALKED],
         )
+        return rows
 
     def _read(self, name: str, bank: Array, pose: Pose, tick: int) -> None:
         slot, sensor = self.slots[name], self._sensors[name]
@@ -209,5 +210,5 @@ class SensorBank(LeafSystem):
         else:
             values = sensor.read(self._scene, pose, t, rng)  # type: ignore[call-arg]
         bank[slot.stamp] = t
-        bank[slot.values] = np.ravel(values)
-        self._on_reading(name, slot.reading(bank))
+        bank[slot.values] = values if values.ndim == 1 else values.ravel()
+        self._on_reading(name, Reading(t, values))

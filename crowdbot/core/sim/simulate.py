@@ -15,6 +15,7 @@ from crowdbot.core.recording import read_cones, read_scans, read_trajectories
 from crowdbot.core.registry import Registry
 from crowdbot.core.replay import write_replay
 from crowdbot.core.scores_table import write_scores_csv
+from crowdbot.core.sim.collector import settled_objects
 from crowdbot.core.sim.identity import (
     Prepared,
     prepare,
@@ -105,8 +106,9 @@ def make_run(request: Request, prepared: Prepared, keep: object = None) -> Run:
         record = reusable_record(request, run_id, compared=bool(references))
         if record is not None:
             return Run(request.directory, record, reused=True, _keep=keep)
-    paths = make_references(request, references)
-    record = _record_run(request, prepared, identity, paths)
+    with settled_objects():
+        paths = make_references(request, references)
+        record = _record_run(request, prepared, identity, paths)
     return Run(request.directory, record, _keep=keep)
 
 

@@ -36,13 +36,10 @@ class Imu:
 
     def __init__(self, spec: ImuSpec) -> None:
         self._mount, self._rate = spec.mount, spec.rate
-        gyro, force = (
-            np.repeat([[1.0], [0.0]], 3, 1).ravel(),
-            np.repeat([[0.0], [1.0]], 3, 1).ravel(),
-        )
-        self._white = (spec.gyro_noise * gyro + spec.force_noise * force) * math.sqrt(spec.rate)
-        self._start = spec.gyro_bias * gyro + spec.force_bias * force
-        self._walk = spec.gyro_walk * gyro + spec.force_walk * force
+        root = math.sqrt(spec.rate)
+        self._white = [spec.gyro_noise * root] * 3 + [spec.force_noise * root] * 3
+        self._start = [spec.gyro_bias] * 3 + [spec.force_bias] * 3
+        self._walk = [spec.gyro_walk] * 3 + [spec.force_walk] * 3
         self._info = SensorInfo(
             category="imu",
             frame="imu",
@@ -51,7 +48,7 @@ class Imu:
             shape=(6,),
             ros_type="sensor_msgs/msg/Imu",
             memory=READING.stop,
-            random=bool(np.any(self._white + self._start + self._walk)),
+            random=any(self._white + self._start + self._walk),
             sees=False,
         )
 
@@ -69,17 +66,20 @@ class Imu:
         """
         if scene.robot is None:
             raise SimulationError("an IMU needs a robot in the scene")
-        was = memory[: BIAS.start].tolist()  # far cheaper than number by number
+        was = memory.tolist()  # numpy is far dearer, number by number and six by six
         if was[STARTED] == 0.0 or t > was[TIME]:
-            memory[READING] = self._felt(scene.robot, pose.yaw, t, was, memory)
+            vx, vy, reading = self._felt(scene.robot, pose.yaw, t, was)
+            bias = was[BIAS]
             if self._info.random:
-                memory[READING] += self._errors(t, rng, was, memory)
+                bias, errors = self._errors(t, rng, was)
+                reading = [value + error for value, error in zip(reading, errors, strict=True)]
+            memory[:] = (1.0, t, pose.yaw, vx, vy, *bias, *reading)
         return memory[READING].copy()
 
     def _felt(
-        self, robot: RobotState, yaw: float, t: float, was: list[float], memory: Array
-    ) -> Array:
-        """What a perfect IMU reads; remembers time, heading and velocity."""
+        self, robot: RobotState, yaw: float, t: float, was: list[float]
+    ) -> tuple[float, float, list[float]]:
+        """Velocity of the mount, and what a perfect IMU reads."""
         mount = self._mount
         c, s = math.cos(yaw), math.sin(yaw)
         x, y = c * mount.x - s * mount.y, s * mount.x + c * mount.y
@@ -90,18 +90,23 @@ class Imu:
             dt = t - was[TIME]
             ax, ay = (vx - was[VX]) / dt, (vy - was[VY]) / dt
             heading -= 0.5 * math.remainder(yaw - was[YAW], 2.0 * math.pi)
-        memory[: BIAS.start] = 1.0, t, yaw, vx, vy
         c, s = math.cos(heading + mount.yaw), math.sin(heading + mount.yaw)
-        return np.array([0.0, 0.0, robot.w, c * ax + s * ay, c * ay - s * ax, GRAVITY])
+        return vx, vy, [0.0, 0.0, robot.w, c * ax + s * ay, c * ay - s * ax, GRAVITY]
 
-    def _errors(self, t: float, rng: np.random.Generator, was: list[float], memory: Array) -> Array:
-        draws = rng.standard_normal((2, 6))
+    def _errors(
+        self, t: float, rng: np.random.Generator, was: list[float]
+    ) -> tuple[list[float], list[float]]:
+        """Biases from now on, and the errors of this reading."""
+        draws = rng.standard_normal(12).tolist()
+        white, walk = draws[:6], draws[6:]
         if was[STARTED]:
-            memory[BIAS] += self._walk * math.sqrt(t - was[TIME]) * draws[1]
+            root = math.sqrt(t - was[TIME])
+            steps = zip(was[BIAS], self._walk, walk, strict=True)
+            bias = [b + k * root * draw for b, k, draw in steps]
         else:
-            memory[BIAS] = self._start * draws[1]
-        errors: Array = self._white * draws[0] + memory[BIAS]
-        return errors
+            bias = [b * draw for b, draw in zip(self._start, walk, strict=True)]
+        parts = zip(self._white, white, bias, strict=True)
+        return bias, [n * draw + b for n, draw, b in parts]
 
 
 def build(spec: ImuSpec) -> Imu:
