@@ -81,6 +81,8 @@ def resolve_planner(text: str, registry: Registry, settings: Sequence[str] = ())
         return _from_class(Path(path), name, given)
     if text.endswith(".py"):
         raise InputError(f"{text}: which class? Write {text}:{guess_class(Path(text))}")
+    if colon and Path(f"{path}.py").is_file():
+        raise InputError(f"{text}: no such file; did you mean {path}.py:{name}?")
     if text.endswith((".yaml", ".yml")) or "/" in text:
         document = _read(Path(text))
         kind = document.pop("kind", None)

@@ -55,7 +55,7 @@ def forgets_work(cost: CompiledCost, view: CrowdView, velocities: Array) -> bool
     for left in (0.0, 2.0):
         mix.work[:] = left
         found.append(evaluator.total(view, velocities))
-    return np.array_equal(first, found[0]) and np.array_equal(*found)
+    return np.array_equal(first, found[0]) and np.array_equal(found[0], found[1])
 
 
 def _budgets(mix: Mix, agent: Array, velocities: Array) -> str:

@@ -96,8 +96,8 @@ def check_free_side_is_on_the_left(
 def check_is_closed(component: Component[Any], registry: Registry | None = None) -> None:
     """A robot cannot drive out between the walls, unless there are none or the floor is a torus.
 
-    If this fails, there is a gap of more than 0.2 m, or ``stops_robot`` is wrong. A place that is meant to be open says so:
-    ``Component(exceptions={"check_is_closed": "why"})``.
+    If this fails, there is a gap of more than 0.2 m, or ``stops_robot`` is wrong. A place that is
+    meant to be open says so: ``Component(exceptions={"check_is_closed": "why"})``.
     """
     for parts in _parts(component, registry):
         if parts.torus is not None or not len(parts.walls):
