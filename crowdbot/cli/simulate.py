@@ -195,7 +195,6 @@ def _print(run: Run, *, as_json: bool) -> None:
 
     console = Console()
     console.print(scores_table(headlines([r.score for r in rows])))
-    record = run.record
     console.print(_summary(run), highlight=False)
     console.print(f"all variants: {run.directory / SCORES}", soft_wrap=True, highlight=False)
     console.print(f"replay: {run.directory / REPLAY}", soft_wrap=True, highlight=False)

@@ -17,6 +17,7 @@ from ruamel.yaml.error import YAMLError
 
 from crowdbot.core.component import Component
 from crowdbot.core.fault import described, is_users
+from crowdbot.core.helpers import digest_of
 from crowdbot.core.interfaces import Planner, SensorInfo
 from crowdbot.core.planner_file import (
     check_parameters,
@@ -247,7 +248,7 @@ def _from_class(path: Path, name: str, parameters: Mapping[str, Any]) -> Planner
     kind = planner_class(path, name)
     dump = {
         "kind": f"{path.name}:{name}",
-        "sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
+        "sha256": digest_of(path),
         **({"parameters": dict(parameters)} if parameters else {}),
     }
     check_parameters(kind, parameters, f"{path}:{name}")

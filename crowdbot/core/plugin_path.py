@@ -15,6 +15,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from crowdbot.core.helpers import digest_of
 from crowdbot.core.plugin import Plugin
 from crowdbot.errors import PluginError
 
@@ -177,7 +178,9 @@ def _located(root: Path, value: str) -> tuple[Path, str]:
 
 
 def _digest(place: Path) -> str:
-    """Hash of the file, or of all files of the package: names and contents."""
+    """Hash of the file and its helpers, or of all files of the package: names and contents."""
+    if place.is_file():
+        return digest_of(place)
     sha = hashlib.sha256()
     for name, file in _files(place):
         sha.update(f"{name}\0{file.stat().st_size}\0".encode())
@@ -186,9 +189,6 @@ def _digest(place: Path) -> str:
 
 
 def _files(place: Path) -> Iterator[tuple[str, Path]]:
-    if place.is_file():
-        yield "", place
-        return
     for file in sorted(place.rglob("*")):
         parts = file.relative_to(place).parts
         if file.is_file() and not any(p == "__pycache__" or p.startswith(".") for p in parts):
