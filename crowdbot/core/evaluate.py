@@ -134,19 +134,19 @@ def metric_specs(
         registry.find("metric", kind)
     chosen: set[str] = set()
     for glob in [metrics] if isinstance(metrics, str) else metrics:
-        chosen.update(_matching(known, glob))
+        chosen.update(_matching(known, glob, registry.why_absent(glob)))
     specs = {kind: _spec(known[kind], parameters.get(kind, {})) for kind in known}
     return [specs[kind] for kind in known if kind in chosen]
 
 
-def _matching(known: Mapping[str, Component[MetricSpec]], glob: str) -> list[str]:
+def _matching(known: Mapping[str, Component[MetricSpec]], glob: str, absent: str) -> list[str]:
     """Stable metrics that match; if there are none, experimental ones."""
     if glob in known and known[glob].successor:
         raise InputError(f"metric '{glob}' is retired; use '{known[glob].successor}'")
     matching = [kind for kind in fnmatch.filter(known, glob) if not known[kind].successor]
     stable = [kind for kind in matching if not known[kind].experimental]
     if not matching:
-        raise UnknownNameError("metric", glob, known)
+        raise UnknownNameError("metric", glob, known, absent)
     return stable or matching
 
 

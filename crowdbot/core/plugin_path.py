@@ -64,7 +64,10 @@ def load_path(path: Path) -> ModuleType:
     if taken is not None and getattr(taken, "__file__", None) == str(file):
         return taken
     if taken is not None or _is_installed(name, file):
-        raise PluginError(f"{path}: a module named '{name}' exists already; rename the plugin")
+        raise PluginError(
+            f"{path}: a module named '{name}' exists already; rename the plugin, or uninstall "
+            "the other one ('pip install -e' runs an installed plugin from its folder)"
+        )
     return _import_file(name, file, package=path.is_dir())
 
 
