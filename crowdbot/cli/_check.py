@@ -141,7 +141,7 @@ def _checks(component: Component[Any]) -> tuple[Callable[..., None], ...]:
 def _bind(
     check: Callable[..., None], component: Component[Any], registry: Registry
 ) -> Callable[[], None]:
-    from crowdbot.testing.checks import bind
+    from crowdbot.testing import bind
 
     return bind(check, component, registry)
 

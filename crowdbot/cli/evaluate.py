@@ -93,6 +93,7 @@ def evaluate(
 
     Example: crowdbot evaluate runs/challenge-2020/counter-d0500-fast-c20-r05/dwa/seed-0
     """
+    from crowdbot.core.chatter import chatter_to_stderr
     from crowdbot.core.recording.rescore import Request, available_cores, rescore
     from crowdbot.core.recording.source import expand_paths
 
@@ -118,10 +119,11 @@ def evaluate(
         )
         for path in paths
     ]
-    if len(requests) == 1:
-        results = [rescore(requests[0], registry)]
-    else:
-        results = _each(requests, registry, jobs or available_cores())
+    with chatter_to_stderr():
+        if len(requests) == 1:
+            results = [rescore(requests[0], registry)]
+        else:
+            results = _each(requests, registry, jobs or available_cores())
     _tell(results, out, as_json)
 
 

@@ -40,7 +40,7 @@ def leaderboard(
 
     registry = installed(plugin, no_plugins)
     if by not in registry.components("metric"):
-        raise UnknownNameError("metric", by, registry.components("metric"))
+        raise UnknownNameError("metric", by, registry.components("metric"), registry.why_absent(by))
     entries, left_out = load_entries(folder, registry)
     tables = standings(entries, by, accept or ())
     write_leaderboard(out, tables, left_out, title)

@@ -167,6 +167,8 @@ def _print(run: Run, *, as_json: bool) -> None:
     from crowdbot.core.scores_table import headlines, read_scores_csv, scores_table
 
     rows = read_scores_csv(run.directory / SCORES)
+    if run.record["status"] == "planner_failed":
+        print(f"error: {run.record['reason']}", file=sys.stderr)
     if as_json:
         scores = [
             {
@@ -193,10 +195,7 @@ def _print(run: Run, *, as_json: bool) -> None:
 
     console = Console()
     console.print(scores_table(headlines([r.score for r in rows])))
-    record = run.record
     console.print(_summary(run), highlight=False)
-    if record["status"] == "planner_failed":
-        print(f"error: {record['reason']}", file=sys.stderr)
     console.print(f"all variants: {run.directory / SCORES}", soft_wrap=True, highlight=False)
     console.print(f"replay: {run.directory / REPLAY}", soft_wrap=True, highlight=False)
 

@@ -59,11 +59,12 @@ def verify(
     """
     from crowdbot.core.bundle.archive import open_archive
     from crowdbot.core.bundle.verification import content_hash, save_verification
+    from crowdbot.core.chatter import chatter_to_stderr
 
     registry = installed(plugin, no_plugins)
     seed = secrets.randbelow(2**32) if seed is None else seed
     size = None if everything else sample
-    with open_archive(bundle) as archive:
+    with open_archive(bundle) as archive, chatter_to_stderr():
         digest = content_hash(bundle)
         judgement = _verify(archive, registry, suite, planner, (size, seed, digest))
         label, edition = archive.manifest.label, archive.manifest.edition.name

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import fnmatch
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, overload
 
@@ -20,6 +20,7 @@ from crowdbot.core.preprocess import cropped
 from crowdbot.core.questionnaires import Questionnaires
 from crowdbot.core.registry import Registry
 from crowdbot.core.score import Score
+from crowdbot.core.score_label import ScoreLabel
 from crowdbot.core.trajectory import Trajectories
 from crowdbot.dsl.base import MetricSpec
 from crowdbot.errors import InputError, PluginError, UnknownNameError, did_you_mean, nearest
@@ -133,19 +134,19 @@ def metric_specs(
         registry.find("metric", kind)
     chosen: set[str] = set()
     for glob in [metrics] if isinstance(metrics, str) else metrics:
-        chosen.update(_matching(known, glob))
+        chosen.update(_matching(known, glob, registry.why_absent(glob)))
     specs = {kind: _spec(known[kind], parameters.get(kind, {})) for kind in known}
     return [specs[kind] for kind in known if kind in chosen]
 
 
-def _matching(known: Mapping[str, Component[MetricSpec]], glob: str) -> list[str]:
+def _matching(known: Mapping[str, Component[MetricSpec]], glob: str, absent: str) -> list[str]:
     """Stable metrics that match; if there are none, experimental ones."""
     if glob in known and known[glob].successor:
         raise InputError(f"metric '{glob}' is retired; use '{known[glob].successor}'")
     matching = [kind for kind in fnmatch.filter(known, glob) if not known[kind].successor]
     stable = [kind for kind in matching if not known[kind].experimental]
     if not matching:
-        raise UnknownNameError("metric", glob, known)
+        raise UnknownNameError("metric", glob, known, absent)
     return stable or matching
 
 
@@ -171,18 +172,32 @@ def _scores_of(
     try:
         parameters = spec.model_dump(exclude={"kind"})
         with contextlib.redirect_stdout(sys.stderr):
-            scores = list(registry.build(spec).score(run, refs))
+            answer = registry.build(spec).score(run, refs)
+            if not isinstance(answer, Iterable):
+                raise PluginError(f"returned {answer!r}; a list of scores is wanted")
+            scores = list(answer)
     except PluginError as error:
         raise _failure(registry, spec, str(error)) from error
     except (Exception, SystemExit) as error:
         raise _failure(registry, spec, described(error)) from error
-    for item in scores:
-        if not isinstance(item, Score) or item.metric != spec.kind:
-            raise _failure(registry, spec, f"returned {item!r} instead of its own scores")
-    names = [s.variant for s in scores]
-    if len(set(names)) != len(names):
-        raise _failure(registry, spec, f"returned a variant twice: {', '.join(names)}")
+    label = getattr(registry.find("metric", spec.kind), "label", None)
+    if wrong := _broken_promise(scores, spec.kind, label):
+        raise _failure(registry, spec, wrong)
     return [replace(s, parameters=parameters) for s in scores]
+
+
+def _broken_promise(scores: Sequence[object], kind: str, label: ScoreLabel | None) -> str:
+    """What is wrong with what a metric returned; empty where nothing is."""
+    for item in scores:
+        if not isinstance(item, Score) or item.metric != kind:
+            return f"returned {item!r} instead of its own scores"
+    names = [s.variant for s in scores if isinstance(s, Score)]
+    if len(set(names)) != len(names):
+        return f"returned a variant twice: {', '.join(names)}"
+    if label is not None and set(names) != set(label.variants):
+        said = ", ".join(label.variants)
+        return f"returned the variants {', '.join(names) or 'none'}; its label says {said}"
+    return ""
 
 
 def _failure(registry: Registry, spec: MetricSpec, what: str) -> PluginError:

@@ -56,7 +56,10 @@ def _import(path: Path) -> ModuleType:
         del sys.modules[unique]
         if is_users(error):
             raise
-        raise PlannerError(f"{path}: cannot be imported: {described(error)}") from error
+        text = described(error)
+        if "no known parent package" in text:
+            text += "; a file is no package: write 'import helper' for helper.py beside it"
+        raise PlannerError(f"{path}: cannot be imported: {text}") from error
     return module
 
 

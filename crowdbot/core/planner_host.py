@@ -208,3 +208,14 @@ def _sources(planner: object) -> frozenset[str]:
         with contextlib.suppress(TypeError, OSError):
             found.add(inspect.getfile(base))
     return frozenset(found)
+
+
+def named_signal(name: str, value: float) -> tuple[str, float]:
+    """A signal that can be recorded.
+
+    Raises:
+        TypeError, ValueError: what the planner wants to log is no named number.
+    """
+    if not isinstance(name, str) or not name:
+        raise TypeError(f"log: the name of a signal is text, not {name!r}")
+    return name, float(value)

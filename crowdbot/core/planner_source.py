@@ -17,6 +17,7 @@ from ruamel.yaml.error import YAMLError
 
 from crowdbot.core.component import Component
 from crowdbot.core.fault import described, is_users
+from crowdbot.core.helpers import digest_of
 from crowdbot.core.interfaces import Planner, SensorInfo
 from crowdbot.core.planner_file import (
     check_parameters,
@@ -81,6 +82,8 @@ def resolve_planner(text: str, registry: Registry, settings: Sequence[str] = ())
         return _from_class(Path(path), name, given)
     if text.endswith(".py"):
         raise InputError(f"{text}: which class? Write {text}:{guess_class(Path(text))}")
+    if colon and Path(f"{path}.py").is_file():
+        raise InputError(f"{text}: no such file; did you mean {path}.py:{name}?")
     if text.endswith((".yaml", ".yml")) or "/" in text:
         document = _read(Path(text))
         kind = document.pop("kind", None)
@@ -245,7 +248,7 @@ def _from_class(path: Path, name: str, parameters: Mapping[str, Any]) -> Planner
     kind = planner_class(path, name)
     dump = {
         "kind": f"{path.name}:{name}",
-        "sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
+        "sha256": digest_of(path),
         **({"parameters": dict(parameters)} if parameters else {}),
     }
     check_parameters(kind, parameters, f"{path}:{name}")

@@ -15,6 +15,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from crowdbot.core.helpers import digest_of
 from crowdbot.core.plugin import Plugin
 from crowdbot.errors import PluginError
 
@@ -63,7 +64,10 @@ def load_path(path: Path) -> ModuleType:
     if taken is not None and getattr(taken, "__file__", None) == str(file):
         return taken
     if taken is not None or _is_installed(name, file):
-        raise PluginError(f"{path}: a module named '{name}' exists already; rename the plugin")
+        raise PluginError(
+            f"{path}: a module named '{name}' exists already; rename the plugin, or uninstall "
+            "the other one ('pip install -e' runs an installed plugin from its folder)"
+        )
     return _import_file(name, file, package=path.is_dir())
 
 
@@ -177,7 +181,9 @@ def _located(root: Path, value: str) -> tuple[Path, str]:
 
 
 def _digest(place: Path) -> str:
-    """Hash of the file, or of all files of the package: names and contents."""
+    """Hash of the file and its helpers, or of all files of the package: names and contents."""
+    if place.is_file():
+        return digest_of(place)
     sha = hashlib.sha256()
     for name, file in _files(place):
         sha.update(f"{name}\0{file.stat().st_size}\0".encode())
@@ -186,9 +192,6 @@ def _digest(place: Path) -> str:
 
 
 def _files(place: Path) -> Iterator[tuple[str, Path]]:
-    if place.is_file():
-        yield "", place
-        return
     for file in sorted(place.rglob("*")):
         parts = file.relative_to(place).parts
         if file.is_file() and not any(p == "__pycache__" or p.startswith(".") for p in parts):

@@ -12,7 +12,7 @@
 ``pip install crowdbot[testing]``. `checks_for` needs neither.
 """
 
-from crowdbot.testing.checks import checks_for, checks_of
+from crowdbot.testing.checks import bind, checks_for, checks_of
 from crowdbot.testing.parametrize import parametrize_with_checks
 
-__all__ = ["checks_for", "checks_of", "parametrize_with_checks"]
+__all__ = ["bind", "checks_for", "checks_of", "parametrize_with_checks"]

@@ -52,6 +52,14 @@ def specs_of(component: Component[Any], registry: Registry) -> list[ComponentSpe
     ]
 
 
+def with_zone(registry: Registry, spec: ComponentSpec, at: tuple[float, float]) -> ComponentSpec:
+    """An environment's spec with a small zone more, called ``kit``, behind a point."""
+    words = spec.model_dump(mode="json")
+    x, y = at
+    words["zones"] = {**words["zones"], "kit": {"x": [x - 0.4, x - 0.3], "y": [y, y + 0.1]}}
+    return registry.spec_model(spec.category, spec.kind).model_validate(words)
+
+
 def built(registry: Registry, spec: ComponentSpec, *args: Any) -> Any:
     """What the component's build function makes of a spec.
 

@@ -40,9 +40,13 @@ def check_card_says_what_the_scores_say(component: Component[Any]) -> None:
     title = text.splitlines()[0]
     assert title == f"# {component.kind}", f"the card is called '{title}'"
     sections = re.findall(r"^## (.+)$", text, re.MULTILINE)
-    assert sections == list(SECTIONS), f"sections are {', '.join(sections)}"
+    assert sections == list(SECTIONS), (
+        f"sections are {', '.join(sections)}; wanted are {', '.join(SECTIONS)}"
+    )
     head = {name: value for name, value in rows(text.partition("\n## ")[0]) if name}
-    assert tuple(head) == HEAD, f"the table at the head has {', '.join(head)}"
+    assert tuple(head) == HEAD, (
+        f"the table at the head has {', '.join(head)}; wanted are {', '.join(HEAD)}"
+    )
     for name in ("symbol", "category", "unit", "better"):
         assert head[name] == getattr(label, name), f"{name}: '{head[name]}'"
     assert all(head.values()), "an empty cell in the table at the head"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 from unittest import SkipTest
@@ -36,6 +36,15 @@ BY_CATEGORY: Mapping[str, tuple[Check, ...]] = {
     "robot": (*robot_kind.CHECKS, *robot.CHECKS),
     "sensor": sensor.CHECKS,
 }
+
+#: Category -> the check of what was built, without which others would fail for its reason.
+_FIRST: Mapping[str, Check] = {
+    "cost function": cost_function.check_signatures,
+    "environment": environment.check_parts,
+    "robot": robot_kind.check_model,
+    "sensor": sensor.check_info,
+}
+_BY_ITSELF = (robot_kind.check_mass_agrees,)
 
 
 def checks_of(component: Component[Any]) -> tuple[Check, ...]:
@@ -71,19 +80,35 @@ def bind(check: Check, component: Component[Any], registry: Registry | None) -> 
     """
     given = (component, registry) if _wants_registry(check) else (component,)
     bound = partial(check, *given)
-    return bound if check in all_kinds.CHECKS else partial(_if_sound, component, bound)
+    before = _before(check, component.category)
+    return partial(_after, [bind(b, component, registry) for b in before], before, bound)
 
 
 def _wants_registry(check: Check) -> bool:
     return "registry" in inspect.signature(check).parameters
 
 
-def _if_sound(component: Component[Any], check: Callable[[], None]) -> None:
-    for first in (all_kinds.check_examples_validate, all_kinds.check_build_resolves):
+def _before(check: Check, category: str) -> list[Check]:
+    """The checks that must pass before one can mean anything."""
+    if check in all_kinds.CHECKS:
+        return []
+    found = [all_kinds.check_examples_validate, all_kinds.check_build_resolves]
+    first = _FIRST.get(category)
+    if first is not None and check is not first and check not in _BY_ITSELF:
+        found.append(first)
+    return found
+
+
+def _after(
+    before: Sequence[Callable[[], None]], names: Sequence[Check], check: Callable[[], None]
+) -> None:
+    for first, name in zip(before, names, strict=True):
         try:
-            first(component)
+            first()
+        except SkipTest:
+            raise
         except Exception as error:
-            raise SkipTest(f"{first.__name__} comes first") from error
+            raise SkipTest(f"{name.__name__} comes first") from error
     check()
 
 

@@ -28,7 +28,7 @@ from crowdbot.core.crowd.gradient import Descent
 from crowdbot.core.crowd.mix import Mix
 from crowdbot.core.registry import Registry
 from crowdbot.testing.around import around, built, specs_of
-from crowdbot.testing.cost_parts import bases_of, stops_at_budget
+from crowdbot.testing.cost_parts import bases_of, forgets_work, stops_at_budget
 from crowdbot.testing.crowd_views import (
     SEEDS,
     arrays_of,
@@ -142,6 +142,20 @@ def check_excess_stops_above_budget(
                 assert not wrong, wrong
 
 
+def check_work_is_written(component: Component[Any], registry: Registry | None = None) -> None:
+    """No cost depends on what ``work`` held before ``prepare``.
+
+    If this fails, let ``prepare`` write row 0, and all of other rows that ``excess`` reads: what
+    is there is another agent's.
+    """
+    for cost in _costs(component, registry):
+        if isinstance(cost, CompiledCost) and not cost.ordered:
+            for seed in SEEDS:
+                view = random_view(seed)
+                same = forgets_work(cost, view, _candidates(view))
+                assert same, "costs depend on what was in work before prepare"
+
+
 def check_gradient(component: Component[Any], registry: Registry | None = None) -> None:
     """Where there is a ``gradient``, it is that of base plus excess, but at kinks.
 
@@ -208,6 +222,7 @@ CHECKS: tuple[Callable[..., None], ...] = (
     check_excess_is_not_negative,
     check_candidates_are_independent,
     check_excess_stops_above_budget,
+    check_work_is_written,
     check_gradient,
     check_input_is_not_changed,
     check_translation_invariant,

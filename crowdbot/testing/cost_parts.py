@@ -46,6 +46,18 @@ def stops_at_budget(cost: CompiledCost, view: CrowdView, velocities: Array) -> s
     return ""
 
 
+def forgets_work(cost: CompiledCost, view: CrowdView, velocities: Array) -> bool:
+    """Whether costs are the same whatever another agent left in ``work``."""
+    mix = Mix([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
+    evaluator = Evaluator(mix)
+    first = evaluator.total(view, velocities)  # gives ``work`` its size
+    found = []
+    for left in (0.0, 2.0):
+        mix.work[:] = left
+        found.append(evaluator.total(view, velocities))
+    return np.array_equal(first, found[0]) and np.array_equal(found[0], found[1])
+
+
 def _budgets(mix: Mix, agent: Array, velocities: Array) -> str:
     for ux, uy in velocities.tolist():
         true = _excess(ux, uy, math.inf, agent, mix.excesses, mix.params, mix.work)

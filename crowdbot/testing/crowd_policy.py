@@ -173,6 +173,7 @@ def _factories(component: Component[Any], registry: Registry | None) -> Iterator
 def _answer(policy: CrowdPolicy, view: CrowdView) -> Array:
     if hasattr(policy, "accelerations"):
         return policy.accelerations(view)
+    assert hasattr(policy, "velocities"), "what was built has no velocities and no accelerations"
     return policy.velocities(view, view.dt)
 
 

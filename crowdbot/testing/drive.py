@@ -26,7 +26,7 @@ from crowdbot.core.interfaces import (
     Task,
     Truth,
 )
-from crowdbot.core.planner_host import PlannerHost
+from crowdbot.core.planner_host import PlannerHost, named_signal
 from crowdbot.core.registry import Registry
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
@@ -203,7 +203,7 @@ class Driven:
             goal=task.goal,
             goal_zone=task.goal_zone,
             readings=dict(readings),
-            log=lambda name, value: self.signals.append((name, value)),
+            log=lambda name, value: self.signals.append(named_signal(name, value)),
             truth=self._truth(k / RATE, pose, twist) if self._privileged else None,
         )
 

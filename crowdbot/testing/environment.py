@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core.component import Component
 from crowdbot.core.interfaces import EnvironmentParts
 from crowdbot.core.registry import Registry
-from crowdbot.testing.around import around, built, specs_of
+from crowdbot.testing.around import around, built, specs_of, with_zone
 from crowdbot.testing.free_floor import Grid, seen_sides, viewpoints
 
 Array = NDArray[np.float64]
@@ -29,6 +29,7 @@ def check_parts(component: Component[Any], registry: Registry | None = None) -> 
         _assert_heights("wall_heights", parts.wall_heights, count)
         for name in ("stops_robot", "stops_crowd"):
             flags = getattr(parts, name)
+            assert isinstance(flags, np.ndarray), f"{name} is a {type(flags).__name__}, no array"
             assert flags.dtype == np.bool_, f"{name} is {flags.dtype}"
             assert flags.shape == (count,), f"{name} has shape {flags.shape} for {count} walls"
         lengths = np.hypot(*(parts.walls[:, 2:] - parts.walls[:, :2]).T)
@@ -47,9 +48,12 @@ def check_zones_and_portals(component: Component[Any], registry: Registry | None
     If this fails, hand on ``spec.zones`` (``zone.polygon``) and ``spec.portals`` (x, then y).
     """
     known = around(component, registry)
-    for spec in specs_of(component, known):
+    examples = specs_of(component, known)
+    zoned = [with_zone(known, s, viewpoints(built(known, s))[0]) for s in examples]
+    for spec in (*examples, *zoned):
         parts: EnvironmentParts = built(known, spec)
-        assert set(parts.zones) >= set(getattr(spec, "zones", {})), "a zone of the words is missing"
+        lacking = sorted(set(getattr(spec, "zones", {})) - set(parts.zones))
+        assert not lacking, f"the words have a zone '{lacking[0]}', the parts have not"
         assert set(parts.portals) >= set(getattr(spec, "portals", {})), "a portal is missing"
         for name, zone in parts.zones.items():
             _assert_outline(f"zone '{name}'", zone)
@@ -92,11 +96,14 @@ def check_free_side_is_on_the_left(
 def check_is_closed(component: Component[Any], registry: Registry | None = None) -> None:
     """A robot cannot drive out between the walls, unless there are none or the floor is a torus.
 
-    If this fails, there is a gap of more than 0.2 m. A place that is meant to be open says so:
-    ``Component(exceptions={"check_is_closed": "why"})``.
+    If this fails, there is a gap of more than 0.2 m, or ``stops_robot`` is wrong. A place that is
+    meant to be open says so: ``Component(exceptions={"check_is_closed": "why"})``.
     """
     for parts in _parts(component, registry):
-        if parts.torus is not None or not np.any(parts.stops_robot):
+        if parts.torus is not None or not len(parts.walls):
+            continue
+        if not np.any(parts.stops_robot):
+            assert parts.solids, "no wall stops a robot"
             continue
         grid = Grid(parts)
         for x, y in viewpoints(parts):
@@ -149,6 +156,7 @@ def _parts(component: Component[Any], registry: Registry | None) -> Iterator[Env
 
 
 def _assert_table(name: str, table: Array, shape: tuple[int, int]) -> None:
+    assert isinstance(table, np.ndarray), f"{name} is a {type(table).__name__}, no array"
     assert table.dtype == np.float64, f"{name} is {table.dtype}"
     assert table.ndim == 2, f"{name} has shape {table.shape}"
     assert table.shape[1] == shape[1], f"{name} has shape {table.shape}"

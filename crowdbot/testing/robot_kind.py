@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core.component import Component
 from crowdbot.core.interfaces import EnvironmentParts, RobotModel
 from crowdbot.core.registry import Registry
+from crowdbot.core.robots.check import check_model as checked
 from crowdbot.dsl.base import ComponentSpec
 from crowdbot.testing.around import around, built, specs_of
 
@@ -24,10 +25,11 @@ _HIGHER = 0.02
 
 
 def check_model(component: Component[Any], registry: Registry | None = None) -> None:
-    """Limits, footprint, height and mass are sound numbers.
+    """Limits, footprint, height and mass are sound numbers, and the drive fits the description.
 
     If this fails, look at `RobotModel` and `RobotLimits`: SI units; a polygon is convex and
-    counter-clockwise; people push at ``force_height``, above the floor and below the top.
+    counter-clockwise; people push at ``force_height``, above the floor and below the top; a driven
+    wheel's joint points to the left and says its torque.
     """
     for _, model in _models(component, registry):
         assert isinstance(model, RobotModel), f"build returned a {type(model).__name__}"
@@ -46,6 +48,7 @@ def check_model(component: Component[Any], registry: Registry | None = None) -> 
         assert 0.0 < model.force_height <= model.height, f"force_height is {model.force_height}"
         if model.footprint is not None:
             _assert_footprint(model.footprint)
+        checked(model)
 
 
 def check_model_is_constant(component: Component[Any], registry: Registry | None = None) -> None:

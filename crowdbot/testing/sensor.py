@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 import re
 from collections.abc import Callable, Iterator
@@ -53,8 +54,19 @@ def check_info(component: Component[Any], registry: Registry | None = None) -> N
         _assert_info(info)
         assert _same_info(info, sensor.info()), "info() changes"
         before = _copy_of(info)
+        _assert_can_be_read(sensor, info)
         Probe(sensor)(crowded(), 0)
         assert _same_info(before, sensor.info()), "info() changes when the sensor is read"
+
+
+def _assert_can_be_read(sensor: Any, info: SensorInfo) -> None:
+    given = ("scene", "pose", "t", "rng", *(("memory",) if info.memory else ()))
+    try:
+        inspect.signature(sensor.read).bind(*given)
+    except TypeError as error:
+        raise AssertionError(
+            f"info().memory is {info.memory}, so that read({', '.join(given)}) is called: {error}"
+        ) from error
 
 
 def check_reading_is_numbers(component: Component[Any], registry: Registry | None = None) -> None:

@@ -14,6 +14,7 @@ from crowdbot.core.registry import Registry
 from crowdbot.core.trajectory import Trajectories
 from crowdbot.dsl.base import ComponentSpec
 from crowdbot.dsl.scenario import Scenario
+from crowdbot.testing.around import with_zone
 
 #: Where the robot starts in the room, and its goal zone, m.
 START = (1.0, 0.0, 0.0)
@@ -56,10 +57,8 @@ def tiny_scenario(registry: Registry, **changes: Any) -> Scenario:
 
 def scenario_in(registry: Registry, spec: ComponentSpec, at: tuple[float, float]) -> Scenario:
     """A robot at a point of an environment, with a goal zone around it that it has not reached."""
-    words = spec.model_dump(mode="json")
-    x, y = at
-    words["zones"] = {**words["zones"], "kit": {"x": [x - 0.4, x - 0.3], "y": [y, y + 0.1]}}
-    return tiny_scenario(registry, environment=words, start=(x, y, 0.0), zone="kit")
+    words = with_zone(registry, spec, at).model_dump(mode="json")
+    return tiny_scenario(registry, environment=words, start=(*at, 0.0), zone="kit")
 
 
 def run_of(scenario: Scenario, registry: Registry, planner: str = "goal_seek") -> Trajectories:

@@ -87,6 +87,8 @@ FAILING = {
     "metric raises": ("score", "1 / 0", "metric 'faulty.metric' of plugin "),
     "metric leaves": ("score", "sys.exit(0)", "SystemExit: 0"),
     "metric is nan": ("score", "return [LABEL.ok('corrected', np.nan)]", "nan must not escape"),
+    "metric is empty": ("score", "return []", "variants none; its label says corrected"),
+    "metric is nothing": ("score", "return None", "returned None; a list of scores is wanted"),
     "metric is no score": ("score", "return [3.0]", "returned 3.0 instead of its own scores"),
 }  # fmt: skip
 SETTINGS = (

@@ -10,10 +10,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Literal
+from unittest import SkipTest
 
 import numpy as np
 import pytest
 from pydantic import ConfigDict, Field
+from wrong import BUILT_IN
 
 from crowdbot.core.interfaces import References
 from crowdbot.core.laws import Laws
@@ -22,7 +24,7 @@ from crowdbot.core.score_label import MetricComponent, ScoreLabel
 from crowdbot.core.trajectory import Trajectories
 from crowdbot.dsl.base import CATEGORIES, MetricSpec
 from crowdbot.testing import all_kinds, card, checks_of, metric, parametrize_with_checks
-from crowdbot.testing.checks import BY_CATEGORY
+from crowdbot.testing.checks import BY_CATEGORY, checks_for
 
 DOCS = Path(__file__).parents[2] / "docs/reference"
 LABEL = ScoreLabel(metric="acme.x", symbol="x", category="c", unit="m", better="none")
@@ -207,3 +209,32 @@ def _as_listed() -> list[tuple[Any, ...]]:
              "metric")  # fmt: skip
     assert set(order) == set(BY_CATEGORY) == {c.category for c in CATEGORIES}
     return [all_kinds.CHECKS, *(BY_CATEGORY[c] for c in order)]
+
+
+def test_what_cannot_be_built_fails_once() -> None:
+    """The other checks would fail for its reason, with advice that does not help."""
+    broken = component(build="acme_x_nowhere:build")
+    found: dict[str, str] = {}
+    for name, check in checks_for(broken, BUILT_IN):
+        try:
+            check()
+        except SkipTest as error:
+            found[name] = str(error)
+        except Exception as error:
+            found[name] = f"failed: {error}"
+    assert "not found" in found.pop("check_build_resolves")
+    for name in ("check_entry_point_yields_it", "check_words_are_light"):
+        found.pop(name)  # this file is no plugin
+    assert len(found) >= 10
+    assert set(found.values()) == {"check_build_resolves comes first"}
+
+
+@pytest.mark.parametrize("given", ["", "spec, costs", "*, spec"])
+def test_a_build_function_that_takes_something_else(
+    given: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    module = ModuleType("acme_x_signature")
+    exec(f"def build({given}): pass", vars(module))
+    monkeypatch.setitem(sys.modules, "acme_x_signature", module)
+    with pytest.raises(AssertionError, match=r"cannot be called as build\(spec\)"):
+        all_kinds.check_build_resolves(component(build="acme_x_signature:build"))

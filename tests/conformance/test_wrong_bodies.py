@@ -54,6 +54,8 @@ def place(found: EnvironmentParts, **words: Any) -> Any:
         (environment.check_zones_are_on_the_floor, parts(**PILLAR), "something in its centre"),
         (environment.check_free_side_is_on_the_left, parts(WALLS[:, [2, 3, 0, 1]]), "right side"),
         (environment.check_is_closed, parts(GAP), "a robot gets out at"),
+        (environment.check_is_closed, parts(stops_robot=np.zeros(4, np.bool_)), "no wall stops"),
+        (environment.check_parts, parts(stops_robot=[True] * 4), "stops_robot is a list"),
     ],
 )
 def test_environments(check: Any, found: EnvironmentParts, because: str) -> None:
@@ -63,7 +65,7 @@ def test_environments(check: Any, found: EnvironmentParts, because: str) -> None
 def test_a_zone_that_is_forgotten() -> None:
     words = {"zones": {"there": {"x": [1.0, 2.0], "y": [0.0, 1.0]}}}
     component = place(parts(), examples=(words,))
-    assert_fails(environment.check_zones_and_portals, component, "a zone of the words")
+    assert_fails(environment.check_zones_and_portals, component, "the words have a zone 'there'")
 
 
 def test_a_place_that_is_drawn_anew() -> None:

@@ -179,6 +179,20 @@ def _counting(ux: float, uy: float, budget: float, agent: Any, work: Any, params
     return float(table[0, 0])
 
 
+@njit(PREPARE, error_model="numpy")
+def _writes_nothing(
+    agent: Any, near: Any, near_count: int, walls: Any, wall_count: int, params: Any, work: Any
+) -> int:
+    return 1
+
+
+@njit(EXCESS, error_model="numpy")
+def _what_is_there(
+    ux: float, uy: float, budget: float, agent: Any, work: Any, params: Any
+) -> float:
+    return float(work_table(work)[0, 0])
+
+
 @njit(EXCESS, error_model="numpy")
 def _square(ux: float, uy: float, budget: float, agent: Any, work: Any, params: Any) -> float:
     return ux * ux + uy * uy
@@ -209,6 +223,11 @@ def compiled(**changes: Any) -> Any:
         (cost_function.check_excess_is_not_negative, {"excess": _negative}, "below their base"),
         (cost_function.check_candidates_are_independent, {"excess": _counting}, "another order"),
         (cost_function.check_excess_stops_above_budget, {"excess": _impatient}, "with a budget"),
+        (
+            cost_function.check_work_is_written,
+            {"prepare": _writes_nothing, "excess": _what_is_there},
+            "in work before",
+        ),
         (cost_function.check_gradient, {"gradient": _half}, "gradients are wrong"),
     ],
 )

@@ -57,6 +57,11 @@ def _stops(_: Any, obs: Observation) -> Command:
     [
         (planner.check_commands_are_numbers, lambda s, o: Command(math.nan, 0.0), "must be finite"),
         (planner.check_commands_are_numbers, lambda s, o: [0.1, 0.0], "a Command"),
+        (
+            planner.check_commands_are_numbers,
+            lambda s, o: o.log(3, 1.0),
+            "name of a signal is text",
+        ),
         (planner.check_commands_are_within_limits, lambda s, o: Command(9.0, 0.0), "beyond"),
         (planner.check_commands_are_within_limits, lambda s, o: Command(0.1, 0.0, 0.2), "beyond"),
         (

@@ -184,7 +184,7 @@ class _Returning:
         (_raises, "ZeroDivisionError: oh acme"),
         (lambda _: _Returning(ValueError("bad")), "ValueError: bad"),
         (lambda _: _Returning(InputError("odd")), "InputError: odd"),
-        (lambda _: _Returning(None), "TypeError"),
+        (lambda _: _Returning(None), "returned None; a list of scores"),
         (lambda _: _Returning([1.0]), r"returned 1\.0 instead"),
         (lambda _: _Returning([result("risk", "literal", 1.0)]), "instead of its own"),
         (lambda _: _Returning([result("acme.width", "a", 1.0)] * 2), "a variant twice: a, a"),

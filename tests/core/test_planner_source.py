@@ -229,6 +229,22 @@ def test_an_edited_file_is_read_again(registry: Registry, source: Path) -> None:
     assert before.spec_dump["sha256"] != after.spec_dump["sha256"]
 
 
+def test_modules_beside_it_are_part_of_the_digest(registry: Registry, source: Path) -> None:
+    def digest() -> object:
+        return resolve_planner(f"{source}:Mine", registry).spec_dump["sha256"]
+
+    before = digest()
+    (source.parent / "stranger.py").write_text("X = 1\n")
+    assert digest() == before
+    (source.parent / "helper_beside.py").write_text(
+        "HALF = 0.5\ndef late():\n    import stranger\n"
+    )
+    changed = digest()
+    assert changed != before
+    (source.parent / "stranger.py").write_text("X = 2\n")
+    assert digest() != changed
+
+
 @pytest.mark.parametrize(
     ("name", "settings", "message"),
     [
@@ -250,6 +266,8 @@ def test_wrong_classes(
 def test_missing_python_files(registry: Registry, source: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"none.py: no such file"):
         resolve_planner(str(tmp_path / "none.py:Mine"), registry)
+    with pytest.raises(InputError, match=r"no such file; did you mean .*json.py:Mine\?"):
+        resolve_planner(f"{source.with_suffix('')}:Mine", registry)
     with pytest.raises(InputError, match=r"which class\? Write .*json.py:Mine"):
         resolve_planner(str(source), registry)
     with pytest.raises(InputError, match=r"which class\? Write .*none.py:Class"):

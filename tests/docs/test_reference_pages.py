@@ -124,6 +124,21 @@ def test_entries_of_the_cost_arrays_are_described() -> None:
         assert [getattr(cost, n) for n in names] == list(range(size))
 
 
+def test_every_quantity_is_listed_with_its_unit() -> None:
+    from crowdbot.dsl import quantities
+
+    found = {
+        name: next(m.si_unit for m in value.__metadata__ if isinstance(m, quantities.Quantity))
+        for name, value in vars(quantities).items()
+        if hasattr(value, "__metadata__")
+    }
+    rows = re.findall(
+        r"^\| ((?:`\w+`(?:, )?)+) \| (\S+) \|$", section(PLUGINS, "## Components"), re.M
+    )
+    listed = {name: unit for names, unit in rows for name in re.findall(r"`(\w+)`", names)}
+    assert listed == found
+
+
 def test_every_category_has_a_build_row() -> None:
     from crowdbot.dsl.base import CATEGORIES
 

@@ -119,7 +119,7 @@ class Description:
         """The drive of two wheels, with radius and track as described.
 
         Raises:
-            PluginError: there are no such joints, or no wheels on them.
+            PluginError: there are no such joints, or no wheels on them, or they are exchanged.
         """
         left, right = (
             self.pose(self.joint(name).child, base)[:3, 3] for name in (left_joint, right_joint)
@@ -234,6 +234,8 @@ def _mass(link: Xml.Element, kind: Format) -> float:
     """Mass of a link, kg; that of SDFormat is 1 kg where it does not say."""
     mass = link.find("inertial/mass")
     if mass is None:
+        if kind == "urdf" and link.find("inertial") is not None:
+            raise PluginError(f"the inertial of '{name_of(link)}' has no mass")
         return 0.0 if kind == "urdf" else 1.0
     text = mass.get("value", "") if kind == "urdf" else mass.text or ""
     return number(text, f"the mass of '{name_of(link)}'")

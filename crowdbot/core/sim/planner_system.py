@@ -15,7 +15,7 @@ from pydrake.systems.framework import Context, DiscreteStateIndex, DiscreteValue
 
 from crowdbot.core.crowd import state as crowd_state
 from crowdbot.core.interfaces import Observation, Pose, RobotLimits, RobotState, Task, Truth
-from crowdbot.core.planner_host import HostedCommand, PlannerHost
+from crowdbot.core.planner_host import HostedCommand, PlannerHost, named_signal
 from crowdbot.core.recording.topics import is_odometry
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control import ControlledRobot
@@ -150,20 +150,9 @@ class PlannerSystem(LeafSystem):
                 for n, s in self._slots.items()
                 if bank[s.stamp] >= 0.0
             },
-            log=lambda name, value: self._on_signal(t, *_signal(name, value)),
+            log=lambda name, value: self._on_signal(t, *named_signal(name, value)),
             truth=truth,
         )
-
-
-def _signal(name: str, value: float) -> tuple[str, float]:
-    """A signal that can be recorded.
-
-    Raises:
-        TypeError, ValueError: what the planner wants to log is no named number.
-    """
-    if not isinstance(name, str) or not name:
-        raise TypeError(f"log: the name of a signal is text, not {name!r}")
-    return name, float(value)
 
 
 def _slew_planar(
