@@ -68,8 +68,7 @@ def values(report: Contents, metric: str, variant: str, planner: str, **axes: st
     runs = {
         r.run_id
         for r in report.results.runs
-        if r.planner == planner
-        and all(r.axes[name] == label for name, label in axes.items())
+        if r.planner == planner and all(r.axes[name] == label for name, label in axes.items())
     }
     found = [
         s.value

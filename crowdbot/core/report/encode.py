@@ -56,7 +56,8 @@ def attempts(results: Results) -> list[Attempt]:
 def axes_of(results: Results) -> list[dict[str, Any]]:
     """Axes of the suite with their labels, in the suite's order."""
     found: dict[str, dict[str, None]] = {}
-    for one in (*results.runs, *results.failures):
+    tried: list[Attempt] = [*results.runs, *results.failures]
+    for one in tried:
         for name, label in one.axes.items():
             found.setdefault(name, {})[label] = None
     return [{"name": name, "labels": list(labels)} for name, labels in found.items()]

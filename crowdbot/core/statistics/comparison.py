@@ -113,9 +113,7 @@ def compare(
     return found, Leaning(ranks, _sound_means(found, pair, groups, sign, level))
 
 
-def judged(
-    found: Comparison, leaning: Leaning, p_holm: float | None, alpha: float
-) -> Comparison:
+def judged(found: Comparison, leaning: Leaning, p_holm: float | None, alpha: float) -> Comparison:
     """The comparison with its verdict.
 
     A verdict takes ranks that chance does not explain and a mean that does not contradict them.
