@@ -222,6 +222,8 @@ def test_ctrl_c_ends_workers_and_keeps_what_is_finished(tmp_path: Path) -> None:
         (["--planner", "dwa", "--seeds", "3..1"], 2, "--seeds"),
         (["--planner", "dwa", "--set", "crowd.flow.density=9"], 1, "people fit"),
         (["--planner", "dwa", "--cluster", "tcp://127.0.0.1:1"], 1, "no Dask scheduler"),
+        (["--planner", "dwa", "--cluster", "tcp://no-such-host.invalid:1"], 1, "no Dask scheduler"),
+        (["--planner", "dwa", "--cluster", "localhost"], 1, "write tcp://HOST:PORT"),
     ],
 )
 def test_wrong_input_runs_nothing(
@@ -232,7 +234,7 @@ def test_wrong_input_runs_nothing(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("crowdbot.core.sim.campaign.cluster._PATIENCE", 1.0)
+    monkeypatch.setattr("crowdbot.core.sim.campaign.cluster._LISTENING", 0.5)
     out = tmp_path / "runs"
     assert cli.main(["campaign", "challenge-2020", *argv, "--out", str(out)]) == code
     assert text in capsys.readouterr().err
