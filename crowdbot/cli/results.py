@@ -141,7 +141,7 @@ def _only(found: Results, planners: list[str] | None, status: str | None) -> Res
     for name in planners or ():
         if name not in labels:
             raise UnknownNameError("planner", name, labels)
-    statuses = ("arrived", "timeout", "planner_failed")
+    statuses = ("arrived", "timeout", "planner_failed", "failed")
     if status is not None and status not in statuses:
         raise UnknownNameError("status", status, statuses)
     runs = tuple(
@@ -154,7 +154,11 @@ def _only(found: Results, planners: list[str] | None, status: str | None) -> Res
         found,
         runs=runs,
         scores=tuple(s for s in found.scores if s.run_id in ids),
-        failures=tuple(f for f in found.failures if not planners or f.planner in planners),
+        failures=tuple(
+            f
+            for f in found.failures
+            if (not planners or f.planner in planners) and status in (None, "failed")
+        ),
     )
 
 
@@ -169,6 +173,7 @@ def _line(summary: Summary) -> dict[str, Any]:
         "n": summary.count,
         "undefined": summary.undefined,
         "censored": summary.censored,
+        "failed": summary.failed,
     }
 
 

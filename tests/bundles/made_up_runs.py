@@ -83,6 +83,7 @@ def make_runs(
                 "run_id": provenance.digest(identity), **identity,
                 "hashes": {**identity["hashes"], "trajectory": f"cb1-sha256:{number}{seed}"},
                 "pinned": choice.pinned, "privileged": choice.privileged, "status": "arrived",
+                "goal_time": 0.5,
                 "metrics": {m: {"spec_version": 1} for m in METRICS}, "density": 0.1,
                 "machine": provenance.machine(), "references": {}, **more,
             }  # fmt: skip

@@ -48,6 +48,25 @@ def test_the_same_trajectory_and_scores_are_verified() -> None:
 
 
 @pytest.mark.parametrize(("claim", "why"), [
+    ({"status": "timeout"}, "status is claimed to be 'timeout', but is 'planner_failed'"),
+    ({"goal_time": 3.0}, "goal_time is claimed to be 3.0, but is None"),
+    ({"sim_time": 4.0}, "sim_time is claimed to be 4.0, but is 2.0"),
+    ({"privileged": False}, "privileged is claimed to be False"),
+    ({"conditions": {"rates.log": "8 Hz"}}, "conditions differ from those of the suite: rates.log"),
+    ({"metrics": {"risk": {"spec_version": 1, "horizon": 9.0}}}, "metrics differ from those"),
+])  # fmt: skip
+def test_records_that_the_trajectory_does_not_bear_out(claim: dict[str, Any], why: str) -> None:
+    true: dict[str, Any] = {
+        "status": "planner_failed", "goal_time": None, "sim_time": 2.0, "privileged": True,
+        "conditions": {"rates.log": "16 Hz"},
+    }  # fmt: skip
+    found = judge([again(claimed(**{**true, **claim}), **true)])
+    assert found.outcome == "suspicious"
+    assert why in found.findings[0]
+    assert judge([again(claimed(**true), **true)]).outcome == "verified"
+
+
+@pytest.mark.parametrize(("claim", "why"), [
     (scored(value=0.5), "risk.corrected is claimed to be 0.5, but the same trajectory gives 1.0"),
     (scored(value=None, reason="no_agents"), "is claimed to be undefined"),
     (scored(unit="ms"), "is claimed"),

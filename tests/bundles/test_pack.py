@@ -153,6 +153,7 @@ def test_a_changed_score_is_noticed(bundle: Path) -> None:
     ({"hashes": {"realisation": "a"}}, "its people are not those of the lock"),
     ({"hashes": {"spec": "a"}}, "its hash is not that of the scenario that is installed here"),
     ({"hashes": 3}, "its run_id is not the hash"),
+    ({"goal_time": None}, "its status is 'arrived', but it has no time of arrival"),
 ])  # fmt: skip
 def test_a_forged_record_contradicts_itself(bundle: Path, change: Any, why: str) -> None:
     name = members(bundle, "run.json")[0]

@@ -28,6 +28,8 @@ class Steady:
         pass
     def step(self, obs):
         return (self.speed, 0.1)
+class Other(Steady):
+    pass
 """
 
 EMPTY = """\
@@ -103,7 +105,7 @@ def forged(world: Path) -> Path:
 
     def improve(content: bytes) -> bytes:
         rows = content.split(b"\r\n")
-        better = [r.replace(b",0.0,", b",1.0,", 1) if b",success," in r else r for r in rows]
+        better = [r.replace(b",0.0,", b",1.0,", 1) if b",spl," in r else r for r in rows]
         return b"\r\n".join(better)
 
     names = zipfile.ZipFile(world / "team.cbz").namelist()
@@ -124,6 +126,22 @@ def test_a_forged_score_is_suspicious(world: Path, verify: Verify) -> None:
     assert "is claimed to be 1.0, but the same trajectory gives 0.0" in found["findings"][0]
 
 
+def test_a_forged_record_is_suspicious(world: Path, verify: Verify) -> None:
+    names = zipfile.ZipFile(world / "team.cbz").namelist()
+
+    def forge(**changes: Any) -> Path:
+        def change(content: bytes) -> bytes:
+            return json.dumps(json.loads(content) | changes).encode()
+
+        return rewrite_stored(world, {n: change for n in names if n.endswith("run.json")})
+
+    code, found = verify(forge(status="arrived", goal_time=0.5), "--sample", "0")
+    assert (code, found["outcome"]) == (1, "invalid")  # success says something else
+    code, found = verify(forge(status="planner_failed"))
+    assert (code, found["outcome"]) == (1, "suspicious")
+    assert "status is claimed to be 'planner_failed', but is 'timeout'" in found["findings"][0]
+
+
 def test_a_tampered_member_is_invalid_and_nothing_is_simulated(world: Path, verify: Verify) -> None:
     name = next(n for n in zipfile.ZipFile(world / "team.cbz").namelist() if "scores.csv" in n)
     plain = rewrite_stored(world, {})
@@ -142,6 +160,11 @@ def test_a_planner_that_is_not_here_cannot_be_re_run(world: Path, verify: Verify
     other = f"{world / 'other' / 'mine.py'}:Steady"
     code, found = verify(world / "team.cbz", "--planner", other, planner=False)
     assert "is not the file that the bundle was made with" in found["findings"][0]
+    code, found = verify(
+        world / "team.cbz", "--planner", f"{world / 'mine.py'}:Other", planner=False
+    )
+    assert (code, found["outcome"]) == (1, "cannot be re-run")
+    assert "is not the class that the bundle was made with: Steady" in found["findings"][0]
 
 
 def test_nothing_need_be_simulated(world: Path, verify: Verify) -> None:

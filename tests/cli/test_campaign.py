@@ -17,7 +17,9 @@ from campaign_cases import TINY, outcome, run, start
 
 from crowdbot import cli
 from crowdbot.cli.campaign import read_seeds
+from crowdbot.core.results.rows import FailureRow, Results, RunRow, ScoreRow
 from crowdbot.core.results.store import INDEX, load
+from crowdbot.core.results.tables import summarise
 from crowdbot.errors import UsageError
 
 BAD = """
@@ -222,6 +224,8 @@ def test_ctrl_c_ends_workers_and_keeps_what_is_finished(tmp_path: Path) -> None:
         (["--planner", "dwa", "--seeds", "3..1"], 2, "--seeds"),
         (["--planner", "dwa", "--set", "crowd.flow.density=9"], 1, "people fit"),
         (["--planner", "dwa", "--cluster", "tcp://127.0.0.1:1"], 1, "no Dask scheduler"),
+        (["--planner", "dwa", "--cluster", "tcp://no-such-host.invalid:1"], 1, "no Dask scheduler"),
+        (["--planner", "dwa", "--cluster", "localhost"], 1, "write tcp://HOST:PORT"),
     ],
 )
 def test_wrong_input_runs_nothing(
@@ -232,7 +236,7 @@ def test_wrong_input_runs_nothing(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("crowdbot.core.sim.campaign.cluster._PATIENCE", 1.0)
+    monkeypatch.setattr("crowdbot.core.sim.campaign.cluster._LISTENING", 0.5)
     out = tmp_path / "runs"
     assert cli.main(["campaign", "challenge-2020", *argv, "--out", str(out)]) == code
     assert text in capsys.readouterr().err
@@ -245,3 +249,38 @@ def test_seeds() -> None:
     for text in ("", "a", "1..", "-1", "2..1"):
         with pytest.raises(UsageError):
             read_seeds(text)
+
+
+def test_tables_of_results_count_failures() -> None:
+    """A planner that fails in half of its runs, and one that leaves none."""
+    label: dict[str, Any] = {
+        "category": "task", "symbol": "S", "variant": "corrected", "unit": "1",
+        "better": "higher", "reason": "", "lower": None, "upper": None,
+    }  # fmt: skip
+    runs = [made_up("a", 0, "arrived"), made_up("a", 1, "planner_failed")]
+    scores = [
+        ScoreRow(run_id=r.run_id, metric="success", value=v, status="ok", **label)
+        for r, v in zip(runs, (1.0, 0.0), strict=True)
+    ]
+    failures = [
+        FailureRow(suite="s", scenario="x", planner=p, seed=2, error="", traceback="")
+        for p in ("a", "b")
+    ]
+    found = Results(runs=tuple(runs), scores=tuple(scores), failures=tuple(failures))
+    summaries = summarise(found, "success", ["planner"])
+    assert [(s.group["planner"], s.count, s.failed) for s in summaries] == [
+        ("a", 3, 2),
+        ("b", 1, 1),
+    ]
+    assert summaries[0].mean == pytest.approx(1 / 3)
+    by_status = {s.group["status"]: s.count for s in summarise(found, "success", ["status"])}
+    assert by_status == {"arrived": 1, "planner_failed": 1, "failed": 2}
+
+
+def made_up(planner: str, seed: int, status: str) -> RunRow:
+    return RunRow(
+        run_id=f"{planner}{seed}", suite="s", scenario="x", planner=planner, seed=seed, axes={},
+        status=status, reason="", goal_time=None, sim_time=1.0, wall_time=1.0, privileged=False,
+        pinned=True, spec_hash="", realisation_hash="", trajectory_hash="", density=None,
+        directory=f"{planner}{seed}", conditions={},
+    )  # fmt: skip

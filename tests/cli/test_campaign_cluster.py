@@ -21,6 +21,12 @@ def _free_port() -> int:
         return int(probe.getsockname()[1])
 
 
+def _listens(address: str) -> bool:
+    host, _, port = address.removeprefix("tcp://").partition(":")
+    with socket.socket() as probe:
+        return probe.connect_ex((host, int(port))) == 0
+
+
 @pytest.fixture
 def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
     dask = str(Path(sys.executable).with_name("dask"))
@@ -34,6 +40,9 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]
         subprocess.Popen([*command, "--local-directory", str(tmp_path / str(i))], **quiet)  # type: ignore[call-overload]
         for i in range(2)
     ]
+    end = time.monotonic() + 60.0
+    while not _listens(address) and time.monotonic() < end:
+        time.sleep(0.1)
     try:
         yield address, workers
     finally:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from made_up_results import AXES, cells, censored, challenge, run, score
+from made_up_results import AXES, cells, censored, challenge, pairs, run, score
 
 from crowdbot.core.results.rows import Results
 from crowdbot.core.statistics import Table, clusters, headline_names, summarise
@@ -159,3 +159,22 @@ def test_axes_without_an_effect_say_why(values: list[float | None], reason: str)
     scores = tuple(score(r, v) for r, v in zip(runs, values, strict=True))
     flow = summarise(Results(runs=runs, scores=scores)).axes[0]
     assert (flow.omega_squared, flow.reason) == (None, reason)
+
+
+@pytest.mark.parametrize("scale", [1e300, 1e-300])
+def test_very_large_and_very_small_scores_are_summarised_without_overflow(scale: float) -> None:
+    rng = np.random.default_rng(2)
+    a, b = (rng.random((2, 20)) + 0.5).tolist()
+    with np.errstate(over="raise", invalid="raise"):
+        plain = summarise(pairs(a, b)).comparisons[0]
+        found = summarise(pairs([scale * x for x in a], [scale * x for x in b])).comparisons[0]
+    assert (found.p, found.verdict) == (plain.p, plain.verdict)
+    for one, other in (
+        (found.difference, plain.difference),
+        (found.improvement, plain.improvement),
+    ):
+        unit = scale if one is found.difference else 1.0
+        assert one.low is not None
+        assert other.low is not None
+        assert one.low / unit == pytest.approx(other.low)
+    assert found.standardised.value == pytest.approx(plain.standardised.value)

@@ -119,6 +119,17 @@ def _run_problems(archive: Archive, run: ClaimedRun) -> Iterator[str]:
         yield "its versions are not those of the manifest"
     if is_privileged(record) != (manifest.classed == "privileged"):
         yield f"the manifest says '{manifest.classed}', the run does not"
+    yield from _ending_problems(run)
+
+
+def _ending_problems(run: ClaimedRun) -> Iterator[str]:
+    """Where status, time of arrival and success contradict each other."""
+    arrived = run.record.get("goal_time") is not None
+    if (run.record.get("status") == "arrived") > arrived:
+        yield "its status is 'arrived', but it has no time of arrival"
+    for score in run.scores:
+        if (score.metric, score.status) == ("success", "ok") and score.value != arrived:
+            yield f"its success is {score.value:g}, which its time of arrival contradicts"
 
 
 def _scenario_problems(

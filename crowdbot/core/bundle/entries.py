@@ -50,6 +50,11 @@ class Entry:
         """Whether it is complete."""
         return not self.manifest.missing
 
+    @property
+    def failed(self) -> int:
+        """Runs in which the planner failed."""
+        return sum(run.record.get("status") == "planner_failed" for run in self.runs)
+
 
 def load_entries(folder: Path, registry: Registry) -> tuple[list[Entry], dict[str, str]]:
     """All bundles of a folder, by file name, and those that are left out, with the reason.

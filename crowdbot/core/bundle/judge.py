@@ -87,7 +87,9 @@ def judge(sample: Sequence[Again]) -> Judgement:
         if a.relation == "different"
     ]
     for again in sample:
+        findings += _other_conditions(again)
         if again.relation == "identical":
+            findings += _other_ending(again)
             findings += _unequal(again)
     loose = [a for a in sample if a.relation != "identical" or not a.same_ground]
     findings += _beyond(loose)
@@ -104,6 +106,54 @@ def same_ground(claimed: Mapping[str, Any], record: Mapping[str, Any]) -> bool:
     names = ("processor", "rounding")
     same = all(_machine(claimed, n) == _machine(record, n) != "" for n in names)
     return same and claimed.get("versions") == record.get("versions")
+
+
+# ----------------------------------------------------------------------------- records
+#: Keys of run.json that follow from the trajectory and the planner.
+_ENDING = ("status", "goal_time", "sim_time", "density", "privileged")
+
+
+def _other_ending(again: Again) -> Iterator[str]:
+    """What the record claims of a run, and the same trajectory does not bear out."""
+    for key in _ENDING:
+        said, found = again.claimed.record.get(key), again.record.get(key)
+        numbers = [x for x in (said, found) if isinstance(x, float)]
+        equal = are_equal(*numbers) if len(numbers) == 2 else said == found
+        if not equal:
+            yield f"{again.claimed.name}: {key} is claimed to be {said!r}, but is {found!r}"
+
+
+def _other_conditions(again: Again) -> Iterator[str]:
+    """Parameters of metrics and conditions that are not those of the same software here.
+
+    With other versions of software or of a metric they may differ; such scores are not compared,
+    and have no rank.
+    """
+    claimed, here = again.claimed.record, again.record
+    if any(claimed.get(n) != here.get(n) for n in ("versions", "plugins")):
+        return
+    for key in ("metrics", "conditions"):
+        said, found = (_mapping(r, key) for r in (claimed, here))
+        differing = [
+            name
+            for name in sorted(said.keys() | found.keys())
+            if said.get(name) != found.get(name)
+            and not _other_version(said.get(name), found.get(name))
+        ]
+        if differing:
+            yield f"{again.claimed.name}: {key} differ from those of the suite: " \
+                  f"{', '.join(differing[:3])}"  # fmt: skip
+
+
+def _other_version(a: Any, b: Any) -> bool:
+    """Whether these are two versions of a metric."""
+    versions = [x.get("spec_version") if isinstance(x, Mapping) else None for x in (a, b)]
+    return None not in versions and versions[0] != versions[1]
+
+
+def _mapping(record: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    value = record.get(name)
+    return value if isinstance(value, Mapping) else {}
 
 
 # ------------------------------------------------------------------- equal trajectories

@@ -63,6 +63,7 @@ def _entry(table: Standings, entry: Entry) -> dict[str, Any]:
         "planner": manifest.label,
         "contact": manifest.contact,
         "runs": len(manifest.runs),
+        "failed": entry.failed,
         "missing": len(manifest.missing),
         "pinned": manifest.pinned,
         "state": _state(entry),

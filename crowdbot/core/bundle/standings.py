@@ -79,9 +79,10 @@ def _table(
     sign = {s.planner: -1.0 if s.better == "higher" else 1.0 for s in scores}
     means = {s.planner: sign[s.planner] * (s.mean.value or 0.0) for s in scores}
 
-    def order(entry: Entry) -> tuple[bool, int, float, str]:
+    def order(entry: Entry) -> tuple[bool, int, int, float, str]:
         name = entry.name
-        return not entry.ranked, ranks.get(name, 1), means.get(name, math.inf), name
+        mean = means.get(name, math.inf)  # of few and short runs, where many have failed
+        return not entry.ranked, ranks.get(name, 1), entry.failed, mean, name
 
     return Standings(
         edition=edition,

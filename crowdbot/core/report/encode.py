@@ -15,8 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.report.series import Series
-from crowdbot.core.results.rows import FailureRow, Results, RunRow
-from crowdbot.core.statistics.table import PLANNER_FAILED, WITHOUT_RUN
+from crowdbot.core.results.rows import (
+    PLANNER_FAILED,
+    WITHOUT_RUN,
+    FailureRow,
+    Results,
+    RunRow,
+)
 
 #: Code of a score that a run does not have.
 ABSENT = 65535
@@ -56,8 +61,9 @@ def attempts(results: Results) -> list[Attempt]:
 def axes_of(results: Results) -> list[dict[str, Any]]:
     """Axes of the suite with their labels, in the suite's order."""
     found: dict[str, dict[str, None]] = {}
-    for axes in [r.axes for r in results.runs] + [f.axes for f in results.failures]:
-        for name, label in axes.items():
+    tried: list[Attempt] = [*results.runs, *results.failures]
+    for one in tried:
+        for name, label in one.axes.items():
             found.setdefault(name, {})[label] = None
     return [{"name": name, "labels": list(labels)} for name, labels in found.items()]
 

@@ -103,7 +103,7 @@ function drawParameterTable(rows, planners) {
     row.density ? numberCell(format(row.density.mean, 3), interval(row.density.low, row.density.high, 3)) : numberCell("–"),
     row.cells.map(({ about, known }) => el("td", { class: "number" }, el("b", { text: format(about.centre, decimals) }),
       el("small", { text: known ? interval(known.low, known.high, decimals) : quartileText(about, report.series[state.series], decimals), class: known ? null : "quartile" }),
-      missingChips(about, "failed")))));
+      missingChips(about)))));
 }
 
 function parametersNote() {

@@ -44,7 +44,7 @@ function drawScoreRow(row, planners, choose) {
     const known = row.known[i];
     const range = known ? interval(known.low, known.high, decimals) : quartileText(about, series, decimals);
     return el("td", { class: "number" }, el("b", { text: format(about.centre, decimals) }),
-      el("small", { text: range, class: known ? null : "quartile" }), missingChips(about, "failed"));
+      el("small", { text: range, class: known ? null : "quartile" }), missingChips(about));
   });
   return el("tr", { "data-score": `${series.metric}.${series.variant}`, class: row.series === state.series ? "chosen" : null },
     scoreHead(row.series, choose), cells, el("td", { class: "spread" }, spreadPicture(row, planners)),

@@ -48,8 +48,8 @@ function numberCell(text, more) {
 }
 
 /** Hatched boxes with the counts of what has no value; nothing where everything has one. */
-function missingChips(about, but = "") {
-  return WITHOUT_VALUE.filter(([kind]) => kind !== but && about[kind]).map(([kind, name]) =>
+function missingChips(about) {
+  return WITHOUT_VALUE.filter(([kind]) => about[kind]).map(([kind, name]) =>
     el("span", { class: "missing", title: `${about[kind]} of ${about.runs} runs ${name}` },
       el("i", { class: kind, "aria-hidden": "true" }), `${about[kind]} ${name}`));
 }

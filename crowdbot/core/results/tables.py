@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 from statistics import fmean, median
 from typing import Any
 
-from crowdbot.core.results.rows import Results, RunRow, ScoreRow
+from crowdbot.core.results.rows import (
+    PLANNER_FAILED,
+    WITHOUT_RUN,
+    FailureRow,
+    Results,
+    RunRow,
+    ScoreRow,
+)
 from crowdbot.core.scores_table import write_table
 from crowdbot.errors import InputError, MissingLibraryError, UnknownNameError
 
@@ -105,7 +113,8 @@ class Summary:
     """Scores of one metric and variant in one group of runs.
 
     ``mean`` and ``median`` are those of the ``count`` scores that have a value; ``undefined`` and
-    ``censored`` are how many have none.
+    ``censored`` are how many have none. ``failed`` counts the runs whose planner failed, which are
+    among the others, and the attempts that left no run, which are no success.
     """
 
     group: Mapping[str, str]
@@ -116,6 +125,7 @@ class Summary:
     count: int
     undefined: int
     censored: int
+    failed: int
     mean: float | None
     median: float | None
 
@@ -135,14 +145,25 @@ def summarise(
         UnknownNameError: no such axis or metric.
     """
     _check_names(results, metric, by)
-    runs = {run.run_id: run for run in results.runs}
-    groups: dict[tuple[Any, ...], list[ScoreRow]] = {}
+    runs = {run.run_id: tuple(_label(run, name) for name in by) for run in results.runs}
+    lost = [tuple(_label(f, name) for name in by) for f in results.failures]
+    failed = Counter([*lost, *(runs[r.run_id] for r in results.runs if r.status == PLANNER_FAILED)])
+    found: dict[str, dict[tuple[str, ...], list[ScoreRow]]] = {}
     usual = _usual_variants(results)
     for score in results.scores:
         if fnmatchcase(score.metric, metric) and score.variant == (variant or usual[score.metric]):
-            values = tuple(_label(runs[score.run_id], name) for name in by)
-            groups.setdefault((score.metric, score.variant, *values), []).append(score)
-    return [_summary(dict(zip(by, key[2:], strict=True)), scores) for key, scores in groups.items()]
+            groups = found.setdefault(score.metric, {})
+            groups.setdefault(runs[score.run_id], []).append(score)
+    for name, groups in found.items():
+        first = next(iter(groups.values()))[0]
+        nothing = replace(first, value=WITHOUT_RUN.get(name), status="", reason="")
+        for group in lost:
+            groups.setdefault(group, []).append(nothing)
+    return [
+        _summary(dict(zip(by, group, strict=True)), scores, failed[group])
+        for groups in found.values()
+        for group, scores in groups.items()
+    ]
 
 
 def _usual_variants(results: Results) -> dict[str, str]:
@@ -153,7 +174,7 @@ def _usual_variants(results: Results) -> dict[str, str]:
     return usual
 
 
-def _summary(group: Mapping[str, str], scores: Sequence[ScoreRow]) -> Summary:
+def _summary(group: Mapping[str, str], scores: Sequence[ScoreRow], failed: int) -> Summary:
     values = [s.value for s in scores if s.value is not None]
     first = scores[0]
     return Summary(
@@ -165,12 +186,15 @@ def _summary(group: Mapping[str, str], scores: Sequence[ScoreRow]) -> Summary:
         count=len(values),
         undefined=sum(s.status == "undefined" for s in scores),
         censored=sum(s.status == "censored" for s in scores),
+        failed=failed,
         mean=fmean(values) if values else None,
         median=median(values) if values else None,
     )
 
 
-def _label(run: RunRow, name: str) -> str:
+def _label(run: RunRow | FailureRow, name: str) -> str:
+    if name == "status" and isinstance(run, FailureRow):
+        return "failed"
     return run.axes[name] if name in run.axes else str(getattr(run, name, ""))
 
 

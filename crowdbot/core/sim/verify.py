@@ -81,6 +81,10 @@ def choose_planner(manifest: Manifest, registry: Registry, given: str | None) ->
         raise NotRunnable(
             f"{given} is not the file that the bundle was made with (sha256 {digest})"
         )
+    if digest is not None and _class(choice.spec_dump) != _class(record):
+        raise NotRunnable(
+            f"{given} is not the class that the bundle was made with: {_class(record)}"
+        )
     if _parameters(json.loads(json.dumps(choice.spec_dump))) != _parameters(record):
         raise NotRunnable(
             f"planner '{choice.label}' has other parameters here than in the bundle, "
@@ -160,6 +164,11 @@ def _own_scores(rerun: Rerun, run: Run, scores: Sequence[Score]) -> frozenset[tu
         for s in scores
         if without.get((s.metric, s.variant)) == (s.status, s.value, s.lower, s.upper)
     )
+
+
+def _class(record: Mapping[str, Any]) -> str:
+    """Name of the class of a planner from a file."""
+    return str(record.get("kind", "")).rpartition(":")[2]
 
 
 def _settings(record: Mapping[str, Any]) -> list[str]:

@@ -124,6 +124,7 @@ def _shares(
     scale = float(np.abs(values).max())
     if np.ptp(values) <= 1e-12 * scale:
         return None, None, "all values are equal"
+    values = values / scale  # squares of large numbers overflow
     total = float(((values - values.mean()) ** 2).sum())
     means = np.bincount(index, weights=values, minlength=labels) / np.maximum(count, 1)
     within = float(((values - means[index]) ** 2).sum())
@@ -142,7 +143,7 @@ def _line(x: Floats, y: Floats) -> tuple[float | None, float | None, str]:
     x, y, n = x[known], y[known], int(known.sum())
     if n < 2 or np.ptp(x) == 0 or np.ptp(y) <= 1e-12 * float(np.abs(y).max()):
         return None, None, "no spread of densities or values"
-    squared = float(np.corrcoef(x, y)[0, 1] ** 2)
+    squared = float(np.corrcoef(x, y / np.abs(y).max())[0, 1] ** 2)
     if n < 3:
         return squared, None, "two values lie on a line"
     return squared, max(0.0, 1 - (1 - squared) * (n - 1) / (n - 2)), ""

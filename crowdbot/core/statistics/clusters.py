@@ -103,7 +103,7 @@ def ratio_error(above: Floats, below: Floats, clusters: Clusters) -> float | Non
         return None
     rest = clusters.sums(above - above.sum() / total * below)
     scale = float(np.abs(above).sum())
-    error = math.sqrt(count / (count - 1) * float(rest @ rest)) / total
+    error = math.sqrt(count / (count - 1)) * math.hypot(*rest.tolist()) / total  # no overflow
     return error if error > 1e-13 * scale / total else 0.0  # equal up to rounding
 
 
@@ -171,6 +171,7 @@ def _bca_tail(
     below = (np.count_nonzero(found < value) + np.count_nonzero(found <= value)) / 2
     bias = float(ndtri(np.clip(below / len(found), 1 / len(found), 1 - 1 / len(found))))
     centred = left_out.mean() - left_out
+    centred = centred / (float(np.abs(centred).max()) or 1.0)  # cubes of large numbers overflow
     spread = float((centred**2).sum()) ** 1.5
     bend = float((centred**3).sum()) / (6 * spread) if spread > 0 else 0.0
     z = float(ndtri(p))

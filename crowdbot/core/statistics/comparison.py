@@ -245,6 +245,7 @@ def _standardised(gains: Floats, groups: Clusters, level: float) -> Estimate:
         return Estimate(reason="one pair: no spread")
     if np.ptp(gains) <= 1e-12 * float(np.abs(gains).max()):
         return Estimate(reason="all differences are equal")
+    gains = gains / float(np.abs(gains).max())  # squares of large numbers overflow
     centre, scale = float(gains.mean()), float(gains.std())
     scaled = (gains - centre) / scale  # squares of large numbers would cancel
 

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.results.rows import Results, RunRow, ScoreRow
+from crowdbot.core.results.rows import PLANNER_FAILED, WITHOUT_RUN, Results, RunRow, ScoreRow
 from crowdbot.core.statistics.clusters import Floats
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts
 
@@ -27,10 +27,6 @@ OK, CENSORED, UNDEFINED, FAILED, MISSING = range(len(OUTCOMES))
 #: What people score in metrics that compare with them, where it is not 1, the ratio of equals.
 #: None: it is not among the scores, so that no distance can be told.
 REFERENCES: Mapping[str, float | None] = {"overtaking_count": None}
-#: What is known of an attempt that left no run: its robot did not arrive.
-WITHOUT_RUN: Mapping[str, float] = {"success": 0.0, "success_no_collision": 0.0}
-#: Status of a run whose planner failed.
-PLANNER_FAILED = "planner_failed"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

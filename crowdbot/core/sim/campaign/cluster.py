@@ -8,6 +8,8 @@ published before is found again by its hash, so that nothing is made twice.
 from __future__ import annotations
 
 import queue
+import re
+import socket
 import threading
 import time
 import uuid
@@ -24,6 +26,11 @@ from crowdbot.errors import InputError, MissingLibraryError, SimulationError
 
 #: How long the scheduler and a first worker may take to answer, s.
 _PATIENCE = 30.0
+#: How long anybody may take to listen at its address, s.
+_LISTENING = 5.0
+_ADDRESS = re.compile(
+    r"(?:(?:tcp|tls)://)?(?P<host>\[[0-9a-fA-F:]+\]|[^:/\s\[\]]+):(?P<port>\d{1,5})"
+)
 _own = threading.local()
 
 
@@ -46,6 +53,28 @@ def look(token: str) -> tuple[dict[str, str], bool]:
     return provenance.versions(), Path(token).exists()
 
 
+def _await_listener(address: str) -> None:
+    """See that somebody listens; Dask's client would go on trying for minutes.
+
+    Raises:
+        InputError: nobody does, or it is no address.
+    """
+    found = _ADDRESS.fullmatch(address)
+    if found is None:
+        raise InputError(f"--cluster {address}: write tcp://HOST:PORT")
+    place = found["host"].strip("[]"), min(int(found["port"]), 65535)
+    end = time.monotonic() + _LISTENING
+    while True:
+        try:
+            socket.create_connection(place, timeout=_LISTENING).close()
+            return
+        except OSError as error:
+            if time.monotonic() >= end or isinstance(error, socket.gaierror):
+                text = f"--cluster {address}: no Dask scheduler answers: {error.strerror or error}"
+                raise InputError(text) from error
+            time.sleep(0.2)
+
+
 class ClusterCrew:
     """The workers of one scheduler.
 
@@ -58,8 +87,8 @@ class ClusterCrew:
 
     Raises:
         MissingLibraryError: ``distributed`` is not installed.
-        InputError: no scheduler or no worker answers, versions differ, or a worker does not see
-            the folder.
+        InputError: it is no address, no scheduler or no worker answers, versions differ, or a
+            worker does not see the folder.
     """
 
     def __init__(self, address: str, out: Path) -> None:
@@ -68,6 +97,7 @@ class ClusterCrew:
         except ImportError as error:
             text = "--cluster needs Dask; install it with 'pip install crowdbot[cluster]'"
             raise MissingLibraryError(text) from error
+        _await_listener(address)
         try:
             connect: Any = distributed.Client  # has no types
             self._client: Any = connect(address, timeout=_PATIENCE, set_as_default=False)
