@@ -46,7 +46,7 @@ class Grid:
         self.rise = np.array(rise, dtype=np.float64)
         self.lean = np.ones_like(self.azimuth) if lean is None else np.array(lean, np.float64)
         self.cos, self.sin = np.cos(self.azimuth), np.sin(self.azimuth)
-        # What a level ray meets hides all behind it, and memory that nobody touches stays cached.
+        # What a level ray meets hides all behind it.
         deepest = DEEPEST if np.any(self.rise) else 1
         self.work = np.empty((len(self.azimuth), deepest, WORK_COLUMNS))
 

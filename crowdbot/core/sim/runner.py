@@ -12,7 +12,6 @@ from crowdbot.core.crowd import state as crowd_state
 from crowdbot.core.interfaces import RobotState, Task
 from crowdbot.core.run_log import RunLog
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.collector import settled_objects
 from crowdbot.core.sim.diagram import Blocks
 from crowdbot.core.sim.outcome import (
     ARRIVED,
@@ -48,16 +47,15 @@ def run(
     begin, cpu = time.perf_counter(), time.process_time()
     status, reason = TIMEOUT, f"time limit of {task.time_limit:g} s"
     try:
-        with settled_objects():
-            ended = _has_ended(simulator.Initialize())
-            while not ended:
-                if stop():
-                    status, reason = INTERRUPTED, "interrupted by the user"
-                    break
-                answer = simulator.AdvanceTo(context.get_time() + _LOOK)
-                ended = _has_ended(answer)
-                if progress is not None:
-                    _report(progress, stage, blocks, task, context, begin)
+        ended = _has_ended(simulator.Initialize())
+        while not ended:
+            if stop():
+                status, reason = INTERRUPTED, "interrupted by the user"
+                break
+            answer = simulator.AdvanceTo(context.get_time() + _LOOK)
+            ended = _has_ended(answer)
+            if progress is not None:
+                _report(progress, stage, blocks, task, context, begin)
     except PlannerError as error:
         status, reason = PLANNER_FAILED, str(error)
     finally:
