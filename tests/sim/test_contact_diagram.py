@@ -9,7 +9,6 @@ from contact_reference import PERSON_RADIUS, ROBOT_RADIUS, Meeting, contact
 from pydrake.multibody.math import SpatialVelocity
 from sim_worlds import Rig, constant, person, rig, rows, scenario
 
-from crowdbot.core.crowd import engine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.interfaces import DifferentialDrive
 from crowdbot.core.sim import crowd_system, plant
@@ -21,7 +20,7 @@ START = ("robots.robot.task.start=[10, 0, 0]", "robots.robot.control=force")
 @pytest.fixture(params=[256, 128])
 def ticks(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> int:
     """Ticks per second of plant, people and contact; a robot that coasts."""
-    for module in (engine, crowd_system, plant, force):
+    for module in (crowd_system, plant, force):
         monkeypatch.setattr(module, "TICK", 1.0 / request.param)
     monkeypatch.setattr(force, "strongest", lambda _: (0.0, 0.0))
     ticks: int = request.param

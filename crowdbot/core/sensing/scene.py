@@ -110,6 +110,13 @@ class Scene:
         ways: Array = np.arctan2(self._direction[:, 1], self._direction[:, 0])
         return ways
 
+    @property
+    def parts(self) -> Array:
+        """Centres of left leg, right leg and trunk (M, 3, 2), m; at infinity of the absent."""
+        discs, _ = self._bodies()
+        count = len(self.people_radius)
+        return discs[: PARTS * count, :2].reshape(count, PARTS, 2).copy()
+
     def move_robot(self, robot_state: RobotState | None) -> None:
         """Show another instant to those who do not look at people, who stay as they were."""
         self.robot = robot_state

@@ -48,7 +48,7 @@ class CrowdSystem(LeafSystem):
         values = state.get_mutable_discrete_state()
         crowd = values.get_mutable_value(self._crowd)
         before = crowd[: s.HEADER_SIZE].tolist()
-        self._engine.advance(crowd, self._robot, self._outline)
+        self._engine.advance(crowd, self._robot, self._outline, TICK)
         header = crowd[: s.HEADER_SIZE].tolist()
         # At most ticks nobody touches the robot and nothing ends: the rest stays as it is.
         if (force := _push(header)) != _push(before):
