@@ -111,11 +111,12 @@ class Scene:
         return ways
 
     @property
-    def parts(self) -> Array:
-        """Centres of left leg, right leg and trunk (M, 3, 2), m; at infinity of the absent."""
-        discs, _ = self._bodies()
-        count = len(self.people_radius)
-        return discs[: PARTS * count, :2].reshape(count, PARTS, 2).copy()
+    def cylinders(self) -> Array:
+        """Left leg, right leg and trunk of everybody, then pillars: (D, 5), not to be changed.
+
+        Columns are x, y, radius, bottom and top, m; the absent are at infinity.
+        """
+        return self._bodies()[0]
 
     def move_robot(self, robot_state: RobotState | None) -> None:
         """Show another instant to those who do not look at people, who stay as they were."""

@@ -38,7 +38,7 @@ from pydrake.systems.sensors import CameraInfo
 
 from crowdbot.core.interfaces import Pinhole, Pose
 from crowdbot.core.optical import OPTICAL_RPY
-from crowdbot.core.sensing.bodies import TRUNK
+from crowdbot.core.sensing.bodies import PARTS, TRUNK
 from crowdbot.core.sensing.place import placed
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.person_mesh import leg_obj, trunk_obj
@@ -176,9 +176,10 @@ def _render_camera(camera: Pinhole) -> ColorRenderCamera:
 def _places(scene: Scene) -> list[RigidTransform]:
     """Where legs and trunks are, person by person; those of the absent lie under the floor."""
     turns = [RotationMatrix.MakeZRotation(yaw) for yaw in scene.headings.tolist()]
+    centres = scene.cylinders[: PARTS * len(turns), :2].reshape(-1, PARTS, 2).tolist()
     return [
         RigidTransform(turn, [x, y, 0.0]) if here else _HIDDEN
-        for parts, turn, here in zip(scene.parts.tolist(), turns, scene.present, strict=True)
+        for parts, turn, here in zip(centres, turns, scene.present, strict=True)
         for x, y in parts
     ]
 
