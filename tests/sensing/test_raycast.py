@@ -96,11 +96,11 @@ def test_equals_brute_force(seed: int, flat: bool) -> None:
     if flat:
         directions[:, 2] = 0.0
     distance, incidence, body = scene.cast(origins, directions, 9.0)
-    for k in range(rays):
-        d, a, b = reference(scene, solids, origins[k], directions[k], 9.0)
-        assert distance[k] == pytest.approx(d, abs=1e-8)
-        assert body[k] == b
-        assert incidence[k] == pytest.approx(a, abs=1e-4)  # acos is blunt at 0
+    expected = [reference(scene, solids, origins[k], directions[k], 9.0) for k in range(rays)]
+    d, a, b = zip(*expected, strict=True)
+    np.testing.assert_allclose(distance, d, rtol=1e-6, atol=1e-8)
+    np.testing.assert_array_equal(body, b)
+    np.testing.assert_allclose(incidence, a, rtol=1e-6, atol=1e-4)  # acos is blunt at 0
 
 
 @settings(max_examples=60, deadline=None)

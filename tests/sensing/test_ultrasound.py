@@ -81,30 +81,54 @@ def test_the_zone_is_searched_up_to_its_very_edge(resolution: str, side: float) 
         assert math.isfinite(got) is seen
 
 
-@pytest.mark.parametrize("resolution", [2.0, 0.5])
-@settings(max_examples=60, deadline=None)
-@given(tilt=st.floats(-1.4, 1.4), away=st.floats(0.3, 4.4))
-def test_a_slanted_wall_reads_too_far_by_no_more_than_a_ray_may_miss(
-    resolution: float, tilt: float, away: float
+SHAPES = st.sampled_from([(4.5, 1.0), (4.5, 0.3), (2.0, 1.5)])
+
+
+def _nearest_in_zone(hit: Array, angle: Array, length: float, radius: float) -> float:
+    """Least of distances along bearings that lie in the zone, by the design's formula."""
+    seen = (hit >= 0.0) & (hit <= zone_length(np.abs(angle), length, radius))
+    return float(np.min(hit[seen], initial=math.inf))
+
+
+@settings(max_examples=100, deadline=None)
+@given(SHAPES, st.floats(-1.5, 1.5), st.floats(0.3, 4.6), st.floats(-3.0, 3.0), st.floats(0, 3))
+def test_a_slanted_wall_is_measured_exactly(
+    shape: tuple[float, float], tilt: float, away: float, yaw: float, cut: float
 ) -> None:
-    """Against a search of the zone a hundred times as dense, by the design's formula."""
-    angle = np.linspace(-HALF, HALF, 4001)
+    """A wall anywhere, whole or from some point on: against a dense search of the zone."""
+    length, radius = shape
+    half = math.atan(8.0 * radius / (3.0 * math.sqrt(3.0) * length))
+    angle = np.linspace(-half, half, 40_001)
     with np.errstate(divide="ignore"):
         hit = away / np.cos(angle - tilt)
-    hit = np.where((hit > 0.0) & (hit <= zone_length(np.abs(angle), LENGTH, RADIUS)), hit, np.inf)
-    best = int(np.argmin(hit))
-    c, s = math.cos(tilt), math.sin(tilt)
-    wall = [[away * c + 60 * s, away * s - 60 * c, away * c - 60 * s, away * s + 60 * c]]
-    got = scalar(sensor("ultrasound", resolution=f"{resolution} deg"), scene_of(walls=wall))
-    wide = np.isfinite(hit).sum() * (angle[1] - angle[0])  # of what is inside the zone
-    if np.isinf(hit[best]):
-        assert math.isinf(got)
-    elif math.isinf(got):
-        assert wide < 1.01 * math.radians(resolution)
+    hit[away * np.tan(angle - tilt) < -cut] = -1.0
+    best = _nearest_in_zone(hit, angle, length, radius)
+    foot, along = (
+        np.array([math.cos(tilt), math.sin(tilt)]),
+        np.array([-math.sin(tilt), math.cos(tilt)]),
+    )
+    ends = np.array([away * foot - cut * along, away * foot + 99.0 * along])
+    c, s = math.cos(yaw), math.sin(yaw)
+    wall = (ends @ np.array([[c, s], [-s, c]])).ravel()
+    one = sensor("ultrasound", range_max=length, radius=radius)
+    got = scalar(one, scene_of(walls=[wall]), Pose(0.0, 0.0, yaw))
+    if math.isinf(best):
+        assert math.isinf(got) or got > 0.99 * length
     else:
-        step = math.radians(resolution)
-        worst = math.cos(angle[best] - tilt) / math.cos(min(1.57, abs(angle[best] - tilt) + step))
-        assert 1.0 - 1e-3 <= got / max(hit[best], 0.2) <= worst + 1e-3
+        assert got == pytest.approx(max(best, 0.2), rel=3e-3)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(-0.3, 0.3), st.floats(0.5, 4.6), st.floats(0.005, 0.5))
+def test_what_faces_the_sensor_is_measured_exactly(
+    bearing: float, away: float, radius: float
+) -> None:
+    """Posts of any width, between the rays too."""
+    post = [away * math.cos(bearing), away * math.sin(bearing), min(radius, 0.5 * away)]
+    near = away - post[2]
+    if near < float(zone_length(np.array([abs(bearing)]), LENGTH, RADIUS)[0]) - 1e-6:
+        got = scalar(sensor("ultrasound", resolution="10 deg"), scene_of(pillars=[post]))
+        assert got == pytest.approx(max(near, 0.2), abs=1e-9)
 
 
 @pytest.mark.parametrize("tilt", [0.0, 0.1, 0.25])

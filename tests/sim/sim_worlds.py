@@ -25,6 +25,7 @@ from crowdbot.core.run_log import RunLog
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.diagram import Blocks, build_diagram, robot_task
 from crowdbot.core.sim.plant import RobotPlant
+from crowdbot.core.ticks import TICK
 from crowdbot.dsl.scenario import Scenario
 
 Array = NDArray[np.float64]
@@ -160,6 +161,7 @@ def rig(
     seed: int = 0,
     initialize: bool = True,
     body: Mapping[str, Any] | None = None,
+    tick: float = TICK,
 ) -> Rig:
     """Build the diagram of a scenario; ``engine`` replaces the crowd it describes.
 
@@ -180,6 +182,7 @@ def rig(
     blocks = build_diagram(
         world, name, parts, model, engine, host, log, reg,
         run_seed=seed, sensors=sensors, visible=[n for n in sensors if n in robot.sensors],
+        tick=tick,
     )  # fmt: skip
     simulator: Any = Simulator(blocks.diagram)
     context = simulator.get_mutable_context()

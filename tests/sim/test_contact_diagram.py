@@ -9,10 +9,8 @@ from contact_reference import PERSON_RADIUS, ROBOT_RADIUS, Meeting, contact
 from pydrake.multibody.math import SpatialVelocity
 from sim_worlds import Rig, constant, person, rig, rows, scenario
 
-from crowdbot.core.crowd import engine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.interfaces import DifferentialDrive
-from crowdbot.core.sim import crowd_system, plant
 from crowdbot.core.sim.control import force
 
 START = ("robots.robot.task.start=[10, 0, 0]", "robots.robot.control=force")
@@ -20,20 +18,18 @@ START = ("robots.robot.task.start=[10, 0, 0]", "robots.robot.control=force")
 
 @pytest.fixture(params=[256, 128])
 def ticks(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> int:
-    """Ticks per second of plant, people and contact; a robot that coasts."""
-    for module in (engine, crowd_system, plant, force):
-        monkeypatch.setattr(module, "TICK", 1.0 / request.param)
+    """Ticks per second of plant, people and contact; a robot that coasts, its motors dead."""
     monkeypatch.setattr(force, "strongest", lambda _: (0.0, 0.0))
     ticks: int = request.param
     return ticks
 
 
-def _coasting(v: float, walker: float, gap: float) -> Rig:
+def _coasting(v: float, walker: float, gap: float, ticks: int) -> Rig:
     """Robot and person on one line, ``gap`` apart, at speeds along x."""
     reach = ROBOT_RADIUS + PERSON_RADIUS
     world = rig(
         scenario(*START), constant(0.0), person(10.0 + reach + gap, speed=max(1e-9, -walker)),
-        initialize=False,
+        initialize=False, tick=1.0 / ticks,
     )  # fmt: skip
     crowd = world.blocks.crowd
     assert crowd is not None
@@ -62,7 +58,7 @@ def test_one_contact_is_that_of_the_reference(ticks: int, speeds: tuple[float, f
     """
     v, walker = speeds
     for phase in (0.0, 0.4):
-        world = _coasting(v, walker, 0.05 + phase * abs(v - walker) / ticks)
+        world = _coasting(v, walker, 0.05 + phase * abs(v - walker) / ticks, ticks)
         mass, _ = force.moved(world.plant)
         expected = contact(Meeting((-1.0, 0.0), (v, 0.0), (walker, 0.0), robot_mass=mass))
         impulse, peak, n = 0.0, 0.0, 0

@@ -14,7 +14,7 @@ from crowdbot.cli import main
 from crowdbot.core.interfaces import Pose, RobotState
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.core.sim.person_mesh import person_obj
+from crowdbot.core.sim.person_mesh import leg_obj, trunk_obj
 from crowdbot.core.sim.rendering import Renderer, check_egl
 from crowdbot.dsl.base import Mount
 from crowdbot.errors import MissingLibraryError
@@ -96,12 +96,49 @@ def test_readings_carry_colour() -> None:
         assert np.ptp(picture) > 20
 
 
+@pytest.mark.parametrize("walked", [0.0, 0.35, 0.6, 1.06])
+def test_legs_are_drawn_where_the_depth_camera_sees_them(walked: float) -> None:
+    """Side view of somebody who walks: as many pixels differ as along any outline."""
+    scene = _scene([(4.0, 2.2)])
+    velocity = np.array([[4.0, 2.2, 0.0, 1.3]])
+    ways = np.array([[0.0, 1.0]]), np.array([walked])
+    scene.update(scene.robot, velocity, np.ones(1, np.bool_), *ways)
+    depth, picture = _both(scene)
+    _, empty = _both(_scene())
+    drawn = np.any(picture != empty, axis=2)
+    seen = (depth < 5.0) & ~_floor(depth)
+    below = np.arange(120)[:, np.newaxis] > 64  # of the hip
+    assert np.sum(below & seen) > 150
+    assert np.sum(below & (drawn != seen)) < 0.2 * np.sum(below & seen)
+
+
+def test_no_wall_is_black() -> None:
+    """Corridors in four directions, seen from their middle."""
+    for turn in (0.0, 0.5 * math.pi):
+        c, s = math.cos(turn), math.sin(turn)
+        ends = np.array([[-9, -2, 9, -2], [9, 2, -9, 2]], np.float64)
+        walls = [
+            [c * a - s * b, s * a + c * b, c * e - s * f, s * e + c * f] for a, b, e, f in ends
+        ]
+        scene = Scene(walls, [0.0, 2.5], [], [])
+        scene.update(
+            RobotState(*POSE, 0, 0, 0, 0, 0.0102, 0, 0), np.zeros((0, 4)), np.zeros(0, np.bool_)
+        )
+        for way in (0.0, math.pi):
+            pinhole = build(SPEC).info().camera
+            assert pinhole is not None
+            picture = Renderer(scene, pinhole, (0.0, 0.0, 1.0, 0.0))(scene, Pose(0, 0, turn + way))
+            assert np.all(picture.max(axis=2) > 30)
+
+
 def test_a_person_is_low_poly_and_as_tall_as_said() -> None:
-    lines = person_obj(1.8, 0.33).splitlines()
+    leg = leg_obj(1.8, 0.33).splitlines()
+    assert sum(line.startswith("f ") for line in leg) < 40
+    lines = trunk_obj(1.8, 0.33).splitlines()
     points = np.array([[float(x) for x in li.split()[1:]] for li in lines if li.startswith("v ")])
     faces = [line for line in lines if line.startswith("f ")]
-    assert 80 <= len(faces) <= 120
-    assert points[:, 2].min() == 0.0
+    assert 40 <= len(faces) <= 60
+    assert points[:, 2].min() == pytest.approx(0.53 * 1.8)
     assert points[:, 2].max() == pytest.approx(1.8)
     assert np.hypot(points[:, 0], points[:, 1]).max() < 0.33
     normals = [line for line in lines if line.startswith("vn ")]

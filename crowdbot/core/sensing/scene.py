@@ -112,6 +112,14 @@ class Scene:
         ways: Array = np.arctan2(self._direction[:, 1], self._direction[:, 0])
         return ways
 
+    @property
+    def cylinders(self) -> Array:
+        """Left leg, right leg and trunk of everybody, then pillars: (D, 5), not to be changed.
+
+        Columns are x, y, radius, bottom and top, m; the absent are at infinity.
+        """
+        return self._bodies()[0]
+
     def move_robot(self, robot_state: RobotState | None) -> None:
         """Show another instant to those who do not look at people, who stay as they were."""
         self.robot = robot_state

@@ -22,9 +22,17 @@ from crowdbot.core.ticks import TICK
 class CrowdSystem(LeafSystem):
     """Input: robot state. Outputs: crowd state, events, force on the robot."""
 
-    def __init__(self, engine: CrowdEngine, push: Push, robot: RobotModel, margin: float) -> None:
+    def __init__(
+        self,
+        engine: CrowdEngine,
+        push: Push,
+        robot: RobotModel,
+        margin: float,
+        tick: float = TICK,
+    ) -> None:
         """``margin``: how much larger than its body people take the robot for, m."""
         super().__init__()
+        self._tick = tick
         self._engine, self._push = engine, push
         body = footprint_of_model(robot)
         self._outline = body.corners
@@ -39,7 +47,7 @@ class CrowdSystem(LeafSystem):
         self.DeclareStateOutputPort(ports.ROBOT_FORCE, force)
         self._crowd, self._force = DiscreteStateIndex(crowd), DiscreteStateIndex(force)
         self._events = DiscreteStateIndex(events)
-        self.DeclarePeriodicUnrestrictedUpdateEvent(TICK, 0.0, self._update)
+        self.DeclarePeriodicUnrestrictedUpdateEvent(tick, 0.0, self._update)
 
     def _update(self, context: Context, state: State) -> None:
         x, y, yaw, vx, vy, w, *_ = self._port.Eval(context).tolist()
@@ -48,7 +56,7 @@ class CrowdSystem(LeafSystem):
         values = state.get_mutable_discrete_state()
         crowd = values.get_mutable_value(self._crowd)
         before = crowd[: s.HEADER_SIZE].tolist()
-        self._engine.advance(crowd, self._robot, self._outline)
+        self._engine.advance(crowd, self._robot, self._outline, self._tick)
         header = crowd[: s.HEADER_SIZE].tolist()
         # At most ticks nobody touches the robot and nothing ends: the rest stays as it is.
         if (force := _push(header)) != _push(before):

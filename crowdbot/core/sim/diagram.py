@@ -25,6 +25,7 @@ from crowdbot.core.sim.planner_system import People, PlannerSystem
 from crowdbot.core.sim.recorder import Recorder
 from crowdbot.core.sim.sensor_bank import SensorBank
 from crowdbot.core.sim.wall_contact import WallContacts
+from crowdbot.core.ticks import TICK
 from crowdbot.dsl.scenario import Robot, Scenario
 
 
@@ -67,6 +68,7 @@ def build_diagram(
     sensors: Collection[str],
     visible: Collection[str],
     privileged: bool = False,
+    tick: float = TICK,
 ) -> Blocks:
     """Wire one run.
 
@@ -74,20 +76,22 @@ def build_diagram(
         sensors: names of the sensors to simulate; readings do not depend on which others run.
         visible: names of those that the planner asked for.
         privileged: whether the planner sees the truth.
+        tick: s, of plant, people and their contacts; another one is for studies of contacts, see
+            `CrowdEngine.advance`.
     """
     robot = scenario.robots[robot_name]
     task = robot_task(robot, parts)
     builder = DiagramBuilder()
 
     # Robot: how commands become motion, and the one vector that stands for its state.
-    body = add_robot(builder, parts, model, robot.control)
+    body = add_robot(builder, parts, model, robot.control, tick)
     robot_state = body.state.GetOutputPort(ports.ROBOT_STATE)
 
     # Crowd and contact, one event: force on the robot, reaction on people.
     crowd, size = None, 0
     if engine is not None:
         margin = scenario.crowd.robot_response.margin if scenario.crowd else 0.0
-        system = CrowdSystem(engine, body.push, model, margin)
+        system = CrowdSystem(engine, body.push, model, margin, tick)
         crowd = builder.AddNamedSystem("crowd", system)
         builder.Connect(robot_state, crowd.GetInputPort(ports.ROBOT_STATE))
         if body.push_port is not None:

@@ -1,4 +1,4 @@
-"""A low-poly person for pictures: prisms for two legs and a trunk, and a head.
+"""A low-poly person for pictures, in parts: a prism for each leg, one for the trunk, and a head.
 
 The proportions are those that sensors see (`crowdbot.core.sensing.bodies`); the head is added.
 """
@@ -6,6 +6,7 @@ The proportions are those that sensors see (`crowdbot.core.sensing.bodies`); the
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,24 +19,41 @@ _SHOULDER = 0.82  # of the height: where the trunk ends that is drawn
 _HEAD = 0.055  # of the height: radius of the head
 
 
-def person_obj(height: float, radius: float) -> str:
-    """Wavefront OBJ text of a person who stands at the origin and looks along x.
+def leg_obj(height: float, radius: float) -> str:
+    """Wavefront OBJ text of an upright leg at the origin.
 
     Args:
-        height: m.
+        height: of the person, m.
         radius: of the disc that touches, m.
     """
+    leg, _, _ = _discs(height, radius)
+    leg[X] = leg[Y] = 0.0
+    return _obj([leg])
+
+
+def trunk_obj(height: float, radius: float) -> str:
+    """The same of trunk and head of a person who stands at the origin."""
+    *_, trunk = _discs(height, radius)
+    trunk[TOP] = _SHOULDER * height
+    head = np.array([0.0, 0.0, _HEAD * height, (_SHOULDER + 0.04) * height, height])
+    return _obj([trunk, head])
+
+
+def _discs(height: float, radius: float) -> Array:
+    """Legs and trunk as sensors see them."""
     discs = np.zeros((PARTS, 5))
     place_people(
         np.zeros((1, 4)), np.ones(1, np.bool_), np.array([[1.0, 0.0]]), np.zeros(1),
         np.array([radius]), np.array([height]), discs,
     )  # fmt: skip
-    discs[-1, TOP] = _SHOULDER * height
-    neck = [0.0, 0.0, _HEAD * height, (_SHOULDER + 0.04) * height, height]
+    return discs
+
+
+def _obj(discs: Iterable[Array]) -> str:
     vertices: list[Array] = []
     normals: list[Array] = []
     faces: list[str] = []
-    for disc in [*discs, np.array(neck)]:
+    for disc in discs:
         _prism(disc, vertices, normals, faces)
     lines = [f"v {v[0]:.6f} {v[1]:.6f} {v[2]:.6f}" for v in vertices]
     lines += [f"vn {n[0]:.6f} {n[1]:.6f} {n[2]:.6f}" for n in normals]

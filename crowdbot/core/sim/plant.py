@@ -58,14 +58,18 @@ def add_plant(
     parts: EnvironmentParts,
     robot: RobotModel,
     gains: PdControllerGains | None,
+    tick: float = TICK,
 ) -> RobotPlant:
     """Add the plant to a diagram, ready to be wired; without gains the wheels roll freely.
+
+    Args:
+        tick: its time step, s.
 
     Raises:
         PluginError: Drake cannot make a robot of its description.
     """
     config = MultibodyPlantConfig(
-        time_step=TICK, discrete_contact_approximation="lagged", contact_model="point"
+        time_step=tick, discrete_contact_approximation="lagged", contact_model="point"
     )
     plant, _ = AddMultibodyPlant(config, builder)
     described = read_description(robot.description)

@@ -38,9 +38,10 @@ from pydrake.systems.sensors import CameraInfo
 
 from crowdbot.core.interfaces import Pinhole, Pose
 from crowdbot.core.optical import OPTICAL_RPY
+from crowdbot.core.sensing.bodies import PARTS, TRUNK
 from crowdbot.core.sensing.place import placed
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.core.sim.person_mesh import person_obj
+from crowdbot.core.sim.person_mesh import leg_obj, trunk_obj
 from crowdbot.dsl.base import Mount
 from crowdbot.errors import MissingLibraryError
 
@@ -52,6 +53,7 @@ _CLOTHES = (
     (0.75, 0.25, 0.2), (0.2, 0.35, 0.65), (0.25, 0.5, 0.3), (0.85, 0.7, 0.3),
     (0.45, 0.3, 0.5), (0.3, 0.3, 0.32), (0.85, 0.82, 0.78), (0.3, 0.6, 0.65),
 )  # fmt: skip
+_TROUSERS = ((0.16, 0.18, 0.26), (0.25, 0.22, 0.2), (0.22, 0.28, 0.36))
 _HIDDEN = RigidTransform([0.0, 0.0, -100.0])
 _PROBE = "from crowdbot.core.sim.rendering import probe; probe()"
 
@@ -114,16 +116,19 @@ class Renderer:
             self._add(Cylinder(radius, high - low), pose, _PILLAR, f"pillar{k}")
 
     def _crowd(self, scene: Scene) -> list[FrameId]:
-        """A frame with a person in it for everybody; those of one size share a mesh."""
-        frames, meshes = [], dict[tuple[float, float], Mesh]()
+        """Frames of legs and trunk for everybody; those of one size share meshes."""
+        frames, meshes = [], dict[tuple[float, float], tuple[Mesh, ...]]()
         sizes = zip(scene.people_height.tolist(), scene.people_radius.tolist(), strict=True)
         for k, size in enumerate(sizes):
             if size not in meshes:
-                meshes[size] = _mesh(*size)
-            frame = self._graph.RegisterFrame(self._source, GeometryFrame(f"person{k}"))
-            colour = _CLOTHES[k % len(_CLOTHES)]
-            self._add(meshes[size], RigidTransform(), colour, f"person{k}", frame)
-            frames.append(frame)
+                leg = _mesh(leg_obj(*size))
+                meshes[size] = leg, leg, _mesh(trunk_obj(*size))
+            colours = _TROUSERS[k % len(_TROUSERS)], _CLOTHES[k % len(_CLOTHES)]
+            for part, mesh in enumerate(meshes[size]):
+                name = f"person{k}_{part}"
+                frame = self._graph.RegisterFrame(self._source, GeometryFrame(name))
+                self._add(mesh, RigidTransform(), colours[part == TRUNK], name, frame)
+                frames.append(frame)
         return frames
 
     def _add(
@@ -142,8 +147,7 @@ class Renderer:
         self._graph.RegisterGeometry(self._source, where, instance)
 
 
-def _mesh(height: float, radius: float) -> Mesh:
-    text = person_obj(height, radius)
+def _mesh(text: str) -> Mesh:
     return Mesh(InMemoryMesh(mesh_file=MemoryFile(text.encode(), ".obj", "person")))
 
 
@@ -154,7 +158,11 @@ def _parameters() -> RenderEngineVtkParams:
     lamp = LightParameter(
         type="directional", frame="camera", direction=[0.0, 0.3, 1.0], intensity=0.5
     )
-    return RenderEngineVtkParams(lights=[sun, lamp], default_clear_color=_SKY, backend="EGL")
+    # Walls that neither reaches would be black.
+    sky = LightParameter(
+        type="directional", frame="world", direction=[-0.5, -0.7, -0.3], intensity=0.35
+    )
+    return RenderEngineVtkParams(lights=[sun, lamp, sky], default_clear_color=_SKY, backend="EGL")
 
 
 def _render_camera(camera: Pinhole) -> ColorRenderCamera:
@@ -166,12 +174,13 @@ def _render_camera(camera: Pinhole) -> ColorRenderCamera:
 
 
 def _places(scene: Scene) -> list[RigidTransform]:
-    """Where people stand; the absent lie under the floor."""
+    """Where legs and trunks are, person by person; those of the absent lie under the floor."""
+    turns = [RotationMatrix.MakeZRotation(yaw) for yaw in scene.headings.tolist()]
+    centres = scene.cylinders[: PARTS * len(turns), :2].reshape(-1, PARTS, 2).tolist()
     return [
-        RigidTransform(RotationMatrix.MakeZRotation(yaw), [x, y, 0.0]) if here else _HIDDEN
-        for (x, y), yaw, here in zip(
-            scene.people[:, :2].tolist(), scene.headings.tolist(), scene.present, strict=True
-        )
+        RigidTransform(turn, [x, y, 0.0]) if here else _HIDDEN
+        for parts, turn, here in zip(centres, turns, scene.present, strict=True)
+        for x, y in parts
     ]
 
 

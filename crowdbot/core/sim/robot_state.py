@@ -19,7 +19,6 @@ from pydrake.systems.framework import (
 from crowdbot.core.interfaces import HolonomicDrive, Pose, RobotState
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.plant import RobotPlant
-from crowdbot.core.ticks import TICK
 
 Array = NDArray[np.float64]
 
@@ -81,7 +80,7 @@ class MeasuredRobotState(RobotStateSystem):
         assert isinstance(drive, HolonomicDrive)
         self._drive = drive
         super().__init__(rig)
-        self.DeclarePeriodicDiscreteUpdateEvent(TICK, 0.0, self._update)
+        self.DeclarePeriodicDiscreteUpdateEvent(rig.plant.time_step(), 0.0, self._update)
 
     def _kept(self) -> set[DependencyTicket]:
         self._memory = DiscreteStateIndex(self.DeclareDiscreteState(6))

@@ -16,12 +16,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import NoiseGenerator, Pose, SensorInfo
+from crowdbot.core.sensing.bodies import BOTTOM, RADIUS, TOP, X, Y
 from crowdbot.core.sensing.columns import Grid
 from crowdbot.core.sensing.proximity import Proximity
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugins.sensors.ultrasound import UltrasoundSpec
 
 Array = NDArray[np.float64]
+_HALVINGS = 40
 _ROUNDING = 1e-12  # the tangent of the zone's own edge is within it
 
 
@@ -46,6 +48,7 @@ class Ultrasound:
         angles = half * np.arange(-steps, steps + 1) / steps
         self._grid = Grid(angles, np.tan(angles))
         to_axis = np.arccos(np.cos(angles)[:, np.newaxis] * np.cos(angles))
+        self._narrow = 1.0 / math.tan(half)
         self._reach = zone_length(to_axis, spec.range_max, spec.radius)
         self._info = SensorInfo(
             category="ultrasound",
@@ -67,12 +70,18 @@ class Ultrasound:
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Distance (1,) to the nearest thing in the zone, m; inf if there is none."""
         del t
-        own = self._proximity
-        distance, incidence, _ = scene.cast_grid(
-            self._grid, *own.place(scene, pose), self._spec.range_max, details=own.limited
-        )
+        own, longest = self._proximity, self._spec.range_max
+        at, yaw = own.place(scene, pose)
+        distance, incidence, _ = scene.cast_grid(self._grid, at, yaw, longest, details=own.limited)
         own.returned(distance, incidence)
-        return own.measured(_nearest(distance, self._reach), rng)
+        if own.limited:  # a slanted surface may hide what is behind it
+            nearest = _nearest(distance, self._reach)
+        else:
+            nearest = _nearest_at_all(
+                distance, self._reach, *at, yaw, longest, self._narrow,
+                scene.walls, scene.wall_heights, scene.cylinders,
+            )  # fmt: skip
+        return own.measured(nearest, rng)
 
 
 @njit(cache=True, error_model="numpy")
@@ -84,6 +93,99 @@ def _nearest(distance: Array, reach: Array) -> Array:
             if distance[r, c] <= reach[r, c] and distance[r, c] < best[0]:
                 best[0] = distance[r, c]
     return best
+
+
+@njit(cache=True, error_model="numpy")
+def _depth(x: float, y: float, length: float, narrow: float) -> float:
+    """How far out a point is in the zone's level section, which is convex: 1 on its edge.
+
+    Args:
+        x, y: m, from the sensor, x along the axis; not outside of the cone at its tip.
+        narrow: of the cone at the tip, 1 / tan of half its angle.
+    """
+    sine = min(1.0, narrow * abs(y) / x) if x > 0.0 else 0.0
+    return x / (0.5 * length * (1.0 + math.sqrt(1.0 - sine * sine)))
+
+
+@njit(cache=True, error_model="numpy")
+def _to_wall(
+    ax: float, ay: float, bx: float, by: float, length: float, narrow: float, most: float
+) -> float:
+    """Least distance of what of a segment is in the level section, m; inf if it is ``most``."""
+    ex, ey = bx - ax, by - ay
+    low, high = 0.0, 1.0
+    for side in (-1.0, 1.0):  # cut to the cone, |y| narrow <= x
+        at_a, slope = ax + side * narrow * ay, ex + side * narrow * ey
+        if slope == 0.0:
+            if at_a < 0.0:
+                return math.inf
+        elif slope > 0.0:
+            low = max(low, -at_a / slope)
+        else:
+            high = min(high, -at_a / slope)
+    if low > high:
+        return math.inf
+    square = ex * ex + ey * ey
+    foot = -(ax * ex + ay * ey) / square if square > 0.0 else 0.0
+    foot = min(high, max(low, foot))
+    if math.hypot(ax + foot * ex, ay + foot * ey) >= most:
+        return math.inf
+    if _depth(ax + foot * ex, ay + foot * ey, length, narrow) > 1.0:
+        inside, left, right = foot, low, high
+        for _ in range(_HALVINGS):  # to the point that is deepest inside: depth is convex
+            first, second = left + (right - left) / 3.0, right - (right - left) / 3.0
+            if _depth(ax + first * ex, ay + first * ey, length, narrow) < _depth(
+                ax + second * ex, ay + second * ey, length, narrow
+            ):
+                right = second
+            else:
+                left = first
+            inside = 0.5 * (left + right)
+        if _depth(ax + inside * ex, ay + inside * ey, length, narrow) > 1.0:
+            return math.inf
+        for _ in range(_HALVINGS):  # and back to the edge
+            middle = 0.5 * (foot + inside)
+            if _depth(ax + middle * ex, ay + middle * ey, length, narrow) > 1.0:
+                foot = middle
+            else:
+                inside = middle
+        foot = inside
+    return math.hypot(ax + foot * ex, ay + foot * ey)
+
+
+@njit(cache=True, error_model="numpy")
+def _nearest_at_all(
+    distance: Array, reach: Array, x: float, y: float, z: float, yaw: float, length: float,
+    narrow: float, walls: Array, wall_heights: Array, discs: Array,
+) -> Array:  # fmt: skip
+    """`_nearest`, or what is nearer at the height of the sensor, exactly.
+
+    Walls count wherever the zone cuts them, cylinders where they face the sensor; what is between
+    them and the sensor is in the zone itself, and nearer.
+    """
+    nearest = _nearest(distance, reach)
+    c, s = math.cos(yaw), math.sin(yaw)
+    for i in range(walls.shape[0]):
+        if wall_heights[i, 0] <= z <= wall_heights[i, 1]:
+            ax, ay, bx, by = walls[i, 0] - x, walls[i, 1] - y, walls[i, 2] - x, walls[i, 3] - y
+            found = _to_wall(
+                c * ax + s * ay, c * ay - s * ax, c * bx + s * by, c * by - s * bx,
+                length, narrow, min(nearest[0], length),
+            )  # fmt: skip
+            nearest[0] = min(nearest[0], found)
+    for i in range(discs.shape[0]):
+        px, py, r = discs[i, X] - x, discs[i, Y] - y, discs[i, RADIUS]
+        most = min(nearest[0], length)
+        if not (abs(px) - r < most and abs(py) - r < most):
+            continue
+        away = math.hypot(px, py)
+        ahead, aside = c * px + s * py, c * py - s * px
+        level = discs[i, BOTTOM] <= z <= discs[i, TOP]
+        if level and r < away < most + r and narrow * abs(aside) <= ahead:
+            share = 1.0 - r / away
+            if _depth(share * ahead, share * aside, length, narrow) <= 1.0:
+                nearest[0] = away - r
+    return nearest
 
 
 def build(spec: UltrasoundSpec, noise: Sequence[NoiseGenerator] = ()) -> Ultrasound:

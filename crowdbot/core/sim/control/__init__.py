@@ -9,6 +9,7 @@ from crowdbot.core.sim.control.controlled import ControlledRobot
 from crowdbot.core.sim.control.differential_drive import add_differential_drive
 from crowdbot.core.sim.control.force import add_force
 from crowdbot.core.sim.control.kinematic import add_kinematic
+from crowdbot.core.ticks import TICK
 
 _MODES = {
     "differential_drive": add_differential_drive,
@@ -18,10 +19,14 @@ _MODES = {
 
 
 def add_robot(
-    builder: DiagramBuilder, parts: EnvironmentParts, model: RobotModel, control: str
+    builder: DiagramBuilder,
+    parts: EnvironmentParts,
+    model: RobotModel,
+    control: str,
+    tick: float = TICK,
 ) -> ControlledRobot:
-    """Add a robot to a diagram, moved in one of the control modes."""
-    return _MODES[control](builder, parts, model)
+    """Add a robot to a diagram, moved in one of the control modes every ``tick`` seconds."""
+    return _MODES[control](builder, parts, model, tick)
 
 
 __all__ = ["ControlledRobot", "add_robot"]

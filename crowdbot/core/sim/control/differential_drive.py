@@ -21,13 +21,13 @@ def wheel_gains(mass: float, radius: float) -> PdControllerGains:
 
 
 def add_differential_drive(
-    builder: DiagramBuilder, parts: EnvironmentParts, model: RobotModel
+    builder: DiagramBuilder, parts: EnvironmentParts, model: RobotModel, tick: float
 ) -> ControlledRobot:
     """Wheels under velocity control, up to their effort limit."""
     drive = model.drive
     assert isinstance(drive, DifferentialDrive)  # by build_robot
     radius = drive.command_radius
-    rig = add_plant(builder, parts, model, wheel_gains(model.mass, radius))
+    rig = add_plant(builder, parts, model, wheel_gains(model.mass, radius), tick)
     plant = rig.plant
     left_motor, right_motor = (motor_of(plant, joint) for joint in rig.wheels)
     left_first = left_motor.index() < right_motor.index()

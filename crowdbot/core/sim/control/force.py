@@ -23,7 +23,6 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.control.controlled import ControlledRobot, push_on
 from crowdbot.core.sim.plant import RobotPlant, add_plant, motor_of, place_robot
 from crowdbot.core.sim.robot_state import MeasuredRobotState, add_robot_state
-from crowdbot.core.ticks import TICK
 
 
 class ForceDrive(LeafSystem):
@@ -38,6 +37,7 @@ class ForceDrive(LeafSystem):
         self._start = push_on(rig).at or 0
         self._mass, self._inertia = moved(rig)
         self._most, self._most_torque = strongest(rig)
+        self._tick = rig.plant.time_step()
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         self._sideways = isinstance(rig.robot.drive, HolonomicDrive)
         self._desired = self.DeclareVectorInputPort(ports.DESIRED_STATE, 3)
@@ -53,14 +53,14 @@ class ForceDrive(LeafSystem):
         _, _, yaw, vx, vy, w, *_ = self._robot.Eval(context).tolist()
         wanted_v, wanted_w, wanted_vy = self._desired.Eval(context).tolist()
         c, s = math.cos(yaw), math.sin(yaw)
-        force, aside = self._mass * (wanted_v - (c * vx + s * vy)) / TICK, 0.0
+        force, aside = self._mass * (wanted_v - (c * vx + s * vy)) / self._tick, 0.0
         if self._sideways:
-            aside = self._mass * (wanted_vy - (c * vy - s * vx)) / TICK
+            aside = self._mass * (wanted_vy - (c * vy - s * vx)) / self._tick
             size = math.hypot(force, aside)
             share = min(1.0, self._most / size) if size else 1.0
             force, aside = share * force, share * aside
         force = _clamp(force, self._most)
-        torque = _clamp(self._inertia * (wanted_w - w) / TICK, self._most_torque)
+        torque = _clamp(self._inertia * (wanted_w - w) / self._tick, self._most_torque)
         values = output.get_mutable_value()
         values[:] = self._push.Eval(context) if self._push.HasValue(context) else 0.0
         i = self._start
@@ -95,10 +95,10 @@ def strongest(rig: RobotPlant) -> tuple[float, float]:
 
 
 def add_force(
-    builder: DiagramBuilder, parts: EnvironmentParts, model: RobotModel
+    builder: DiagramBuilder, parts: EnvironmentParts, model: RobotModel, tick: float
 ) -> ControlledRobot:
     """A force on the base; the wheels roll along freely."""
-    rig = add_plant(builder, parts, model, None)
+    rig = add_plant(builder, parts, model, None, tick)
     plant = rig.plant
     state = add_robot_state(builder, rig)
     drive = builder.AddNamedSystem("force_drive", ForceDrive(rig))

@@ -31,7 +31,6 @@ from crowdbot.core.interfaces import (
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control.controlled import ControlledRobot, Push
 from crowdbot.core.sim.outline_gap import outline_gap
-from crowdbot.core.ticks import TICK
 
 Array = NDArray[np.float64]
 _HALVINGS = 40  # an arc of 5 mm is cut at a wall to less than a picometre
@@ -43,8 +42,9 @@ _ROUNDING = 1e-13  # m; must not hold a robot that drives along a wall
 class KinematicBase(LeafSystem):
     """Input: v, w, vy. Output: `ports.ROBOT_STATE`, which is the whole state."""
 
-    def __init__(self, parts: EnvironmentParts, robot: RobotModel) -> None:
+    def __init__(self, parts: EnvironmentParts, robot: RobotModel, tick: float) -> None:
         super().__init__()
+        self._tick = tick
         self._robot, self._body = robot, footprint_of_model(robot)
         self._wheel = _wheel_radius(robot)
         self._walls, self._pillars = obstacles(parts, robot.height)
@@ -52,7 +52,7 @@ class KinematicBase(LeafSystem):
         index = self.DeclareDiscreteState(ports.ROBOT_STATE_SIZE)
         self.DeclareStateOutputPort(ports.ROBOT_STATE, index)
         self._index = DiscreteStateIndex(index)
-        self.DeclarePeriodicDiscreteUpdateEvent(TICK, 0.0, self._update)
+        self.DeclarePeriodicDiscreteUpdateEvent(tick, 0.0, self._update)
 
     def _update(self, context: Context, values: DiscreteValues) -> None:
         state = values.get_mutable_value(self._index)
@@ -60,17 +60,17 @@ class KinematicBase(LeafSystem):
         v, w, vy = self._port.Eval(context).tolist()
         speed, crab = (v, 0.0) if vy == 0.0 else (math.hypot(v, vy), math.atan2(vy, v))
         way = now.yaw + crab
-        x, y, _ = arc(now.x, now.y, way, speed, w, TICK)
-        yaw = math.remainder(now.yaw + w * TICK, 2.0 * math.pi)
+        x, y, _ = arc(now.x, now.y, way, speed, w, self._tick)
+        yaw = math.remainder(now.yaw + w * self._tick, 2.0 * math.pi)
         share = self._free(now.x, now.y, now.yaw, crab, speed, w)
         if share < 1.0:  # stopped by a wall; turning on the spot goes on
-            x, y, _ = arc(now.x, now.y, way, speed * share, w * share, TICK)
+            x, y, _ = arc(now.x, now.y, way, speed * share, w * share, self._tick)
             v, vy, speed = v * share, vy * share, speed * share
             if len(self._body.corners):  # as far as corners may
-                turned = now.yaw + w * share * TICK
+                turned = now.yaw + w * share * self._tick
                 rest = (1.0 - share) * w
                 w = w * share + rest * self._free(x, y, turned, 0.0, 0.0, rest)
-                yaw = math.remainder(now.yaw + w * TICK, 2.0 * math.pi)
+                yaw = math.remainder(now.yaw + w * self._tick, 2.0 * math.pi)
         across = 0.5 * self._robot.drive.track * w
         state[:] = RobotState(
             x=x,
@@ -81,9 +81,9 @@ class KinematicBase(LeafSystem):
             w=w,
             tilt=0.0,
             z=now.z,
-            left_angle=now.left_angle + (v - across) * TICK / self._wheel,
-            right_angle=now.right_angle + (v + across) * TICK / self._wheel,
-            side_angle=now.side_angle + vy * TICK / self._wheel,
+            left_angle=now.left_angle + (v - across) * self._tick / self._wheel,
+            right_angle=now.right_angle + (v + across) * self._tick / self._wheel,
+            side_angle=now.side_angle + vy * self._tick / self._wheel,
         )
 
     def _free(self, x: float, y: float, yaw: float, crab: float, speed: float, w: float) -> float:
@@ -91,7 +91,7 @@ class KinematicBase(LeafSystem):
         return float(
             free_share(
                 self._walls, self._pillars, body.corners, radius,
-                x, y, yaw, crab, speed * TICK, w * TICK,
+                x, y, yaw, crab, speed * self._tick, w * self._tick,
             )
         )  # fmt: skip
 
@@ -189,10 +189,10 @@ def free_share(
 
 
 def add_kinematic(
-    builder: DiagramBuilder, parts: EnvironmentParts, model: RobotModel
+    builder: DiagramBuilder, parts: EnvironmentParts, model: RobotModel, tick: float
 ) -> ControlledRobot:
     """A base without masses and forces; people who touch it are pushed all the same."""
-    base = builder.AddNamedSystem("robot_state", KinematicBase(parts, model))
+    base = builder.AddNamedSystem("robot_state", KinematicBase(parts, model, tick))
     return ControlledRobot(
         state=base,
         desired=base.GetInputPort(ports.DESIRED_STATE),
