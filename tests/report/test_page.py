@@ -120,7 +120,7 @@ def test_failures_of_the_campaign_are_attempts_like_others() -> None:
 
 
 def test_nothing_comes_from_outside() -> None:
-    text = render(contents(small()))
+    text = render(full())
     page = Page(text)
     for name, script in page.scripts.items():
         if name and name.startswith("blob-"):
