@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import subprocess
 import sys
 
@@ -20,7 +21,7 @@ def test_it_is_the_same_in_another_process() -> None:
 
 def test_a_last_digit_changes_it(monkeypatch: pytest.MonkeyPatch) -> None:
     before = fingerprint()
-    monkeypatch.setattr(np, "exp", lambda x: np.nextafter(np.power(np.e, x), np.inf))
+    monkeypatch.setattr(np, "exp", lambda x: np.nextafter(np.power(math.e, x), np.inf))
     rounding.fingerprint.cache_clear()
     try:
         assert fingerprint() != before
