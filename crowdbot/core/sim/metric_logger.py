@@ -9,12 +9,15 @@ from pydrake.common.value import Value
 from pydrake.multibody.plant import ContactResults
 from pydrake.systems.framework import Context, EventStatus, LeafSystem
 
-from crowdbot.core.arrival import entry_fraction, inside
+from crowdbot.core.arrival import distance_to, entry_fraction, inside
 from crowdbot.core.interfaces import Array, RobotState, Task
 from crowdbot.core.run_log import RunLog
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.leash import Leash
 from crowdbot.core.sim.wall_contact import WallContacts, wall_force
 from crowdbot.core.ticks import TICK, TICKS_PER_SECOND, ticks
+
+_ROUNDING = 1e-9  # m; of the distance to the goal zone
 
 
 class MetricLogger(LeafSystem):
@@ -36,6 +39,7 @@ class MetricLogger(LeafSystem):
         self._ticks_per_sample = ticks(rate)
         self._last_tick = -1
         self._previous = (0.0, 0.0)
+        self._leash = Leash()
         self.goal_time: float | None = None
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         self._crowd = self._events = None
@@ -78,9 +82,14 @@ class MetricLogger(LeafSystem):
         felt = None if forces is None else lambda: wall_force(forces.Eval(context))
         self._walls.watch(t, robot, felt)
 
+    def _is_there(self, robot: RobotState) -> bool:
+        distance = distance_to(self._task.goal_zone, robot.x, robot.y)
+        self._leash.tie(robot.x, robot.y, distance - _ROUNDING)
+        return distance == 0.0 and inside(self._task.goal_zone, robot.x, robot.y)
+
     def _watch(self, t: float, robot: RobotState) -> EventStatus | None:
         zone = self._task.goal_zone
-        if inside(zone, robot.x, robot.y):
+        if not self._leash.holds(robot.x, robot.y) and self._is_there(robot):
             fraction = entry_fraction(zone, *self._previous, robot.x, robot.y) if t > 0.0 else 1.0
             self.goal_time = t - (1.0 - fraction) * TICK
             return EventStatus.ReachedTermination(self, "arrived")
