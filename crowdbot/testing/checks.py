@@ -12,6 +12,7 @@ from crowdbot.core.component import Component
 from crowdbot.core.registry import Registry
 from crowdbot.testing import (
     all_kinds,
+    commanded_motion,
     cost_function,
     crowd_policy,
     environment,
@@ -19,7 +20,6 @@ from crowdbot.testing import (
     noise,
     planner,
     robot,
-    robot_kind,
     sensor,
 )
 
@@ -33,7 +33,7 @@ BY_CATEGORY: Mapping[str, tuple[Check, ...]] = {
     "metric": metric.CHECKS,
     "noise": noise.CHECKS,
     "planner": planner.CHECKS,
-    "robot": (*robot_kind.CHECKS, *robot.CHECKS),
+    "robot": (*robot.CHECKS, *commanded_motion.CHECKS),
     "sensor": sensor.CHECKS,
 }
 
@@ -41,10 +41,10 @@ BY_CATEGORY: Mapping[str, tuple[Check, ...]] = {
 _FIRST: Mapping[str, Check] = {
     "cost function": cost_function.check_signatures,
     "environment": environment.check_parts,
-    "robot": robot_kind.check_model,
+    "robot": robot.check_model,
     "sensor": sensor.check_info,
 }
-_BY_ITSELF = (robot_kind.check_mass_agrees,)
+_BY_ITSELF = (robot.check_mass_agrees,)
 
 
 def checks_of(component: Component[Any]) -> tuple[Check, ...]:

@@ -1,110 +1,208 @@
-"""Whether a robot does what it is told: ahead, turning, and sideways. Needs Drake.
-
-The robot alone stands on an empty floor; there is no scenario, no planner and no recording.
-"""
+"""What every robot must keep to. Those that drive it need Drake."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core.component import Component
-from crowdbot.core.interfaces import Command, EnvironmentParts, Pose, RobotModel, RobotState
-from crowdbot.core.registry import Registry, discover
-from crowdbot.core.robots import MODES, build_model
-from crowdbot.core.ticks import TICK
+from crowdbot.core.interfaces import RobotModel
+from crowdbot.core.registry import Registry
+from crowdbot.core.robots.check import check_model as checked
+from crowdbot.dsl.base import ComponentSpec
+from crowdbot.testing.around import around, built, specs_of
+from crowdbot.testing.commanded_motion import EMPTY_FLOOR
 
-#: Seconds to get up to speed, and seconds that are measured.
-_SETTLE, _MEASURE = 1.0, 1.0
-_SPEED, _RATE = 0.2, 0.5  # m/s, rad/s
-_SHARE = 0.05  # of what was commanded
+Array = NDArray[np.float64]
+#: How far a body may stick out of its footprint, or stay behind it, m.
+_OUT, _BEHIND = 0.03, 0.15
+#: Parts that hang higher than the robot is said to be, m.
+_HIGHER = 0.02
 
 
-def check_commanded_motion(component: Component[Any], registry: Registry | None = None) -> None:
-    """In every control mode of its drive it moves as commanded: ahead, turning, sideways.
+def check_model(component: Component[Any], registry: Registry | None = None) -> None:
+    """Limits, footprint, height and mass are sound numbers, and the drive fits the description.
 
-    If this fails, wheels are not where the drive says, turn backwards, do not touch the floor, or
-    something else rubs on it; compare joints, radius, track and base_height with the description.
+    If this fails, look at `RobotModel` and `RobotLimits`: SI units; a polygon is convex and
+    counter-clockwise; people push at ``force_height``, above the floor and below the top; a driven
+    wheel's joint points to the left and says its torque.
     """
-    known = discover() if registry is None else registry
-    for example in component.examples:
-        spec = component.spec.model_validate({"kind": component.kind, **example})
-        model = build_model(known, spec)
-        for mode in MODES[type(model.drive)]:
-            for command in commands_for(model):
-                assert_moves(model, mode, command)
+    for _, model in _models(component, registry):
+        assert isinstance(model, RobotModel), f"build returned a {type(model).__name__}"
+        limits = model.limits
+        for field in fields(limits):
+            value = getattr(limits, field.name)
+            finite = math.isfinite(value) or field.name == "command_timeout"
+            assert finite, f"{field.name} is {value}"
+        assert limits.v_min <= 0.0 < limits.v_max, f"v from {limits.v_min} to {limits.v_max}"
+        for name in ("w_max", "a_max", "alpha_max", "command_timeout"):
+            assert getattr(limits, name) > 0.0, f"{name} is {getattr(limits, name)}"
+        for name in ("footprint_radius", "height", "mass"):
+            value = getattr(model, name)
+            assert math.isfinite(value), f"{name} is {value}"
+            assert value > 0.0, f"{name} is {value}"
+        assert 0.0 < model.force_height <= model.height, f"force_height is {model.force_height}"
+        if model.footprint is not None:
+            _assert_footprint(model.footprint)
+        checked(model)
 
 
-def commands_for(model: RobotModel) -> list[Command]:
-    """One command for each direction that a robot may be told to go."""
-    limits = model.limits
-    found = [Command(min(_SPEED, limits.v_max), 0.0), Command(0.0, min(_RATE, limits.w_max))]
-    if limits.v_min < 0.0:
-        found.append(Command(max(-_SPEED, limits.v_min), 0.0))
-    if limits.vy_max:
-        found.append(Command(0.0, 0.0, min(_SPEED, limits.vy_max)))
-    return found
+def check_model_is_constant(component: Component[Any], registry: Registry | None = None) -> None:
+    """Built twice from the same words it is the same robot.
+
+    If this fails, the description holds the time, a path of this machine or a random number.
+    """
+    pairs = zip(_models(component, registry), _models(component, registry), strict=True)
+    for (_, one), (_, two) in pairs:
+        for field in fields(one):
+            a, b = getattr(one, field.name), getattr(two, field.name)
+            assert np.array_equal(a, b), f"{field.name} differs"
 
 
-def assert_moves(model: RobotModel, mode: str, command: Command) -> None:
-    """Drive for two seconds and compare the second one with the command."""
-    ended = drive(model, mode, command, _SETTLE + _MEASURE)
-    middle, end = ended[round(_SETTLE / TICK)], ended[-1]
-    turn = math.remainder(end.yaw - middle.yaw, 2.0 * math.pi)
-    way = middle.yaw + 0.5 * turn
-    dx, dy = end.x - middle.x, end.y - middle.y
-    moved = Command(
-        math.cos(way) * dx + math.sin(way) * dy,
-        turn,
-        math.cos(way) * dy - math.sin(way) * dx,
-    )
-    expected = [x * _MEASURE for x in command]
-    slack = [_SHARE * max(abs(x), 0.1) for x in expected]
-    told = f"{mode}: told {tuple(command)} (m/s, rad/s, m/s to the left) for {_MEASURE:g} s, it "
-    for got, want, most in zip(moved, expected, slack, strict=True):
-        text = f"{told}moved {np.round(moved, 4).tolist()} (m, rad, m)"
-        assert abs(got - want) <= most, text
-    assert end.tilt < math.radians(5.0), f"{told}tilted by {math.degrees(end.tilt):.1f} degrees"
+def check_mass_agrees(component: Component[Any], registry: Registry | None = None) -> None:
+    """The links of the description weigh what ``mass`` says.
+
+    If this fails, add up the inertials: collisions are scored with ``mass``, the simulation goes
+    by the links.
+    """
+    for spec, model in _models(component, registry):
+        rig, _ = _rig(spec, model)
+        found = rig.plant.CalcTotalMass(rig.plant.CreateDefaultContext(), [rig.model])
+        assert math.isclose(found, model.mass, rel_tol=0.01), (
+            f"the links weigh {found:.3f} kg, mass is {model.mass:.3f} kg"
+        )
 
 
-def drive(model: RobotModel, mode: str, command: Command, seconds: float) -> list[RobotState]:
-    """States of a robot, one a tick, that starts at rest and is told one thing, ramped up."""
-    from pydrake.systems.analysis import Simulator
-    from pydrake.systems.framework import DiagramBuilder
-    from pydrake.systems.primitives import ConstantVectorSource
+def check_footprint_agrees(component: Component[Any], registry: Registry | None = None) -> None:
+    """What collides in the description is as wide and as long as the footprint, and no higher.
 
-    from crowdbot.core.sim import ports
-    from crowdbot.core.sim.control import add_robot
-
-    builder = DiagramBuilder()
-    robot = add_robot(builder, _FLOOR, model, mode)
-    source = builder.AddSystem(ConstantVectorSource(np.zeros(robot.desired_size)))
-    builder.Connect(source.get_output_port(), robot.desired)
-    simulator = Simulator(builder.Build())
-    context = simulator.get_mutable_context()
-    robot.place(context, Pose(0.0, 0.0, 0.0))
-    wanted = source.get_mutable_source_value(source.GetMyMutableContextFromRoot(context))
-    states = []
-    for tick in range(round(seconds / TICK) + 1):
-        share = min(1.0, tick * TICK / (0.5 * _SETTLE))
-        v, w, vy = (share * x for x in command)
-        wanted.set_value(np.array(robot.desire(v, w, vy)))
-        simulator.AdvanceTo(tick * TICK)
-        mine = robot.state.GetMyContextFromRoot(context)
-        port = robot.state.GetOutputPort(ports.ROBOT_STATE)
-        states.append(RobotState(*port.Eval(mine).tolist()))
-    return states
+    If this fails, people are kept off another robot than the one that drives: compare the
+    collision shapes along x and y of the base with ``footprint`` and ``footprint_radius``.
+    """
+    for spec, model in _models(component, registry):
+        low, high, top = _extent(*_rig(spec, model))
+        points = np.zeros((1, 2)) if model.footprint is None else model.footprint
+        disc = model.footprint is None or len(model.footprint) == 2
+        radius = model.footprint_radius if disc else 0.0
+        out = np.concatenate(
+            [points.min(axis=0) - radius - low, high - points.max(axis=0) - radius]
+        )
+        text = f"shapes reach from {low.round(3)} to {high.round(3)} m"
+        assert np.all(out < _OUT), f"{text}, {out.max():.3f} m beyond the footprint"
+        assert np.all(out > -_BEHIND), f"{text}, {-out.min():.3f} m less than the footprint"
+        assert top < model.height + _HIGHER, f"shapes are {top:.3f} m high, not {model.height} m"
 
 
-_FLOOR = EnvironmentParts(
-    walls=np.zeros((0, 4)),
-    wall_heights=np.zeros((0, 2)),
-    stops_robot=np.zeros(0, np.bool_),
-    stops_crowd=np.zeros(0, np.bool_),
-    zones={},
-    portals={},
+def check_drives_ahead(component: Component[Any], registry: Registry | None = None) -> None:
+    """Told to drive ahead, it does: along x, within its limits, twice alike, without warnings.
+
+    If this fails, wheels turn the wrong way, slip or do not touch the floor, or the description
+    is not read as it is meant.
+    """
+    from crowdbot.testing.tiny import assert_runs, run_of, tiny_scenario
+
+    known = around(component, registry)
+    for spec in specs_of(component, known):
+        scenario = tiny_scenario(known, robot=spec.model_dump(mode="json"), time_limit=2.0)
+        assert_runs(scenario, known)
+        robot = run_of(scenario, known).robot
+        assert robot is not None
+        limits = built(known, spec).limits
+        due = 0.5 * min(limits.v_max, limits.a_max)
+        way = float(robot.x[-1] - robot.x[0])
+        assert way > due, f"{way:.2f} m ahead in 2 s, at least {due:.2f} m were expected"
+        aside = float(np.max(np.abs(robot.y - robot.y[0])))
+        assert aside < 0.1 * way + 0.02, f"{aside:.2f} m to the side on {way:.2f} m"
+        speed = float(np.max(np.abs(robot.v)))
+        assert speed < 1.1 * limits.v_max, f"{speed:.2f} m/s, v_max is {limits.v_max}"
+
+
+def check_stops_without_commands(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """Without a command for ``command_timeout`` it brakes to a stop.
+
+    If this fails, the robot does not follow a speed that falls to zero.
+    """
+    from crowdbot.testing.tiny import run_of, tiny_scenario
+
+    known = around(component, registry)
+    for spec in specs_of(component, known):
+        limits = built(known, spec).limits
+        braking = limits.v_max / limits.a_max
+        if limits.command_timeout + braking > 0.7:  # it would not stand before the next command
+            continue
+        words = spec.model_dump(mode="json")
+        scenario = tiny_scenario(known, robot=words, rates={"planner": 1.0}, time_limit=2.0)
+        robot = run_of(scenario, known).robot
+        assert robot is not None
+        speed = float(np.abs(robot.v[-2]))
+        assert speed < 0.05, f"{speed:.2f} m/s, {limits.command_timeout} s after the last command"
+
+
+CHECKS: tuple[Callable[..., None], ...] = (
+    check_model,
+    check_model_is_constant,
+    check_mass_agrees,
+    check_footprint_agrees,
+    check_drives_ahead,
+    check_stops_without_commands,
 )
 
-CHECKS = (check_commanded_motion,)
+
+def _models(
+    component: Component[Any], registry: Registry | None
+) -> Iterator[tuple[ComponentSpec, RobotModel]]:
+    known = around(component, registry)
+    for spec in specs_of(component, known):
+        yield spec, built(known, spec)
+
+
+def _assert_footprint(corners: Array) -> None:
+    assert corners.ndim == 2, f"the footprint has shape {corners.shape}"
+    assert corners.shape[1] == 2, f"the footprint has shape {corners.shape}"
+    assert len(corners) >= 2, "a footprint has at least two points"
+    assert np.all(np.isfinite(corners)), "the footprint is not finite"
+    if len(corners) > 2:
+        edges = np.roll(corners, -1, axis=0) - corners
+        ahead = np.roll(edges, -1, axis=0)
+        turns = edges[:, 0] * ahead[:, 1] - edges[:, 1] * ahead[:, 0]
+        assert np.all(turns > 0.0), "the footprint is not convex and counter-clockwise"
+
+
+def _rig(spec: ComponentSpec, model: RobotModel) -> tuple[Any, Any]:
+    """The robot in a plant of its own on an empty floor, and what knows the shapes."""
+    from pydrake.geometry import SceneGraph
+    from pydrake.systems.framework import DiagramBuilder
+
+    from crowdbot.core.sim.control import add_robot
+
+    modes = getattr(spec, "controls", ("differential_drive",))
+    builder = DiagramBuilder()
+    robot = add_robot(builder, EMPTY_FLOOR, model, next(m for m in modes if m != "kinematic"))
+    (shapes,) = (x for x in builder.GetSystems() if isinstance(x, SceneGraph))
+    return robot.rig, shapes.model_inspector()
+
+
+def _extent(rig: Any, shapes: Any) -> tuple[Array, Array, float]:
+    """Smallest and largest x and y of all collision shapes from the base, and their top; m."""
+    plant = rig.plant
+    context = plant.CreateDefaultContext()
+    base = plant.GetBodyByName(rig.robot.base, rig.model).body_frame()
+    found = []
+    for index in plant.GetBodyIndices(rig.model):
+        body = plant.get_body(index)
+        link = plant.CalcRelativeTransform(context, base, body.body_frame())
+        for shape in plant.GetCollisionGeometriesForBody(body):
+            box = shapes.GetObbInGeometryFrame(shape)
+            pose = link.multiply(shapes.GetPoseInFrame(shape)).multiply(box.pose())
+            half = np.abs(pose.rotation().matrix()) @ box.half_width()
+            found.append([pose.translation() - half, pose.translation() + half])
+    assert found, "the description has no collision shapes"
+    (low, high) = np.min(found, axis=0)[0], np.max(found, axis=0)[1]
+    return low[:2], high[:2], float(high[2]) + rig.robot.base_height

@@ -14,7 +14,7 @@ from wrong import BUILT_IN, WrongEnvironment, WrongRobot, assert_fails, made
 from crowdbot.core.interfaces import EnvironmentParts, RobotLimits, RobotModel
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec
 from crowdbot.plugins.robots.turtlebot2_build import build as turtlebot2
-from crowdbot.testing import environment, robot_kind
+from crowdbot.testing import environment, robot
 
 # ------------------------------------------------------------------------ environments
 _CORNERS = np.array([[0.0, -3.0], [8.0, -3.0], [8.0, 3.0], [0.0, 3.0]])
@@ -94,7 +94,7 @@ SOUND = turtlebot2(Turtlebot2Spec())
 FLAT = np.array([[-0.2, -0.2], [-0.2, 0.2], [0.2, -0.2]])  # clockwise
 
 
-def robot(model: RobotModel) -> Any:
+def kind_of(model: RobotModel) -> Any:
     return made(WrongRobot, lambda spec: model)
 
 
@@ -105,32 +105,32 @@ def limits(**changes: Any) -> RobotLimits:
 @pytest.mark.parametrize(
     ("check", "changes", "because"),
     [
-        (robot_kind.check_model, {"limits": limits(v_max=0.0)}, "v from"),
-        (robot_kind.check_model, {"limits": limits(a_max=float("nan"))}, "a_max is nan"),
-        (robot_kind.check_model, {"limits": limits(command_timeout=0.0)}, "command_timeout"),
-        (robot_kind.check_model, {"force_height": 3.0}, "force_height"),
-        (robot_kind.check_model, {"footprint": FLAT}, "counter-clockwise"),
-        (robot_kind.check_mass_agrees, {"mass": 60.0}, "the links weigh 6.3"),
-        (robot_kind.check_footprint_agrees, {"footprint_radius": 0.1}, "beyond the footprint"),
-        (robot_kind.check_footprint_agrees, {"footprint_radius": 0.4}, "less than the footprint"),
-        (robot_kind.check_footprint_agrees, {"height": 0.2}, "m high"),
+        (robot.check_model, {"limits": limits(v_max=0.0)}, "v from"),
+        (robot.check_model, {"limits": limits(a_max=float("nan"))}, "a_max is nan"),
+        (robot.check_model, {"limits": limits(command_timeout=0.0)}, "command_timeout"),
+        (robot.check_model, {"force_height": 3.0}, "force_height"),
+        (robot.check_model, {"footprint": FLAT}, "counter-clockwise"),
+        (robot.check_mass_agrees, {"mass": 60.0}, "the links weigh 6.3"),
+        (robot.check_footprint_agrees, {"footprint_radius": 0.1}, "beyond the footprint"),
+        (robot.check_footprint_agrees, {"footprint_radius": 0.4}, "less than the footprint"),
+        (robot.check_footprint_agrees, {"height": 0.2}, "m high"),
     ],
 )
 def test_robots(check: Any, changes: dict[str, Any], because: str) -> None:
-    assert_fails(check, robot(replace(SOUND, **changes)), because)
+    assert_fails(check, kind_of(replace(SOUND, **changes)), because)
 
 
 def test_a_robot_that_is_another_one_each_time() -> None:
     component = made(
         WrongRobot, lambda spec: replace(SOUND, height=float(np.random.default_rng().random()))
     )
-    assert_fails(robot_kind.check_model_is_constant, component, "height differs")
+    assert_fails(robot.check_model_is_constant, component, "height differs")
 
 
 def test_a_robot_that_cannot_drive() -> None:
     ice = SOUND.description.replace("mu_dynamic>1.0<", "mu_dynamic>0.0<")
     weak = replace(SOUND, description=ice.replace("mu_static>1.0<", "mu_static>0.0<"))
-    assert_fails(robot_kind.check_drives_ahead, robot(weak), "m ahead in 2 s")
+    assert_fails(robot.check_drives_ahead, kind_of(weak), "m ahead in 2 s")
 
 
 def test_a_robot_that_does_not_stop() -> None:
@@ -141,4 +141,4 @@ def test_a_robot_that_does_not_stop() -> None:
         return replace(SOUND, limits=limits(command_timeout=next(timeouts), a_max=2.0))
 
     component = made(WrongRobot, build)
-    assert_fails(robot_kind.check_stops_without_commands, component, "after the last command")
+    assert_fails(robot.check_stops_without_commands, component, "after the last command")

@@ -26,7 +26,7 @@ from crowdbot.core.sim.planner_system import _slew_planar
 from crowdbot.core.ticks import TICK
 from crowdbot.core.urdf import to_urdf
 from crowdbot.errors import InputError, PluginError, SpecError
-from crowdbot.testing.robot import assert_moves, check_commanded_motion, drive
+from crowdbot.testing.commanded_motion import assert_moves, check_commanded_motion, drive
 
 PUCK, TROLLEY = "my_robots.puck", "my_robots.trolley"
 WHEELS = "differential_drive"
