@@ -76,6 +76,15 @@ def test_interrupted_runs_are_not_packed(tmp_path: Path, runs: Path) -> None:
         packed(tmp_path, runs)
 
 
+@pytest.mark.parametrize("partial", [False, True])
+def test_nothing_but_changed_scenarios(tmp_path: Path, runs: Path, partial: bool) -> None:
+    for folder in (runs / "tiny").iterdir():
+        folder.rename(folder.with_name(f"{folder.name}+de08"))
+    with pytest.raises(InputError, match=r"no run of 'dwa' is complete .*\+de08, was interrupted"):
+        packed(tmp_path, runs, partial=partial)
+    assert not (tmp_path / "team.cbz").exists()
+
+
 def test_unknown_planners(tmp_path: Path, runs: Path) -> None:
     with pytest.raises(UnknownNameError, match="'dwaa'; did you mean 'dwa'"):
         packed(tmp_path, runs, "dwaa")

@@ -107,6 +107,13 @@ def _runs(submission: Submission, expansion: Expansion) -> list[_Found]:
             if record is not None:
                 name = PurePosixPath(place.relative_to(submission.root).as_posix())
                 found.append(_Found(name, record))
+    if not found:
+        there = min(p.parent.parent.name for p in base.glob(f"*/{submission.planner}/seed-*"))
+        raise InputError(
+            f"{base}: no run of '{submission.planner}' is complete and of a scenario as "
+            f"{expansion.suite_id} has it; what is there, such as {there}, was interrupted, or "
+            "changed with --set"
+        )
     return found
 
 
