@@ -18,6 +18,9 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.control.controlled import Push
 from crowdbot.core.ticks import TICK
 
+#: Columns of a robot's row for the first six entries of its state: x, y, yaw, vx, vy, w.
+_SEEN = np.array([0, 1, 6, 2, 3, 7])
+
 
 class CrowdSystem(LeafSystem):
     """Input: robot state. Outputs: crowd state, events, force on the robot."""
@@ -37,7 +40,8 @@ class CrowdSystem(LeafSystem):
         body = footprint_of_model(robot)
         self._outline = body.corners
         self._robot = np.zeros((1, 8))
-        self._robot[0, 4:6] = body.radius, body.reach + margin
+        self._row = self._robot[0]
+        self._row[4:6] = body.radius, body.reach + margin
         self._port = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         crowd = self.DeclareDiscreteState(engine.initial_state())
         force = self.DeclareDiscreteState(push.size)
@@ -50,9 +54,7 @@ class CrowdSystem(LeafSystem):
         self.DeclarePeriodicUnrestrictedUpdateEvent(tick, 0.0, self._update)
 
     def _update(self, context: Context, state: State) -> None:
-        x, y, yaw, vx, vy, w, *_ = self._port.Eval(context).tolist()
-        self._robot[0, :4] = x, y, vx, vy
-        self._robot[0, 6:] = yaw, w
+        self._row[_SEEN] = self._port.Eval(context)[:6]
         values = state.get_mutable_discrete_state()
         crowd = values.get_mutable_value(self._crowd)
         before = crowd[: s.HEADER_SIZE].tolist()

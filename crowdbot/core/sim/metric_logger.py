@@ -5,6 +5,8 @@ A publish event at tick k sees the state at k, before any update of that tick.
 
 from __future__ import annotations
 
+import math
+
 from pydrake.common.value import Value
 from pydrake.multibody.plant import ContactResults
 from pydrake.systems.framework import Context, EventStatus, LeafSystem
@@ -38,7 +40,7 @@ class MetricLogger(LeafSystem):
         self._log, self._task, self._walls = log, task, walls
         self._ticks_per_sample = ticks(rate)
         self._last_tick = -1
-        self._previous = (0.0, 0.0)
+        self._before: Array | None = None  # the robot one tick ago
         self._leash = Leash()
         self.goal_time: float | None = None
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
@@ -58,15 +60,22 @@ class MetricLogger(LeafSystem):
             return None
         self._last_tick = tick
         t = tick * TICK
-        robot = RobotState(*self._robot.Eval(context).tolist())
+        now, before = self._robot.Eval(context), self._before
+        self._before = now
         sampled = tick % self._ticks_per_sample == 0
         crowd = self._crowd_state(context, always=sampled)
         if crowd is not None:
             self._log.book(crowd)
-        self._watch_walls(context, t, robot)
+        arrived = False
+        if not self._leash.holds(now.item(0), now.item(1)):
+            arrived = self._look(context, t, RobotState(*now.tolist()), before)
         if sampled:
-            self._log.sample(t, robot, crowd)
-        return self._watch(t, robot)
+            self._log.sample(t, RobotState(*now.tolist()), crowd)
+        if arrived:
+            return EventStatus.ReachedTermination(self, "arrived")
+        if t >= self._task.time_limit:
+            return EventStatus.ReachedTermination(self, "time limit")
+        return None
 
     def _crowd_state(self, context: Context, *, always: bool) -> Array | None:
         """The crowd, where there is something to log: it is copied each time it is looked at."""
@@ -77,23 +86,18 @@ class MetricLogger(LeafSystem):
         crowd: Array = self._crowd.Eval(context)
         return crowd
 
-    def _watch_walls(self, context: Context, t: float, robot: RobotState) -> None:
+    def _look(self, context: Context, t: float, robot: RobotState, before: Array | None) -> bool:
+        """Watch walls and goal, one of which may be near; returns whether the robot is there."""
+        was = robot if before is None else RobotState(*before.tolist())
         forces = self._forces
         felt = None if forces is None else lambda: wall_force(forces.Eval(context))
-        self._walls.watch(t, robot, felt)
-
-    def _is_there(self, robot: RobotState) -> bool:
-        distance = distance_to(self._task.goal_zone, robot.x, robot.y)
-        self._leash.tie(robot.x, robot.y, distance - _ROUNDING)
-        return distance == 0.0 and inside(self._task.goal_zone, robot.x, robot.y)
-
-    def _watch(self, t: float, robot: RobotState) -> EventStatus | None:
+        speed = 0.0 if before is None else math.hypot(was.vx, was.vy)
+        free = self._walls.watch(t, robot, speed, felt)
         zone = self._task.goal_zone
-        if not self._leash.holds(robot.x, robot.y) and self._is_there(robot):
-            fraction = entry_fraction(zone, *self._previous, robot.x, robot.y) if t > 0.0 else 1.0
-            self.goal_time = t - (1.0 - fraction) * TICK
-            return EventStatus.ReachedTermination(self, "arrived")
-        self._previous = (robot.x, robot.y)
-        if t >= self._task.time_limit:
-            return EventStatus.ReachedTermination(self, "time limit")
-        return None
+        distance = distance_to(zone, robot.x, robot.y)
+        self._leash.tie(robot.x, robot.y, min(free, distance - _ROUNDING))
+        if distance > 0.0 or not inside(zone, robot.x, robot.y):
+            return False
+        fraction = entry_fraction(zone, was.x, was.y, robot.x, robot.y) if t > 0.0 else 1.0
+        self.goal_time = t - (1.0 - fraction) * TICK
+        return True

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 from pydrake.systems.framework import (
     BasicVector,
@@ -32,7 +33,7 @@ class RobotStateSystem(LeafSystem):
         size = plant.num_positions(rig.model) + plant.num_velocities(rig.model)
         self._quaternion = rig.root.floating_positions_start()
         self._angular = rig.root.floating_velocities_start_in_v() + plant.num_positions(rig.model)
-        self._wheels = [j.position_start() for j in rig.wheels]
+        self._left, self._right = [j.position_start() for j in rig.wheels] or (-1, -1)
         self._port = self.DeclareVectorInputPort("plant_state", size)
         self.DeclareVectorOutputPort(
             ports.ROBOT_STATE,
@@ -46,27 +47,33 @@ class RobotStateSystem(LeafSystem):
         return set()
 
     def _calc(self, context: Context, output: BasicVector) -> None:
-        output.get_mutable_value()[:] = self.convert(self._port.Eval(context))
+        self._convert(self._port.Eval(context), output.get_mutable_value())
 
     def convert(self, state: Array) -> RobotState:
         """Plant state (quaternion w, x, y, z; position; …) as a `RobotState`."""
-        values = state.tolist()  # Python floats: far cheaper one by one than numpy's
-        w, x, y, z, px, py, pz = values[self._quaternion : self._quaternion + 7]
-        _, _, wz, vx, vy, _ = values[self._angular : self._angular + 6]
-        up = 1.0 - 2.0 * (x * x + y * y)  # cosine of the angle between body and world z
-        left, right = (values[k] for k in self._wheels) if self._wheels else (0.0, 0.0)
-        return RobotState(
-            x=px,
-            y=py,
-            yaw=math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
-            vx=vx,
-            vy=vy,
-            w=wz,
-            tilt=math.acos(min(1.0, max(-1.0, up))),
-            z=pz + self._rise,
-            left_angle=left,
-            right_angle=right,
-        )
+        found = np.zeros(ports.ROBOT_STATE_SIZE)
+        self._convert(state, found)
+        return RobotState(*found.tolist())
+
+    def _convert(self, state: Array, out: Array) -> None:
+        _convert(state, self._quaternion, self._angular, self._left, self._right, self._rise, out)
+
+
+@njit(cache=True, error_model="numpy")
+def _convert(
+    state: Array, quaternion: int, angular: int, left: int, right: int, rise: float, out: Array
+) -> None:
+    """Write the fields of a `RobotState` in their order; wheels at -1 are not there."""
+    q, v = quaternion, angular
+    w, x, y, z = state[q], state[q + 1], state[q + 2], state[q + 3]
+    up = 1.0 - 2.0 * (x * x + y * y)  # cosine of the angle between body and world z
+    out[0], out[1] = state[q + 4], state[q + 5]
+    out[2] = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    out[3], out[4], out[5] = state[v + 3], state[v + 4], state[v + 2]
+    out[6], out[7] = math.acos(min(1.0, max(-1.0, up))), state[q + 6] + rise
+    out[8] = state[left] if left >= 0 else 0.0
+    out[9] = state[right] if right >= 0 else 0.0
+    out[10] = 0.0
 
 
 class MeasuredRobotState(RobotStateSystem):

@@ -20,7 +20,6 @@ from crowdbot.core.footprint import footprint_of_model
 from crowdbot.core.interfaces import EnvironmentParts, RobotModel, RobotState
 from crowdbot.core.run_log import RunLog
 from crowdbot.core.sim.control.kinematic import obstacles
-from crowdbot.core.sim.leash import Leash
 from crowdbot.core.sim.outline_gap import outline_gap, touched_at
 from crowdbot.core.ticks import TICK
 
@@ -44,40 +43,39 @@ class _Contact:
 
 
 class WallContacts:
-    """Watches one robot; to be told its state at every tick."""
+    """Watches one robot; to be told its state at every tick at which it may be near."""
 
     def __init__(self, parts: EnvironmentParts, robot: RobotModel, log: RunLog) -> None:
         self._walls, self._pillars = obstacles(parts, robot.height)
         self._body, self._log = footprint_of_model(robot), log
         # A disc has the same gap whatever its heading; corners swing.
         self._swing = 2.0 * float(np.max(np.hypot(*self._body.corners.T), initial=0.0))
-        self._leash = Leash()
         self._contact: _Contact | None = None
-        self._speed = 0.0
 
-    def watch(self, t: float, robot: RobotState, force: Callable[[], float] | None) -> None:
+    def watch(
+        self, t: float, robot: RobotState, speed: float, force: Callable[[], float] | None
+    ) -> float:
         """One tick.
 
         Args:
+            speed: of the robot one tick ago, m/s.
             force: the horizontal force of walls on the robot now (N); None where there is none.
-        """
-        if not self._leash.holds(robot.x, robot.y):
-            self._look(t, robot, force)
-        self._speed = math.hypot(robot.vx, robot.vy)
 
-    def _look(self, t: float, robot: RobotState, force: Callable[[], float] | None) -> None:
+        Returns:
+            how far the robot may go before this has to be called again, m; maybe negative.
+        """
         at = (self._walls, self._pillars, self._body.corners, robot.x, robot.y, robot.yaw)
         gap = outline_gap(*at) - self._body.radius
-        self._leash.tie(robot.x, robot.y, gap - RELEASE_GAP - self._swing)
         if gap < _NEAR and self._touches(gap, pushed := None if force is None else force()):
             if self._contact is None:
                 x, y = touched_at(*at)
-                self._contact = _Contact(t, t, self._speed, math.atan2(y, x))
+                self._contact = _Contact(t, t, speed, math.atan2(y, x))
             self._contact.end = t
             self._contact.impulse += (pushed or 0.0) * TICK
             self._contact.peak = max(self._contact.peak, pushed or 0.0)
         elif gap > RELEASE_GAP:
             self.finish()
+        return gap - RELEASE_GAP - self._swing
 
     @staticmethod
     def _touches(gap: float, force: float | None) -> bool:
