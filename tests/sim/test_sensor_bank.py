@@ -170,7 +170,7 @@ def test_people_are_seen_walking() -> None:
     seen = []
     for tick in range(1, 129, 8):
         world.advance(tick * TICK)
-        bodies, _ = world.blocks.bank._scene._bodies()
+        bodies, _ = world.blocks.bank._scene.bodies
         person = int(np.argmax(world.blocks.bank._scene.present))
         left, right = bodies[3 * person, :2], bodies[3 * person + 1, :2]
         seen.append(math.dist(left, right))

@@ -16,7 +16,7 @@ from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, ChunkIndex, McapRecord, Schema
 
-_COMPRESSION, _LEVEL = "zstd", 1
+_COMPRESSION, _LEVEL = "zstd", -1
 _MESSAGE = Struct("<BQHIQQ")  # opcode and length of a record; channel, sequence, both times
 _INDEX = Struct("<BQHI")  # opcode and length of a record; channel, length of the entries
 _PREFIX = 1 + 8  # opcode and length, which the length leaves out

@@ -53,26 +53,26 @@ class Template:
             marks: bytes that ``message`` has in the places that change, in their order.
         """
         self.msgtype = str(message.__msgtype__)
-        self._data = bytearray(ros.to_cdr(message))
-        self._size = end = len(self._data)
-        places = []
+        data = ros.to_cdr(message)
+        self._size = end = len(data)
+        pieces = []
         for mark in reversed(marks):
-            end = self._data.rindex(mark, 0, end)
-            places.append(slice(end, end + len(mark)))
-        self._places = tuple(reversed(places))
+            begin = data.rindex(mark, 0, end)
+            pieces += [data[begin + len(mark) : end], mark]
+            end = begin
+        self._pieces = [*reversed([*pieces, data[:end]])]
 
-    def fill(self, *parts: bytes) -> bytes:
+    def fill(self, *parts: bytes | memoryview) -> bytes:
         """The message with other bytes in its places.
 
         Raises:
-            ValueError: a part is not as long as the place.
+            ValueError: the parts are not as long as the places together, or not as many.
         """
-        data = self._data
-        for place, part in zip(self._places, parts, strict=True):
-            data[place] = part
+        self._pieces[1::2] = parts
+        data = b"".join(self._pieces)
         if len(data) != self._size:
             raise ValueError(f"{self.msgtype} of {len(data)} bytes instead of {self._size}")
-        return bytes(data)
+        return data
 
 
 def clock() -> Template:

@@ -23,7 +23,7 @@ from crowdbot.core.interfaces import Array, Command, Reading
 from crowdbot.core.optical import OPTICAL_QUATERNION, optical
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
-from crowdbot.core.recording.camera import CameraMessages, ImageMessage
+from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
@@ -132,9 +132,11 @@ class RecordingWriter:
             return
         if sensor not in self._cameras:
             self._measured(sensor, reading.stamp, reading.values.copy())
-        elif self._images:  # at once: the messages are a quarter of the reading's size
+        elif self._images:  # at once, after all that waits: memory for many would be dear
+            self._catch_up()
+            ns = ros.nanoseconds(reading.stamp)
             for image in self._cameras[sensor](reading):
-                self._pictured(ros.nanoseconds(reading.stamp), image)
+                self._file.put_bytes(image.topic, ns, image.msgtype, image.data)
 
     @_later
     def command(self, t: float, command: Command) -> None:
@@ -227,10 +229,6 @@ class RecordingWriter:
     def _measured(self, sensor: str, stamp: float, values: Array) -> None:
         topic, ns = self._sensors[sensor], ros.nanoseconds(stamp)
         self._file.put_bytes(topic.name, ns, topic.msgtype, topic.message(ns, values))
-
-    @_later
-    def _pictured(self, ns: int, image: ImageMessage) -> None:
-        self._file.put_bytes(image.topic, ns, image.msgtype, image.data)
 
     def _value(self, topic: Topic, t: float, name: str, value: float) -> None:
         blank = self._signal_of(name)

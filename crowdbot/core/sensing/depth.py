@@ -45,14 +45,34 @@ def _rows_above(
 
 
 @numba.njit(cache=True, error_model="numpy")
+def _hidden(
+    z: float, near: float, far: float, low: float, high: float, rise: Array, first: int, last: int
+) -> bool:
+    """Whether a body shows in none of the rows but [first, last)."""
+    rows = rise.shape[0]
+    if first > 0:
+        over = rise[first - 1]
+        if not z + over * near > high or (over < 0.0 and not (high - z) / over > far):
+            return False
+    if last < rows:
+        under = rise[last]
+        if not z + under * near < low or (under > 0.0 and not (low - z) / under > far):
+            return False
+    return True
+
+
+@numba.njit(cache=True, error_model="numpy")
 def _paint(
     z: float, near: float, far: float, low: float, high: float, rise: Array, per_row: float,
     column: Array,
-) -> None:  # fmt: skip
+) -> tuple[int, int]:  # fmt: skip
     """Paint one body, from ``near`` to ``far`` along the axis, where nothing nearer is.
 
     Args:
         per_row: by how much ``rise`` falls from row to row, on average.
+
+    Returns:
+        first row of its face, and the one after the last.
     """
     # Exact where it falls evenly; nonsense, which does no harm, where a length is zero.
     rows_per_metre = 1.0 / (near * per_row)
@@ -63,16 +83,16 @@ def _paint(
     for r in range(face.shape[0]):
         here = face[r]
         face[r] = near if near < here else here
-    if far <= near:
-        return
-    for r in range(begin - 1, -1, -1):  # comes down on the top
-        if rise[r] >= 0.0 or (high - z) / rise[r] > far:
-            break
-        column[r] = min(column[r], (high - z) / rise[r])
-    for r in range(max(begin, end), rise.shape[0]):  # comes up from below
-        if rise[r] <= 0.0 or (low - z) / rise[r] > far:
-            break
-        column[r] = min(column[r], (low - z) / rise[r])
+    if far > near:
+        for r in range(begin - 1, -1, -1):  # comes down on the top
+            if rise[r] >= 0.0 or (high - z) / rise[r] > far:
+                break
+            column[r] = min(column[r], (high - z) / rise[r])
+        for r in range(max(begin, end), rise.shape[0]):  # comes up from below
+            if rise[r] <= 0.0 or (low - z) / rise[r] > far:
+                break
+            column[r] = min(column[r], (low - z) / rise[r])
+    return begin, end
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -91,20 +111,49 @@ def paint_depth(
 
     Everything else is as in `crowdbot.core.sensing.columns.cast_columns`.
     """
-    rows = rise.shape[0]
     lowest, highest = heights_of(z, rise, lean, max_range)
     count = fill_columns(
         x, y, yaw, lowest, highest, azimuth, cos, sin, max_range,
         walls, wall_heights, discs, owner, work,
     )  # fmt: skip
-    floor = np.empty(rows)
-    for r in range(rows):
-        floor[r] = -z / rise[r] if rise[r] < 0.0 else math.inf
-    per_row = (rise[0] - rise[rows - 1]) / max(rows - 1, 1)
+    floor = floor_depths(z, rise)
     for c in range(azimuth.shape[0]):
-        column = depth[c]
-        column[:] = floor
-        for k in range(count[c]):
-            body = work[c, k]
-            near, far = body[NEAR] * lean[c], body[FAR] * lean[c]
-            _paint(z, near, far, body[LOW], body[HIGH], rise, per_row, column)
+        paint_column(z, rise, lean[c], work[c, : count[c]], floor, depth[c])
+
+
+@numba.njit(cache=True, error_model="numpy")
+def floor_depths(z: float, rise: Array) -> Array:
+    """Depth (R,) at which each row of rays from a height ``z`` meets the floor, m; or inf."""
+    floor = np.empty(rise.shape[0])
+    for r in range(floor.shape[0]):
+        floor[r] = -z / rise[r] if rise[r] < 0.0 else math.inf
+    return floor
+
+
+@numba.njit(cache=True, error_model="numpy")
+def paint_column(
+    z: float, rise: Array, lean: float, bodies: Array, floor: Array, column: Array
+) -> None:
+    """Depth (R,) along the axis in one column, m.
+
+    Args:
+        z: height of the camera, m.
+        lean: cosine of the column's azimuth.
+        bodies: (K, `WORK_COLUMNS`) what `fill_columns` found in the column, nearest first.
+        floor: (R,) of `floor_depths`.
+        column: (R,) result.
+    """
+    rows = rise.shape[0]
+    per_row = (rise[0] - rise[rows - 1]) / max(rows - 1, 1)
+    column[:] = floor
+    first = last = 0  # rows that a face covers: what comes later is farther
+    for k in range(bodies.shape[0]):
+        body = bodies[k]
+        near, far = body[NEAR] * lean, body[FAR] * lean
+        if _hidden(z, near, far, body[LOW], body[HIGH], rise, first, last):
+            continue
+        begin, end = _paint(z, near, far, body[LOW], body[HIGH], rise, per_row, column)
+        if begin <= last and end >= first and last > first:
+            first, last = min(first, begin), max(last, end)
+        elif end - begin > last - first:
+            first, last = begin, end

@@ -118,14 +118,18 @@ class Scene:
 
         Columns are x, y, radius, bottom and top, m; the absent are at infinity.
         """
-        return self._bodies()[0]
+        return self.bodies[0]
 
     def move_robot(self, robot_state: RobotState | None) -> None:
         """Show another instant to those who do not look at people, who stay as they were."""
         self.robot = robot_state
 
-    def _bodies(self) -> tuple[Array, NDArray[np.int64]]:
-        """Cylinders (D, 5) and whose they are; people are placed when somebody looks."""
+    @property
+    def bodies(self) -> tuple[Array, NDArray[np.int64]]:
+        """The `cylinders` and (D,) whose they are, as in `cast`; not to be changed.
+
+        People are placed when somebody looks.
+        """
         if not self._placed:
             place_people(
                 self.people, self.present, self._direction, self._walked,
@@ -152,7 +156,7 @@ class Scene:
             without a hit; body (R,) int64, a person's index, -(2 + index) of a wall, and on from
             there of a pillar, -1 for none.
         """
-        discs, owner = self._bodies()
+        discs, owner = self.bodies
         return cast_rays(
             origins, directions, max_range, self.walls, self.wall_heights, discs, owner
         )
@@ -184,7 +188,7 @@ class Scene:
         if details:
             incidence, body = np.empty(grid.shape), np.empty(grid.shape, dtype=np.int64)
         if distance.size:
-            discs, owner = self._bodies()
+            discs, owner = self.bodies
             cast_columns(
                 *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, max_range,
                 floor, self.walls, self.wall_heights, discs, owner, grid.work,
@@ -208,7 +212,7 @@ class Scene:
         """
         rows, columns = grid.shape
         depth = np.empty((columns, rows))
-        discs, owner = self._bodies()
+        discs, owner = self.bodies
         paint_depth(
             *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, max_range,
             self.walls, self.wall_heights, discs, owner, grid.work, depth,

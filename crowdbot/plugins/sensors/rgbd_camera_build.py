@@ -15,7 +15,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Pinhole, Pose, SensorInfo
-from crowdbot.core.sensing.columns import Grid
+from crowdbot.core.sensing.columns import Grid, fill_columns, heights_of
+from crowdbot.core.sensing.depth import floor_depths, paint_column
 from crowdbot.core.sensing.place import mount_of, placed
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
@@ -58,15 +59,18 @@ class RgbdCamera:
         del t
         spec = self._spec
         at, yaw = placed(spec.mount, scene, pose)
-        seen = scene.cast_depth(self._grid, at, yaw, self._reach)
-        shape = self._info.shape
+        shape, grid = self._info.shape, self._grid
         if spec.noise > 0.0:
             # Drawn for every pixel, so that one's noise does not depend on what others see.
             noise = spec.noise * rng.standard_normal(shape, dtype=np.float32)
         else:
             noise = np.zeros((0, 0), np.float32)
         depth = np.empty(shape, np.float32)
-        _measure(seen, noise, spec.depth_min, spec.depth_max, spec.resolution, depth)
+        _photograph(
+            *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, self._reach,
+            scene.walls, scene.wall_heights, *scene.bodies, grid.work,
+            noise, spec.depth_min, spec.depth_max, spec.resolution, depth,
+        )  # fmt: skip
         return cast(Array, depth)
 
 
@@ -75,35 +79,60 @@ _BLOCK = 16
 
 
 @njit(cache=True, error_model="numpy")
-def _measure(
-    seen: Array, noise: NDArray[np.float32], nearest: float, farthest: float, step: float,
+def _photograph(
+    x: float, y: float, z: float, yaw: float, azimuth: Array, cos: Array, sin: Array,
+    rise: Array, lean: Array, max_range: float, walls: Array, wall_heights: Array, discs: Array,
+    owner: NDArray[np.int64], work: Array,
+    noise: NDArray[np.float32], nearest: float, farthest: float, step: float,
     out: NDArray[np.float32],
 ) -> None:  # fmt: skip
-    """Write the measured depths (H, W) of columns (W, H) that run from right to left."""
+    """Paint and measure an image (H, W), block by block, so that it is written only once.
+
+    Arguments up to ``work`` are those of `crowdbot.core.sensing.depth.paint_depth`; the grid's
+    columns run from right to left.
+    """
     rows, columns = out.shape
-    exact = noise.shape[0] == 0 and step <= 0.0
+    lowest, highest = heights_of(z, rise, lean, max_range)
+    count = fill_columns(
+        x, y, yaw, lowest, highest, azimuth, cos, sin, max_range,
+        walls, wall_heights, discs, owner, work,
+    )  # fmt: skip
+    floor, column = floor_depths(z, rise), np.empty(rows)
     block = np.empty((_BLOCK, rows), np.float32)
     for first in range(0, columns, _BLOCK):
         width = min(_BLOCK, columns - first)
         for b in range(width):
-            c = first + b
-            column = seen[columns - 1 - c]
+            c = columns - 1 - first - b
+            paint_column(z, rise, lean[c], work[c, : count[c]], floor, column)
+            _measure(column, noise, first + b, nearest, farthest, step, block[b])
+        if width == _BLOCK:  # of known length, which is twice as fast
             for r in range(rows):
-                depth = column[r]
-                block[b, r] = 0.0 if depth < nearest else depth if depth <= farthest else math.inf
-            if not exact:
-                for r in range(rows):
-                    depth = column[r]
-                    if depth < nearest or depth > farthest:
-                        continue
-                    if noise.shape[0]:
-                        depth += depth * depth * noise[r, c]
-                    if step > 0.0:
-                        depth = round(depth / step) * step
-                    block[b, r] = min(max(depth, nearest), farthest)
-        for r in range(rows):
-            for b in range(width):
-                out[r, first + b] = block[b, r]
+                for b in range(_BLOCK):
+                    out[r, first + b] = block[b, r]
+        else:
+            out[:, first:] = block[:width].T
+
+
+@njit(cache=True, error_model="numpy")
+def _measure(
+    column: Array, noise: NDArray[np.float32], c: int, nearest: float, farthest: float,
+    step: float, out: NDArray[np.float32],
+) -> None:  # fmt: skip
+    """Measured depths (H,) of column c of an image."""
+    for r in range(column.shape[0]):
+        depth = column[r]
+        out[r] = 0.0 if depth < nearest else depth if depth <= farthest else math.inf
+    if noise.shape[0] == 0 and step <= 0.0:
+        return
+    for r in range(column.shape[0]):
+        depth = column[r]
+        if depth < nearest or depth > farthest:
+            continue
+        if noise.shape[0]:
+            depth += depth * depth * noise[r, c]
+        if step > 0.0:
+            depth = round(depth / step) * step
+        out[r] = min(max(depth, nearest), farthest)
 
 
 def build(spec: RgbdCameraSpec) -> RgbdCamera:
