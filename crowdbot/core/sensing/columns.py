@@ -233,7 +233,7 @@ def heights_of(z: float, rise: Array, lean: Array, max_range: float) -> tuple[fl
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _meet(slope: float, oz: float, near: float, far: float, low: float, high: float) -> float:
+def meet(slope: float, oz: float, near: float, far: float, low: float, high: float) -> float:
     """Horizontal distance at which a ray meets an upright body; inf if it misses.
 
     The ray rises by ``slope`` per metre from the height ``oz``.
@@ -290,7 +290,7 @@ def cast_columns(
                 here = work[c, k]
                 if here[NEAR] >= best:
                     break
-                t = _meet(slope, z, here[NEAR], here[FAR], here[LOW], here[HIGH])
+                t = meet(slope, z, here[NEAR], here[FAR], here[LOW], here[HIGH])
                 if t < best:
                     best, hit = t, k
             stretch = math.sqrt(1.0 + slope * slope)

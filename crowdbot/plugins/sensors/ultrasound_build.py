@@ -17,7 +17,16 @@ from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import NoiseGenerator, Pose, SensorInfo
 from crowdbot.core.sensing.bodies import BOTTOM, RADIUS, TOP, X, Y
-from crowdbot.core.sensing.columns import Grid
+from crowdbot.core.sensing.columns import (
+    FAR,
+    HIGH,
+    LOW,
+    NEAR,
+    Grid,
+    fill_columns,
+    heights_of,
+    meet,
+)
 from crowdbot.core.sensing.proximity import Proximity
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugins.sensors.ultrasound import UltrasoundSpec
@@ -70,28 +79,52 @@ class Ultrasound:
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Distance (1,) to the nearest thing in the zone, m; inf if there is none."""
         del t
-        own, longest = self._proximity, self._spec.range_max
+        own, grid, longest = self._proximity, self._grid, self._spec.range_max
         at, yaw = own.place(scene, pose)
-        distance, incidence, _ = scene.cast_grid(self._grid, at, yaw, longest, details=own.limited)
-        own.returned(distance, incidence)
+        nearest = np.empty(1)
         if own.limited:  # a slanted surface may hide what is behind it
-            nearest = _nearest(distance, self._reach)
+            distance, incidence, _ = scene.cast_grid(grid, at, yaw, longest)
+            own.returned(distance, incidence)
+            nearest[0] = _nearest(distance, self._reach)
         else:
-            nearest = _nearest_at_all(
-                distance, self._reach, *at, yaw, longest, self._narrow,
-                scene.walls, scene.wall_heights, scene.cylinders,
+            nearest[0] = _nearest_at_all(
+                *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, self._reach, longest,
+                self._narrow, scene.walls, scene.wall_heights, *scene.bodies, grid.work,
             )  # fmt: skip
         return own.measured(nearest, rng)
 
 
 @njit(cache=True, error_model="numpy")
-def _nearest(distance: Array, reach: Array) -> Array:
-    """The least distance (1,) that lies within the reach of its ray."""
-    best = np.full(1, math.inf)
+def _nearest(distance: Array, reach: Array) -> float:
+    """The least distance that lies within the reach of its ray; inf if none does."""
+    best = math.inf
     for r in range(distance.shape[0]):
         for c in range(distance.shape[1]):
-            if distance[r, c] <= reach[r, c] and distance[r, c] < best[0]:
-                best[0] = distance[r, c]
+            if distance[r, c] <= reach[r, c] and distance[r, c] < best:
+                best = distance[r, c]
+    return best
+
+
+@njit(cache=True, error_model="numpy")
+def _nearest_by_rays(
+    z: float, rise: Array, reach: Array, length: float, work: Array, count: NDArray[np.int64]
+) -> float:
+    """As `_nearest`, of rays from a height ``z`` and what `fill_columns` found in their columns."""
+    best = math.inf
+    for c in range(reach.shape[1]):
+        if count[c] == 0 or work[c, 0, NEAR] >= best:
+            continue
+        for r in range(reach.shape[0]):
+            stretch, hit = math.sqrt(1.0 + rise[r] * rise[r]), math.inf
+            for k in range(count[c]):
+                here = work[c, k]
+                if here[NEAR] >= min(hit, best):
+                    break
+                t = meet(rise[r], z, here[NEAR], here[FAR], here[LOW], here[HIGH])
+                hit = min(hit, t)
+            away = hit * stretch
+            if away <= length and away <= reach[r, c]:
+                best = min(best, away)
     return best
 
 
@@ -155,27 +188,39 @@ def _to_wall(
 
 @njit(cache=True, error_model="numpy")
 def _nearest_at_all(
-    distance: Array, reach: Array, x: float, y: float, z: float, yaw: float, length: float,
-    narrow: float, walls: Array, wall_heights: Array, discs: Array,
-) -> Array:  # fmt: skip
-    """`_nearest`, or what is nearer at the height of the sensor, exactly.
+    x: float, y: float, z: float, yaw: float, azimuth: Array, cos: Array, sin: Array, rise: Array,
+    reach: Array, length: float, narrow: float, walls: Array, wall_heights: Array, discs: Array,
+    owner: NDArray[np.int64], work: Array,
+) -> float:  # fmt: skip
+    """The nearest hit of any ray, or what is nearer at the height of the sensor, exactly, m.
 
     Walls count wherever the zone cuts them, cylinders where they face the sensor; what is between
     them and the sensor is in the zone itself, and nearer.
+
+    Args:
+        reach: (R, C) how far the zone reaches along each ray, m.
+        length, narrow: of the zone, see `_depth`.
+
+    Everything else is as in `crowdbot.core.sensing.columns.cast_columns`.
     """
-    nearest = _nearest(distance, reach)
+    lowest, highest = heights_of(z, rise, np.ones(1), length)
+    count = fill_columns(
+        x, y, yaw, lowest, highest, azimuth, cos, sin, length,
+        walls, wall_heights, discs, owner, work,
+    )  # fmt: skip
+    nearest = _nearest_by_rays(z, rise, reach, length, work, count)
     c, s = math.cos(yaw), math.sin(yaw)
     for i in range(walls.shape[0]):
         if wall_heights[i, 0] <= z <= wall_heights[i, 1]:
             ax, ay, bx, by = walls[i, 0] - x, walls[i, 1] - y, walls[i, 2] - x, walls[i, 3] - y
             found = _to_wall(
                 c * ax + s * ay, c * ay - s * ax, c * bx + s * by, c * by - s * bx,
-                length, narrow, min(nearest[0], length),
+                length, narrow, min(nearest, length),
             )  # fmt: skip
-            nearest[0] = min(nearest[0], found)
+            nearest = min(nearest, found)
     for i in range(discs.shape[0]):
         px, py, r = discs[i, X] - x, discs[i, Y] - y, discs[i, RADIUS]
-        most = min(nearest[0], length)
+        most = min(nearest, length)
         if not (abs(px) - r < most and abs(py) - r < most):
             continue
         away = math.hypot(px, py)
@@ -184,7 +229,7 @@ def _nearest_at_all(
         if level and r < away < most + r and narrow * abs(aside) <= ahead:
             share = 1.0 - r / away
             if _depth(share * ahead, share * aside, length, narrow) <= 1.0:
-                nearest[0] = away - r
+                nearest = away - r
     return nearest
 
 
