@@ -15,9 +15,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Pose, RobotState, SensorInfo
+from crowdbot.core.interfaces import Pose, SensorInfo
 from crowdbot.core.sensing.place import mount_of
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.errors import SimulationError
@@ -26,20 +27,24 @@ from crowdbot.plugins.sensors.imu import ImuSpec
 Array = NDArray[np.float64]
 
 GRAVITY = 9.81  # m/s^2, the plant's
-#: Layout of the memory.
-STARTED, TIME, YAW, VX, VY = range(5)
-BIAS, READING = slice(5, 11), slice(11, 17)
+#: Layout of the memory: six biases and a reading of six numbers begin where it says.
+STARTED, TIME, YAW, VX, VY, BIAS, READING = 0, 1, 2, 3, 4, 5, 11
+_SIZE = 6
+_NO_DRAWS = np.zeros(0)
 
 
 class Imu:
     """Reading: angular rate (3) and specific force (3) in the axes of the mount."""
 
     def __init__(self, spec: ImuSpec) -> None:
-        self._mount, self._rate = spec.mount, spec.rate
+        self._mount = spec.mount
         root = math.sqrt(spec.rate)
-        self._white = [spec.gyro_noise * root] * 3 + [spec.force_noise * root] * 3
-        self._start = [spec.gyro_bias] * 3 + [spec.force_bias] * 3
-        self._walk = [spec.gyro_walk] * 3 + [spec.force_walk] * 3
+        noise = (
+            (spec.gyro_noise * root, spec.force_noise * root),
+            (spec.gyro_bias, spec.force_bias),
+            (spec.gyro_walk, spec.force_walk),
+        )
+        self._noise = np.repeat(noise, 3, axis=1)
         self._info = SensorInfo(
             category="imu",
             frame="imu",
@@ -47,8 +52,8 @@ class Imu:
             rate=spec.rate,
             shape=(6,),
             ros_type="sensor_msgs/msg/Imu",
-            memory=READING.stop,
-            random=any(self._white + self._start + self._walk),
+            memory=READING + _SIZE,
+            random=bool(np.any(self._noise)),
             sees=False,
         )
 
@@ -66,47 +71,57 @@ class Imu:
         """
         if scene.robot is None:
             raise SimulationError("an IMU needs a robot in the scene")
-        was = memory.tolist()  # numpy is far dearer, number by number and six by six
-        if was[STARTED] == 0.0 or t > was[TIME]:
-            vx, vy, reading = self._felt(scene.robot, pose.yaw, t, was)
-            bias = was[BIAS]
-            if self._info.random:
-                bias, errors = self._errors(t, rng, was)
-                reading = [value + error for value, error in zip(reading, errors, strict=True)]
-            memory[:] = (1.0, t, pose.yaw, vx, vy, *bias, *reading)
-        return memory[READING].copy()
+        if memory[STARTED] == 0.0 or t > memory[TIME]:
+            robot, mount = scene.robot, self._mount
+            draws = rng.standard_normal(2 * _SIZE) if self._info.random else _NO_DRAWS
+            _feel(
+                memory, t, pose.yaw, robot.vx, robot.vy, robot.w,
+                mount.x, mount.y, mount.yaw, self._noise, draws,
+            )  # fmt: skip
+        return memory[READING:].copy()
 
-    def _felt(
-        self, robot: RobotState, yaw: float, t: float, was: list[float]
-    ) -> tuple[float, float, list[float]]:
-        """Velocity of the mount, and what a perfect IMU reads."""
-        mount = self._mount
-        c, s = math.cos(yaw), math.sin(yaw)
-        x, y = c * mount.x - s * mount.y, s * mount.x + c * mount.y
-        vx, vy = robot.vx - robot.w * y, robot.vy + robot.w * x
-        ax = ay = 0.0
-        heading = yaw
-        if was[STARTED]:
-            dt = t - was[TIME]
-            ax, ay = (vx - was[VX]) / dt, (vy - was[VY]) / dt
-            heading -= 0.5 * math.remainder(yaw - was[YAW], 2.0 * math.pi)
-        c, s = math.cos(heading + mount.yaw), math.sin(heading + mount.yaw)
-        return vx, vy, [0.0, 0.0, robot.w, c * ax + s * ay, c * ay - s * ax, GRAVITY]
 
-    def _errors(
-        self, t: float, rng: np.random.Generator, was: list[float]
-    ) -> tuple[list[float], list[float]]:
-        """Biases from now on, and the errors of this reading."""
-        draws = rng.standard_normal(12).tolist()
-        white, walk = draws[:6], draws[6:]
-        if was[STARTED]:
-            root = math.sqrt(t - was[TIME])
-            steps = zip(was[BIAS], self._walk, walk, strict=True)
-            bias = [b + k * root * draw for b, k, draw in steps]
-        else:
-            bias = [b * draw for b, draw in zip(self._start, walk, strict=True)]
-        parts = zip(self._white, white, bias, strict=True)
-        return bias, [n * draw + b for n, draw, b in parts]
+@njit(cache=True, error_model="numpy")
+def _feel(
+    memory: Array, t: float, yaw: float, robot_vx: float, robot_vy: float, w: float,
+    mount_x: float, mount_y: float, mount_yaw: float, noise: Array, draws: Array,
+) -> None:  # fmt: skip
+    """Bring the memory to time t.
+
+    Args:
+        noise: (3, 6) standard deviations of white noise, of the biases at the start, and of their
+            steps in one second.
+        draws: (12,) normal numbers for the white noise and for the biases; none: no noise.
+    """
+    started, dt = memory[STARTED] != 0.0, t - memory[TIME]
+    c, s = math.cos(yaw), math.sin(yaw)
+    x, y = c * mount_x - s * mount_y, s * mount_x + c * mount_y
+    vx, vy = robot_vx - w * y, robot_vy + w * x
+    ax = ay = 0.0
+    heading = yaw
+    if started:
+        ax, ay = (vx - memory[VX]) / dt, (vy - memory[VY]) / dt
+        heading -= 0.5 * _turn(yaw - memory[YAW])
+    c, s = math.cos(heading + mount_yaw), math.sin(heading + mount_yaw)
+    felt = (0.0, 0.0, w, c * ax + s * ay, c * ay - s * ax, GRAVITY)
+    for k in range(_SIZE):
+        memory[READING + k] = felt[k]
+        if draws.shape[0]:
+            bias = noise[1, k] * draws[_SIZE + k]
+            if started:
+                bias = memory[BIAS + k] + noise[2, k] * math.sqrt(dt) * draws[_SIZE + k]
+            memory[BIAS + k] = bias
+            memory[READING + k] += noise[0, k] * draws[k] + bias
+    memory[STARTED], memory[TIME], memory[YAW] = 1.0, t, yaw
+    memory[VX], memory[VY] = vx, vy
+
+
+@njit(cache=True, error_model="numpy")
+def _turn(angle: float) -> float:
+    """The turn between two headings that differ by ``angle``, from -pi to pi, rad."""
+    if angle > math.pi:
+        return angle - 2.0 * math.pi
+    return angle + 2.0 * math.pi if angle < -math.pi else angle
 
 
 def build(spec: ImuSpec) -> Imu:
