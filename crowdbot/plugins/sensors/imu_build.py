@@ -103,7 +103,7 @@ def _feel(
         ax, ay = (vx - memory[VX]) / dt, (vy - memory[VY]) / dt
         heading -= 0.5 * _turn(yaw - memory[YAW])
     c, s = math.cos(heading + mount_yaw), math.sin(heading + mount_yaw)
-    felt = (0.0, 0.0, w, c * ax + s * ay, c * ay - s * ax, GRAVITY)
+    felt = (0.0, 0.0, float(w), c * ax + s * ay, c * ay - s * ax, GRAVITY)
     for k in range(_SIZE):
         memory[READING + k] = felt[k]
         if draws.shape[0]:
