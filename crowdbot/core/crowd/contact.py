@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.geometry import nearest_on_segment
+from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.state import (
     CONTACTS,
     PEOPLE_JX,
@@ -47,7 +47,7 @@ DISC = np.zeros((0, 2))
 _ON_EDGE = 1e-12
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def robot_contact(
     header: Array,
     agents: Array,
@@ -111,7 +111,7 @@ def robot_contact(
         agents[i, TOUCH_PEAK] = max(agents[i, TOUCH_PEAK], force)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def overlap(
     robot: Array, outline: Array, dx: float, dy: float, reach: float
 ) -> tuple[float, float, float, float, float]:
@@ -134,7 +134,7 @@ def overlap(
     return reach - gap, s * uy - c * ux, -s * ux - c * uy, c * qx - s * qy, s * qx + c * qy
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def from_outline(outline: Array, x: float, y: float) -> tuple[float, float, float, float, float]:
     """Where a point lies beside a segment (K = 2) or a convex polygon, counter-clockwise.
 
@@ -161,7 +161,7 @@ def from_outline(outline: Array, x: float, y: float) -> tuple[float, float, floa
     return nearest, nx, ny, qx, qy
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _extent(outline: Array) -> float:
     """Distance of the farthest corner from the base, m."""
     farthest = 0.0
@@ -170,14 +170,14 @@ def _extent(outline: Array) -> float:
     return farthest
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def bearing(robot: Array, x: float, y: float) -> float:
     """Direction of a vector (world frame) as the robot sees it, rad, counter-clockwise."""
     angle = math.atan2(y, x) - robot[R_YAW]
     return math.atan2(math.sin(angle), math.cos(angle))
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _begin_touch(
     agents: Array,
     i: int,
@@ -194,14 +194,14 @@ def _begin_touch(
     agents[i, TOUCH_SIDE] = side
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _end_touch(header: Array, agents: Array, i: int) -> None:
     agents[i, TOUCHING] = 0.0
     agents[i, TOUCHES] += 1.0
     header[CONTACTS] += 1.0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def keep_off(
     agents: Array, i: int, radius: Array, robots: Array, response: Array
 ) -> tuple[float, float]:
@@ -226,7 +226,7 @@ def keep_off(
     return ax, ay
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def push_apart(
     agents: Array,
     radius: Array,
@@ -266,7 +266,7 @@ def push_apart(
                 _push_pair(agents, i, j, radius[i] + radius[j], stiffness)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _sort_along_x(agents: Array, order: NDArray[np.int64]) -> None:
     """By x, then by row, so that the result does not depend on the order before.
 
@@ -284,7 +284,7 @@ def _sort_along_x(agents: Array, order: NDArray[np.int64]) -> None:
         order[b] = i
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _push(dx: float, dy: float, reach: float) -> tuple[float, float]:
     """How far discs overlap (m), away from the other; zero for centres on each other."""
     d2 = dx * dx + dy * dy
@@ -295,7 +295,7 @@ def _push(dx: float, dy: float, reach: float) -> tuple[float, float]:
     return push * dx, push * dy
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _push_pair(agents: Array, i: int, j: int, reach: float, stiffness: Array) -> None:
     px, py = _push(agents[i, X] - agents[j, X], agents[i, Y] - agents[j, Y], reach)
     agents[i, PUSH_X] += stiffness[i] * px
@@ -304,7 +304,7 @@ def _push_pair(agents: Array, i: int, j: int, reach: float, stiffness: Array) ->
     agents[j, PUSH_Y] -= stiffness[j] * py
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _push_by_walls(agents: Array, i: int, radius: float, walls: Array, stiffness: float) -> None:
     x, y = agents[i, X], agents[i, Y]
     for s in range(walls.shape[0]):

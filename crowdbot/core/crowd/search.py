@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd.calls import call_base, call_excess
 from crowdbot.core.crowd.candidates import CURRENT, direction_of, draw_candidates, radius_of
 from crowdbot.core.crowd.cost import FASTEST, MAX_SPEED, PREFERRED, PVX, PVY, VX, VY, Array
+from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.mix import Addresses, base_cost, cost_of
 
 Indices = NDArray[np.int64]
-#: The frame of candidates that are given in the world frame.
-AS_IT_IS = np.array([0.0, 0.0, 1.0, 0.0])
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def frame_of(agent: Array, base: int, direction: int, radius: int, frame: Array) -> float:
     """Where an agent's candidates are; sets the greatest speed asked for; returns the radius."""
     scale = radius_of(agent, radius)
@@ -38,7 +37,13 @@ def in_world(frame: Array, candidates: Array, c: int) -> tuple[float, float]:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
+def as_it_is(frame: Array) -> None:
+    """The frame of candidates that are given in the world frame."""
+    frame[0], frame[1], frame[2], frame[3] = 0.0, 0.0, 1.0, 0.0
+
+
+@kernel
 def lower_bounds(
     frame: Array,
     candidates: Array,
@@ -51,12 +56,12 @@ def lower_bounds(
     """Lower bounds of all candidates; returns the candidate of the least."""
     least, preferred, fastest = 0, agent[PREFERRED], agent[MAX_SPEED]
     cosine, sine = agent[PVX] / preferred, agent[PVY] / preferred
-    turned = np.empty(4)  # the frame as seen from the preferred velocity
-    for k in (0, 2):
-        turned[k] = frame[k] * cosine + frame[k + 1] * sine
-        turned[k + 1] = frame[k + 1] * cosine - frame[k] * sine
+    # The frame as seen from the preferred velocity.
+    x, y = frame[0] * cosine + frame[1] * sine, frame[1] * cosine - frame[0] * sine
+    along, across = frame[2] * cosine + frame[3] * sine, frame[3] * cosine - frame[2] * sine
     for c in range(candidates.shape[0]):
-        ux, uy = in_world(turned, candidates, c)
+        ux = x + candidates[c, 0] * along - candidates[c, 1] * across
+        uy = y + candidates[c, 0] * across + candidates[c, 1] * along
         total = 0.0
         for k in range(bases.shape[0]):
             if weights[k] != 0.0:
@@ -67,7 +72,7 @@ def lower_bounds(
     return least
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def search(
     frame: Array,
     candidates: Array,
@@ -108,7 +113,7 @@ def search(
     return best, best_place
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def try_in_order(
     frame: Array,
     candidates: Array,
@@ -143,7 +148,7 @@ def try_in_order(
     return best, place
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def least_forbidden(
     frame: Array,
     candidates: Array,

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import PORTAL
 from crowdbot.core.crowd.contact import keep_off, push_apart, robot_contact
+from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.portals import enter, entry_fraction, is_free, leave, try_to_re_enter
 from crowdbot.core.crowd.routes import end_trip, next_goal, reach_fraction
 from crowdbot.core.crowd.state import (
@@ -46,7 +46,7 @@ Rows = NDArray[np.int64]
 _TURNS_ABOVE = 0.1
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def tick(
     flat: Array,
     columns: int,
@@ -135,7 +135,7 @@ def tick(
     header[TICK] += 1.0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _through(agents: Array, i: int, x: float, y: float, out: Array, now: float, dt: float) -> None:
     """Agent i, which was at (x, y), leaves if it has entered its out-portal."""
     fraction = entry_fraction(out, x, y, agents[i, X], agents[i, Y])
@@ -143,7 +143,7 @@ def _through(agents: Array, i: int, x: float, y: float, out: Array, now: float, 
         leave(agents, i, now + fraction * dt)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _along(
     agents: Array,
     i: int,
@@ -166,7 +166,7 @@ def _along(
         next_goal(agents, i, at_goal, route, first, radius, when)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _move(agents: Array, i: int, fastest: float, ax: float, ay: float, dt: float) -> None:
     """Own will is limited to the largest speed; pushes (ax, ay) are not."""
     vx = agents[i, VX] + agents[i, AX] * dt
