@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from crowdbot.core.crowd import CrowdView
-from crowdbot.core.crowd.calls import call_excess
+from crowdbot.core.crowd.calls import call_excess, call_floor
 from crowdbot.core.crowd.cost import Array, CompiledCost
 from crowdbot.core.crowd.evaluate import Evaluator
 from crowdbot.core.crowd.mix import Addresses, Mix, base_cost, describe
@@ -42,6 +42,23 @@ def stops_at_budget(cost: CompiledCost, view: CrowdView, velocities: Array) -> s
             wrong = _budgets(mix, agent, velocities[i])
             if wrong:
                 return wrong
+    return ""
+
+
+def above_floor(cost: CompiledCost, view: CrowdView, velocities: Array) -> str:
+    """What is wrong with the floor of the excess; empty if nothing is."""
+    mix = Mix([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
+    for i in range(len(view.agents)):
+        only = replace(view, decides=np.arange(len(view.agents)) == i)
+        Evaluator(mix).total(only, velocities)  # prepares ``work`` for this agent
+        for _, agent in _each_agent(mix, only):
+            ux, uy = np.ascontiguousarray(velocities[i].T)
+            least = np.full(len(ux), np.nan)
+            _fill_floors(ux, uy, agent, mix.floors, mix.params_at, mix.work_at, least)
+            for x, y, floor in zip(ux, uy, least, strict=True):
+                true = _excess(x, y, math.inf, agent, mix.excesses, mix.params_at, mix.work_at)
+                if not math.isnan(true) and not 0.0 <= floor <= true * (1.0 + 1e-9):
+                    return f"excess is {true:g}, its floor {floor:g}"
     return ""
 
 
@@ -111,3 +128,19 @@ def _excess(
     return float(
         call_excess(excesses[0], ux, uy, budget, agent.ctypes.data, work_at[0], params_at[0])
     )
+
+
+@njit(cache=True, error_model="numpy")
+def _fill_floors(
+    ux: Array,
+    uy: Array,
+    agent: Array,
+    floors: Addresses,
+    params_at: Addresses,
+    work_at: Addresses,
+    out: Array,
+) -> None:
+    call_floor(
+        floors[0], len(ux), ux.ctypes.data, uy.ctypes.data, agent.ctypes.data, work_at[0],
+        params_at[0], out.ctypes.data,
+    )  # fmt: skip

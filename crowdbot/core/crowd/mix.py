@@ -18,6 +18,7 @@ from crowdbot.core.crowd.cost import (
     DESCENDS,
     EXCESS,
     FASTEST,
+    FLOOR,
     GRADIENT,
     GX,
     GY,
@@ -129,6 +130,7 @@ class Mix:
         self.excesses = _addresses([c.excess for c in self.compiled], EXCESS)
         self.gradients = _addresses([c.gradient for c in self.compiled], GRADIENT)
         self.optima = _addresses([c.optimum for c in self.compiled], OPTIMUM)
+        self.floors = _addresses([c.floor for c in self.compiled], FLOOR)
         width = max((len(c.params) for c in self.compiled), default=2)
         self.params = np.zeros((len(self.compiled), width))
         for row, cost in zip(self.params, self.compiled, strict=True):

@@ -78,10 +78,11 @@ class Sampler:
         # Where each search begins: the previous choice is a good bound, and changes no choice.
         self._first = np.zeros(len(mix.agents), np.int64)
         # Scratch: the frame (base, then direction times radius), candidates in the world frame,
-        # functions whose excess may differ from zero.
+        # functions whose excess may differ from zero, what `search` knows about candidates.
         self._frame = np.zeros(4)
         self._world = np.zeros_like(self._candidates)
         self._active = np.zeros(len(mix.compiled), np.int64)
+        self._tried = np.zeros((4, len(self._candidates)))
 
     def choose(self, view: CrowdView) -> Array:
         """Chosen velocities (N, 2), m/s; zero for agents that are absent or have arrived."""
@@ -94,10 +95,11 @@ class Sampler:
         _choose(
             scene.table, scene.starts, scene.low, scene.height, scene.who, scene.goal, scene.walls,
             scene.reach, scene.agent, scene.near, scene.found, mix.traits, settings, mix.random,
-            mix.bases, mix.prepares, mix.excesses, mix.params_at, mix.weights, mix.work_at,
+            mix.bases, mix.prepares, mix.excesses, mix.floors, mix.params_at, mix.weights,
+            mix.work_at,
             s.base, s.direction, s.radius, 0.5 * s.opening, s.random > 0, mix.ordered,
             self._candidates, self._polar, self._tabulated, self._bound, self._index,
-            self._first, self._frame, self._world, self._active, chosen,
+            self._first, self._frame, self._world, self._active, self._tried, chosen,
         )  # fmt: skip
         return chosen
 
@@ -182,6 +184,7 @@ def _choose(
     bases: Addresses,
     prepares: Addresses,
     excesses: Addresses,
+    floors: Addresses,
     params_at: Addresses,
     weights: Array,
     work_at: Addresses,
@@ -200,6 +203,7 @@ def _choose(
     frame: Array,
     world: Array,
     active: Indices,
+    tried: Array,
     chosen: Array,
 ) -> None:
     """Everybody's choice; see `Sampler`."""
@@ -226,16 +230,16 @@ def _choose(
             )  # fmt: skip
         elif tabulated:
             best, place = search(
-                frame, fan, bounds[i], indices[i], True, first[i], agent, excesses,
-                params_at, work_at, weights, active[:terms],
+                frame, fan, bounds[i], indices[i], True, first[i], agent, excesses, floors,
+                params_at, work_at, weights, active[:terms], tried,
             )  # fmt: skip
         else:
             if to_draw:
                 draw_candidates(agent, half, scale, fan)
             start = lower_bounds(frame, fan, agent, bases, params_at, weights, bounds[0])
             best, place = search(
-                frame, fan, bounds[0], indices[0], False, start, agent, excesses, params_at,
-                work_at, weights, active[:terms],
+                frame, fan, bounds[0], indices[0], False, start, agent, excesses, floors,
+                params_at, work_at, weights, active[:terms], tried,
             )  # fmt: skip
         random[i] = agent[RANDOM]
         if best == math.inf:

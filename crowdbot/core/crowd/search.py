@@ -8,13 +8,15 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd.calls import call_base, call_excess
+from crowdbot.core.crowd.calls import call_base, call_excess, call_floor
 from crowdbot.core.crowd.candidates import CURRENT, direction_of, draw_candidates, radius_of
 from crowdbot.core.crowd.cost import FASTEST, MAX_SPEED, PREFERRED, PVX, PVY, VX, VY, Array
 from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.mix import Addresses, base_cost, cost_of
 
 Indices = NDArray[np.int64]
+#: By how much a sum of floors may exceed the cost, as a fraction of it.
+_ROUNDING = 1e-9
 
 
 @kernel
@@ -82,35 +84,93 @@ def search(
     start: int,
     agent: Array,
     excesses: Addresses,
+    floors: Addresses,
     params_at: Addresses,
     work_at: Addresses,
     weights: Array,
     active: Indices,
+    tried: Array,
 ) -> tuple[float, int]:
-    """Least cost, and the place of its candidate among the bounds; the first one of equals."""
+    """Least cost, and the place of its candidate among the bounds; the first one of equals.
+
+    Args:
+        bound, index: (S,) what each candidate costs at least, and its number.
+        start: place of the candidate that is tried first.
+        tried: (4, S) scratch.
+    """
     agent_at = agent.ctypes.data
+    x, y = in_world(frame, candidates, index[start])
+    best = cost_within(
+        x, y, bound[start], math.inf, agent_at, excesses, params_at, work_at, weights, active
+    )
+    best_index, best_place = index[start], start
     count = candidates.shape[0]
-    best, best_index, best_place = math.inf, count, start
-    for attempt in range(-1, count):
-        c = start if attempt < 0 else attempt
-        if attempt >= 0 and (bound[c] > best or c == start):
-            if is_sorted and bound[c] > best:
-                break
+    if is_sorted:
+        count = np.searchsorted(bound, best, side="right")
+    ux, uy, least = tried[0], tried[1], tried[2]
+    for c in range(count):
+        ux[c], uy[c] = in_world(frame, candidates, index[c])
+        least[c] = bound[c]
+    raise_floors(count, tried, agent_at, floors, params_at, work_at, weights, active)
+    for c in range(count):
+        if bound[c] > best or least[c] > best + _ROUNDING * abs(best) or c == start:
             continue
-        q = index[c]
-        ux, uy = in_world(frame, candidates, q)
-        cost = bound[c]
-        for term in range(active.shape[0]):
-            k = active[term]
-            budget = (best - cost) / weights[k]
-            cost += weights[k] * call_excess(
-                excesses[k], ux, uy, budget, agent_at, work_at[k], params_at[k]
-            )
-            if cost > best:
-                break
-        if cost < best or (cost == best and q < best_index):
-            best, best_index, best_place = cost, q, c
+        cost = cost_within(
+            ux[c], uy[c], bound[c], best, agent_at, excesses, params_at, work_at, weights, active
+        )
+        if cost < best or (cost == best and index[c] < best_index):
+            best, best_index, best_place = cost, index[c], c
     return best, best_place
+
+
+@kernel
+def cost_within(
+    ux: float,
+    uy: float,
+    base: float,
+    best: float,
+    agent_at: int,
+    excesses: Addresses,
+    params_at: Addresses,
+    work_at: Addresses,
+    weights: Array,
+    active: Indices,
+) -> float:
+    """Cost of a candidate in the world frame, or anything above ``best`` if it exceeds it."""
+    cost = base
+    for term in range(active.shape[0]):
+        k = active[term]
+        budget = (best - cost) / weights[k]
+        cost += weights[k] * call_excess(
+            excesses[k], ux, uy, budget, agent_at, work_at[k], params_at[k]
+        )
+        if cost > best:
+            break
+    return cost
+
+
+@kernel
+def raise_floors(
+    count: int,
+    tried: Array,
+    agent_at: int,
+    floors: Addresses,
+    params_at: Addresses,
+    work_at: Addresses,
+    weights: Array,
+    active: Indices,
+) -> None:
+    """Add to row 2 of ``tried`` what the functions know about the candidates in rows 0 and 1."""
+    ux, uy, least, out = tried[0], tried[1], tried[2], tried[3]
+    for term in range(active.shape[0]):
+        k = active[term]
+        if floors[k] != 0:
+            call_floor(
+                floors[k], count, ux.ctypes.data, uy.ctypes.data, agent_at, work_at[k],
+                params_at[k], out.ctypes.data,
+            )  # fmt: skip
+            for c in range(count):
+                least[c] += weights[k] * out[c]
 
 
 @kernel
