@@ -30,6 +30,8 @@ from crowdbot.core.crowd.state import (
 
 #: Nobody re-enters closer to a robot than this, centre to centre, m.
 CLEAR_OF_ROBOT = 1.0
+#: Who stays farther than this from a box does not enter it by rounding, m.
+_CLEAR = 1e-6
 
 
 @kernel
@@ -46,6 +48,8 @@ def point_in(box: Array, margin: float, u: float, v: float) -> tuple[float, floa
 @kernel
 def entry_fraction(box: Array, x0: float, y0: float, x1: float, y1: float) -> float:
     """Fraction of the way from p0 to p1 at which a box is entered; above 1 if it is not."""
+    if max(x0, x1) < box[0] - _CLEAR or min(x0, x1) > box[1] + _CLEAR:
+        return 2.0  # nearly always, and divisions are dear
     enter, leave = 0.0, 1.0
     for start, step, low, high in ((x0, x1 - x0, box[0], box[1]), (y0, y1 - y0, box[2], box[3])):
         if step == 0.0:

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import PORTAL
-from crowdbot.core.crowd.contact import keep_off, push_apart, robot_contact
+from crowdbot.core.crowd.contact import keep_off, robot_contact
 from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.portals import enter, entry_fraction, is_free, leave, try_to_re_enter
+from crowdbot.core.crowd.push import push_apart
 from crowdbot.core.crowd.routes import end_trip, next_goal, reach_fraction
 from crowdbot.core.crowd.state import (
     ARRIVALS,
@@ -44,6 +45,8 @@ Rows = NDArray[np.int64]
 
 #: Slower people do not turn where they are pushed, m/s.
 _TURNS_ABOVE = 0.1
+#: Numbers below this share of another are less than it whatever the rounding.
+_SURELY_LESS = 1.0 - 1e-12
 
 
 @kernel
@@ -79,6 +82,7 @@ def tick(
     key: np.uint64,
     dt: float,
     reaction: Array,
+    placed: Array,
 ) -> None:
     """Advance from tick k to k + 1.
 
@@ -90,14 +94,14 @@ def tick(
         robots, outline: (R, 8), (K, 2) as in `crowdbot.core.crowd.contact`.
         in_turn: (N,) rows of agents by id: the order in which they enter.
         torus: (4,) x0, x1, y0, y1, infinite where there is no border.
-        walls, discs, push, order: what pushes, and how much, as in `push_apart`.
+        walls, discs, push, order, placed: what pushes, and how much, as in `push_apart`.
         reaction: (N, 2) scratch.
 
     Everything else is as in `Agents` and `CrowdWorld`.
     """
     header, agents = flat[:HEADER_SIZE], flat[HEADER_SIZE:].reshape(-1, columns)
     now = header[TICK] * dt
-    push_apart(agents, radius, order, walls, discs, push)
+    push_apart(agents, radius, order, walls, discs, push, placed)
     for r in range(robots.shape[0]):
         robot_contact(
             header, agents, radius, robots[r], outline, stiffness, dissipation, now, dt, reaction
@@ -171,9 +175,10 @@ def _move(agents: Array, i: int, fastest: float, ax: float, ay: float, dt: float
     """Own will is limited to the largest speed; pushes (ax, ay) are not."""
     vx = agents[i, VX] + agents[i, AX] * dt
     vy = agents[i, VY] + agents[i, AY] * dt
-    speed = math.hypot(vx, vy)
-    if speed > fastest:
-        vx, vy = vx / speed * fastest, vy / speed * fastest
+    if vx * vx + vy * vy > _SURELY_LESS * fastest * fastest:  # seldom, and the root is dear
+        speed = math.hypot(vx, vy)
+        if speed > fastest:
+            vx, vy = vx / speed * fastest, vy / speed * fastest
     agents[i, VX], agents[i, VY] = vx + ax * dt, vy + ay * dt
     agents[i, X] += agents[i, VX] * dt
     agents[i, Y] += agents[i, VY] * dt
