@@ -10,6 +10,18 @@ from crowdbot.core.crowd.kernel import kernel
 
 
 @kernel
+def is_clearly_shorter(x: float, y: float, length: float) -> bool:
+    """Whether a vector is shorter than ``length`` whatever the rounding; cheaper than `hypot`."""
+    return x * x + y * y < (1.0 - 1e-12) * length * length
+
+
+@kernel
+def is_clearly_longer(x: float, y: float, length: float) -> bool:
+    """Whether a vector is longer than ``length`` whatever the rounding."""
+    return x * x + y * y > (1.0 + 1e-12) * length * length
+
+
+@kernel
 def nearest_on_segment(
     px: float, py: float, ax: float, ay: float, bx: float, by: float
 ) -> tuple[float, float]:

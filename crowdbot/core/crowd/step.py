@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import PORTAL
 from crowdbot.core.crowd.contact import keep_off, robot_contact
+from crowdbot.core.crowd.geometry import is_clearly_shorter
 from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.portals import enter, entry_fraction, is_free, leave, try_to_re_enter
 from crowdbot.core.crowd.push import push_apart
@@ -45,8 +46,6 @@ Rows = NDArray[np.int64]
 
 #: Slower people do not turn where they are pushed, m/s.
 _TURNS_ABOVE = 0.1
-#: Numbers below this share of another are less than it whatever the rounding.
-_SURELY_LESS = 1.0 - 1e-12
 
 
 @kernel
@@ -175,7 +174,7 @@ def _move(agents: Array, i: int, fastest: float, ax: float, ay: float, dt: float
     """Own will is limited to the largest speed; pushes (ax, ay) are not."""
     vx = agents[i, VX] + agents[i, AX] * dt
     vy = agents[i, VY] + agents[i, AY] * dt
-    if vx * vx + vy * vy > _SURELY_LESS * fastest * fastest:  # seldom, and the root is dear
+    if not is_clearly_shorter(vx, vy, fastest):
         speed = math.hypot(vx, vy)
         if speed > fastest:
             vx, vy = vx / speed * fastest, vy / speed * fastest
