@@ -36,6 +36,8 @@ DISCS, SEGMENTS, TOUCHED = range(3)
 # segment has both ends in columns 0 to 3. Then the time before which nothing can happen.
 _EARLIEST = 5
 _SAFE = 1.0 - 1e-12
+#: Discs in lower bounds: those after them seldom are the first.
+_FEW = 3
 
 
 @njit(cache=True, error_model="numpy")
@@ -142,9 +144,10 @@ def soonest_disc(
     work: Pointer,
     out: Pointer,
 ) -> None:
-    """One over the time until the first disc is touched, 1/s, for many velocities at once.
+    """One over the time until a disc is touched, 1/s, for many velocities at once.
 
-    Zero if none is; right but for rounding. See `time_to_disc`.
+    Of the few discs that could be first; zero if none of them is touched. Right but for rounding.
+    See `time_to_disc`.
 
     Args:
         count, ux, uy: velocities; ``factor * u - v`` is kept, m/s.
@@ -152,7 +155,7 @@ def soonest_disc(
     work = work_table(work)
     for c in range(count):
         out[c] = 0.0
-    for j in range(1, int(work[0, DISCS]) + 1):
+    for j in range(1, min(_FEW, int(work[0, DISCS])) + 1):
         rx, ry, gap2 = work[j, 0], work[j, 1], work[j, 4]
         wx, wy, per_gap2 = work[j, 2], work[j, 3], 1.0 / gap2
         for c in range(count):

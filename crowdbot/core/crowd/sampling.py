@@ -82,7 +82,7 @@ class Sampler:
         self._frame = np.zeros(4)
         self._world = np.zeros_like(self._candidates)
         self._active = np.zeros(len(mix.compiled), np.int64)
-        self._tried = np.zeros((4, len(self._candidates)))
+        self._tried = np.zeros((5, len(self._candidates)))
 
     def choose(self, view: CrowdView) -> Array:
         """Chosen velocities (N, 2), m/s; zero for agents that are absent or have arrived."""

@@ -96,7 +96,7 @@ def search(
     Args:
         bound, index: (S,) what each candidate costs at least, and its number.
         start: place of the candidate that is tried first.
-        tried: (4, S) scratch.
+        tried: (5, S) scratch.
     """
     agent_at = agent.ctypes.data
     x, y = in_world(frame, candidates, index[start])
@@ -107,16 +107,20 @@ def search(
     count = candidates.shape[0]
     if is_sorted:
         count = np.searchsorted(bound, best, side="right")
-    ux, uy, least = tried[0], tried[1], tried[2]
+    ux, uy, least, place = tried[0], tried[1], tried[2], tried[4]
+    left = 0
     for c in range(count):
-        ux[c], uy[c] = in_world(frame, candidates, index[c])
-        least[c] = bound[c]
-    raise_floors(count, tried, agent_at, floors, params_at, work_at, weights, active)
-    for c in range(count):
-        if bound[c] > best or least[c] > best + _ROUNDING * abs(best) or c == start:
+        if bound[c] <= best and c != start:
+            ux[left], uy[left] = in_world(frame, candidates, index[c])
+            least[left], place[left] = bound[c], c
+            left += 1
+    raise_floors(left, tried, agent_at, floors, params_at, work_at, weights, active)
+    for at in range(left):
+        c = int(place[at])
+        if bound[c] > best or least[at] > best + _ROUNDING * abs(best):
             continue
         cost = cost_within(
-            ux[c], uy[c], bound[c], best, agent_at, excesses, params_at, work_at, weights, active
+            ux[at], uy[at], bound[c], best, agent_at, excesses, params_at, work_at, weights, active
         )
         if cost < best or (cost == best and index[c] < best_index):
             best, best_index, best_place = cost, index[c], c
