@@ -12,6 +12,7 @@ from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld, policy_of
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact import DISC
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdView
+from crowdbot.core.crowd.push import PLACED_COLUMNS
 from crowdbot.core.crowd.step import tick
 from crowdbot.core.crowd.torus import ENDLESS
 from crowdbot.core.crowd.willed import willed
@@ -60,6 +61,7 @@ def whole_step(
     n = len(agents)
     robots, order, everybody = np.zeros((0, 8)), np.arange(n), np.ones(n, np.bool_)
     stiffness, reaction = np.full(n, CONTACT_STIFFNESS), np.zeros((n, 2))
+    placed = np.zeros((n, PLACED_COLUMNS))
     in_turn = np.argsort(agents.id)
 
     def step() -> None:
@@ -75,7 +77,7 @@ def whole_step(
             agents.preferred_speed, agents.max_speed, agents.start_time, everybody,
             agents.at_goal, agents.flow, agents.route, agents.first, world.entrance, world.out,
             False, ENDLESS, True, world.response, world.stiffness, world.dissipation,
-            walls, world.pillars, stiffness, order, np.uint64(0), DT, reaction,
+            walls, world.pillars, stiffness, order, np.uint64(0), DT, reaction, placed,
         )  # fmt: skip
 
     return step

@@ -17,6 +17,7 @@ from crowdbot.core.crowd.calls import address_of
 from crowdbot.core.crowd.cost import (
     BASE,
     EXCESS,
+    FLOOR,
     GRADIENT,
     OPTIMUM,
     PREPARE,
@@ -28,7 +29,7 @@ from crowdbot.core.crowd.gradient import Descent
 from crowdbot.core.crowd.mix import Mix
 from crowdbot.core.registry import Registry
 from crowdbot.testing.around import around, built, specs_of
-from crowdbot.testing.cost_parts import bases_of, forgets_work, stops_at_budget
+from crowdbot.testing.cost_parts import above_floor, bases_of, forgets_work, stops_at_budget
 from crowdbot.testing.crowd_views import (
     SEEDS,
     arrays_of,
@@ -48,6 +49,7 @@ _SIGNATURES = {
     "excess": EXCESS,
     "gradient": GRADIENT,
     "optimum": OPTIMUM,
+    "floor": FLOOR,
 }
 _TURN = 0.7  # rad
 
@@ -142,6 +144,22 @@ def check_excess_stops_above_budget(
                 assert not wrong, wrong
 
 
+def check_floor_is_below_excess(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """Where there is a ``floor``, it is between zero and the excess.
+
+    If this fails, the search passes over candidates that might win: leave out of the floor
+    whatever is not certain.
+    """
+    for cost in _costs(component, registry):
+        if isinstance(cost, CompiledCost) and cost.floor is not None:
+            for seed in SEEDS:
+                view = random_view(seed)
+                wrong = above_floor(cost, view, _candidates(view))
+                assert not wrong, wrong
+
+
 def check_work_is_written(component: Component[Any], registry: Registry | None = None) -> None:
     """No cost depends on what ``work`` held before ``prepare``.
 
@@ -222,6 +240,7 @@ CHECKS: tuple[Callable[..., None], ...] = (
     check_excess_is_not_negative,
     check_candidates_are_independent,
     check_excess_stops_above_budget,
+    check_floor_is_below_excess,
     check_work_is_written,
     check_gradient,
     check_input_is_not_changed,
@@ -252,7 +271,7 @@ def _total(cost: Cost, view: CrowdView, velocities: Array) -> Array:
 
 
 def _assert_compiled(name: str, function: Any, signature: Any) -> None:
-    if function is None and name in ("gradient", "optimum"):
+    if function is None and name in ("gradient", "optimum", "floor"):
         return
     assert hasattr(function, "nopython_signatures"), f"{name} is no compiled function"
     try:

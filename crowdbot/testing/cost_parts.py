@@ -7,13 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from crowdbot.core.crowd import CrowdView
-from crowdbot.core.crowd.calls import call_excess
+from crowdbot.core.crowd.calls import call_excess, call_floor
 from crowdbot.core.crowd.cost import Array, CompiledCost
 from crowdbot.core.crowd.evaluate import Evaluator
-from crowdbot.core.crowd.mix import Mix, base_cost, describe, layers
+from crowdbot.core.crowd.mix import Addresses, Mix, base_cost, describe
 from crowdbot.core.crowd.neighbours import INDEX, WANTED_X, WANTED_Y
 
 #: Shares of the true excess that are tried as budgets.
@@ -29,7 +28,7 @@ def bases_of(cost: CompiledCost, view: CrowdView, velocities: Array) -> Array:
     mix = Mix([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
     found = np.zeros(velocities.shape[:2])
     for i, agent in _each_agent(mix, view):
-        _fill_bases(agent, mix.bases, mix.params, mix.weights, velocities[i], found[i])
+        _fill_bases(agent, mix.bases, mix.params_at, mix.weights, velocities[i], found[i])
     return found
 
 
@@ -43,6 +42,23 @@ def stops_at_budget(cost: CompiledCost, view: CrowdView, velocities: Array) -> s
             wrong = _budgets(mix, agent, velocities[i])
             if wrong:
                 return wrong
+    return ""
+
+
+def above_floor(cost: CompiledCost, view: CrowdView, velocities: Array) -> str:
+    """What is wrong with the floor of the excess; empty if nothing is."""
+    mix = Mix([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
+    for i in range(len(view.agents)):
+        only = replace(view, decides=np.arange(len(view.agents)) == i)
+        Evaluator(mix).total(only, velocities)  # prepares ``work`` for this agent
+        for _, agent in _each_agent(mix, only):
+            ux, uy = np.ascontiguousarray(velocities[i].T)
+            least = np.full(len(ux), np.nan)
+            _fill_floors(ux, uy, agent, mix.floors, mix.params_at, mix.work_at, least)
+            for x, y, floor in zip(ux, uy, least, strict=True):
+                true = _excess(x, y, math.inf, agent, mix.excesses, mix.params_at, mix.work_at)
+                if not math.isnan(true) and not 0.0 <= floor <= true * (1.0 + 1e-9):
+                    return f"excess is {true:g}, its floor {floor:g}"
     return ""
 
 
@@ -60,11 +76,11 @@ def forgets_work(cost: CompiledCost, view: CrowdView, velocities: Array) -> bool
 
 def _budgets(mix: Mix, agent: Array, velocities: Array) -> str:
     for ux, uy in velocities.tolist():
-        true = _excess(ux, uy, math.inf, agent, mix.excesses, mix.params, mix.work)
+        true = _excess(ux, uy, math.inf, agent, mix.excesses, mix.params_at, mix.work_at)
         if not math.isfinite(true):
             continue
         for budget in (share * true for share in _SHARES):
-            found = _excess(ux, uy, budget, agent, mix.excesses, mix.params, mix.work)
+            found = _excess(ux, uy, budget, agent, mix.excesses, mix.params_at, mix.work_at)
             within = true <= budget * (1.0 - 1e-9)
             if within and not math.isclose(found, true, rel_tol=1e-9, abs_tol=1e-12):
                 return f"excess is {true:g}, with a budget of {budget:g} it is {found:g}"
@@ -89,13 +105,12 @@ def _each_agent(mix: Mix, view: CrowdView) -> list[tuple[int, Array]]:
 @njit(cache=True, error_model="numpy")
 def _fill_bases(
     agent: Array,
-    bases: NDArray[np.intp],
-    params: Array,
+    bases: Addresses,
+    params_at: Addresses,
     weights: Array,
     velocities: Array,
     out: Array,
 ) -> None:
-    params_at = layers(params)
     for s in range(len(velocities)):
         out[s] = base_cost(velocities[s, 0], velocities[s, 1], agent, bases, params_at, weights)
 
@@ -106,12 +121,26 @@ def _excess(
     uy: float,
     budget: float,
     agent: Array,
-    excesses: NDArray[np.intp],
-    params: Array,
-    work: Array,
+    excesses: Addresses,
+    params_at: Addresses,
+    work_at: Addresses,
 ) -> float:
     return float(
-        call_excess(
-            excesses[0], ux, uy, budget, agent.ctypes.data, layers(work)[0], layers(params)[0]
-        )
+        call_excess(excesses[0], ux, uy, budget, agent.ctypes.data, work_at[0], params_at[0])
     )
+
+
+@njit(cache=True, error_model="numpy")
+def _fill_floors(
+    ux: Array,
+    uy: Array,
+    agent: Array,
+    floors: Addresses,
+    params_at: Addresses,
+    work_at: Addresses,
+    out: Array,
+) -> None:
+    call_floor(
+        floors[0], len(ux), ux.ctypes.data, uy.ctypes.data, agent.ctypes.data, work_at[0],
+        params_at[0], out.ctypes.data,
+    )  # fmt: skip

@@ -17,6 +17,7 @@ from crowdbot.core.crowd import CrowdView
 from crowdbot.core.crowd.cost import (
     BASE,
     EXCESS,
+    FLOOR,
     GRADIENT,
     PREPARE,
     AgentView,
@@ -204,6 +205,13 @@ def _half(ux: float, uy: float, agent: Any, work: Any, params: Any, out: Any) ->
     return 1
 
 
+@njit(FLOOR, error_model="numpy")
+def _lofty(count: int, ux: Any, uy: Any, agent: Any, work: Any, params: Any, out: Any) -> int:
+    for c in range(count):
+        out[c] = 1.1 * (ux[c] ** 2 + uy[c] ** 2)  # of _square
+    return 1
+
+
 def compiled(**changes: Any) -> Any:
     given: dict[str, Any] = {
         "base": _no_base, "prepare": _count, "excess": _square, "weight": 1.0,
@@ -223,6 +231,7 @@ def compiled(**changes: Any) -> Any:
         (cost_function.check_excess_is_not_negative, {"excess": _negative}, "below their base"),
         (cost_function.check_candidates_are_independent, {"excess": _counting}, "another order"),
         (cost_function.check_excess_stops_above_budget, {"excess": _impatient}, "with a budget"),
+        (cost_function.check_floor_is_below_excess, {"floor": _lofty}, "its floor"),
         (
             cost_function.check_work_is_written,
             {"prepare": _writes_nothing, "excess": _what_is_there},

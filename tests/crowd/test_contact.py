@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.contact import keep_off, push_apart
+from crowdbot.core.crowd.contact import keep_off
+from crowdbot.core.crowd.push import PLACED_COLUMNS, push_apart
 
 DT = 1.0 / TICKS
 NO_WALLS, NO_DISCS = np.zeros((0, 4)), np.zeros((0, 3))
@@ -29,7 +30,8 @@ def _push(people: Array, radius: float = 0.33, walls: Array | None = None) -> Ar
     order = np.argsort(people[:, s.X], kind="stable")
     segments = NO_WALLS if walls is None else walls
     count = len(people)
-    push_apart(people, np.full(count, radius), order, segments, NO_DISCS, np.full(count, 62.5))
+    stiffness, placed = np.full(count, 62.5), np.zeros((count, PLACED_COLUMNS))
+    push_apart(people, np.full(count, radius), order, segments, NO_DISCS, stiffness, placed)
     return people[:, s.PUSH_X : s.PUSH_Y + 1]
 
 
@@ -59,7 +61,8 @@ def test_pushes_balance_and_match_all_pairs(position: list[tuple[float, float]])
 def test_people_of_different_size_are_found() -> None:
     people = _people([(0.0, 0.0), (0.9, 0.0), (0.2, 3.0)])
     order = np.argsort(people[:, s.X], kind="stable")
-    push_apart(people, np.array([0.2, 0.8, 0.2]), order, NO_WALLS, NO_DISCS, np.full(3, 10.0))
+    radius, placed = np.array([0.2, 0.8, 0.2]), np.zeros((3, PLACED_COLUMNS))
+    push_apart(people, radius, order, NO_WALLS, NO_DISCS, np.full(3, 10.0), placed)
     assert people[0, s.PUSH_X] == pytest.approx(-1.0)
     assert people[1, s.PUSH_X] == pytest.approx(1.0)
 
@@ -74,8 +77,9 @@ def test_a_pillar_pushes_by_each_agents_own_stiffness() -> None:
     people = _people([(1.0, 0.0), (-1.0, 0.0), (0.0, 3.0)])
     pillar = np.array([[0.0, 0.0, 0.8]])
     push_apart(
-        people, np.full(3, 0.33), np.array([1, 2, 0]), NO_WALLS, pillar, np.array([10.0, 20, 30])
-    )
+        people, np.full(3, 0.33), np.array([1, 2, 0]), NO_WALLS, pillar, np.array([10.0, 20, 30]),
+        np.zeros((3, PLACED_COLUMNS)),
+    )  # fmt: skip
     assert people[:, s.PUSH_X] == pytest.approx([1.3, -2.6, 0.0])
     assert people[:, s.PUSH_Y] == pytest.approx([0.0, 0.0, 0.0])
 

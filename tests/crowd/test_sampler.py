@@ -10,7 +10,7 @@ import pytest
 from crowd_reference import Array, agents_of, choice_costs
 from oracle_cases import compiled
 
-from crowdbot.core.crowd.candidates import Sampling, fan
+from crowdbot.core.crowd.candidates import CURRENT, MAXIMUM_SPEED, Sampling, fan
 from crowdbot.core.crowd.mix import Mix
 from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.core.crowd.sampling import Sampler
@@ -76,6 +76,22 @@ def test_takes_the_exhaustive_minimum(mix: str, seed: int) -> None:
         assert np.hypot(*(u[taken] - chosen[i])) < 1e-9
         assert total[taken] <= np.min(total) + 1e-9 * max(1.0, abs(np.min(total)))
     assert not np.any(chosen[~view.present])
+
+
+@pytest.mark.parametrize("mix", list(MIXES))
+@pytest.mark.parametrize(
+    "sampling", [Sampling(), Sampling(base=CURRENT, radius=MAXIMUM_SPEED), Sampling(random=40)]
+)
+def test_floors_change_no_choice(mix: str, sampling: Sampling) -> None:
+    """To the last bit, with less to evaluate."""
+    costs = [compiled(c) for c in MIXES[mix]]
+    for seed in range(4):
+        view = scene(seed, 80)
+        with_floors = Mix(costs, view.agents)
+        assert np.any(with_floors.floors)
+        without = Mix([replace(c, floor=None) for c in costs], view.agents)
+        found, expected = (Sampler(sampling, m).choose(view) for m in (with_floors, without))
+        assert np.array_equal(found, expected)
 
 
 def test_equal_costs_go_to_the_first_candidate() -> None:

@@ -15,7 +15,7 @@ from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 from numba.extending import intrinsic
 
-from crowdbot.core.crowd.cost import BASE, EXCESS, GRADIENT, OPTIMUM, PREPARE
+from crowdbot.core.crowd.cost import BASE, EXCESS, FLOOR, GRADIENT, OPTIMUM, PREPARE
 
 
 def address_of(function: Any, signature: Any) -> int:
@@ -79,8 +79,15 @@ def _optimum(_: Any, at: Any, agent: Any, work: Any, params: Any, out: Any) -> t
     return _call(OPTIMUM)
 
 
+def _floor(
+    _: Any, at: Any, count: Any, ux: Any, uy: Any, agent: Any, work: Any, params: Any, out: Any
+) -> tuple[Any, Any]:
+    return _call(FLOOR)
+
+
 call_base: Any = intrinsic(_base)
 call_prepare: Any = intrinsic(_prepare)
 call_excess: Any = intrinsic(_excess)
 call_gradient: Any = intrinsic(_gradient)
 call_optimum: Any = intrinsic(_optimum)
+call_floor: Any = intrinsic(_floor)

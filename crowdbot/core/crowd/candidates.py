@@ -26,6 +26,7 @@ from crowdbot.core.crowd.cost import (
     Array,
     Pointer,
 )
+from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.minstd import between, following
 
 # Codes of the options of `Sampling`.
@@ -86,7 +87,7 @@ def fan(speeds: int, angles: int, opening: float, *, include_base: bool = True) 
     return np.concatenate([directions * part for part in np.arange(1, speeds + 1) / speeds])
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def radius_of(agent: Pointer, kind: int) -> float:
     """Radius R of an agent's fan, m/s."""
     if kind == PREFERRED_SPEED:
@@ -96,7 +97,7 @@ def radius_of(agent: Pointer, kind: int) -> float:
     return float(min(2.0 * agent[MAX_SPEED], agent[MAX_ACCELERATION] * agent[TIME_STEP]))
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def direction_of(agent: Pointer, kind: int) -> tuple[float, float]:
     """Base direction of an agent's fan, of length 1.
 
@@ -114,7 +115,7 @@ def direction_of(agent: Pointer, kind: int) -> tuple[float, float]:
     return (x / length, y / length) if length > 0.0 else (0.0, 0.0)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def draw_candidates(agent: Pointer, half: float, radius: float, drawn: Array) -> None:
     """Fill ``drawn`` (S, 2) with random candidates of the unit fan; advances the generator.
 

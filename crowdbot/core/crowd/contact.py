@@ -1,20 +1,17 @@
-"""Forces between bodies: robot against pedestrian, people against each other and walls."""
+"""Forces between a robot and people."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
 from crowdbot.core.crowd.geometry import nearest_on_segment
+from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.state import (
     CONTACTS,
     PEOPLE_JX,
     PEOPLE_JY,
-    PUSH_X,
-    PUSH_Y,
     ROBOT_FX,
     ROBOT_FY,
     ROBOT_JX,
@@ -47,7 +44,7 @@ DISC = np.zeros((0, 2))
 _ON_EDGE = 1e-12
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def robot_contact(
     header: Array,
     agents: Array,
@@ -111,7 +108,7 @@ def robot_contact(
         agents[i, TOUCH_PEAK] = max(agents[i, TOUCH_PEAK], force)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def overlap(
     robot: Array, outline: Array, dx: float, dy: float, reach: float
 ) -> tuple[float, float, float, float, float]:
@@ -134,7 +131,7 @@ def overlap(
     return reach - gap, s * uy - c * ux, -s * ux - c * uy, c * qx - s * qy, s * qx + c * qy
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def from_outline(outline: Array, x: float, y: float) -> tuple[float, float, float, float, float]:
     """Where a point lies beside a segment (K = 2) or a convex polygon, counter-clockwise.
 
@@ -161,7 +158,7 @@ def from_outline(outline: Array, x: float, y: float) -> tuple[float, float, floa
     return nearest, nx, ny, qx, qy
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _extent(outline: Array) -> float:
     """Distance of the farthest corner from the base, m."""
     farthest = 0.0
@@ -170,14 +167,14 @@ def _extent(outline: Array) -> float:
     return farthest
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def bearing(robot: Array, x: float, y: float) -> float:
     """Direction of a vector (world frame) as the robot sees it, rad, counter-clockwise."""
     angle = math.atan2(y, x) - robot[R_YAW]
     return math.atan2(math.sin(angle), math.cos(angle))
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _begin_touch(
     agents: Array,
     i: int,
@@ -194,14 +191,14 @@ def _begin_touch(
     agents[i, TOUCH_SIDE] = side
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _end_touch(header: Array, agents: Array, i: int) -> None:
     agents[i, TOUCHING] = 0.0
     agents[i, TOUCHES] += 1.0
     header[CONTACTS] += 1.0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def keep_off(
     agents: Array, i: int, radius: Array, robots: Array, response: Array
 ) -> tuple[float, float]:
@@ -224,91 +221,3 @@ def keep_off(
         ax += push * dx / distance
         ay += push * dy / distance
     return ax, ay
-
-
-@njit(cache=True, error_model="numpy")
-def push_apart(
-    agents: Array,
-    radius: Array,
-    order: NDArray[np.int64],
-    walls: Array,
-    discs: Array,
-    stiffness: Array,
-) -> None:
-    """Push of overlapping people, walls and fixed discs, m/s^2, into the PUSH columns.
-
-    Args:
-        order: (N,) all agents in any order; sorted by x afterwards.
-        walls: (S, 4) segments.
-        discs: (D, 3) x, y, radius: pillars, and people as they appear across a border.
-        stiffness: (N,) of what each agent feels, 1/s^2.
-    """
-    largest = 0.0
-    for i in range(agents.shape[0]):
-        agents[i, PUSH_X] = agents[i, PUSH_Y] = 0.0
-        largest = max(largest, radius[i])
-    _sort_along_x(agents, order)
-    for a in range(order.shape[0]):
-        i = order[a]
-        if agents[i, WAITING] != 0.0:
-            continue
-        _push_by_walls(agents, i, radius[i], walls, stiffness[i])
-        for d in range(discs.shape[0]):
-            reach = radius[i] + discs[d, 2]
-            px, py = _push(agents[i, X] - discs[d, 0], agents[i, Y] - discs[d, 1], reach)
-            agents[i, PUSH_X] += stiffness[i] * px
-            agents[i, PUSH_Y] += stiffness[i] * py
-        for b in range(a + 1, order.shape[0]):
-            j = order[b]
-            if agents[j, X] - agents[i, X] >= radius[i] + largest:
-                break
-            if agents[j, WAITING] == 0.0:
-                _push_pair(agents, i, j, radius[i] + radius[j], stiffness)
-
-
-@njit(cache=True, error_model="numpy")
-def _sort_along_x(agents: Array, order: NDArray[np.int64]) -> None:
-    """By x, then by row, so that the result does not depend on the order before.
-
-    From one tick to the next hardly anybody changes places: few steps.
-    """
-    for a in range(1, order.shape[0]):
-        i = order[a]
-        x, b = agents[i, X], a
-        while b > 0:
-            j = order[b - 1]
-            if agents[j, X] < x or (agents[j, X] == x and j < i):
-                break
-            order[b] = j
-            b -= 1
-        order[b] = i
-
-
-@njit(cache=True, error_model="numpy")
-def _push(dx: float, dy: float, reach: float) -> tuple[float, float]:
-    """How far discs overlap (m), away from the other; zero for centres on each other."""
-    d2 = dx * dx + dy * dy
-    if d2 >= reach * reach or d2 == 0.0:
-        return 0.0, 0.0
-    distance = math.sqrt(d2)
-    push = (reach - distance) / distance
-    return push * dx, push * dy
-
-
-@njit(cache=True, error_model="numpy")
-def _push_pair(agents: Array, i: int, j: int, reach: float, stiffness: Array) -> None:
-    px, py = _push(agents[i, X] - agents[j, X], agents[i, Y] - agents[j, Y], reach)
-    agents[i, PUSH_X] += stiffness[i] * px
-    agents[i, PUSH_Y] += stiffness[i] * py
-    agents[j, PUSH_X] -= stiffness[j] * px
-    agents[j, PUSH_Y] -= stiffness[j] * py
-
-
-@njit(cache=True, error_model="numpy")
-def _push_by_walls(agents: Array, i: int, radius: float, walls: Array, stiffness: float) -> None:
-    x, y = agents[i, X], agents[i, Y]
-    for s in range(walls.shape[0]):
-        nx, ny = nearest_on_segment(x, y, walls[s, 0], walls[s, 1], walls[s, 2], walls[s, 3])
-        px, py = _push(x - nx, y - ny, radius)
-        agents[i, PUSH_X] += stiffness * px
-        agents[i, PUSH_Y] += stiffness * py

@@ -17,6 +17,9 @@ error_model="numpy")``; float64 everywhere, SI units, world frame unless said ot
   not called.
 - ``excess(ux, uy, budget, agent, work, params) -> cost``: may stop and return anything above
   ``budget`` as soon as the cost exceeds it. Called for many candidates, in any order.
+- ``floor(count, ux, uy, agent, work, params, out) -> 1``: optional; into ``out`` a lower bound >= 0
+  of the excess for each of ``count`` candidates, right but for rounding. Worth it where a few
+  operations on all candidates at once, without branches, spare most of them the excess.
 - ``gradient(ux, uy, agent, work, params, out) -> 1``: optional; derivatives of the whole cost
   along x and y into ``out[0]`` and ``out[1]``; 0 if there is none to write. Without the function:
   central differences over 0.1 m/s of base plus excess. Called after ``prepare``, also where that
@@ -54,6 +57,7 @@ PREPARE = types.int64(_P, _P, _I, _P, _I, _P, _P)
 EXCESS = types.float64(_F, _F, _F, _P, _P, _P)
 GRADIENT = types.int64(_F, _F, _P, _P, _P, _P)
 OPTIMUM = types.int64(_P, _P, _P, _P)
+FLOOR = types.int64(_I, _P, _P, _P, _P, _P, _P)
 
 # Entries of the ``agent`` vector: position, velocity, radius, preferred speed, the greatest speed
 # that the search asks for, time between decisions; goal, preferred velocity, largest speed and
@@ -88,7 +92,7 @@ class CompiledCost:
         base, prepare, excess: numba functions of the signatures above.
         params: (P,), begins with the range (m) and 1.0 if it is measured between surfaces.
         weight: factor of the cost, >= 0.
-        gradient, optimum: numba functions of the signatures above, or None.
+        gradient, optimum, floor: numba functions of the signatures above, or None.
         ordered: excess has to be called for every candidate and in their order, because it draws
             random numbers.
     """
@@ -100,6 +104,7 @@ class CompiledCost:
     weight: float
     gradient: Callable[..., Any] | None = None
     optimum: Callable[..., Any] | None = None
+    floor: Callable[..., Any] | None = None
     ordered: bool = False
 
     def reach(self, radius: float, largest_radius: float) -> float:

@@ -7,21 +7,23 @@ pseudorandom number generators", OOPSLA 2014), applied once per word.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit, uint64
+from numba import uint64
 from numpy.typing import NDArray
+
+from crowdbot.core.crowd.kernel import kernel
 
 #: What a draw is for; keeps draws with equal counters apart.
 GOAL, ENTRY, REACTION = 0, 1, 2
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _mix(word: np.uint64) -> np.uint64:
     word = (word ^ (word >> uint64(30))) * uint64(0xBF58476D1CE4E5B9)
     word = (word ^ (word >> uint64(27))) * uint64(0x94D049BB133111EB)
     return word ^ (word >> uint64(31))
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def uniform(key: np.uint64, agent: int, trip: int, purpose: int, counter: int) -> float:
     """A number in [0, 1) that depends on its arguments only."""
     state = uint64(key)

@@ -13,6 +13,7 @@ from crowdbot.core.crowd.agents import PORTAL, Agents
 from crowdbot.core.crowd.contact import DISC
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdPolicy, CrowdView
 from crowdbot.core.crowd.portals import draw_goal, enter
+from crowdbot.core.crowd.push import PLACED_COLUMNS
 from crowdbot.core.crowd.routes import head_for
 from crowdbot.core.crowd.step import tick
 from crowdbot.core.crowd.torus import ENDLESS
@@ -72,6 +73,7 @@ class CrowdEngine:
         self._order = np.arange(len(agents))  # scratch, see `tick`
         self._heeds = ~agents.ignores_robot
         self._reaction = np.zeros((len(agents), 2))
+        self._placed = np.zeros((len(agents), PLACED_COLUMNS))
 
     def initial_state(self) -> Array:
         """Those who start at once walk to their first goal at preferred speed; others wait."""
@@ -120,7 +122,7 @@ class CrowdEngine:
             a.preferred_speed, a.max_speed, a.start_time, self._heeds, a.at_goal, a.flow,
             a.route, a.first, w.entrance, w.out, w.exit_point == "offset", self._torus,
             not w.parity, w.response, w.stiffness, w.dissipation, w.walls, self._fixed(rows),
-            self._push, self._order, self._key, dt, self._reaction,
+            self._push, self._order, self._key, dt, self._reaction, self._placed,
         )  # fmt: skip
 
     def run(self, duration: float, sample_rate: float = 16.0) -> tuple[Array, Array]:

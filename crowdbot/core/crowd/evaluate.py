@@ -40,7 +40,7 @@ from crowdbot.core.crowd.cost import (
     Neighbours,
     NumpyCost,
 )
-from crowdbot.core.crowd.mix import Addresses, Mix, Scene, cost_of, describe, layers, prepare
+from crowdbot.core.crowd.mix import Addresses, Mix, Scene, cost_of, describe, prepare
 from crowdbot.core.crowd.neighbours import (
     INDEX,
     WANTED_X,
@@ -76,8 +76,8 @@ class Evaluator:
             _evaluate(
                 scene.table, scene.starts, scene.low, scene.height, scene.who, scene.goal,
                 scene.walls, scene.reach, scene.agent, scene.near, scene.found, mix.traits,
-                settings, mix.random, mix.bases, mix.prepares, mix.excesses, mix.params,
-                mix.weights, mix.work, np.ascontiguousarray(velocities), total,
+                settings, mix.random, mix.bases, mix.prepares, mix.excesses, mix.params_at,
+                mix.weights, mix.work_at, np.ascontiguousarray(velocities), total,
             )  # fmt: skip
         if mix.vectorised:
             self._add_vectorised(scene, settings, velocities, total)
@@ -158,13 +158,12 @@ def _evaluate(
     bases: Addresses,
     prepares: Addresses,
     excesses: Addresses,
-    params: Array,
+    params_at: Addresses,
     weights: Array,
-    work: Array,
+    work_at: Addresses,
     velocities: Array,
     total: Array,
 ) -> None:
-    params_at, work_at = layers(params), layers(work)
     active = np.empty(weights.shape[0], np.int64)
     has_excess = np.empty(weights.shape[0], np.bool_)
     for b in range(table.shape[0]):

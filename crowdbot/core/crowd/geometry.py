@@ -5,10 +5,23 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from crowdbot.core.crowd.kernel import kernel
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
+def is_clearly_shorter(x: float, y: float, length: float) -> bool:
+    """Whether a vector is shorter than ``length`` whatever the rounding; cheaper than `hypot`."""
+    return x * x + y * y < (1.0 - 1e-12) * length * length
+
+
+@kernel
+def is_clearly_longer(x: float, y: float, length: float) -> bool:
+    """Whether a vector is longer than ``length`` whatever the rounding."""
+    return x * x + y * y > (1.0 + 1e-12) * length * length
+
+
+@kernel
 def nearest_on_segment(
     px: float, py: float, ax: float, ay: float, bx: float, by: float
 ) -> tuple[float, float]:
@@ -21,7 +34,7 @@ def nearest_on_segment(
     return ax + s * ex, ay + s * ey
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def time_to_disc(rx: float, ry: float, vx: float, vy: float, gap2: float) -> float:
     """Time until a disc that moves at v relative to another touches it; inf if never.
 
@@ -38,7 +51,7 @@ def time_to_disc(rx: float, ry: float, vx: float, vy: float, gap2: float) -> flo
     return gap2 / (approach + math.sqrt(root))  # the cancellation-free form of the smaller root
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def time_to_segment(
     vx: float, vy: float, radius: float, ax: float, ay: float, bx: float, by: float
 ) -> float:
@@ -61,7 +74,7 @@ def time_to_segment(
     return first
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def crossing_time(
     vx: float, vy: float, radius: float, ax: float, ay: float, bx: float, by: float
 ) -> float:
@@ -84,7 +97,7 @@ def crossing_time(
     return first
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def single_angle(ax: float, ay: float, bx: float, by: float) -> float:
     """Angle between two vectors in [0, pi] with the rounding of the original engine.
 
@@ -101,7 +114,7 @@ def single_angle(ax: float, ay: float, bx: float, by: float) -> float:
     return float(np.float32(math.acos(cosine))) if -1.0 <= cosine <= 1.0 else 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def opposite_taken_for_parallel(ax: float, ay: float, bx: float, by: float) -> bool:
     """Whether the original takes the angle between two opposite vectors for 0."""
     return ax * bx + ay * by < 0.0 and single_angle(ax, ay, bx, by) == 0.0

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd.calls import call_gradient
 from crowdbot.core.crowd.cost import DESCENDS, FASTEST, RANDOM, VX, VY, Array
 from crowdbot.core.crowd.evaluate import Evaluator
-from crowdbot.core.crowd.mix import Addresses, Mix, cost_of, describe, layers, prepare
+from crowdbot.core.crowd.mix import Addresses, Mix, cost_of, describe, prepare
 from crowdbot.core.crowd.neighbours import INDEX, WANTED_X, WANTED_Y, Starts
 from crowdbot.core.crowd.policy import CrowdView
 
@@ -37,8 +37,8 @@ class Descent:
         _descend(
             scene.table, scene.starts, scene.low, scene.height, scene.who, scene.goal, scene.walls,
             scene.reach, scene.agent, scene.near, scene.found, mix.traits, mix.settings(view),
-            mix.random, mix.bases, mix.prepares, mix.excesses, mix.gradients, mix.params,
-            mix.weights, mix.work, found,
+            mix.random, mix.bases, mix.prepares, mix.excesses, mix.gradients, mix.params_at,
+            mix.weights, mix.work_at, found,
         )  # fmt: skip
         if mix.vectorised:
             points = view.velocity[:, np.newaxis] + _AROUND
@@ -73,12 +73,11 @@ def _descend(
     prepares: Addresses,
     excesses: Addresses,
     gradients: Addresses,
-    params: Array,
+    params_at: Addresses,
     weights: Array,
-    work: Array,
+    work_at: Addresses,
     result: Array,
 ) -> None:
-    params_at, work_at = layers(params), layers(work)
     active = np.empty(weights.shape[0], np.int64)
     out = np.zeros(2)
     for b in range(table.shape[0]):

@@ -12,6 +12,7 @@ import numpy as np
 from crowdbot.core.crowd.cost import (
     BASE,
     EXCESS,
+    FLOOR,
     GRADIENT,
     OPTIMUM,
     PREPARE,
@@ -26,8 +27,9 @@ from crowdbot.errors import CrowdbotError, PluginError
 
 _SIGNATURES = {
     "base": BASE, "prepare": PREPARE, "excess": EXCESS, "gradient": GRADIENT, "optimum": OPTIMUM,
+    "floor": FLOOR,
 }  # fmt: skip
-_OPTIONAL = ("gradient", "optimum")
+_OPTIONAL = ("gradient", "optimum", "floor")
 
 
 class KnownPolicy:

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import Agents
@@ -19,6 +18,7 @@ from crowdbot.core.crowd.cost import (
     DESCENDS,
     EXCESS,
     FASTEST,
+    FLOOR,
     GRADIENT,
     GX,
     GY,
@@ -46,6 +46,7 @@ from crowdbot.core.crowd.cost import (
     CompiledCost,
     NumpyCost,
 )
+from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.minstd import seeds
 from crowdbot.core.crowd.neighbours import (
     BODY_COLUMNS,
@@ -129,18 +130,24 @@ class Mix:
         self.excesses = _addresses([c.excess for c in self.compiled], EXCESS)
         self.gradients = _addresses([c.gradient for c in self.compiled], GRADIENT)
         self.optima = _addresses([c.optimum for c in self.compiled], OPTIMUM)
+        self.floors = _addresses([c.floor for c in self.compiled], FLOOR)
         width = max((len(c.params) for c in self.compiled), default=2)
         self.params = np.zeros((len(self.compiled), width))
         for row, cost in zip(self.params, self.compiled, strict=True):
             row[: len(cost.params)] = cost.params
+        self.params_at = layers(self.params)
         self.weights = np.array([c.weight for c in self.compiled], np.float64)
         ones = np.ones(len(agents)) if weight is None else weight
         self.traits = np.column_stack(
             [agents.preferred_speed, agents.max_speed, agents.max_acceleration, ones]
         )
         self.random = seeds(agents.id)
-        self.work = np.zeros((len(self.compiled), 1, WORK_COLUMNS))
+        self._make_work(1)
         self._bodies = self._table = np.zeros((0, BODY_COLUMNS))
+
+    def _make_work(self, rows: int) -> None:
+        self.work = np.zeros((len(self.compiled), rows, WORK_COLUMNS))
+        self.work_at = layers(self.work)
 
     def reach(self, view: CrowdView) -> float:
         """Centre distance beyond which nobody matters to anybody, m."""
@@ -170,8 +177,7 @@ class Mix:
             view.diagonal, reach, self._bodies,
         )  # fmt: skip
         if self.work.shape[1] < 1 + count + len(view.walls):
-            rows = 1 + room + len(view.walls)
-            self.work = np.zeros((len(self.compiled), rows, WORK_COLUMNS))
+            self._make_work(1 + room + len(view.walls))
         height = strip_height(self._bodies, count, reach)
         low, starts = sort_bodies(self._bodies, count, height, self._table)
         return Scene(
@@ -186,7 +192,7 @@ def _addresses(functions: Sequence[object], signature: object) -> Addresses:
     return np.array([0 if f is None else address_of(f, signature) for f in functions], np.intp)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def describe(
     table: Array,
     b: int,
@@ -212,7 +218,7 @@ def describe(
     agent[FASTEST] = max(agent[MAX_SPEED], math.hypot(agent[VX], agent[VY]))
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def prepare(
     table: Array,
     starts: Starts,
@@ -249,7 +255,7 @@ def prepare(
     return terms
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def base_cost(
     ux: float,
     uy: float,
@@ -271,7 +277,7 @@ def base_cost(
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def cost_of(
     k: int,
     ux: float,
@@ -295,10 +301,6 @@ def cost_of(
     return float(cost)
 
 
-@njit(cache=True, error_model="numpy")
 def layers(array: Array) -> Addresses:
-    """Addresses of the parts of an array along its first axis."""
-    at = np.empty(array.shape[0], np.intp)
-    for k in range(array.shape[0]):
-        at[k] = array.ctypes.data + k * array.strides[0]
-    return at
+    """Addresses of the parts of an array along its first axis; valid while it lives."""
+    return np.asarray(array.ctypes.data + array.strides[0] * np.arange(len(array)), np.intp)

@@ -27,6 +27,7 @@ from crowdbot.core.crowd.cost import (
     Array,
 )
 from crowdbot.core.crowd.geometry import nearest_on_segment
+from crowdbot.core.crowd.kernel import kernel
 
 # Columns of a body table: position, velocity, radius, preferred velocity, 1 for a pillar, index
 # of the agent or -1.
@@ -38,7 +39,7 @@ _MOST_STRIPS = 512
 Starts = NDArray[np.int64]
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def strip_height(bodies: Array, count: int, reach: float) -> float:
     """Height of strips that suits a search within ``reach``, m."""
     low, high = np.inf, -np.inf
@@ -88,7 +89,7 @@ def sort_bodies(bodies: Array, count: int, height: float, table: Array) -> tuple
     return low, starts
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def gather(
     table: Array, starts: Starts, low: float, height: float, me: int, distance: float, near: Array
 ) -> int:
@@ -128,7 +129,7 @@ def gather(
     return count
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def gather_walls(walls: Array, px: float, py: float, distance: float, found: Array) -> int:
     """Write the segments not farther than ``distance`` to ``found``; return how many.
 

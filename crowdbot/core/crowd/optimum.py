@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd.calls import call_optimum
 from crowdbot.core.crowd.candidates import EVERYWHERE
 from crowdbot.core.crowd.cost import RANDOM, Array
-from crowdbot.core.crowd.mix import Addresses, Mix, describe, layers, prepare
+from crowdbot.core.crowd.mix import Addresses, Mix, describe, prepare
 from crowdbot.core.crowd.neighbours import INDEX, WANTED_X, WANTED_Y, Starts
 from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.core.crowd.sampling import Sampler
@@ -34,7 +34,7 @@ class Optimum:
         _solve(
             scene.table, scene.starts, scene.low, scene.height, scene.who, scene.goal, scene.walls,
             scene.reach, scene.agent, scene.near, scene.found, mix.traits, mix.settings(view),
-            mix.random, mix.prepares, int(mix.optima[0]), mix.params, mix.weights, mix.work,
+            mix.random, mix.prepares, int(mix.optima[0]), mix.params_at, mix.weights, mix.work_at,
             unknown, chosen,
         )  # fmt: skip
         if np.any(unknown):
@@ -60,13 +60,12 @@ def _solve(
     random: Array,
     prepares: Addresses,
     optimum: int,
-    params: Array,
+    params_at: Addresses,
     weights: Array,
-    work: Array,
+    work_at: Addresses,
     unknown: NDArray[np.bool_],
     chosen: Array,
 ) -> None:
-    params_at, work_at = layers(params), layers(work)
     active = np.empty(1, np.int64)
     out = np.zeros(2)
     for b in range(table.shape[0]):

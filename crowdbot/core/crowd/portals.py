@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import draws
+from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.routes import end_trip, start_trip
 from crowdbot.core.crowd.state import (
     AT_PORTAL,
@@ -30,9 +30,11 @@ from crowdbot.core.crowd.state import (
 
 #: Nobody re-enters closer to a robot than this, centre to centre, m.
 CLEAR_OF_ROBOT = 1.0
+#: Who stays farther than this from a box does not enter it by rounding, m.
+_CLEAR = 1e-6
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def point_in(box: Array, margin: float, u: float, v: float) -> tuple[float, float]:
     """The point of a box (x0, x1, y0, y1), shrunk by a margin, at fractions u and v."""
     mx = min(margin, 0.5 * (box[1] - box[0]))
@@ -43,9 +45,11 @@ def point_in(box: Array, margin: float, u: float, v: float) -> tuple[float, floa
     )
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def entry_fraction(box: Array, x0: float, y0: float, x1: float, y1: float) -> float:
     """Fraction of the way from p0 to p1 at which a box is entered; above 1 if it is not."""
+    if max(x0, x1) < box[0] - _CLEAR or min(x0, x1) > box[1] + _CLEAR:
+        return 2.0  # nearly always, and divisions are dear
     enter, leave = 0.0, 1.0
     for start, step, low, high in ((x0, x1 - x0, box[0], box[1]), (y0, y1 - y0, box[2], box[3])):
         if step == 0.0:
@@ -57,7 +61,7 @@ def entry_fraction(box: Array, x0: float, y0: float, x1: float, y1: float) -> fl
     return enter if enter <= leave else 2.0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def draw_goal(
     agents: Array, i: int, ids: NDArray[np.int64], radius: Array, out: Array, key: np.uint64
 ) -> None:
@@ -68,21 +72,21 @@ def draw_goal(
     agents[i, GOAL_X], agents[i, GOAL_Y] = point_in(out, radius[i], u, v)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def leave(agents: Array, i: int, when: float) -> None:
     """Take agent i out of the world at the end of its trip; its position is where it left."""
     end_trip(agents, i, when)
     agents[i, WAITING], agents[i, ATTEMPT] = AT_PORTAL, 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _share(at: float, low: float, high: float, margin: float) -> float:
     """Where a coordinate lies between the sides of a box shrunk by a margin, 0 to 1."""
     room = high - low - 2.0 * margin
     return min(1.0, max(0.0, (at - low - margin) / room)) if room > 0.0 else 0.5
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def is_free(agents: Array, i: int, radius: Array, robots: Array, x: float, y: float) -> bool:
     """Whether agent i could stand at a point: on nobody, and clear of robots."""
     for r in range(robots.shape[0]):
@@ -96,7 +100,7 @@ def is_free(agents: Array, i: int, radius: Array, robots: Array, x: float, y: fl
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def enter(agents: Array, i: int, x: float, y: float, preferred: float, now: float) -> None:
     """Put agent i into the world, on the way to its goal at preferred speed."""
     agents[i, WAITING], agents[i, X], agents[i, Y] = PRESENT, x, y
@@ -109,7 +113,7 @@ def enter(agents: Array, i: int, x: float, y: float, preferred: float, now: floa
     start_trip(agents, i, now)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def try_to_re_enter(
     agents: Array,
     i: int,

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import LOOP, REMOVE
+from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.state import (
     ARRIVALS,
     ARRIVED,
@@ -31,7 +31,7 @@ from crowdbot.core.crowd.state import (
 Rows = NDArray[np.int64]
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def head_for(agents: Array, i: int, route: Array, first: Rows) -> None:
     """Set the goal of agent i to the next point of its route; to where it is without one."""
     row = first[i] + int(agents[i, WAYPOINT])
@@ -42,7 +42,7 @@ def head_for(agents: Array, i: int, route: Array, first: Rows) -> None:
         agents[i, GOAL_X], agents[i, GOAL_Y] = agents[i, X], agents[i, Y]
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def reach_fraction(
     x0: float, y0: float, x1: float, y1: float, gx: float, gy: float, radius: float
 ) -> float:
@@ -58,7 +58,7 @@ def reach_fraction(
     return float(c / (math.sqrt(root) - b))
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def end_trip(agents: Array, i: int, when: float) -> None:
     """Book the arrival of agent i; it is on no trip until it starts another."""
     agents[i, ARRIVED], agents[i, LAST_START] = when, agents[i, TRIP_START]
@@ -66,13 +66,13 @@ def end_trip(agents: Array, i: int, when: float) -> None:
     agents[i, ON_TRIP] = 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def start_trip(agents: Array, i: int, when: float) -> None:
     """Let agent i's next trip begin; its goal must be set."""
     agents[i, TRIP_START], agents[i, ON_TRIP] = when, 1.0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def next_goal(
     agents: Array, i: int, at_goal: int, route: Array, first: Rows, radius: float, when: float
 ) -> None:
@@ -91,7 +91,7 @@ def next_goal(
     start_trip(agents, i, when)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _all_here(agents: Array, i: int, route: Array, first: Rows, radius: float) -> bool:
     """Whether a lap would be over before it begins."""
     for row in range(first[i], first[i + 1]):

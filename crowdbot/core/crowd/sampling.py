@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.candidates import (
@@ -33,6 +32,7 @@ from crowdbot.core.crowd.cost import (
     Array,
 )
 from crowdbot.core.crowd.evaluate import Evaluator
+from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.mix import (
     S_DT,
     S_PARITY,
@@ -43,13 +43,12 @@ from crowdbot.core.crowd.mix import (
     Mix,
     base_cost,
     describe,
-    layers,
     prepare,
 )
 from crowdbot.core.crowd.neighbours import INDEX, WANTED_X, WANTED_Y, Starts
 from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.core.crowd.search import (
-    AS_IT_IS,
+    as_it_is,
     frame_of,
     in_world,
     least_forbidden,
@@ -73,10 +72,17 @@ class Sampler:
         # Whether bounds are the same at each decision.
         self._tabulated = not s.random and s.base == ZERO and s.direction == ALONG_PREFERRED
         self._table_dt = math.nan
-        self._bound = np.zeros((0, 0))
-        self._index = np.zeros((0, 0), np.int64)
+        # Bounds and their candidates: a row for each agent, or one that each fills anew.
+        self._bound = np.zeros((1, len(self._candidates)))
+        self._index = np.arange(len(self._candidates))[np.newaxis]
         # Where each search begins: the previous choice is a good bound, and changes no choice.
         self._first = np.zeros(len(mix.agents), np.int64)
+        # Scratch: the frame (base, then direction times radius), candidates in the world frame,
+        # functions whose excess may differ from zero, what `search` knows about candidates.
+        self._frame = np.zeros(4)
+        self._world = np.zeros_like(self._candidates)
+        self._active = np.zeros(len(mix.compiled), np.int64)
+        self._tried = np.zeros((5, len(self._candidates)))
 
     def choose(self, view: CrowdView) -> Array:
         """Chosen velocities (N, 2), m/s; zero for agents that are absent or have arrived."""
@@ -89,10 +95,11 @@ class Sampler:
         _choose(
             scene.table, scene.starts, scene.low, scene.height, scene.who, scene.goal, scene.walls,
             scene.reach, scene.agent, scene.near, scene.found, mix.traits, settings, mix.random,
-            mix.bases, mix.prepares, mix.excesses, mix.params, mix.weights, mix.work,
+            mix.bases, mix.prepares, mix.excesses, mix.floors, mix.params_at, mix.weights,
+            mix.work_at,
             s.base, s.direction, s.radius, 0.5 * s.opening, s.random > 0, mix.ordered,
             self._candidates, self._polar, self._tabulated, self._bound, self._index,
-            self._first, chosen,
+            self._first, self._frame, self._world, self._active, self._tried, chosen,
         )  # fmt: skip
         return chosen
 
@@ -104,7 +111,7 @@ class Sampler:
         _candidates_of(
             scene.table, scene.who, scene.goal, scene.agent, mix.traits, settings, mix.random,
             s.base, s.direction, s.radius, 0.5 * s.opening, s.random > 0, self._candidates,
-            self._polar, found,
+            self._polar, self._frame, found,
         )  # fmt: skip
         return found
 
@@ -126,27 +133,26 @@ class Sampler:
         mix = self.mix
         total = np.zeros((len(mix.agents), len(self._candidates)))
         _tabulate(
-            self._candidates, mix.traits, self.sampling.radius, dt, mix.bases, mix.params,
-            mix.weights, total,
+            self._candidates, mix.traits, self.sampling.radius, dt, mix.bases, mix.params_at,
+            mix.weights, np.zeros(AGENT_SIZE), total,
         )  # fmt: skip
         self._index = np.argsort(total, axis=1, kind="stable")
         self._bound = np.take_along_axis(total, self._index, axis=1)
         self._table_dt = dt
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _tabulate(
     candidates: Array,
     traits: Array,
     radius: int,
     dt: float,
     bases: Addresses,
-    params: Array,
+    params_at: Addresses,
     weights: Array,
+    agent: Array,
     total: Array,
 ) -> None:
-    params_at = layers(params)
-    agent = np.zeros(AGENT_SIZE)
     for i in range(total.shape[0]):
         agent[PREFERRED], agent[MAX_SPEED] = traits[i, T_PREFERRED], traits[i, T_MAX_SPEED]
         agent[PVX], agent[TIME_STEP] = agent[PREFERRED], dt
@@ -159,7 +165,7 @@ def _tabulate(
             total[i, c] = base_cost(ux, uy, agent, bases, params_at, weights)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _choose(
     table: Array,
     starts: Starts,
@@ -178,9 +184,10 @@ def _choose(
     bases: Addresses,
     prepares: Addresses,
     excesses: Addresses,
-    params: Array,
+    floors: Addresses,
+    params_at: Addresses,
     weights: Array,
-    work: Array,
+    work_at: Addresses,
     base: int,
     direction: int,
     radius: int,
@@ -193,16 +200,14 @@ def _choose(
     bounds: Array,
     indices: Indices,
     first: Indices,
+    frame: Array,
+    world: Array,
+    active: Indices,
+    tried: Array,
     chosen: Array,
 ) -> None:
     """Everybody's choice; see `Sampler`."""
-    params_at, work_at = layers(params), layers(work)
-    active = np.empty(weights.shape[0], np.int64)  # functions whose excess may differ from zero
-    bound = np.empty(candidates.shape[0])
-    index = np.arange(candidates.shape[0])
-    frame = np.empty(4)  # base, then direction times radius
     fan = candidates
-    world = np.empty(candidates.shape if settings[S_PARITY] != 0.0 else (0, 2))
     for b in range(table.shape[0]):
         i = int(table[b, INDEX])
         if i < 0 or not who[i] or (table[b, WANTED_X] == 0.0 and table[b, WANTED_Y] == 0.0):
@@ -216,7 +221,8 @@ def _choose(
         to_draw = drawn
         if settings[S_PARITY] != 0.0 and not (ordered and drawn):
             single_candidates(agent, regular, drawn, half, radius, base, direction, world)
-            frame[:], fan, to_draw = AS_IT_IS, world, False
+            as_it_is(frame)
+            fan, to_draw = world, False
         if ordered:
             best, place = try_in_order(
                 frame, fan, to_draw, half, scale, agent, bases, excesses, params_at, work_at,
@@ -224,16 +230,16 @@ def _choose(
             )  # fmt: skip
         elif tabulated:
             best, place = search(
-                frame, fan, bounds[i], indices[i], True, first[i], agent, excesses,
-                params_at, work_at, weights, active[:terms],
+                frame, fan, bounds[i], indices[i], True, first[i], agent, excesses, floors,
+                params_at, work_at, weights, active[:terms], tried,
             )  # fmt: skip
         else:
             if to_draw:
                 draw_candidates(agent, half, scale, fan)
-            start = lower_bounds(frame, fan, agent, bases, params_at, weights, bound)
+            start = lower_bounds(frame, fan, agent, bases, params_at, weights, bounds[0])
             best, place = search(
-                frame, fan, bound, index, False, start, agent, excesses, params_at, work_at,
-                weights, active[:terms],
+                frame, fan, bounds[0], indices[0], False, start, agent, excesses, floors,
+                params_at, work_at, weights, active[:terms], tried,
             )  # fmt: skip
         random[i] = agent[RANDOM]
         if best == math.inf:
@@ -252,7 +258,7 @@ def _choose(
         chosen[i, 0], chosen[i, 1] = in_world(frame, fan, c)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _candidates_of(
     table: Array,
     who: NDArray[np.bool_],
@@ -268,9 +274,9 @@ def _candidates_of(
     drawn: bool,
     candidates: Array,
     regular: Array,
+    frame: Array,
     result: Array,
 ) -> None:
-    frame = np.empty(4)
     for b in range(table.shape[0]):
         i = int(table[b, INDEX])
         if i < 0 or not who[i] or (table[b, WANTED_X] == 0.0 and table[b, WANTED_Y] == 0.0):

@@ -8,17 +8,18 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd.calls import call_base, call_excess
+from crowdbot.core.crowd.calls import call_base, call_excess, call_floor
 from crowdbot.core.crowd.candidates import CURRENT, direction_of, draw_candidates, radius_of
 from crowdbot.core.crowd.cost import FASTEST, MAX_SPEED, PREFERRED, PVX, PVY, VX, VY, Array
+from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.mix import Addresses, base_cost, cost_of
 
 Indices = NDArray[np.int64]
-#: The frame of candidates that are given in the world frame.
-AS_IT_IS = np.array([0.0, 0.0, 1.0, 0.0])
+#: By how much a sum of floors may exceed the cost, as a fraction of it.
+_ROUNDING = 1e-9
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def frame_of(agent: Array, base: int, direction: int, radius: int, frame: Array) -> float:
     """Where an agent's candidates are; sets the greatest speed asked for; returns the radius."""
     scale = radius_of(agent, radius)
@@ -38,7 +39,13 @@ def in_world(frame: Array, candidates: Array, c: int) -> tuple[float, float]:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
+def as_it_is(frame: Array) -> None:
+    """The frame of candidates that are given in the world frame."""
+    frame[0], frame[1], frame[2], frame[3] = 0.0, 0.0, 1.0, 0.0
+
+
+@kernel
 def lower_bounds(
     frame: Array,
     candidates: Array,
@@ -51,12 +58,12 @@ def lower_bounds(
     """Lower bounds of all candidates; returns the candidate of the least."""
     least, preferred, fastest = 0, agent[PREFERRED], agent[MAX_SPEED]
     cosine, sine = agent[PVX] / preferred, agent[PVY] / preferred
-    turned = np.empty(4)  # the frame as seen from the preferred velocity
-    for k in (0, 2):
-        turned[k] = frame[k] * cosine + frame[k + 1] * sine
-        turned[k + 1] = frame[k + 1] * cosine - frame[k] * sine
+    # The frame as seen from the preferred velocity.
+    x, y = frame[0] * cosine + frame[1] * sine, frame[1] * cosine - frame[0] * sine
+    along, across = frame[2] * cosine + frame[3] * sine, frame[3] * cosine - frame[2] * sine
     for c in range(candidates.shape[0]):
-        ux, uy = in_world(turned, candidates, c)
+        ux = x + candidates[c, 0] * along - candidates[c, 1] * across
+        uy = y + candidates[c, 0] * across + candidates[c, 1] * along
         total = 0.0
         for k in range(bases.shape[0]):
             if weights[k] != 0.0:
@@ -67,7 +74,7 @@ def lower_bounds(
     return least
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def search(
     frame: Array,
     candidates: Array,
@@ -77,38 +84,100 @@ def search(
     start: int,
     agent: Array,
     excesses: Addresses,
+    floors: Addresses,
     params_at: Addresses,
     work_at: Addresses,
     weights: Array,
     active: Indices,
+    tried: Array,
 ) -> tuple[float, int]:
-    """Least cost, and the place of its candidate among the bounds; the first one of equals."""
+    """Least cost, and the place of its candidate among the bounds; the first one of equals.
+
+    Args:
+        bound, index: (S,) what each candidate costs at least, and its number.
+        start: place of the candidate that is tried first.
+        tried: (5, S) scratch.
+    """
     agent_at = agent.ctypes.data
+    x, y = in_world(frame, candidates, index[start])
+    best = cost_within(
+        x, y, bound[start], math.inf, agent_at, excesses, params_at, work_at, weights, active
+    )
+    best_index, best_place = index[start], start
     count = candidates.shape[0]
-    best, best_index, best_place = math.inf, count, start
-    for attempt in range(-1, count):
-        c = start if attempt < 0 else attempt
-        if attempt >= 0 and (bound[c] > best or c == start):
-            if is_sorted and bound[c] > best:
-                break
+    if is_sorted:
+        count = np.searchsorted(bound, best, side="right")
+    ux, uy, least, place = tried[0], tried[1], tried[2], tried[4]
+    left = 0
+    for c in range(count):
+        if bound[c] <= best and c != start:
+            ux[left], uy[left] = in_world(frame, candidates, index[c])
+            least[left], place[left] = bound[c], c
+            left += 1
+    raise_floors(left, tried, agent_at, floors, params_at, work_at, weights, active)
+    for at in range(left):
+        c = int(place[at])
+        if bound[c] > best or least[at] > best + _ROUNDING * abs(best):
             continue
-        q = index[c]
-        ux, uy = in_world(frame, candidates, q)
-        cost = bound[c]
-        for term in range(active.shape[0]):
-            k = active[term]
-            budget = (best - cost) / weights[k]
-            cost += weights[k] * call_excess(
-                excesses[k], ux, uy, budget, agent_at, work_at[k], params_at[k]
-            )
-            if cost > best:
-                break
-        if cost < best or (cost == best and q < best_index):
-            best, best_index, best_place = cost, q, c
+        cost = cost_within(
+            ux[at], uy[at], bound[c], best, agent_at, excesses, params_at, work_at, weights, active
+        )
+        if cost < best or (cost == best and index[c] < best_index):
+            best, best_index, best_place = cost, index[c], c
     return best, best_place
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
+def cost_within(
+    ux: float,
+    uy: float,
+    base: float,
+    best: float,
+    agent_at: int,
+    excesses: Addresses,
+    params_at: Addresses,
+    work_at: Addresses,
+    weights: Array,
+    active: Indices,
+) -> float:
+    """Cost of a candidate in the world frame, or anything above ``best`` if it exceeds it."""
+    cost = base
+    for term in range(active.shape[0]):
+        k = active[term]
+        budget = (best - cost) / weights[k]
+        cost += weights[k] * call_excess(
+            excesses[k], ux, uy, budget, agent_at, work_at[k], params_at[k]
+        )
+        if cost > best:
+            break
+    return cost
+
+
+@kernel
+def raise_floors(
+    count: int,
+    tried: Array,
+    agent_at: int,
+    floors: Addresses,
+    params_at: Addresses,
+    work_at: Addresses,
+    weights: Array,
+    active: Indices,
+) -> None:
+    """Add to row 2 of ``tried`` what the functions know about the candidates in rows 0 and 1."""
+    ux, uy, least, out = tried[0], tried[1], tried[2], tried[3]
+    for term in range(active.shape[0]):
+        k = active[term]
+        if floors[k] != 0:
+            call_floor(
+                floors[k], count, ux.ctypes.data, uy.ctypes.data, agent_at, work_at[k],
+                params_at[k], out.ctypes.data,
+            )  # fmt: skip
+            for c in range(count):
+                least[c] += weights[k] * out[c]
+
+
+@kernel
 def try_in_order(
     frame: Array,
     candidates: Array,
@@ -143,7 +212,7 @@ def try_in_order(
     return best, place
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def least_forbidden(
     frame: Array,
     candidates: Array,

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.candidates import (
@@ -20,6 +19,7 @@ from crowdbot.core.crowd.candidates import (
     radius_of,
 )
 from crowdbot.core.crowd.cost import GX, GY, PREFERRED, PX, PY, RANDOM, VX, VY, Array, Pointer
+from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.minstd import between, following
 
 
@@ -36,7 +36,7 @@ def polar(sampling: Sampling) -> Array:
     return np.concatenate([np.zeros((1 if s.include_base else 0, 2)), *rings])
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def single_candidates(
     agent: Pointer,
     regular: Array,
@@ -75,7 +75,7 @@ def single_candidates(
     agent[RANDOM] = float(state)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _direction(agent: Pointer, kind: int) -> tuple[np.float32, np.float32]:
     if kind == UNIT:
         return np.float32(1.0), np.float32(0.0)
@@ -88,7 +88,7 @@ def _direction(agent: Pointer, kind: int) -> tuple[np.float32, np.float32]:
     return _normalised(np.float32(x * speed), np.float32(y * speed))
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _normalised(x: np.float32, y: np.float32) -> tuple[np.float32, np.float32]:
     length = np.float32(np.sqrt(np.float32(np.float32(x * x) + np.float32(y * y))))
     if length == np.float32(0.0):

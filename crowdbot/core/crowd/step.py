@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import PORTAL
-from crowdbot.core.crowd.contact import keep_off, push_apart, robot_contact
+from crowdbot.core.crowd.contact import keep_off, robot_contact
+from crowdbot.core.crowd.geometry import is_clearly_shorter
+from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.portals import enter, entry_fraction, is_free, leave, try_to_re_enter
+from crowdbot.core.crowd.push import push_apart
 from crowdbot.core.crowd.routes import end_trip, next_goal, reach_fraction
 from crowdbot.core.crowd.state import (
     ARRIVALS,
@@ -46,7 +48,7 @@ Rows = NDArray[np.int64]
 _TURNS_ABOVE = 0.1
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def tick(
     flat: Array,
     columns: int,
@@ -79,6 +81,7 @@ def tick(
     key: np.uint64,
     dt: float,
     reaction: Array,
+    placed: Array,
 ) -> None:
     """Advance from tick k to k + 1.
 
@@ -90,14 +93,14 @@ def tick(
         robots, outline: (R, 8), (K, 2) as in `crowdbot.core.crowd.contact`.
         in_turn: (N,) rows of agents by id: the order in which they enter.
         torus: (4,) x0, x1, y0, y1, infinite where there is no border.
-        walls, discs, push, order: what pushes, and how much, as in `push_apart`.
+        walls, discs, push, order, placed: what pushes, and how much, as in `push_apart`.
         reaction: (N, 2) scratch.
 
     Everything else is as in `Agents` and `CrowdWorld`.
     """
     header, agents = flat[:HEADER_SIZE], flat[HEADER_SIZE:].reshape(-1, columns)
     now = header[TICK] * dt
-    push_apart(agents, radius, order, walls, discs, push)
+    push_apart(agents, radius, order, walls, discs, push, placed)
     for r in range(robots.shape[0]):
         robot_contact(
             header, agents, radius, robots[r], outline, stiffness, dissipation, now, dt, reaction
@@ -135,7 +138,7 @@ def tick(
     header[TICK] += 1.0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _through(agents: Array, i: int, x: float, y: float, out: Array, now: float, dt: float) -> None:
     """Agent i, which was at (x, y), leaves if it has entered its out-portal."""
     fraction = entry_fraction(out, x, y, agents[i, X], agents[i, Y])
@@ -143,7 +146,7 @@ def _through(agents: Array, i: int, x: float, y: float, out: Array, now: float, 
         leave(agents, i, now + fraction * dt)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _along(
     agents: Array,
     i: int,
@@ -166,14 +169,15 @@ def _along(
         next_goal(agents, i, at_goal, route, first, radius, when)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _move(agents: Array, i: int, fastest: float, ax: float, ay: float, dt: float) -> None:
     """Own will is limited to the largest speed; pushes (ax, ay) are not."""
     vx = agents[i, VX] + agents[i, AX] * dt
     vy = agents[i, VY] + agents[i, AY] * dt
-    speed = math.hypot(vx, vy)
-    if speed > fastest:
-        vx, vy = vx / speed * fastest, vy / speed * fastest
+    if not is_clearly_shorter(vx, vy, fastest):
+        speed = math.hypot(vx, vy)
+        if speed > fastest:
+            vx, vy = vx / speed * fastest, vy / speed * fastest
     agents[i, VX], agents[i, VY] = vx + ax * dt, vy + ay * dt
     agents[i, X] += agents[i, VX] * dt
     agents[i, Y] += agents[i, VY] * dt

@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.state import GOAL_X, GOAL_Y, JUMPS, LAP_X, LAP_Y, X, Y
 
 Array = NDArray[np.float64]
@@ -53,7 +53,7 @@ def images(discs: Array, box: Box, reach: float, *, diagonal: bool = True) -> Ar
     return np.concatenate(found)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def wrap(agents: Array, i: int, box: Array, goals_wrap: bool) -> None:
     """Put agent i back on the floor, one wrap per axis.
 

@@ -7,11 +7,12 @@ import math
 import numpy as np
 from numba import njit
 
-from crowdbot.core.crowd.collision import first_collision, list_obstacles
+from crowdbot.core.crowd.collision import first_collision, list_obstacles, soonest_disc
 from crowdbot.core.crowd.cost import (
     BASE,
     EXCESS,
     FASTEST,
+    FLOOR,
     MAX_SPEED,
     PARITY,
     PREPARE,
@@ -68,6 +69,23 @@ def _excess(
     return float(params[_W] / first_collision(vx, vy, too_soon, agent, work))
 
 
+@njit(FLOOR, cache=True, error_model="numpy")
+def _floor(
+    count: int,
+    ux: Pointer,
+    uy: Pointer,
+    agent: Pointer,
+    work: Pointer,
+    params: Pointer,
+    out: Pointer,
+) -> int:
+    """Without walls."""
+    soonest_disc(count, ux, uy, 2.0, agent[VX], agent[VY], work, out)
+    for c in range(count):
+        out[c] *= params[_W]
+    return 1
+
+
 def build(spec: RvoSpec) -> CompiledCost:
     """Compile-time functions with this spec's parameters."""
     surface = 1.0 if spec.range.measure == "surface" else 0.0
@@ -75,6 +93,7 @@ def build(spec: RvoSpec) -> CompiledCost:
         base=_base,
         prepare=_prepare,
         excess=_excess,
+        floor=_floor,
         params=np.array([spec.range.value, surface, spec.w]),
         weight=spec.weight,
     )

@@ -20,6 +20,7 @@ from crowdbot.core.crowd.cost import (
     DESCENDS,
     EXCESS,
     FASTEST,
+    FLOOR,
     FROM_SURFACE,
     NVX,
     NVY,
@@ -55,6 +56,9 @@ from crowdbot.plugins.crowd.ttca_dca_params_build import (
     WALLS,
     WEIGHT,
 )
+
+_HEAVIEST = 2  # neighbours in lower bounds
+_TINY = 1e-300
 
 
 @njit(BASE, cache=True, error_model="numpy")
@@ -160,6 +164,42 @@ def _excess(
     return float(cost / work[0, TOTAL])
 
 
+@njit(FLOOR, cache=True, error_model="numpy")
+def _floor(
+    count: int,
+    ux: Pointer,
+    uy: Pointer,
+    agent: Pointer,
+    work: Pointer,
+    params: Pointer,
+    out: Pointer,
+) -> int:
+    """The terms of the heaviest neighbours, with an eighth power in place of exp.
+
+    exp(-y) >= 1 - y + y^2 / 2 - y^3 / 6 for y >= 0.
+    """
+    work = work_table(work)
+    a, b = params[INV_TTCA2], params[INV_DCA2]
+    for c in range(count):
+        out[c] = 0.0
+    for j in range(1, min(_HEAVIEST, int(work[0, 0])) + 1):
+        dx, dy, qx, qy = work[j, 0], work[j, 1], work[j, 2], work[j, 3]
+        vx, vy, weight = work[j, 4], work[j, 5], work[j, WEIGHT] / work[0, TOTAL]
+        for c in range(count):
+            wx, wy = vx - ux[c], vy - uy[c]
+            across = dx * wy - dy * wx
+            wx, wy = wx - dy * across, wy + dx * across
+            towards = -(qx * wx + qy * wy)
+            t = max(0.0, towards) / max(_TINY, wx * wx + wy * wy)
+            cx, cy = qx + t * wx, qy + t * wy
+            y = (t * t * a + (cx * cx + cy * cy) * b) / 16.0
+            part = max(0.0, 1.0 - y * (1.0 - y * (0.5 - y / 6.0)))
+            part *= part
+            part *= part
+            out[c] += weight * (part * part)
+    return 1
+
+
 def build(spec: TtcaDcaSpec) -> CompiledCost:
     """Compile-time functions with this spec's parameters."""
     params = [
@@ -176,6 +216,7 @@ def build(spec: TtcaDcaSpec) -> CompiledCost:
         prepare=_prepare,
         excess=_excess,
         gradient=gradient,
+        floor=_floor,
         params=np.array(params),
         weight=spec.weight,
     )

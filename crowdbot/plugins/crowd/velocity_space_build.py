@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from numba import njit
-
 from crowdbot.core.crowd.candidates import Sampling
 from crowdbot.core.crowd.cost import Array, CompiledCost, NumpyCost
+from crowdbot.core.crowd.geometry import is_clearly_longer, is_clearly_shorter
 from crowdbot.core.crowd.gradient import Descent
+from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.mix import Mix
 from crowdbot.core.crowd.optimum import Optimum
 from crowdbot.core.crowd.policy import Agents, CrowdView
@@ -83,7 +83,7 @@ class VelocitySpace:
         return found
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _accelerate(
     found: Array,
     descend: bool,
@@ -98,17 +98,20 @@ def _accelerate(
 ) -> None:
     """Turn what was found into accelerations, in place; who has arrived stops at once."""
     for i in range(found.shape[0]):
-        to_goal = math.hypot(goal[i, 0] - position[i, 0], goal[i, 1] - position[i, 1])
+        gx, gy = goal[i, 0] - position[i, 0], goal[i, 1] - position[i, 1]
+        arrived = not is_clearly_longer(gx, gy, radius[i]) and math.hypot(gx, gy) <= radius[i]
         ax, ay = found[i, 0], found[i, 1]
-        if to_goal <= radius[i] or preferred[i] == 0.0:
+        if arrived or preferred[i] == 0.0:
             ax, ay = -velocity[i, 0] / dt, -velocity[i, 1] / dt
         elif not descend:
             ax, ay = (ax - velocity[i, 0]) / relaxation, (ay - velocity[i, 1]) / relaxation
         elif math.isinf(ax) or math.isinf(ay):  # away from what is forbidden, as fast as possible
             ax = math.copysign(limit[i], ax) if math.isinf(ax) else 0.0
             ay = math.copysign(limit[i], ay) if math.isinf(ay) else 0.0
-        norm = math.hypot(ax, ay)
-        scale = limit[i] / norm if norm > limit[i] else 1.0
+        scale = 1.0
+        if not is_clearly_shorter(ax, ay, limit[i]):
+            norm = math.hypot(ax, ay)
+            scale = limit[i] / norm if norm > limit[i] else 1.0
         found[i, 0], found[i, 1] = ax * scale, ay * scale
 
 
