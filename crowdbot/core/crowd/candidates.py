@@ -26,8 +26,8 @@ from crowdbot.core.crowd.cost import (
     Array,
     Pointer,
 )
-from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.minstd import between, following
+from crowdbot.core.kernel import kernel
 
 # Codes of the options of `Sampling`.
 ZERO, CURRENT = range(2)  # base

@@ -7,7 +7,6 @@ import math
 import numpy as np
 
 from crowdbot.core.crowd.geometry import nearest_on_segment
-from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.state import (
     CONTACTS,
     PEOPLE_JX,
@@ -32,6 +31,7 @@ from crowdbot.core.crowd.state import (
     X,
     Y,
 )
+from crowdbot.core.kernel import kernel
 
 #: A contact has ended when the surface gap exceeds this, m (metric specification, 3.10).
 RELEASE_GAP = 0.05

@@ -10,7 +10,7 @@ import numpy as np
 from numba import uint64
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd.kernel import kernel
+from crowdbot.core.kernel import kernel
 
 #: What a draw is for; keeps draws with equal counters apart.
 GOAL, ENTRY, REACTION = 0, 1, 2

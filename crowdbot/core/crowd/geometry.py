@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.crowd.kernel import kernel
+from crowdbot.core.kernel import kernel
 
 
 @kernel

@@ -46,7 +46,6 @@ from crowdbot.core.crowd.cost import (
     CompiledCost,
     NumpyCost,
 )
-from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.minstd import seeds
 from crowdbot.core.crowd.neighbours import (
     BODY_COLUMNS,
@@ -64,6 +63,7 @@ from crowdbot.core.crowd.neighbours import WANTED_Y as B_WY
 from crowdbot.core.crowd.neighbours import X as B_X
 from crowdbot.core.crowd.neighbours import Y as B_Y
 from crowdbot.core.crowd.policy import CrowdView
+from crowdbot.core.kernel import kernel
 
 Addresses = NDArray[np.intp]
 # Columns of ``traits``; entries of ``settings``.

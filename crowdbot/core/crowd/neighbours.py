@@ -27,7 +27,7 @@ from crowdbot.core.crowd.cost import (
     Array,
 )
 from crowdbot.core.crowd.geometry import nearest_on_segment
-from crowdbot.core.crowd.kernel import kernel
+from crowdbot.core.kernel import kernel
 
 # Columns of a body table: position, velocity, radius, preferred velocity, 1 for a pillar, index
 # of the agent or -1.

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import draws
-from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.routes import end_trip, start_trip
 from crowdbot.core.crowd.state import (
     AT_PORTAL,
@@ -27,6 +26,7 @@ from crowdbot.core.crowd.state import (
     X,
     Y,
 )
+from crowdbot.core.kernel import kernel
 
 #: Nobody re-enters closer to a robot than this, centre to centre, m.
 CLEAR_OF_ROBOT = 1.0

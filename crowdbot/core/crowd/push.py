@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.geometry import nearest_on_segment
-from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.state import PUSH_X, PUSH_Y, WAITING, Array, X, Y
+from crowdbot.core.kernel import kernel
 
 # Columns of `push_apart`'s scratch: those present in a row along x, close together in memory.
 _X, _Y, _RADIUS, _STIFFNESS, _PX, _PY, _ROW = range(7)

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import LOOP, REMOVE
-from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.state import (
     ARRIVALS,
     ARRIVED,
@@ -27,6 +26,7 @@ from crowdbot.core.crowd.state import (
     X,
     Y,
 )
+from crowdbot.core.kernel import kernel
 
 Rows = NDArray[np.int64]
 

@@ -32,7 +32,6 @@ from crowdbot.core.crowd.cost import (
     Array,
 )
 from crowdbot.core.crowd.evaluate import Evaluator
-from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.mix import (
     S_DT,
     S_PARITY,
@@ -57,6 +56,7 @@ from crowdbot.core.crowd.search import (
     try_in_order,
 )
 from crowdbot.core.crowd.single import polar, single_candidates
+from crowdbot.core.kernel import kernel
 
 Indices = NDArray[np.int64]
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd.calls import call_base, call_excess, call_floor
 from crowdbot.core.crowd.candidates import CURRENT, direction_of, draw_candidates, radius_of
 from crowdbot.core.crowd.cost import FASTEST, MAX_SPEED, PREFERRED, PVX, PVY, VX, VY, Array
-from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.mix import Addresses, base_cost, cost_of
+from crowdbot.core.kernel import kernel
 
 Indices = NDArray[np.int64]
 #: By how much a sum of floors may exceed the cost, as a fraction of it.

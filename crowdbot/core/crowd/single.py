@@ -19,8 +19,8 @@ from crowdbot.core.crowd.candidates import (
     radius_of,
 )
 from crowdbot.core.crowd.cost import GX, GY, PREFERRED, PX, PY, RANDOM, VX, VY, Array, Pointer
-from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.minstd import between, following
+from crowdbot.core.kernel import kernel
 
 
 def polar(sampling: Sampling) -> Array:

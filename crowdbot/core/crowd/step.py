@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd.agents import PORTAL
 from crowdbot.core.crowd.contact import keep_off, robot_contact
 from crowdbot.core.crowd.geometry import is_clearly_shorter
-from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.portals import enter, entry_fraction, is_free, leave, try_to_re_enter
 from crowdbot.core.crowd.push import push_apart
 from crowdbot.core.crowd.routes import end_trip, next_goal, reach_fraction
@@ -41,6 +40,7 @@ from crowdbot.core.crowd.state import (
     Y,
 )
 from crowdbot.core.crowd.torus import wrap
+from crowdbot.core.kernel import kernel
 
 Rows = NDArray[np.int64]
 

@@ -10,8 +10,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.state import GOAL_X, GOAL_Y, JUMPS, LAP_X, LAP_Y, X, Y
+from crowdbot.core.kernel import kernel
 
 Array = NDArray[np.float64]
 #: x0, x1, y0, y1, m.

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
+
+from crowdbot.core.kernel import kernel
 
 Array = NDArray[np.float64]
 
@@ -36,7 +37,7 @@ def trunk_radius(height: Array, radius: Array) -> Array:
     return radii
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def place_people(
     people: Array,
     present: NDArray[np.bool_],

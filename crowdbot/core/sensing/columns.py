@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crowdbot.core.kernel import kernel
 from crowdbot.core.sensing.bodies import BOTTOM, RADIUS, TOP, X, Y
 
 Array = NDArray[np.float64]
@@ -38,7 +38,7 @@ class Grid:
         azimuth: (C,) rising, within one turn, rad; 0 is straight ahead.
         rise: (R,).
         lean: (C,).
-        work: scratch of `cast_columns`.
+        scratch: for kernels, see `fill_columns`.
     """
 
     def __init__(self, azimuth: ArrayLike, rise: ArrayLike, lean: ArrayLike | None = None) -> None:
@@ -48,7 +48,13 @@ class Grid:
         self.cos, self.sin = np.cos(self.azimuth), np.sin(self.azimuth)
         # What a level ray meets hides all behind it.
         deepest = DEEPEST if np.any(self.rise) else 1
-        self.work = np.empty((len(self.azimuth), deepest, WORK_COLUMNS))
+        columns = len(self.azimuth)
+        self.scratch = (
+            np.empty((columns, deepest, WORK_COLUMNS)),
+            np.zeros(columns, np.int64),
+            np.empty((2, columns)),
+            np.empty((3, 2), np.int64),
+        )
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -56,7 +62,7 @@ class Grid:
         return len(self.rise), len(self.azimuth)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _first_from(azimuth: Array, value: float) -> int:
     """Index of the first column at or after an azimuth."""
     low, high = 0, azimuth.shape[0]
@@ -69,7 +75,7 @@ def _first_from(azimuth: Array, value: float) -> int:
     return low
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _cover(azimuth: Array, low: float, high: float, runs: NDArray[np.int64]) -> int:
     """Write the runs of columns whose azimuths lie in [low, high], a turn more or less.
 
@@ -90,7 +96,7 @@ def _cover(azimuth: Array, low: float, high: float, runs: NDArray[np.int64]) -> 
     return count
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _insert(
     work: Array, count: NDArray[np.int64], c: int,
     near: float, far: float, facing: float, low: float, high: float, who: int,
@@ -111,7 +117,7 @@ def _insert(
     count[c] = n + 1
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _add_disc(
     px: float, py: float, r: float, bottom: float, top: float, yaw: float, who: int,
     azimuth: Array, cos: Array, sin: Array, work: Array, count: NDArray[np.int64],
@@ -139,14 +145,14 @@ def _add_disc(
             _insert(work, count, c, near, along + depth, facing, bottom, top, who)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _gap(px: float, py: float, ex: float, ey: float) -> float:
     """Distance from the origin to the segment from p to p + e, m."""
     share = min(1.0, max(0.0, -(px * ex + py * ey) / (ex * ex + ey * ey)))
     return math.hypot(px + share * ex, py + share * ey)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _add_wall(
     ox: float, oy: float, yaw: float, wall: Array, heights: Array, who: int, reach: float,
     azimuth: Array, cos: Array, sin: Array, work: Array, count: NDArray[np.int64],
@@ -178,12 +184,13 @@ def _add_wall(
             _insert(work, count, c, t, t, abs(across) / length, heights[0], heights[1], who)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def fill_columns(
     x: float, y: float, yaw: float, lowest: float, highest: float, azimuth: Array, cos: Array,
     sin: Array, max_range: float, walls: Array, wall_heights: Array, discs: Array,
-    owner: NDArray[np.int64], work: Array,
-) -> NDArray[np.int64]:  # fmt: skip
+    owner: NDArray[np.int64], work: Array, count: NDArray[np.int64], ways: Array,
+    runs: NDArray[np.int64],
+) -> None:  # fmt: skip
     """Put every body between two heights into the columns that meet it.
 
     Args:
@@ -195,17 +202,14 @@ def fill_columns(
         walls, wall_heights: (S, 4), (S, 2).
         discs, owner: (D, 5), (D,) upright cylinders and the bodies that they belong to.
         work: (C, K, `WORK_COLUMNS`) output, the K nearest of each column, nearest first.
-
-    Returns:
-        (C,) how many bodies each column holds.
+        count: (C,) output, how many bodies each column holds.
+        ways, runs: (2, C), (3, 2) scratch.
     """
-    columns = azimuth.shape[0]
     c0, s0 = math.cos(yaw), math.sin(yaw)
-    ahead, aside = np.empty(columns), np.empty(columns)
-    for c in range(columns):
+    ahead, aside = ways[0], ways[1]
+    for c in range(azimuth.shape[0]):
         ahead[c], aside[c] = c0 * cos[c] - s0 * sin[c], s0 * cos[c] + c0 * sin[c]
-    count = np.zeros(columns, dtype=np.int64)
-    runs = np.empty((3, 2), dtype=np.int64)
+        count[c] = 0
     for i in range(walls.shape[0]):
         if wall_heights[i, 0] <= highest and wall_heights[i, 1] >= lowest:
             _add_wall(
@@ -222,17 +226,21 @@ def fill_columns(
                 px, py, r, discs[i, BOTTOM], discs[i, TOP], yaw, owner[i],
                 azimuth, ahead, aside, work, count, runs,
             )  # fmt: skip
-    return count
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def heights_of(z: float, rise: Array, lean: Array, max_range: float) -> tuple[float, float]:
     """Heights between which the rays of a grid from a height ``z`` run, m."""
-    reach = np.max(np.abs(lean)) * max_range
-    return z + min(0.0, np.min(rise)) * reach, z + max(0.0, np.max(rise)) * reach
+    longest = lowest = highest = 0.0
+    for k in range(lean.shape[0]):
+        longest = max(longest, abs(lean[k]))
+    for k in range(rise.shape[0]):
+        lowest, highest = min(lowest, rise[k]), max(highest, rise[k])
+    reach = longest * max_range
+    return z + lowest * reach, z + highest * reach
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def meet(slope: float, oz: float, near: float, far: float, low: float, high: float) -> float:
     """Horizontal distance at which a ray meets an upright body; inf if it misses.
 
@@ -249,11 +257,12 @@ def meet(slope: float, oz: float, near: float, far: float, low: float, high: flo
     return math.inf
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def cast_columns(
     x: float, y: float, z: float, yaw: float, azimuth: Array, cos: Array, sin: Array,
     rise: Array, lean: Array, max_range: float, floor: bool,
     walls: Array, wall_heights: Array, discs: Array, owner: NDArray[np.int64], work: Array,
+    count: NDArray[np.int64], ways: Array, runs: NDArray[np.int64],
     distance: Array, incidence: Array, body: NDArray[np.int64],
 ) -> None:  # fmt: skip
     """Nearest hit of each ray of a grid.
@@ -271,15 +280,15 @@ def cast_columns(
         floor: whether the floor z = 0 is hit.
         walls, wall_heights: (S, 4), (S, 2).
         discs, owner: (D, 5), (D,) upright cylinders and the bodies that they belong to.
-        work: (C, K, `WORK_COLUMNS`) scratch, K as many bodies as one column may hold.
+        work, count, ways, runs: scratch, as `fill_columns` has it.
         distance: (R, C) result, m; inf without a hit.
         incidence: (R, C) result, angle to the normal, rad, 0 without a hit; or (0, 0).
         body: (R, C) result: owner, -(2 + index) of a wall, -1 for nothing and the floor; or (0, 0).
     """
     lowest, highest = heights_of(z, rise, lean, max_range)
-    count = fill_columns(
+    fill_columns(
         x, y, yaw, lowest, highest, azimuth, cos, sin, max_range,
-        walls, wall_heights, discs, owner, work,
+        walls, wall_heights, discs, owner, work, count, ways, runs,
     )  # fmt: skip
     wants_incidence, wants_body = incidence.shape[0] > 0, body.shape[0] > 0
     for r in range(rise.shape[0]):

@@ -10,16 +10,16 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.kernel import kernel
 from crowdbot.core.sensing.columns import FAR, HIGH, LOW, NEAR, fill_columns, heights_of
 
 Array = NDArray[np.float64]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _rows_above(
     bound: float, also_at: bool, z: float, depth: float, rise: Array, guess: float
 ) -> int:
@@ -44,7 +44,7 @@ def _rows_above(
     return row
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _hidden(
     z: float, near: float, far: float, low: float, high: float, rise: Array, first: int, last: int
 ) -> bool:
@@ -61,7 +61,7 @@ def _hidden(
     return True
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _paint(
     z: float, near: float, far: float, low: float, high: float, rise: Array, per_row: float,
     column: Array,
@@ -95,11 +95,12 @@ def _paint(
     return begin, end
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def paint_depth(
     x: float, y: float, z: float, yaw: float, azimuth: Array, cos: Array, sin: Array,
     rise: Array, lean: Array, max_range: float, walls: Array, wall_heights: Array, discs: Array,
-    owner: NDArray[np.int64], work: Array, depth: Array,
+    owner: NDArray[np.int64], work: Array, count: NDArray[np.int64], ways: Array,
+    runs: NDArray[np.int64], floor: Array, depth: Array,
 ) -> None:  # fmt: skip
     """Depth along the axis of a camera, m; inf where nothing is. The floor z = 0 is seen.
 
@@ -107,30 +108,29 @@ def paint_depth(
         rise: (R,) falling: the first row is on top.
         lean: (C,) cosines of the azimuths.
         max_range: m over the floor; what is farther may be left out.
+        floor: (R,) scratch.
         depth: (C, R) result, columns by rising azimuth.
 
     Everything else is as in `crowdbot.core.sensing.columns.cast_columns`.
     """
     lowest, highest = heights_of(z, rise, lean, max_range)
-    count = fill_columns(
+    fill_columns(
         x, y, yaw, lowest, highest, azimuth, cos, sin, max_range,
-        walls, wall_heights, discs, owner, work,
+        walls, wall_heights, discs, owner, work, count, ways, runs,
     )  # fmt: skip
-    floor = floor_depths(z, rise)
+    floor_depths(z, rise, floor)
     for c in range(azimuth.shape[0]):
         paint_column(z, rise, lean[c], work[c, : count[c]], floor, depth[c])
 
 
-@numba.njit(cache=True, error_model="numpy")
-def floor_depths(z: float, rise: Array) -> Array:
-    """Depth (R,) at which each row of rays from a height ``z`` meets the floor, m; or inf."""
-    floor = np.empty(rise.shape[0])
+@kernel
+def floor_depths(z: float, rise: Array, floor: Array) -> None:
+    """Write the depth (R,) at which rows of rays from a height ``z`` meet the floor, m; or inf."""
     for r in range(floor.shape[0]):
         floor[r] = -z / rise[r] if rise[r] < 0.0 else math.inf
-    return floor
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def paint_column(
     z: float, rise: Array, lean: float, bodies: Array, floor: Array, column: Array
 ) -> None:
@@ -145,7 +145,8 @@ def paint_column(
     """
     rows = rise.shape[0]
     per_row = (rise[0] - rise[rows - 1]) / max(rows - 1, 1)
-    column[:] = floor
+    for r in range(rows):
+        column[r] = floor[r]
     first = last = 0  # rows that a face covers: what comes later is farther
     for k in range(bodies.shape[0]):
         body = bodies[k]

@@ -10,10 +10,10 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import NoiseGenerator, Pose
+from crowdbot.core.kernel import kernel
 from crowdbot.core.sensing.place import mount_of, placed
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.dsl.proximity import ProximitySpec
@@ -65,7 +65,7 @@ class Proximity:
         return distance
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _finish(
     distance: Array, lost: NDArray[np.bool_], shortest: float, longest: float, step: float
 ) -> None:

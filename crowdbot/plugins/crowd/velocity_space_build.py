@@ -9,11 +9,11 @@ from crowdbot.core.crowd.candidates import Sampling
 from crowdbot.core.crowd.cost import Array, CompiledCost, NumpyCost
 from crowdbot.core.crowd.geometry import is_clearly_longer, is_clearly_shorter
 from crowdbot.core.crowd.gradient import Descent
-from crowdbot.core.crowd.kernel import kernel
 from crowdbot.core.crowd.mix import Mix
 from crowdbot.core.crowd.optimum import Optimum
 from crowdbot.core.crowd.policy import Agents, CrowdView
 from crowdbot.core.crowd.sampling import Sampler
+from crowdbot.core.kernel import kernel
 from crowdbot.plugins.crowd.velocity_space import VelocitySpaceSpec
 
 _BASES = ("zero", "current_velocity")

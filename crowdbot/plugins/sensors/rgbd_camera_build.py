@@ -11,10 +11,10 @@ import math
 from typing import cast
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Pinhole, Pose, SensorInfo
+from crowdbot.core.kernel import kernel
 from crowdbot.core.sensing.columns import Grid, fill_columns, heights_of
 from crowdbot.core.sensing.depth import floor_depths, paint_column
 from crowdbot.core.sensing.place import mount_of, placed
@@ -22,6 +22,9 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 
 Array = NDArray[np.float64]
+
+#: Columns that are turned into rows at a time: as many pixels as a line of the cache holds.
+_BLOCK = 16
 
 
 class RgbdCamera:
@@ -48,6 +51,8 @@ class RgbdCamera:
         up = (row - np.arange(spec.height)) / focal
         # Azimuths of a grid rise, so its columns run from right to left.
         self._grid = Grid(np.arctan(left[::-1]), up, 1.0 / np.sqrt(1.0 + left[::-1] ** 2))
+        rows = np.empty((2, spec.height))
+        self._scratch = (*rows, np.empty((_BLOCK, spec.height), np.float32))
         self._reach = spec.depth_max * math.sqrt(1.0 + float(np.max(left**2)))
 
     def info(self) -> SensorInfo:
@@ -68,37 +73,36 @@ class RgbdCamera:
         depth = np.empty(shape, np.float32)
         _photograph(
             *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, self._reach,
-            scene.walls, scene.wall_heights, *scene.bodies, grid.work,
+            scene.walls, scene.wall_heights, *scene.bodies, *grid.scratch, *self._scratch,
             noise, spec.depth_min, spec.depth_max, spec.resolution, depth,
         )  # fmt: skip
         return cast(Array, depth)
 
 
-#: Columns that are turned into rows at a time: as many pixels as a line of the cache holds.
-_BLOCK = 16
-
-
-@njit(cache=True, error_model="numpy")
+@kernel
 def _photograph(
     x: float, y: float, z: float, yaw: float, azimuth: Array, cos: Array, sin: Array,
     rise: Array, lean: Array, max_range: float, walls: Array, wall_heights: Array, discs: Array,
-    owner: NDArray[np.int64], work: Array,
+    owner: NDArray[np.int64], work: Array, count: NDArray[np.int64], ways: Array,
+    runs: NDArray[np.int64], floor: Array, column: Array, block: NDArray[np.float32],
     noise: NDArray[np.float32], nearest: float, farthest: float, step: float,
     out: NDArray[np.float32],
 ) -> None:  # fmt: skip
     """Paint and measure an image (H, W), block by block, so that it is written only once.
 
-    Arguments up to ``work`` are those of `crowdbot.core.sensing.depth.paint_depth`; the grid's
+    Arguments up to ``runs`` are those of `crowdbot.core.sensing.depth.paint_depth`; the grid's
     columns run from right to left.
+
+    Args:
+        floor, column, block: (H,), (H,), (`_BLOCK`, H) scratch.
     """
     rows, columns = out.shape
     lowest, highest = heights_of(z, rise, lean, max_range)
-    count = fill_columns(
+    fill_columns(
         x, y, yaw, lowest, highest, azimuth, cos, sin, max_range,
-        walls, wall_heights, discs, owner, work,
+        walls, wall_heights, discs, owner, work, count, ways, runs,
     )  # fmt: skip
-    floor, column = floor_depths(z, rise), np.empty(rows)
-    block = np.empty((_BLOCK, rows), np.float32)
+    floor_depths(z, rise, floor)
     for first in range(0, columns, _BLOCK):
         width = min(_BLOCK, columns - first)
         for b in range(width):
@@ -110,10 +114,12 @@ def _photograph(
                 for b in range(_BLOCK):
                     out[r, first + b] = block[b, r]
         else:
-            out[:, first:] = block[:width].T
+            for r in range(rows):
+                for b in range(width):
+                    out[r, first + b] = block[b, r]
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _measure(
     column: Array, noise: NDArray[np.float32], c: int, nearest: float, farthest: float,
     step: float, out: NDArray[np.float32],

@@ -12,10 +12,10 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import NoiseGenerator, Pose, SensorInfo
+from crowdbot.core.kernel import kernel
 from crowdbot.core.sensing.bodies import BOTTOM, RADIUS, TOP, X, Y
 from crowdbot.core.sensing.columns import (
     FAR,
@@ -88,13 +88,14 @@ class Ultrasound:
             nearest[0] = _nearest(distance, self._reach)
         else:
             nearest[0] = _nearest_at_all(
-                *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, self._reach, longest,
-                self._narrow, scene.walls, scene.wall_heights, *scene.bodies, grid.work,
+                *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, self._reach,
+                longest, self._narrow, scene.walls, scene.wall_heights, *scene.bodies,
+                *grid.scratch,
             )  # fmt: skip
         return own.measured(nearest, rng)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _nearest(distance: Array, reach: Array) -> float:
     """The least distance that lies within the reach of its ray; inf if none does."""
     best = math.inf
@@ -105,7 +106,7 @@ def _nearest(distance: Array, reach: Array) -> float:
     return best
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _nearest_by_rays(
     z: float, rise: Array, reach: Array, length: float, work: Array, count: NDArray[np.int64]
 ) -> float:
@@ -128,7 +129,7 @@ def _nearest_by_rays(
     return best
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _depth(x: float, y: float, length: float, narrow: float) -> float:
     """How far out a point is in the zone's level section, which is convex: 1 on its edge.
 
@@ -140,7 +141,7 @@ def _depth(x: float, y: float, length: float, narrow: float) -> float:
     return x / (0.5 * length * (1.0 + math.sqrt(1.0 - sine * sine)))
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _to_wall(
     ax: float, ay: float, bx: float, by: float, length: float, narrow: float, most: float
 ) -> float:
@@ -186,11 +187,12 @@ def _to_wall(
     return math.hypot(ax + foot * ex, ay + foot * ey)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _nearest_at_all(
     x: float, y: float, z: float, yaw: float, azimuth: Array, cos: Array, sin: Array, rise: Array,
-    reach: Array, length: float, narrow: float, walls: Array, wall_heights: Array, discs: Array,
-    owner: NDArray[np.int64], work: Array,
+    lean: Array, reach: Array, length: float, narrow: float, walls: Array, wall_heights: Array,
+    discs: Array, owner: NDArray[np.int64], work: Array, count: NDArray[np.int64], ways: Array,
+    runs: NDArray[np.int64],
 ) -> float:  # fmt: skip
     """The nearest hit of any ray, or what is nearer at the height of the sensor, exactly, m.
 
@@ -203,10 +205,10 @@ def _nearest_at_all(
 
     Everything else is as in `crowdbot.core.sensing.columns.cast_columns`.
     """
-    lowest, highest = heights_of(z, rise, np.ones(1), length)
-    count = fill_columns(
+    lowest, highest = heights_of(z, rise, lean, length)
+    fill_columns(
         x, y, yaw, lowest, highest, azimuth, cos, sin, length,
-        walls, wall_heights, discs, owner, work,
+        walls, wall_heights, discs, owner, work, count, ways, runs,
     )  # fmt: skip
     nearest = _nearest_by_rays(z, rise, reach, length, work, count)
     c, s = math.cos(yaw), math.sin(yaw)

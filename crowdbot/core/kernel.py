@@ -1,4 +1,4 @@
-"""How the crowd's loops are compiled.
+"""How small loops are compiled.
 
 Code that numba compiles counts the references to each array at each call, with locked
 instructions: among functions as small as these, a third of the time. Who makes no array needs no
