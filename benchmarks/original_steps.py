@@ -73,11 +73,11 @@ def whole_step(
         )  # fmt: skip
         rows[:, s.AX : s.AY + 1] = willed(chosen, view)
         tick(
-            flat, s.AGENT_COLUMNS, robots, DISC, agents.id, in_turn, agents.radius, agents.mass,
-            agents.preferred_speed, agents.max_speed, agents.start_time, everybody,
+            flat, s.AGENT_COLUMNS, robots, DISC, DT, agents.id, in_turn, agents.radius,
+            agents.mass, agents.preferred_speed, agents.max_speed, agents.start_time, everybody,
             agents.at_goal, agents.flow, agents.route, agents.first, world.entrance, world.out,
             False, ENDLESS, True, world.response, world.stiffness, world.dissipation,
-            walls, world.pillars, stiffness, order, np.uint64(0), DT, reaction, placed,
+            walls, world.pillars, stiffness, np.uint64(0), reaction, placed, order,
         )  # fmt: skip
 
     return step

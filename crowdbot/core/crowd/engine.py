@@ -69,11 +69,21 @@ class CrowdEngine:
         self._ticks_per_decision = ticks(world.decision_rate)
         self._key = np.uint64(world.goal_key)
         self._torus = ENDLESS if world.torus is None else np.array(world.torus, np.float64)
-        self._in_turn = np.argsort(agents.id, kind="stable")
-        self._order = np.arange(len(agents))  # scratch, see `tick`
-        self._heeds = ~agents.ignores_robot
-        self._reaction = np.zeros((len(agents), 2))
-        self._placed = np.zeros((len(agents), PLACED_COLUMNS))
+        # What `tick` is handed each time: who they are, where they walk, scratch.
+        a, w, in_turn = agents, world, np.argsort(agents.id, kind="stable")
+        self._who = (
+            a.id, in_turn, a.radius, a.mass, a.preferred_speed, a.max_speed, a.start_time,
+            ~a.ignores_robot, a.at_goal, a.flow, a.route, a.first,
+        )  # fmt: skip
+        self._where = (
+            w.entrance, w.out, w.exit_point == "offset", self._torus, not w.parity, w.response,
+            w.stiffness, w.dissipation, w.walls,
+        )  # fmt: skip
+        self._scratch = (
+            np.zeros((len(a), 2)),
+            np.zeros((len(a), PLACED_COLUMNS)),
+            np.arange(len(a)),
+        )
 
     def initial_state(self) -> Array:
         """Those who start at once walk to their first goal at preferred speed; others wait."""
@@ -115,14 +125,9 @@ class CrowdEngine:
             robots = np.pad(robots, ((0, 0), (0, 8 - robots.shape[1])))
         if int(flat[s.TICK]) % self._ticks_per_decision == 0:
             self._decide(flat, robots)
-        a, w = self.agents, self.world
-        _, rows = s.view(flat)
         tick(
-            flat, s.AGENT_COLUMNS, robots, outline, a.id, self._in_turn, a.radius, a.mass,
-            a.preferred_speed, a.max_speed, a.start_time, self._heeds, a.at_goal, a.flow,
-            a.route, a.first, w.entrance, w.out, w.exit_point == "offset", self._torus,
-            not w.parity, w.response, w.stiffness, w.dissipation, w.walls, self._fixed(rows),
-            self._push, self._order, self._key, dt, self._reaction, self._placed,
+            flat, s.AGENT_COLUMNS, robots, outline, dt, *self._who, *self._where,
+            self._fixed(flat), self._push, self._key, *self._scratch,
         )  # fmt: skip
 
     def run(self, duration: float, sample_rate: float = 16.0) -> tuple[Array, Array]:
@@ -178,10 +183,11 @@ class CrowdEngine:
             diagonal=not self.world.parity,
         )
 
-    def _fixed(self, rows: Array) -> Array:
+    def _fixed(self, flat: Array) -> Array:
         """Discs (D, 3) that push: pillars, and people across the border."""
         if self.world.torus is None:
             return self.world.pillars
+        _, rows = s.view(flat)
         reach = 2.0 * float(np.max(self.agents.radius, initial=0.0))
         everybody = np.ones(len(rows), np.bool_)
         view = self._view(np.zeros(1), rows, everybody, np.zeros((0, 5)))

@@ -54,6 +54,7 @@ def tick(
     columns: int,
     robots: Array,
     outline: Array,
+    dt: float,
     ids: Rows,
     in_turn: Rows,
     radius: Array,
@@ -77,11 +78,10 @@ def tick(
     walls: Array,
     discs: Array,
     push: Array,
-    order: Rows,
     key: np.uint64,
-    dt: float,
     reaction: Array,
     placed: Array,
+    order: Rows,
 ) -> None:
     """Advance from tick k to k + 1.
 

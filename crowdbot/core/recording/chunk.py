@@ -7,6 +7,7 @@ A run hands over some hundreds of messages per simulated second, so a message be
 from __future__ import annotations
 
 import zlib
+from collections import defaultdict
 from collections.abc import Iterable
 from struct import Struct, pack
 from typing import NamedTuple
@@ -20,6 +21,7 @@ _COMPRESSION, _LEVEL = "zstd", -1
 _MESSAGE = Struct("<BQHIQQ")  # opcode and length of a record; channel, sequence, both times
 _INDEX = Struct("<BQHI")  # opcode and length of a record; channel, length of the entries
 _PREFIX = 1 + 8  # opcode and length, which the length leaves out
+_OPCODE, _HEAD = Opcode.MESSAGE, _MESSAGE.size - _PREFIX
 
 
 class PackedChunk(NamedTuple):
@@ -51,7 +53,8 @@ class OpenChunk:
 
     def _clear(self) -> None:
         self._parts: list[bytes] = []
-        self._entries: dict[int, list[int]] = {}  # of a channel: time, offset, time, offset, …
+        # Of a channel: time, offset, time, offset, …
+        self._entries = defaultdict[int, list[int]](list)
         self.size = 0
 
     def __len__(self) -> int:
@@ -66,14 +69,9 @@ class OpenChunk:
 
     def add(self, channel: int, sequence: int, ns: int, data: bytes) -> None:
         """Add a message, logged and published at ``ns`` nanoseconds."""
-        length = _MESSAGE.size - _PREFIX + len(data)
-        head = _MESSAGE.pack(Opcode.MESSAGE, length, channel, sequence, ns, ns)
-        self._parts += head, data
-        entries = self._entries.get(channel)
-        if entries is None:
-            self._entries[channel] = [ns, self.size]
-        else:
-            entries += ns, self.size
+        length = _HEAD + len(data)
+        self._parts += _MESSAGE.pack(_OPCODE, length, channel, sequence, ns, ns), data
+        self._entries[channel] += ns, self.size
         self.size += _PREFIX + length
 
     def pack(self, at: int) -> PackedChunk:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import zlib
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from struct import pack
 from typing import Any
@@ -54,10 +53,11 @@ def _qos(*, latched: bool) -> str:
     )
 
 
-@dataclass(slots=True)
 class _Topic:
-    channel: Channel
-    messages: int = 0
+    __slots__ = ("channel", "id", "messages")
+
+    def __init__(self, channel: Channel) -> None:
+        self.channel, self.id, self.messages = channel, channel.id, 0
 
 
 class McapFile:
@@ -89,9 +89,10 @@ class McapFile:
         opened = self._topics.get(topic)
         if opened is None:
             opened = self._topics[topic] = _Topic(self._open(topic, msgtype, latched))
-        self._chunk.add(opened.channel.id, opened.messages, ns, data)
+        chunk = self._chunk
+        chunk.add(opened.id, opened.messages, ns, data)
         opened.messages += 1
-        if self._chunk.size >= CHUNK_SIZE:
+        if chunk.size >= CHUNK_SIZE:
             self._finish_chunk()
 
     def flush(self) -> None:

@@ -55,7 +55,7 @@ class Template:
         self.msgtype = str(message.__msgtype__)
         data = ros.to_cdr(message)
         self._size = end = len(data)
-        pieces = []
+        pieces = list[bytes | memoryview]()
         for mark in reversed(marks):
             begin = data.rindex(mark, 0, end)
             pieces += [data[begin + len(mark) : end], mark]

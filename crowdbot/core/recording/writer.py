@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache, wraps
+from functools import cache, partial, wraps
 from pathlib import Path
-from typing import Any, Concatenate, Literal, ParamSpec
+from typing import Any, Concatenate, Literal, ParamSpec, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +28,7 @@ from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
 from crowdbot.core.recording.template import Template
-from crowdbot.core.recording.topics import Topic, sensor_topics
+from crowdbot.core.recording.topics import SensorTopic, Topic, sensor_topics
 
 BASE = "base_footprint"
 #: Frames that the recording defines itself; no sensor may own them.
@@ -47,11 +47,11 @@ def _later(
 
     @wraps(write)
     def put_off(self: RecordingWriter, *given: _P.args, **named: _P.kwargs) -> None:
-        self._waiting.append((write, given, named))
+        self._waiting.append(partial(write, self, *given, **named))
         if len(self._waiting) >= _MOST_WAITING:
             self._catch_up()
 
-    return put_off
+    return cast("Callable[Concatenate[RecordingWriter, _P], None]", put_off)
 
 
 class RecordingWriter:
@@ -89,7 +89,7 @@ class RecordingWriter:
         self._clock, self._twist = template.clock(), template.twist()
         self._truth, self._pose = template.transform("map", BASE), template.pose_stamped("map")
         self._state_of, self._signal_of = cache(template.run_state), cache(template.signal)
-        self._waiting: list[tuple[Callable[..., None], tuple[Any, ...], dict[str, Any]]] = []
+        self._waiting: list[Callable[[], None]] = []
         self._now = 0
         self._closed = False
         self._file.put(Topic.HEADER, 0, header.to_message(), latched=True)
@@ -130,8 +130,9 @@ class RecordingWriter:
         """One reading of a sensor that the header lists."""
         if not self._ros:
             return
-        if sensor not in self._cameras:
-            self._measured(sensor, reading.stamp, reading.values.copy())
+        if topic := self._sensors.get(sensor):
+            values = reading.values.copy()
+            self._waiting.append(partial(self._measured, topic, reading.stamp, values))
         elif self._images:  # at once, after all that waits: memory for many would be dear
             self._catch_up()
             ns = ros.nanoseconds(reading.stamp)
@@ -222,12 +223,11 @@ class RecordingWriter:
     def _catch_up(self) -> None:
         """Write all that waits."""
         waiting, self._waiting = self._waiting, []
-        for write, given, named in waiting:
-            write(self, *given, **named)
+        for write in waiting:
+            write()
 
-    @_later
-    def _measured(self, sensor: str, stamp: float, values: Array) -> None:
-        topic, ns = self._sensors[sensor], ros.nanoseconds(stamp)
+    def _measured(self, topic: SensorTopic, stamp: float, values: Array) -> None:
+        ns = ros.nanoseconds(stamp)
         self._file.put_bytes(topic.name, ns, topic.msgtype, topic.message(ns, values))
 
     def _value(self, topic: Topic, t: float, name: str, value: float) -> None:

@@ -38,7 +38,7 @@ class Grid:
         azimuth: (C,) rising, within one turn, rad; 0 is straight ahead.
         rise: (R,).
         lean: (C,).
-        scratch: for kernels, see `fill_columns`.
+        work, count, ways, runs: scratch, see `fill_columns`.
     """
 
     def __init__(self, azimuth: ArrayLike, rise: ArrayLike, lean: ArrayLike | None = None) -> None:
@@ -49,12 +49,10 @@ class Grid:
         # What a level ray meets hides all behind it.
         deepest = DEEPEST if np.any(self.rise) else 1
         columns = len(self.azimuth)
-        self.scratch = (
-            np.empty((columns, deepest, WORK_COLUMNS)),
-            np.zeros(columns, np.int64),
-            np.empty((2, columns)),
-            np.empty((3, 2), np.int64),
-        )
+        self.work = np.empty((columns, deepest, WORK_COLUMNS))
+        self.count = np.zeros(columns, np.int64)
+        self.ways = np.empty((2, columns))
+        self.runs = np.empty((3, 2), np.int64)
 
     @property
     def shape(self) -> tuple[int, int]:

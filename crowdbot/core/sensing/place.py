@@ -21,5 +21,6 @@ def placed(mount: Mount, scene: Scene, pose: Pose) -> tuple[tuple[float, float, 
     """Position and heading of a sensor in the world frame, m and rad."""
     c, s = math.cos(pose.yaw), math.sin(pose.yaw)
     base = BASE_HEIGHT if scene.robot is None else scene.robot.z
-    x, y = pose.x + c * mount.x - s * mount.y, pose.y + s * mount.x + c * mount.y
+    ahead, aside = mount.x, mount.y
+    x, y = pose.x + c * ahead - s * aside, pose.y + s * ahead + c * aside
     return (x, y, base + mount.z), pose.yaw + mount.yaw

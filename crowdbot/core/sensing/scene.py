@@ -191,8 +191,8 @@ class Scene:
             discs, owner = self.bodies
             cast_columns(
                 *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, max_range,
-                floor, self.walls, self.wall_heights, discs, owner, *grid.scratch,
-                distance, incidence, body,
+                floor, self.walls, self.wall_heights, discs, owner, grid.work,
+                grid.count, grid.ways, grid.runs, distance, incidence, body,
             )  # fmt: skip
         return distance, incidence, body
 
@@ -215,6 +215,7 @@ class Scene:
         discs, owner = self.bodies
         paint_depth(
             *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, max_range,
-            self.walls, self.wall_heights, discs, owner, *grid.scratch, np.empty(rows), depth,
+            self.walls, self.wall_heights, discs, owner, grid.work, grid.count, grid.ways,
+            grid.runs, np.empty(rows), depth,
         )  # fmt: skip
         return depth

@@ -21,6 +21,9 @@ from crowdbot.core.ticks import TICK
 #: Columns of a robot's row for the first six entries of its state: x, y, yaw, vx, vy, w.
 _SEEN = np.array([0, 1, 6, 2, 3, 7])
 
+#: What of the crowd's header others are told: force, events, torque.
+_NEWS = slice(s.ROBOT_FX, s.ROBOT_TORQUE + 1)
+
 
 class CrowdSystem(LeafSystem):
     """Input: robot state. Outputs: crowd state, events, force on the robot."""
@@ -57,17 +60,11 @@ class CrowdSystem(LeafSystem):
         self._row[_SEEN] = self._port.Eval(context)[:6]
         values = state.get_mutable_discrete_state()
         crowd = values.get_mutable_value(self._crowd)
-        before = crowd[: s.HEADER_SIZE].tolist()
+        before = crowd[_NEWS].tolist()
         self._engine.advance(crowd, self._robot, self._outline, self._tick)
-        header = crowd[: s.HEADER_SIZE].tolist()
-        # At most ticks nobody touches the robot and nothing ends: the rest stays as it is.
-        if (force := _push(header)) != _push(before):
-            self._push.write(values.get_mutable_value(self._force), *force)
-        events = header[s.CONTACTS] + header[s.TRIPS]
-        if events != before[s.CONTACTS] + before[s.TRIPS]:
-            values.get_mutable_value(self._events)[0] = events
-
-
-def _push(header: list[float]) -> tuple[float, float, float]:
-    """Force (N) and torque about the vertical (N m) on the robot."""
-    return header[s.ROBOT_FX], header[s.ROBOT_FY], header[s.ROBOT_TORQUE]
+        news = crowd[_NEWS].tolist()
+        if news == before:  # at most ticks: nobody touches the robot and nothing ends
+            return
+        fx, fy, contacts, trips, torque = news
+        self._push.write(values.get_mutable_value(self._force), fx, fy, torque)
+        values.get_mutable_value(self._events)[0] = contacts + trips

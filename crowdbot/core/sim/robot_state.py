@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from pydrake.systems.framework import (
     BasicVector,
@@ -18,6 +17,7 @@ from pydrake.systems.framework import (
 )
 
 from crowdbot.core.interfaces import HolonomicDrive, Pose, RobotState
+from crowdbot.core.kernel import kernel
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.plant import RobotPlant
 
@@ -33,7 +33,8 @@ class RobotStateSystem(LeafSystem):
         size = plant.num_positions(rig.model) + plant.num_velocities(rig.model)
         self._quaternion = rig.root.floating_positions_start()
         self._angular = rig.root.floating_velocities_start_in_v() + plant.num_positions(rig.model)
-        self._left, self._right = [j.position_start() for j in rig.wheels] or (-1, -1)
+        wheels: list[int] = [j.position_start() for j in rig.wheels]
+        self._left, self._right = wheels if wheels else (-1, -1)
         self._port = self.DeclareVectorInputPort("plant_state", size)
         self.DeclareVectorOutputPort(
             ports.ROBOT_STATE,
@@ -59,7 +60,7 @@ class RobotStateSystem(LeafSystem):
         _convert(state, self._quaternion, self._angular, self._left, self._right, self._rise, out)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _convert(
     state: Array, quaternion: int, angular: int, left: int, right: int, rise: float, out: Array
 ) -> None:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +51,14 @@ class Slot:
         values = state[self.values].reshape(self.info.shape).copy()
         values.setflags(write=False)
         return Reading(float(state[self.stamp]), values)
+
+
+class _Way(NamedTuple):
+    """How a reading is taken: where it goes, what takes it, whose random numbers it draws."""
+
+    slot: Slot
+    read: Callable[..., Array]
+    stream: SensorStream | None
 
 
 def lay_out(infos: Mapping[str, SensorInfo], people: int) -> tuple[dict[str, Slot], int]:
@@ -118,12 +127,15 @@ class SensorBank(LeafSystem):
             painters: what draws the colour images of cameras, by the camera's name.
         """
         super().__init__()
-        self._sensors, self._scene = dict(sensors), scene
+        self._scene = scene
         self._on_reading = on_reading
-        self._streams = {n: SensorStream(seed, robot, n) for n in sensors}
         self._idle = SensorStream(seed, robot, "").at(0)
         people = len(s.view(np.zeros(crowd_size))[1]) if crowd_size else 0
         self.slots, size = lay_out({n: x.info() for n, x in sensors.items()}, people)
+        self._ways = {
+            n: _Way(x, sensors[n].read, SensorStream(seed, robot, n) if x.info.random else None)
+            for n, x in self.slots.items()
+        }
         self._images = {
             n: Images(sensors[n], partial(self._rng, n), painters.get(n))  # type: ignore[arg-type]
             for n, slot in self.slots.items()
@@ -154,9 +166,8 @@ class SensorBank(LeafSystem):
 
     def _rng(self, name: str, t: float) -> np.random.Generator:
         """Random numbers of one reading; who draws none gets a generator all the same."""
-        if not self.slots[name].info.random:
-            return self._idle
-        return self._streams[name].at(round(t * TICKS_PER_SECOND))
+        stream = self._ways[name].stream
+        return self._idle if stream is None else stream.at(round(t * TICKS_PER_SECOND))
 
     def _update(self, context: Context, state: State) -> None:
         bank = state.get_mutable_discrete_state().get_mutable_value(self._index)
@@ -170,12 +181,12 @@ class SensorBank(LeafSystem):
             self._scene.move_robot(robot)
         else:
             people = self._see(context, robot)
-        pose = Pose(robot.x, robot.y, robot.yaw)
+        pose, t = Pose(robot.x, robot.y, robot.yaw), tick * TICK
         for name in due:
             if name in self._images:
-                self._photograph(name, people, bank, robot, tick * TICK)
+                self._photograph(name, people, bank, robot, t)
             else:
-                self._read(name, bank, pose, tick)
+                self._read(name, bank, pose, t, tick)
 
     def _photograph(
         self, name: str, people: Array | None, bank: Array, robot: RobotState, t: float
@@ -200,15 +211,13 @@ class SensorBank(LeafSystem):
         )
         return rows
 
-    def _read(self, name: str, bank: Array, pose: Pose, tick: int) -> None:
-        slot, sensor = self.slots[name], self._sensors[name]
-        t = tick * TICK
-        rng = self._rng(name, t)
+    def _read(self, name: str, bank: Array, pose: Pose, t: float, tick: int) -> None:
+        slot, read, stream = self._ways[name]
+        rng = self._idle if stream is None else stream.at(tick)
         if slot.info.memory:
-            memory = bank[slot.memory]
-            values = sensor.read(self._scene, pose, t, rng, memory)  # type: ignore[call-arg]
+            values = read(self._scene, pose, t, rng, bank[slot.memory])
         else:
-            values = sensor.read(self._scene, pose, t, rng)  # type: ignore[call-arg]
+            values = read(self._scene, pose, t, rng)
         bank[slot.stamp] = t
         bank[slot.values] = values if values.ndim == 1 else values.ravel()
         self._on_reading(name, Reading(t, values))

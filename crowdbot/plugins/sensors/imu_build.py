@@ -15,10 +15,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Pose, SensorInfo
+from crowdbot.core.kernel import kernel
 from crowdbot.core.sensing.place import mount_of
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.errors import SimulationError
@@ -81,7 +81,7 @@ class Imu:
         return memory[READING:].copy()
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _feel(
     memory: Array, t: float, yaw: float, robot_vx: float, robot_vy: float, w: float,
     mount_x: float, mount_y: float, mount_yaw: float, noise: Array, draws: Array,
@@ -116,7 +116,7 @@ def _feel(
     memory[VX], memory[VY] = vx, vy
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _turn(angle: float) -> float:
     """The turn between two headings that differ by ``angle``, from -pi to pi, rad."""
     if angle > math.pi:

@@ -51,8 +51,8 @@ class RgbdCamera:
         up = (row - np.arange(spec.height)) / focal
         # Azimuths of a grid rise, so its columns run from right to left.
         self._grid = Grid(np.arctan(left[::-1]), up, 1.0 / np.sqrt(1.0 + left[::-1] ** 2))
-        rows = np.empty((2, spec.height))
-        self._scratch = (*rows, np.empty((_BLOCK, spec.height), np.float32))
+        self._floor, self._column = np.empty(spec.height), np.empty(spec.height)
+        self._block = np.empty((_BLOCK, spec.height), np.float32)
         self._reach = spec.depth_max * math.sqrt(1.0 + float(np.max(left**2)))
 
     def info(self) -> SensorInfo:
@@ -73,7 +73,8 @@ class RgbdCamera:
         depth = np.empty(shape, np.float32)
         _photograph(
             *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, self._reach,
-            scene.walls, scene.wall_heights, *scene.bodies, *grid.scratch, *self._scratch,
+            scene.walls, scene.wall_heights, *scene.bodies, grid.work, grid.count, grid.ways,
+            grid.runs, self._floor, self._column, self._block,
             noise, spec.depth_min, spec.depth_max, spec.resolution, depth,
         )  # fmt: skip
         return cast(Array, depth)

@@ -90,7 +90,7 @@ class Ultrasound:
             nearest[0] = _nearest_at_all(
                 *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, self._reach,
                 longest, self._narrow, scene.walls, scene.wall_heights, *scene.bodies,
-                *grid.scratch,
+                grid.work, grid.count, grid.ways, grid.runs,
             )  # fmt: skip
         return own.measured(nearest, rng)
 

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Pose, SensorInfo
+from crowdbot.core.kernel import kernel
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.errors import SimulationError
 from crowdbot.plugins.sensors.wheel_odometry import (
@@ -27,9 +28,10 @@ from crowdbot.plugins.sensors.wheel_odometry import (
 
 Array = NDArray[np.float64]
 
-#: Layout of the memory.
-STARTED, TIME, LEFT, RIGHT, SIDE, YAW = range(6)
-ERRORS, READING = slice(6, 9), slice(9, 15)
+#: Layout of the memory: three errors (rad) and a reading of six numbers begin where it says.
+STARTED, TIME, LEFT, RIGHT, SIDE, YAW, ERRORS, READING = 0, 1, 2, 3, 4, 5, 6, 9
+_SIZE = 15
+_NO_DRAWS = np.zeros(0)
 
 
 class WheelOdometry:
@@ -39,8 +41,11 @@ class WheelOdometry:
     """
 
     def __init__(self, spec: WheelOdometrySpec | HolonomicOdometrySpec) -> None:
-        self._spec = spec
         self._gyro = spec.heading == "gyro"
+        metre = 2.0 * math.pi * spec.wheel_radius / spec.ticks_per_turn
+        self._numbers = (
+            self._gyro, float(spec.ticks_per_turn), metre, spec.track, spec.noise, spec.gyro_noise,
+        )  # fmt: skip
         self._sideways = isinstance(spec, HolonomicOdometrySpec)
         self._info = SensorInfo(
             category="odometry",
@@ -49,7 +54,7 @@ class WheelOdometry:
             rate=spec.rate,
             shape=(6 if self._sideways else 5,),
             ros_type="nav_msgs/msg/Odometry",
-            memory=READING.stop,
+            memory=_SIZE,
             random=spec.noise > 0.0 or (self._gyro and spec.gyro_noise > 0.0),
             sees=False,
         )
@@ -68,48 +73,74 @@ class WheelOdometry:
         """
         if scene.robot is None:
             raise SimulationError("wheel odometry needs a robot in the scene")
-        # A list is far cheaper than an array, number by number.
-        started, then, left_before, right_before, side_before, yaw = memory[: ERRORS.start].tolist()
-        dt = t - then
-        reading = memory[READING][: self._info.shape[0]]
-        if started and dt <= 0.0:
-            return reading.copy()
-        turned = math.remainder(pose.yaw - yaw, 2.0 * math.pi)
-        if started and self._info.random:
-            draws = rng.standard_normal(4 if self._sideways else 3)
-            memory[ERRORS][: len(draws) - 1] += self._spec.noise * dt * np.delete(draws, 2)
-            turned += self._spec.gyro_noise * math.sqrt(dt) * draws[2]
-        left_error, right_error, side_error = memory[ERRORS].tolist()
-        left = self._ticks(scene.robot.left_angle + left_error)
-        right = self._ticks(scene.robot.right_angle + right_error)
-        side = self._ticks(scene.robot.side_angle + side_error)
-        if started:
-            ways = left - left_before, right - right_before, side - side_before
-            memory[READING] = self._advanced(memory[READING].tolist(), *ways, turned, dt)
-        else:
-            memory[READING] = (pose.x, pose.y, _wrapped(pose.yaw), 0.0, 0.0, 0.0)
-        memory[: ERRORS.start] = 1.0, t, left, right, side, pose.yaw
-        return reading.copy()
-
-    def _ticks(self, angle: float) -> int:
-        """What an encoder has counted when its wheel stands at an angle (rad)."""
-        return math.floor(angle / (2.0 * math.pi) * self._spec.ticks_per_turn)
-
-    def _advanced(
-        self, state: list[float], left: float, right: float, side: float, turned: float, dt: float
-    ) -> tuple[float, float, float, float, float, float]:
-        metre = 2.0 * math.pi * self._spec.wheel_radius / self._spec.ticks_per_turn
-        ahead, aside = (left + right) / 2.0 * metre, side * metre
-        turn = turned if self._gyro else (right - left) * metre / self._spec.track
-        x, y, yaw, *_ = state
-        middle = yaw + turn / 2.0
-        x, y = x + ahead * math.cos(middle), y + ahead * math.sin(middle)
-        x, y = x - aside * math.sin(middle), y + aside * math.cos(middle)
-        return x, y, _wrapped(yaw + turn), ahead / dt, turn / dt, aside / dt
+        if memory[STARTED] == 0.0 or t > memory[TIME]:
+            robot, draws = scene.robot, _NO_DRAWS
+            if self._info.random and memory[STARTED] != 0.0:
+                draws = rng.standard_normal(4 if self._sideways else 3)
+            _roll(
+                memory, t, pose.x, pose.y, pose.yaw,
+                robot.left_angle, robot.right_angle, robot.side_angle, *self._numbers, draws,
+            )  # fmt: skip
+        return memory[READING : READING + self._info.shape[0]].copy()
 
 
+@kernel
+def _roll(
+    memory: Array, t: float, x: float, y: float, yaw: float,
+    left_angle: float, right_angle: float, side_angle: float,
+    gyro: bool, ticks: float, metre: float, track: float, noise: float, gyro_noise: float,
+    draws: Array,
+) -> None:  # fmt: skip
+    """Bring the memory to time t.
+
+    Args:
+        ticks, metre: of an encoder in one turn; way of its wheel in one tick, m.
+        draws: normal numbers for the errors of the left and the right wheel, of the turn and, of
+            a holonomic robot, of the third wheel; none: no noise.
+    """
+    dt, turned = t - memory[TIME], 0.0
+    if memory[STARTED] != 0.0:
+        turned = _wrapped(yaw - memory[YAW])
+        if draws.shape[0]:
+            memory[ERRORS] += noise * dt * draws[0]
+            memory[ERRORS + 1] += noise * dt * draws[1]
+            if draws.shape[0] > 3:
+                memory[ERRORS + 2] += noise * dt * draws[3]
+            turned += gyro_noise * math.sqrt(dt) * draws[2]
+    left = _count(left_angle + memory[ERRORS], ticks)
+    right = _count(right_angle + memory[ERRORS + 1], ticks)
+    side = _count(side_angle + memory[ERRORS + 2], ticks)
+    if memory[STARTED] != 0.0:
+        rolled_left, rolled_right = left - memory[LEFT], right - memory[RIGHT]
+        ahead, aside = (rolled_left + rolled_right) / 2.0 * metre, (side - memory[SIDE]) * metre
+        turn = turned if gyro else (rolled_right - rolled_left) * metre / track
+        middle = memory[READING + 2] + turn / 2.0
+        c, s = math.cos(middle), math.sin(middle)
+        memory[READING] = memory[READING] + ahead * c - aside * s
+        memory[READING + 1] = memory[READING + 1] + ahead * s + aside * c
+        memory[READING + 2] = _wrapped(memory[READING + 2] + turn)
+        memory[READING + 3], memory[READING + 4] = ahead / dt, turn / dt
+        memory[READING + 5] = aside / dt
+    else:
+        memory[READING], memory[READING + 1], memory[READING + 2] = x, y, _wrapped(yaw)
+    memory[STARTED], memory[TIME], memory[YAW] = 1.0, t, yaw
+    memory[LEFT], memory[RIGHT], memory[SIDE] = left, right, side
+
+
+@kernel
+def _count(angle: float, ticks: float) -> float:
+    """What an encoder has counted when its wheel stands at an angle (rad)."""
+    return float(math.floor(angle / (2.0 * math.pi) * ticks))
+
+
+@kernel
 def _wrapped(angle: float) -> float:
-    return math.remainder(angle, 2.0 * math.pi)
+    """The same direction from -pi to pi, rad."""
+    while angle > math.pi:
+        angle -= 2.0 * math.pi
+    while angle < -math.pi:
+        angle += 2.0 * math.pi
+    return angle
 
 
 def build(spec: WheelOdometrySpec | HolonomicOdometrySpec) -> WheelOdometry:
