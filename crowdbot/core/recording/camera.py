@@ -65,7 +65,7 @@ class CameraMessages:
     ) -> Iterator[ImageMessage]:
         blank = self._blank(encoding, pixels.nbytes // self._pixels)
         for leaf, form, parts in (
-            ("image_raw", blank, (stamp, pixels.tobytes())),
+            ("image_raw", blank, (stamp, np.ascontiguousarray(pixels).data.cast("B"))),
             ("camera_info", self._about, (stamp,)),
         ):
             topic = f"{self._root}/{kind}/{leaf}"

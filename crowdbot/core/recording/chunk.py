@@ -6,13 +6,13 @@ A run hands over some hundreds of messages per simulated second, so a message be
 
 from __future__ import annotations
 
-import zlib
 from collections import defaultdict
 from collections.abc import Iterable
 from struct import Struct, pack
 from typing import NamedTuple
 
 import zstandard
+from isal.isal_zlib import crc32
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, ChunkIndex, McapRecord, Schema
@@ -87,7 +87,7 @@ class OpenChunk:
             data=self._compressor.compress(plain),
             message_start_time=min(times),
             message_end_time=max(times),
-            uncompressed_crc=zlib.crc32(plain),
+            uncompressed_crc=crc32(plain),
             uncompressed_size=len(plain),
         )
         data = serialised([chunk])

@@ -7,12 +7,12 @@ runs give equal bytes. Layout: https://mcap.dev/spec.
 from __future__ import annotations
 
 import os
-import zlib
 from collections.abc import Iterable
 from pathlib import Path
 from struct import pack
 from typing import Any
 
+from isal.isal_zlib import crc32
 from mcap.opcode import Opcode
 from mcap.records import (
     Channel,
@@ -154,7 +154,7 @@ class McapFile:
         data += serialised(offsets)
         # The checksum is that of the summary and of the footer up to the checksum itself.
         begun = serialised([footer])[:-4]
-        return data + begun + pack("<I", zlib.crc32(data + begun))
+        return data + begun + pack("<I", crc32(data + begun))
 
     def _statistics(self) -> Statistics:
         counts = {t.channel.id: t.messages for t in self._topics.values()}
