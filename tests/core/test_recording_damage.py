@@ -22,7 +22,6 @@ from recording_cases import bits, header_of, random_run, write_run, write_sample
 
 from crowdbot.core.recording import (
     RecordingWriter,
-    container,
     read_scans,
     read_trajectories,
     recording_info,
@@ -36,11 +35,9 @@ RUN = random_run(n=160, m=40)
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     path = tmp_path_factory.mktemp("whole") / "run.mcap"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(container, "CHUNK_SIZE", 1 << 18)  # so that some end without a flush
-        writer = RecordingWriter(path, header_of(RUN))
-        write_samples(writer, RUN, flush_at=50)
-        writer.close(9.0, True, "arrived")
+    writer = RecordingWriter(path, header_of(RUN))
+    write_samples(writer, RUN, flush_at=50)
+    writer.close(9.0, True, "arrived")
     return path.read_bytes()
 
 

@@ -31,8 +31,7 @@ from crowdbot.core.recording.chunk import OpenChunk, serialised
 from crowdbot.core.recording.messages import definition, to_cdr
 from crowdbot.errors import InputError
 
-#: Larger than what is usual in a second, after which `flush` ends a chunk.
-CHUNK_SIZE = 1024 * 1024
+CHUNK_SIZE = 256 * 1024
 
 
 def _qos(*, latched: bool) -> str:

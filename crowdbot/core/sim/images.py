@@ -64,6 +64,7 @@ class Images:
         """A reading of the scene as it is shown now, which is how ``view`` has it."""
         robot = RobotState(*view[: ports.ROBOT_STATE_SIZE].tolist())
         pose = Pose(robot.x, robot.y, robot.yaw)
+        self._reading = Reading(-1.0, np.zeros(0))  # its memory is free for the next, and warm
         image = self._sensor.read(scene, pose, stamp, self._rng(stamp))
         image = image.astype(np.float32, copy=False)
         image.setflags(write=False)
