@@ -29,6 +29,8 @@ from crowdbot.api import registry
 from crowdbot.core.library import open_spec, pick
 from crowdbot.core.lock import population
 from crowdbot.core.planner_source import resolve_planner
+from crowdbot.core.recording import RecordingWriter
+from crowdbot.core.recording.container import McapFile
 from crowdbot.core.sim.control.differential_drive import wheel_gains
 from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.diagram import robot_task
@@ -37,7 +39,6 @@ from crowdbot.core.sim.planner_system import PlannerSystem
 from crowdbot.core.sim.plant import add_plant, place_robot
 from crowdbot.core.sim.record import record_robot
 from crowdbot.core.sim.record_crowd import RunSetup
-from crowdbot.core.sim.recorder import Recorder
 from crowdbot.core.sim.rendering import check_egl
 from crowdbot.core.sim.robot_state import RobotStateSystem
 from crowdbot.core.sim.sensor_bank import SensorBank
@@ -51,16 +52,18 @@ CAMERAS = {
     "colour": "robots.robot.sensors.camera.colour=true",
 }
 DENSITY = {50: "d0125", 100: "d0250", 200: "d0500"}
-#: Each block's event. Writing a row to the recording counts for the block that hands it over.
-EVENTS: dict[str, tuple[type[Any], str]] = {
-    "crowd": (CrowdSystem, "_update"),
-    "sensors": (SensorBank, "_update"),
-    "camera": (SensorBank, "_photograph"),
-    "planner": (PlannerSystem, "_update"),
-    "logger": (MetricLogger, "_publish"),
-    "recorder": (Recorder, "_publish"),
-    "robot state": (RobotStateSystem, "_calc"),
-}
+#: The blocks, and the methods in which they work.
+EVENTS: tuple[tuple[str, type[Any], str], ...] = (
+    ("crowd", CrowdSystem, "_update"),
+    ("sensors", SensorBank, "_update"),
+    ("camera", SensorBank, "_photograph"),
+    ("planner", PlannerSystem, "_update"),
+    ("logger", MetricLogger, "_publish"),
+    ("recorder", RecordingWriter, "_catch_up"),
+    ("recorder", McapFile, "_finish_chunk"),
+    ("robot state", RobotStateSystem, "_calc"),
+)
+BLOCKS = tuple(dict.fromkeys(name for name, _, _ in EVENTS))
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,14 +127,14 @@ def plant_alone(world: Scenario, seconds: float) -> float:
 @contextmanager
 def profiled(spent: Counter[str]) -> Iterator[None]:
     """Add up the CPU time within each block's event."""
-    originals = {name: getattr(kind, method) for name, (kind, method) in EVENTS.items()}
-    for name, (kind, method) in EVENTS.items():
-        setattr(kind, method, _timed(name, originals[name], spent))
+    originals = [getattr(kind, method) for _, kind, method in EVENTS]
+    for (name, kind, method), original in zip(EVENTS, originals, strict=True):
+        setattr(kind, method, _timed(name, original, spent))
     try:
         yield
     finally:
-        for name, (kind, method) in EVENTS.items():
-            setattr(kind, method, originals[name])
+        for (_, kind, method), original in zip(EVENTS, originals, strict=True):
+            setattr(kind, method, original)
 
 
 def _timed(name: str, event: Callable[..., Any], spent: Counter[str]) -> Callable[..., Any]:
@@ -151,7 +154,7 @@ def measure(case: Case) -> list[float]:
     spent: Counter[str] = Counter()
     with profiled(spent):
         whole(case)
-    return [total, floor, *(spent[name] / 1e6 / case.seconds for name in EVENTS)]
+    return [total, floor, *(spent[name] / 1e6 / case.seconds for name in BLOCKS)]
 
 
 def row(case: Case, best: Sequence[float]) -> list[float]:
@@ -159,7 +162,7 @@ def row(case: Case, best: Sequence[float]) -> list[float]:
     total, floor, *parts = best
     camera = case.scenario().robots["robot"].sensors.get("camera")
     rate = 0.0 if camera is None else float(getattr(camera, "rate", 0.0))
-    image = parts[list(EVENTS).index("camera")] / rate if rate else 0.0
+    image = parts[BLOCKS.index("camera")] / rate if rate else 0.0
     return [total, 1e3 / total, floor, total / floor, *parts, image]
 
 
@@ -189,7 +192,7 @@ def main() -> None:
     if not set(kinds) <= set(CAMERAS):
         parser.error(f"--cameras: {', '.join(CAMERAS)}")
 
-    columns = ("ms/s", "x real time", "plant alone", "ratio", *EVENTS, "ms/image")
+    columns = ("ms/s", "x real time", "plant alone", "ratio", *BLOCKS, "ms/image", f"x {kinds[0]}")
     print(f"{'agents':>6} {'camera':>6}", " ".join(f"{column:>11}" for column in columns))
     for agents in counts:
         cases = [Case(agents, kind, given.planner, given.record, given.seconds) for kind in kinds]
@@ -199,9 +202,11 @@ def main() -> None:
         for _ in range(given.repeat):
             for case in cases:  # interleaved: the machine may have other work to do
                 runs[case].append(measure(case))
-        for case, measured in runs.items():
-            numbers = row(case, [min(column) for column in zip(*measured, strict=True)])
-            print(f"{agents:6} {case.camera:>6}", " ".join(f"{n:11.1f}" for n in numbers))
+        least = {case: [min(c) for c in zip(*runs[case], strict=True)] for case in cases}
+        for case, best in least.items():
+            numbers = [*row(case, best), best[0] / least[cases[0]][0]]
+            shown = " ".join(f"{n:11.2f}" for n in numbers)
+            print(f"{agents:6} {case.camera:>6}", shown)
 
 
 if __name__ == "__main__":

@@ -4,8 +4,8 @@ The ``/crowdbot/...`` topics and ``/contacts`` carry the raw float64 numbers tha
 computed from; all others are for ROS tools and may be left out.
 
 What is handed over is kept until the next `flush` and becomes messages then, all in a row: code
-that has just run is in the processor's caches, and two to three times as fast as between the
-events of a simulation.
+that has just run is still in the processor's caches, which between the events of a simulation it
+is not.
 """
 
 from __future__ import annotations
