@@ -8,7 +8,6 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Pinhole, Reading, SensorInfo
@@ -16,9 +15,6 @@ from crowdbot.core.optical import optical
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
 from crowdbot.core.recording.template import Template
-
-_FARTHEST = np.float32(65.535)  # m, in millimetres of 16 bits
-_PER_METRE = np.float32(1000.0)
 
 
 class ImageMessage(NamedTuple):
@@ -40,6 +36,10 @@ class CameraMessages:
             info: of a sensor with a ``camera``.
         """
         assert info.camera is not None
+        # Here, for numba is not to be loaded by those who only read.
+        from crowdbot.core.recording.millimetres import millimetres
+
+        self._millimetres = millimetres
         self._root = f"/{name}"
         head = ros.header(template.ANY_TIME, optical(info.frame))
         self._about = Template(_camera_info(head, info.camera), template.ANY_STAMP)
@@ -55,7 +55,10 @@ class CameraMessages:
         """
         stamp = template.stamp(ros.nanoseconds(reading.stamp))
         yield from self._pair(
-            "depth", "16UC1", stamp, _millimetres(reading.values.astype(np.float32, copy=False))
+            "depth",
+            "16UC1",
+            stamp,
+            self._millimetres(reading.values.astype(np.float32, copy=False)),
         )
         if reading.colour is not None:
             yield from self._pair("colour", "rgb8", stamp, reading.colour)
@@ -70,18 +73,6 @@ class CameraMessages:
         ):
             topic = f"{self._root}/{kind}/{leaf}"
             yield ImageMessage(topic, form.msgtype, form.fill(*parts))
-
-
-@njit(cache=True, error_model="numpy")
-def _millimetres(depth: NDArray[np.float32]) -> NDArray[np.uint16]:
-    """Rounded to even; 0 for what is too far or not a number."""
-    found = np.empty(depth.shape, np.uint16)
-    for r in range(depth.shape[0]):
-        for c in range(depth.shape[1]):
-            here = depth[r, c]
-            near = here <= _FARTHEST
-            found[r, c] = np.uint16(np.rint(here * _PER_METRE)) if near else np.uint16(0)
-    return found
 
 
 def _image(head: Any, encoding: str, shape: tuple[int, int, int]) -> Template:
