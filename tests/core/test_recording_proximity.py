@@ -18,6 +18,7 @@ from crowdbot.core.recording import (
     RobotHeader,
     read_cones,
     read_scans,
+    read_trajectories,
 )
 from crowdbot.core.recording.reader import recording_info
 from crowdbot.core.registry import discover
@@ -116,3 +117,35 @@ def test_cones_for_the_replay(path: Path) -> None:
     assert found["us0"].cone
     np.testing.assert_array_equal(found["eye"].angles, INFOS["eye"].angles)
     assert len(read_cones(path, max_rate=4.0)[0].t) == 1
+
+
+def test_a_sensor_may_use_its_array_again(tmp_path: Path) -> None:
+    path, array = tmp_path / "run.mcap", np.zeros(1)
+    header = RecordingHeader(
+        scenario="test/one", robot=RobotHeader(radius=0.2, mass=6.3), sensors=INFOS
+    )
+    writer = RecordingWriter(path, header)
+    writer.state(0.0, (0.0,) * 5, None)
+    for k in range(3):
+        array[0] = 1.0 + k
+        writer.reading("us0", Reading(0.125 * k, array))
+    writer.close(None, True, "timeout")
+    with path.open("rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        read = [m.range for _, _, _, m in reader.iter_decoded_messages(["/us0/range"])]
+    assert read == [1.0, 2.0, 3.0]
+
+
+def test_rows_are_in_the_order_in_which_they_were_handed_over(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    header = RecordingHeader(
+        scenario="test/one", robot=RobotHeader(radius=0.2, mass=6.3), sensors=INFOS
+    )
+    writer = RecordingWriter(path, header)
+    for k in range(5000):  # more than wait for a flush
+        writer.state(k / 16, (float(k), 0.0, 0.0, 0.0, 0.0), None)
+        writer.signal(k / 16, "k", float(k))
+    writer.close(None, True, "timeout")
+    run = read_trajectories(path)
+    assert run.robot is not None
+    assert run.robot.x.tolist() == run.signals["k"][:, 1].tolist() == list(range(5000))
