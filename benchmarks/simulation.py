@@ -2,7 +2,9 @@
 
 Runs the challenge's corridor with several numbers of people, without camera, with a depth camera
 and, where EGL is there, with colour images, recording on; and, interleaved with it, the multibody
-plant alone: the floor that Drake sets. Prints CPU time per simulated second.
+plant alone: the floor that Drake sets. Prints CPU time per simulated second. All is measured as a
+campaign does it: in a process with the environment of a worker, that is on one thread and with
+its settings of the C library's allocator (``--here`` leaves the environment as it is).
 
     python benchmarks/simulation.py
     python benchmarks/simulation.py --planner dwa --record used --agents 100
@@ -11,6 +13,7 @@ plant alone: the floor that Drake sets. Prints CPU time per simulated second.
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import tempfile
 import time
@@ -31,6 +34,7 @@ from crowdbot.core.lock import population
 from crowdbot.core.planner_source import resolve_planner
 from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.container import McapFile
+from crowdbot.core.sim.campaign.process import worker_environment
 from crowdbot.core.sim.control.differential_drive import wheel_gains
 from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.diagram import robot_task
@@ -176,6 +180,13 @@ def cameras() -> list[str]:
     return list(CAMERAS)
 
 
+def become_worker() -> None:
+    """Start anew with the environment of a worker, unless this process has it."""
+    wanted = worker_environment()
+    if not wanted.items() <= os.environ.items():
+        os.execve(sys.executable, sys.orig_argv, wanted)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--agents", default="0,50,100,200")
@@ -183,8 +194,11 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--planner", default="goal_seek")
     parser.add_argument("--record", choices=("all", "used", "none"), default="all")
+    parser.add_argument("--here", action="store_true", help="in the environment as it is")
     parser.add_argument("--repeat", type=int, default=3, help="the best of so many counts")
     given = parser.parse_args()
+    if not given.here:
+        become_worker()
     counts = [int(n) for n in given.agents.split(",")]
     if not set(counts) <= {0, *DENSITY}:
         parser.error(f"--agents: the challenge has 0, {', '.join(map(str, DENSITY))}")

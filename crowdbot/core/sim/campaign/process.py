@@ -40,6 +40,11 @@ _START = (
 )
 
 
+def worker_environment() -> dict[str, str]:
+    """Environment of a worker: this process's, one thread, and a roomy allocator."""
+    return {**_ALLOCATOR, **os.environ, **dict.fromkeys(_ONE_THREAD, "1")}
+
+
 class WorkerProcess:
     """A warm process that does one job at a time, and is started when it is needed.
 
@@ -132,7 +137,7 @@ class WorkerProcess:
                 stdin=subprocess.DEVNULL,
                 stdout=self._said,
                 stderr=self._said,
-                env={**_ALLOCATOR, **os.environ, **dict.fromkeys(_ONE_THREAD, "1")},
+                env=worker_environment(),
             )
         self._connection = ours
 
