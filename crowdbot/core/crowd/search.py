@@ -15,7 +15,7 @@ from crowdbot.core.crowd.mix import Addresses, base_cost, cost_of
 from crowdbot.core.kernel import kernel
 
 Indices = NDArray[np.int64]
-#: By how much a sum of floors may exceed the cost, as a fraction of it.
+#: What rounding may make of a cost, as a fraction of it.
 _ROUNDING = 1e-9
 
 
@@ -141,10 +141,11 @@ def cost_within(
     active: Indices,
 ) -> float:
     """Cost of a candidate in the world frame, or anything above ``best`` if it exceeds it."""
-    cost = base
+    # A function that stops just above its budget must not be rounded to a tie with the best.
+    cost, most = base, best + _ROUNDING * abs(best)
     for term in range(active.shape[0]):
         k = active[term]
-        budget = (best - cost) / weights[k]
+        budget = (most - cost) / weights[k]
         cost += weights[k] * call_excess(
             excesses[k], ux, uy, budget, agent_at, work_at[k], params_at[k]
         )
