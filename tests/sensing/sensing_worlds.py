@@ -89,3 +89,17 @@ def crowd_of(seed: int, count: int) -> tuple[Array, Array, Array]:
 def walls_of(rng: np.random.Generator, count: int) -> tuple[Array, Array]:
     """(S, 4) and (S, 2): segments anywhere, at heights anywhere."""
     return rng.uniform(-8, 8, (count, 4)), np.sort(rng.uniform(0.0, 2.5, (count, 2)), axis=1)
+
+
+def world(seed: int) -> Scene:
+    """People, walls and pillars in 16 m x 16 m."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(0, 15))
+    pillars = rng.uniform((-8, -8, 0.05), (8, 8, 0.8), (int(rng.integers(0, 5)), 3))
+    heights = np.sort(rng.uniform(0.0, 2.5, (len(pillars), 2)), axis=1)
+    walls, wall_heights = walls_of(rng, int(rng.integers(0, 6)))
+    radius, height = rng.uniform(0.1, 0.5, count), rng.uniform(0.5, 2.0, count)
+    scene = Scene(walls, wall_heights, radius, height, pillars, heights)
+    xyv, direction, walked = crowd_of(seed, count)
+    scene.update(None, xyv, rng.random(count) < 0.8, direction, walked)
+    return scene

@@ -6,24 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sensing_worlds import crowd_of, scene_of, walls_of
+from sensing_worlds import scene_of, world
 
 from crowdbot.core.sensing.columns import DEEPEST, Grid
-from crowdbot.core.sensing.scene import Scene
-
-
-def world(seed: int) -> Scene:
-    """People, walls and pillars in 16 m x 16 m."""
-    rng = np.random.default_rng(seed)
-    count = int(rng.integers(0, 15))
-    pillars = rng.uniform((-8, -8, 0.05), (8, 8, 0.8), (int(rng.integers(0, 5)), 3))
-    heights = np.sort(rng.uniform(0.0, 2.5, (len(pillars), 2)), axis=1)
-    walls, wall_heights = walls_of(rng, int(rng.integers(0, 6)))
-    radius, height = rng.uniform(0.1, 0.5, count), rng.uniform(0.5, 2.0, count)
-    scene = Scene(walls, wall_heights, radius, height, pillars, heights)
-    xyv, direction, walked = crowd_of(seed, count)
-    scene.update(None, xyv, rng.random(count) < 0.8, direction, walked)
-    return scene
 
 
 @settings(max_examples=200, deadline=None)
@@ -93,24 +78,3 @@ def test_a_full_turn_has_no_seam() -> None:
                 to_x = (3.0 * np.sign(np.cos(heading)) - 0.3) / np.cos(heading)
                 to_y = (3.0 * np.sign(np.sin(heading)) + 0.2) / np.sin(heading)
             np.testing.assert_allclose(distance[0], np.minimum(to_x, to_y), rtol=1e-9)
-
-
-@settings(max_examples=200, deadline=None)
-@given(st.integers(0, 2**32 - 1), st.booleans())
-def test_painted_depth_is_that_of_the_rays(seed: int, even: bool) -> None:
-    """Tops, bottoms and faces of bodies, from outside and from within, over even rows or not."""
-    rng = np.random.default_rng(seed)
-    scene, yaw, reach = world(seed), float(rng.uniform(-9, 9)), 12.0
-    at = (*rng.uniform(-6, 6, 2).tolist(), float(rng.uniform(0.05, 2.2)))
-    azimuth = np.sort(rng.uniform(-1.2, 1.2, int(rng.integers(1, 30))))
-    rows = int(rng.integers(1, 40))
-    rise = np.sort(rng.uniform(-1.0, 1.0, rows))[::-1]
-    if even:
-        rise = np.linspace(0.7, -0.9, rows)
-    grid = Grid(azimuth, rise, np.cos(azimuth))
-    depth = scene.cast_depth(grid, at, yaw, reach).T
-    length, _, _ = scene.cast_grid(grid, at, yaw, 100.0, floor=True)
-    along = length * grid.lean / np.sqrt(1.0 + (rise[:, None] * grid.lean) ** 2)
-    seen = (along < reach * grid.lean.min()) & np.isfinite(along)  # both look so far
-    np.testing.assert_allclose(depth[seen], along[seen], rtol=1e-9, atol=1e-9)
-    assert np.all(depth[~seen] >= reach * grid.lean.min())

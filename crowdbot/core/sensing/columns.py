@@ -25,7 +25,8 @@ NEAR, FAR, FACING, LOW, HIGH, WHO = range(6)
 WORK_COLUMNS = 6
 _TURN = 2.0 * math.pi
 _MARGIN = 1e-9  # rad; columns at the very edge are left to the exact test
-_OVERLAP = 1e-9  # ends of a wall are longer by this fraction, so that no ray slips through a corner
+#: Ends of a wall are longer by this fraction, so that no ray slips through a corner.
+OVERLAP = 1e-9
 
 
 class Grid:
@@ -177,7 +178,7 @@ def _add_wall(
                 continue
             t = (px * ey - py * ex) / across
             s = (px * sin[c] - py * cos[c]) / across
-            if t < 0.0 or t > reach or s < -_OVERLAP or s > 1.0 + _OVERLAP:
+            if t < 0.0 or t > reach or s < -OVERLAP or s > 1.0 + OVERLAP:
                 continue
             _insert(work, count, c, t, t, abs(across) / length, heights[0], heights[1], who)
 

@@ -1,9 +1,12 @@
-"""Depth images, painted column by column.
+"""Depth images, painted body by body.
 
-An upright face has one depth in all rows of a column, since depth is measured along the optical
-axis; the floor, and tops and bottoms of bodies, have one depth in all columns of a row. So a
-column is a few runs of equal numbers, the least of which counts. What is hit is what
+Depth is measured along the optical axis: an upright face has one depth in all rows of a column;
+the floor, and tops and bottoms of bodies, have one depth in all columns of a row. So the image of
+a body is three shapes, a face, a top and a bottom, each of which reaches in every column from one
+row to another, and of all that covers a pixel the least depth counts. What is hit is what
 `crowdbot.core.sensing.columns.cast_columns` hits, pixel by pixel.
+
+Heights are here those over the camera, and rays to the left and up have positive slopes.
 """
 
 from __future__ import annotations
@@ -14,147 +17,314 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.kernel import kernel
-from crowdbot.core.sensing.columns import FAR, HIGH, LOW, NEAR, fill_columns, heights_of
+from crowdbot.core.sensing.bodies import BOTTOM, RADIUS, TOP, X, Y
+from crowdbot.core.sensing.columns import OVERLAP
 
 Array = NDArray[np.float64]
+Image = NDArray[np.float32]
+#: Focal length, column and row of the axis, pixels; nearest and farthest depth measured, m.
+Lens = tuple[float, float, float, float, float]
+
+#: What is known of a body in a column: its top shows in the rows [UP, BEGIN), its face in
+#: [BEGIN, END) and its bottom in [END, DOWN), the face at DEPTH; as float32, like the pixels, so
+#: that the processor compares several at once.
+UP, BEGIN, END, DOWN, DEPTH = range(5)
+OUTLINE = 5
+EMPTY = (math.inf, math.inf, -math.inf, -math.inf, math.inf)
+#: Scratch per column: direction ahead and to the left in the world, where a body begins and ends.
+AHEAD, ASIDE, NEAR, FAR = range(4)
+WAYS = 4
+#: Columns are painted so many at a time.
+LANES = 8
+FARTHEST = 4  # of a lens
+_ROOM = 1e-6  # m; what is so close before the camera has no projection
+_TOUCH = 1e-12  # m; depths of bodies around the camera
+_INF = np.float32(math.inf)
 
 
 @kernel
-def _rows_above(
-    bound: float, also_at: bool, z: float, depth: float, rise: Array, guess: float
-) -> int:
-    """How many rays, from the first on, are above ``bound`` (or at it) at a depth.
+def _measured(depth: float, lens: Lens) -> np.float32:
+    """A depth as the camera gives it: 0 for too near, inf for too far."""
+    _, _, _, nearest, farthest = lens
+    return np.float32(0.0 if depth < nearest else depth if depth <= farthest else math.inf)
+
+
+@kernel
+def _between(right: float, left: float, lens: Lens, columns: int) -> tuple[int, int]:
+    """Columns whose rays go to the left by ``right`` to ``left`` per metre, one more a side."""
+    focal, centre, _, _, _ = lens
+    first = max(0.0, centre - focal * left)
+    last = min(columns - 1.0, centre - focal * right + 1.0)
+    return (int(first), int(last) + 1) if first <= last else (0, 0)
+
+
+@kernel
+def _columns_of_disc(
+    fore: float, left: float, r: float, lens: Lens, columns: int
+) -> tuple[int, int]:
+    """First column that may meet an upright cylinder, and the one after the last.
 
     Args:
-        rise: (R,) falling.
-        guess: roughly how many they are; it costs time to be wrong.
+        fore, left: of its axis, seen by the camera, m.
     """
-    rows = rise.shape[0]
-    row = rows if guess >= rows else int(guess) if guess > 0.0 else 0
-    while row > 0:
-        height = z + rise[row - 1] * depth
-        if height > bound or (also_at and height == bound):
-            break
-        row -= 1
-    while row < rows:
-        height = z + rise[row] * depth
-        if not (height > bound or (also_at and height == bound)):
-            break
-        row += 1
-    return row
+    if fore <= r + _ROOM:  # beside or around the camera
+        return 0, columns
+    middle, half = fore * left, r * math.sqrt(fore * fore + left * left - r * r)
+    over = 1.0 / (fore * fore - r * r)
+    return _between((middle - half) * over, (middle + half) * over, lens, columns)
 
 
 @kernel
-def _hidden(
-    z: float, near: float, far: float, low: float, high: float, rise: Array, first: int, last: int
-) -> bool:
-    """Whether a body shows in none of the rows but [first, last)."""
-    rows = rise.shape[0]
-    if first > 0:
-        over = rise[first - 1]
-        if not z + over * near > high or (over < 0.0 and not (high - z) / over > far):
-            return False
-    if last < rows:
-        under = rise[last]
-        if not z + under * near < low or (under > 0.0 and not (low - z) / under > far):
-            return False
-    return True
-
-
-@kernel
-def _paint(
-    z: float, near: float, far: float, low: float, high: float, rise: Array, per_row: float,
-    column: Array,
+def _columns_of_wall(
+    fore0: float, left0: float, fore1: float, left1: float, lens: Lens, columns: int,
 ) -> tuple[int, int]:  # fmt: skip
-    """Paint one body, from ``near`` to ``far`` along the axis, where nothing nearer is.
-
-    Args:
-        per_row: by how much ``rise`` falls from row to row, on average.
-
-    Returns:
-        first row of its face, and the one after the last.
-    """
-    # Exact where it falls evenly; nonsense, which does no harm, where a length is zero.
-    rows_per_metre = 1.0 / (near * per_row)
-    middle = rise[0] / per_row
-    begin = _rows_above(high, False, z, near, rise, middle - (high - z) * rows_per_metre)
-    end = _rows_above(low, True, z, near, rise, middle - (low - z) * rows_per_metre)
-    face = column[begin:end]  # indexed from 0, so that several rows are painted at once
-    for r in range(face.shape[0]):
-        here = face[r]
-        face[r] = near if near < here else here
-    if far > near:
-        for r in range(begin - 1, -1, -1):  # comes down on the top
-            if rise[r] >= 0.0 or (high - z) / rise[r] > far:
-                break
-            column[r] = min(column[r], (high - z) / rise[r])
-        for r in range(max(begin, end), rise.shape[0]):  # comes up from below
-            if rise[r] <= 0.0 or (low - z) / rise[r] > far:
-                break
-            column[r] = min(column[r], (low - z) / rise[r])
-    return begin, end
+    """As `_columns_of_disc`, of an upright plate with two ends."""
+    if fore0 <= _ROOM or fore1 <= _ROOM:
+        return 0, columns
+    slope0, slope1 = left0 / fore0, left1 / fore1
+    return _between(min(slope0, slope1), max(slope0, slope1), lens, columns)
 
 
 @kernel
-def paint_depth(
-    x: float, y: float, z: float, yaw: float, azimuth: Array, cos: Array, sin: Array,
-    rise: Array, lean: Array, max_range: float, walls: Array, wall_heights: Array, discs: Array,
-    owner: NDArray[np.int64], work: Array, count: NDArray[np.int64], ways: Array,
-    runs: NDArray[np.int64], floor: Array, depth: Array,
-) -> None:  # fmt: skip
-    """Depth along the axis of a camera, m; inf where nothing is. The floor z = 0 is seen.
-
-    Args:
-        rise: (R,) falling: the first row is on top.
-        lean: (C,) cosines of the azimuths.
-        max_range: m over the floor; what is farther may be left out.
-        floor: (R,) scratch.
-        depth: (C, R) result, columns by rising azimuth.
-
-    Everything else is as in `crowdbot.core.sensing.columns.cast_columns`.
-    """
-    lowest, highest = heights_of(z, rise, lean, max_range)
-    fill_columns(
-        x, y, yaw, lowest, highest, azimuth, cos, sin, max_range,
-        walls, wall_heights, discs, owner, work, count, ways, runs,
-    )  # fmt: skip
-    floor_depths(z, rise, floor)
-    for c in range(azimuth.shape[0]):
-        paint_column(z, rise, lean[c], work[c, : count[c]], floor, depth[c])
-
-
-@kernel
-def floor_depths(z: float, rise: Array, floor: Array) -> None:
-    """Write the depth (R,) at which rows of rays from a height ``z`` meet the floor, m; or inf."""
-    for r in range(floor.shape[0]):
-        floor[r] = -z / rise[r] if rise[r] < 0.0 else math.inf
-
-
-@kernel
-def paint_column(
-    z: float, rise: Array, lean: float, bodies: Array, floor: Array, column: Array
+def _cross_disc(
+    px: float, py: float, r: float, first: int, last: int, ways: Array, leans: Array
 ) -> None:
-    """Depth (R,) along the axis in one column, m.
+    """Write depths at which rays of columns enter and leave a cylinder; inf for a miss.
 
     Args:
-        z: height of the camera, m.
-        lean: cosine of the column's azimuth.
-        bodies: (K, `WORK_COLUMNS`) what `fill_columns` found in the column, nearest first.
-        floor: (R,) of `floor_depths`.
-        column: (R,) result.
+        px, py: its axis, seen from the camera in the directions of the world, m.
+        first, last: first column, and the one after the last.
     """
-    rows = rise.shape[0]
-    per_row = (rise[0] - rise[rows - 1]) / max(rows - 1, 1)
-    for r in range(rows):
-        column[r] = floor[r]
-    first = last = 0  # rows that a face covers: what comes later is farther
-    for k in range(bodies.shape[0]):
-        body = bodies[k]
-        near, far = body[NEAR] * lean, body[FAR] * lean
-        if _hidden(z, near, far, body[LOW], body[HIGH], rise, first, last):
+    lean, ahead, aside = leans[first:last], ways[AHEAD, first:last], ways[ASIDE, first:last]
+    near, far = ways[NEAR, first:last], ways[FAR, first:last]
+    for c in range(lean.shape[0]):
+        along = ahead[c] * px + aside[c] * py
+        across = ahead[c] * py - aside[c] * px
+        room = r * r - across * across
+        half = math.sqrt(max(room, 0.0))
+        hit = (room >= 0.0) & (along + half >= 0.0)
+        near[c] = max(0.0, along - half) * lean[c] if hit else math.inf
+        far[c] = (along + half) * lean[c]
+
+
+@kernel
+def _cross_wall(
+    px: float, py: float, ex: float, ey: float, first: int, last: int, ways: Array, leans: Array
+) -> None:
+    """As `_cross_disc`, of an upright plate from p to p + e."""
+    lean, ahead, aside = leans[first:last], ways[AHEAD, first:last], ways[ASIDE, first:last]
+    near, far = ways[NEAR, first:last], ways[FAR, first:last]
+    for c in range(lean.shape[0]):
+        across = ahead[c] * ey - aside[c] * ex
+        way = (px * ey - py * ex) / across
+        share = (px * aside[c] - py * ahead[c]) / across
+        hit = (way >= 0.0) & (share >= -OVERLAP) & (share <= 1.0 + OVERLAP)
+        near[c] = far[c] = way * lean[c] if hit else math.inf
+
+
+@kernel
+def _outline(
+    low: float, high: float, first: int, last: int, rows: float, lens: Lens, ways: Array,
+    outline: Image,
+) -> None:  # fmt: skip
+    """Work out in which rows of the columns [first, last) a body shows.
+
+    A ray of row r is at the depth d over a height h if r < horizon - h focal / d.
+
+    Args:
+        low, high: heights of the body, m.
+    """
+    focal, _, horizon, nearest, farthest = lens
+    near, far, depth = ways[NEAR, first:last], ways[FAR, first:last], outline[DEPTH, first:last]
+    up, begin = outline[UP, first:last], outline[BEGIN, first:last]
+    end, down = outline[END, first:last], outline[DOWN, first:last]
+    for c in range(near.shape[0]):
+        hit = near[c] <= farthest
+        scale, behind = focal / max(near[c], _TOUCH), focal / max(far[c], _TOUCH)
+        over, over_behind = np.ceil(horizon - high * scale), np.ceil(horizon - high * behind)
+        under, under_behind = np.floor(horizon - low * scale), np.floor(horizon - low * behind)
+        up[c] = min(max(over_behind, 0.0), rows) if hit else math.inf
+        begin[c] = min(max(over, 0.0), rows) if hit else math.inf
+        end[c] = min(max(under + 1.0, 0.0), rows) if hit else -math.inf
+        down[c] = min(max(under_behind + 1.0, 0.0), rows) if hit else -math.inf
+        depth[c] = (0.0 if near[c] < nearest else near[c]) if hit else math.inf
+
+
+@kernel
+def _clear(outline: Image, first: int, last: int) -> None:
+    """Say that nothing shows in columns."""
+    for k in range(OUTLINE):
+        for c in range(first, last):
+            outline[k, c] = EMPTY[k]
+
+
+@kernel
+def _range(edge: Image, rows: int) -> tuple[int, int]:
+    """The least and the greatest row of an edge, in columns in which the body shows."""
+    least, greatest = np.float32(rows), np.float32(0.0)
+    for row in edge:
+        if np.float32(0.0) <= row <= np.float32(rows):
+            least, greatest = min(least, row), max(greatest, row)
+    return int(least), int(greatest)
+
+
+@kernel
+def _paint_face(
+    rows: tuple[int, int], columns: tuple[int, int], outline: Image, image: Image
+) -> None:
+    """Paint a face into rows, not all of which it covers in every column."""
+    left, right = columns
+    begin, end = outline[BEGIN, left:right], outline[END, left:right]
+    depth = outline[DEPTH, left:right]
+    for r in range(*rows):
+        row, line = np.float32(r), image[r, left:right]
+        for c in range(line.shape[0]):
+            new = depth[c] if (begin[c] <= row) & (row < end[c]) else _INF
+            line[c] = new if new < line[c] else line[c]
+
+
+@kernel
+def _paint_full_face(
+    rows: tuple[int, int], columns: tuple[int, int], outline: Image, image: Image
+) -> None:
+    """Paint a face into rows that it covers in every column in which it shows."""
+    left, right = columns
+    depth = outline[DEPTH, left:right]
+    for r in range(*rows):
+        line = image[r, left:right]
+        for c in range(line.shape[0]):
+            line[c] = depth[c] if depth[c] < line[c] else line[c]
+
+
+@kernel
+def _paint_level(
+    height: float, edges: tuple[int, int], rows: tuple[int, int], columns: tuple[int, int],
+    up: Array, lens: Lens, outline: Image, image: Image,
+) -> None:  # fmt: skip
+    """Paint a top or a bottom at a height, which reaches from one edge to another."""
+    left, right = columns
+    begin, end = outline[edges[0], left:right], outline[edges[1], left:right]
+    for r in range(*rows):
+        row, line = np.float32(r), image[r, left:right]
+        depth = _measured(height / up[r], lens)
+        for c in range(line.shape[0]):
+            new = depth if (begin[c] <= row) & (row < end[c]) else _INF
+            line[c] = new if new < line[c] else line[c]
+
+
+@kernel
+def _paint_outlined(
+    low: float, high: float, columns: tuple[int, int], up: Array, lens: Lens, outline: Image,
+    image: Image,
+) -> None:  # fmt: skip
+    """Paint a body into the columns of its outline, where nothing nearer is."""
+    left, right = columns
+    rows = up.shape[0]
+    first_begin, last_begin = _range(outline[BEGIN, left:right], rows)
+    first_end, last_end = _range(outline[END, left:right], rows)
+    if first_begin > last_begin:  # it shows nowhere
+        return
+    if high < 0.0:  # else the camera does not see the top
+        first, _ = _range(outline[UP, left:right], rows)
+        _paint_level(high, (UP, BEGIN), (first, last_begin), columns, up, lens, outline, image)
+    if low > 0.0:
+        _, last = _range(outline[DOWN, left:right], rows)
+        _paint_level(low, (END, DOWN), (first_end, last), columns, up, lens, outline, image)
+    if last_begin < first_end:
+        _paint_face((first_begin, last_begin), columns, outline, image)
+        _paint_full_face((last_begin, first_end), columns, outline, image)
+        _paint_face((first_end, last_end), columns, outline, image)
+    else:
+        _paint_face((first_begin, last_end), columns, outline, image)
+
+
+@kernel
+def _paint_body(
+    first: int, last: int, low: float, high: float, up: Array, lens: Lens, ways: Array,
+    outline: Image, image: Image,
+) -> None:  # fmt: skip
+    """Paint what was found of a body in the columns [first, last)."""
+    _outline(low, high, first, last, up.shape[0], lens, ways, outline)
+    left, right = first // LANES * LANES, -(-last // LANES) * LANES
+    _clear(outline, left, first)
+    _clear(outline, last, right)
+    _paint_outlined(low, high, (left, right), up, lens, outline, image)
+
+
+@kernel
+def _in_view(low: float, high: float, up: Array, farthest: float) -> bool:
+    """Whether a body reaches into the heights between which rays run."""
+    lowest, highest = min(0.0, up[up.shape[0] - 1]), max(0.0, up[0])
+    return bool(low <= highest * farthest and high >= lowest * farthest)
+
+
+@kernel
+def _paint_walls(
+    x: float, y: float, z: float, ahead: float, aside: float, lens: Lens, up: Array, lean: Array,
+    walls: Array, heights: Array, ways: Array, outline: Image, image: Image,
+) -> None:  # fmt: skip
+    """Paint upright plates, seen in the direction (ahead, aside) of the world."""
+    farthest = lens[FARTHEST]
+    for i in range(walls.shape[0]):
+        px, py, qx, qy = walls[i, 0] - x, walls[i, 1] - y, walls[i, 2] - x, walls[i, 3] - y
+        fore0, fore1 = ahead * px + aside * py, ahead * qx + aside * qy
+        if max(fore0, fore1) < 0.0 or min(fore0, fore1) > farthest:
             continue
-        begin, end = _paint(z, near, far, body[LOW], body[HIGH], rise, per_row, column)
-        if begin <= last and end >= first and last > first:
-            first, last = min(first, begin), max(last, end)
-        elif end - begin > last - first:
-            first, last = begin, end
+        low, high = heights[i, 0] - z, heights[i, 1] - z
+        if not _in_view(low, high, up, farthest):
+            continue
+        left0, left1 = ahead * py - aside * px, ahead * qy - aside * qx
+        first, last = _columns_of_wall(fore0, left0, fore1, left1, lens, lean.shape[0])
+        _cross_wall(px, py, qx - px, qy - py, first, last, ways, lean)
+        _paint_body(first, last, low, high, up, lens, ways, outline, image)
+
+
+@kernel
+def _paint_discs(
+    x: float, y: float, z: float, ahead: float, aside: float, lens: Lens, up: Array, lean: Array,
+    discs: Array, ways: Array, outline: Image, image: Image,
+) -> None:  # fmt: skip
+    """Paint upright cylinders, seen in the direction (ahead, aside) of the world."""
+    farthest = lens[FARTHEST]
+    for i in range(discs.shape[0]):
+        px, py, r = discs[i, X] - x, discs[i, Y] - y, discs[i, RADIUS]
+        fore = ahead * px + aside * py
+        if not -r < fore < farthest + r:  # most of them, and the absent, who are at infinity
+            continue
+        low, high = discs[i, BOTTOM] - z, discs[i, TOP] - z
+        if not _in_view(low, high, up, farthest):
+            continue
+        first, last = _columns_of_disc(fore, ahead * py - aside * px, r, lens, lean.shape[0])
+        if first < last:
+            _cross_disc(px, py, r, first, last, ways, lean)
+            _paint_body(first, last, low, high, up, lens, ways, outline, image)
+
+
+@kernel
+def paint(
+    x: float, y: float, z: float, yaw: float, lens: Lens, up: Array, lean: Array, cos: Array,
+    sin: Array, walls: Array, wall_heights: Array, discs: Array, ways: Array, outline: Image,
+    image: Image,
+) -> None:  # fmt: skip
+    """Depth along the axis of a level camera, m; 0 for too near, inf for nothing in reach.
+
+    The floor z = 0 is seen.
+
+    Args:
+        x, y, z, yaw: camera in the world frame, m and rad.
+        lens: focal length, column and row of the axis (pixels), nearest and farthest depth (m).
+        up: (H,) rise of the rows' rays per metre of depth, falling evenly.
+        lean, cos, sin: (W,) depth per metre of way over the floor; of the columns' azimuths.
+        walls, wall_heights: (S, 4), (S, 2).
+        discs: (D, 5) upright cylinders.
+        ways, outline: (`WAYS`, W), (`OUTLINE`, W') scratch, W' the multiple of `LANES` from W on.
+        image: (H, W') result; what is beyond W is of no use.
+    """
+    for r in range(up.shape[0]):
+        image[r] = _measured(-z / up[r] if up[r] < 0.0 else math.inf, lens)
+    ahead, aside = math.cos(yaw), math.sin(yaw)
+    for c in range(lean.shape[0]):
+        ways[AHEAD, c] = ahead * cos[c] - aside * sin[c]
+        ways[ASIDE, c] = aside * cos[c] + ahead * sin[c]
+    _paint_walls(x, y, z, ahead, aside, lens, up, lean, walls, wall_heights, ways, outline, image)
+    _paint_discs(x, y, z, ahead, aside, lens, up, lean, discs, ways, outline, image)

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core.interfaces import RobotState
 from crowdbot.core.sensing.bodies import DISC_COLUMNS, PARTS, place_people
 from crowdbot.core.sensing.columns import Grid, cast_columns
-from crowdbot.core.sensing.depth import paint_depth
+from crowdbot.core.sensing.pixels import Pixels
 from crowdbot.core.sensing.raycast import cast_rays
 
 Array = NDArray[np.float64]
@@ -196,26 +196,17 @@ class Scene:
             )  # fmt: skip
         return distance, incidence, body
 
-    def cast_depth(
-        self, grid: Grid, at: tuple[float, float, float], yaw: float, max_range: float
-    ) -> Array:
-        """What a camera sees that looks along a grid's azimuth 0; the floor is seen.
+    def photograph(
+        self, pixels: Pixels, at: tuple[float, float, float], yaw: float
+    ) -> NDArray[np.float32]:
+        """What a level camera sees; the floor is seen.
 
         Args:
-            grid: its ``lean`` the cosines of its azimuths, its rows falling.
-            at: the point, world frame, m.
-            yaw: direction of the grid's azimuth 0, world frame, rad.
-            max_range: m over the floor; what is farther may be left out.
+            pixels: of the camera.
+            at: where it is, world frame, m.
+            yaw: where it looks, world frame, rad.
 
         Returns:
-            (C, R) depth along the axis, m, inf where nothing is; columns by rising azimuth.
+            (H, W) depth along the axis, m: 0 for too near, inf for nothing in reach.
         """
-        rows, columns = grid.shape
-        depth = np.empty((columns, rows))
-        discs, owner = self.bodies
-        paint_depth(
-            *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, max_range,
-            self.walls, self.wall_heights, discs, owner, grid.work, grid.count, grid.ways,
-            grid.runs, np.empty(rows), depth,
-        )  # fmt: skip
-        return depth
+        return pixels.photograph(at, yaw, self.walls, self.wall_heights, self.cylinders)
