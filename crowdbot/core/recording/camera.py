@@ -18,11 +18,11 @@ from crowdbot.core.recording.template import Template
 
 
 class ImageMessage(NamedTuple):
-    """One serialised message."""
+    """One serialised message, in pieces that are good until the next message is asked for."""
 
     topic: str
     msgtype: str
-    data: bytes
+    pieces: list[bytes | memoryview]
 
 
 class CameraMessages:
@@ -72,7 +72,7 @@ class CameraMessages:
             ("camera_info", self._about, (stamp,)),
         ):
             topic = f"{self._root}/{kind}/{leaf}"
-            yield ImageMessage(topic, form.msgtype, form.fill(*parts))
+            yield ImageMessage(topic, form.msgtype, form.pieces(*parts))
 
 
 def _image(head: Any, encoding: str, shape: tuple[int, int, int]) -> Template:

@@ -15,20 +15,58 @@ import zstandard
 from isal.isal_zlib import crc32
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, ChunkIndex, McapRecord, Schema
+from mcap.records import Channel, ChunkIndex, McapRecord, Schema
 
 _COMPRESSION, _LEVEL = "zstd", -1
 _MESSAGE = Struct("<BQHIQQ")  # opcode and length of a record; channel, sequence, both times
 _INDEX = Struct("<BQHI")  # opcode and length of a record; channel, length of the entries
+#: Opcode and length of a record; first and last time, size and CRC without compression; its name;
+#: length of what follows.
+_CHUNK = Struct("<BQQQQII4sQ")
 _PREFIX = 1 + 8  # opcode and length, which the length leaves out
 _OPCODE, _HEAD = Opcode.MESSAGE, _MESSAGE.size - _PREFIX
 
+Piece = bytes | memoryview
+
 
 class PackedChunk(NamedTuple):
-    """A finished chunk with the indices that follow it, and what the summary says of both."""
+    """A finished chunk.
+
+    Attributes:
+        data: its record.
+        indices: of its channels; they follow it.
+        start, end: of its messages, ns; 0 without any.
+        plain_size: bytes before they were compressed.
+    """
 
     data: bytes
-    entry: ChunkIndex
+    indices: dict[int, bytes]
+    start: int
+    end: int
+    plain_size: int
+
+    @property
+    def size(self) -> int:
+        """Bytes in the file."""
+        return len(self.data) + sum(map(len, self.indices.values()))
+
+    def entry(self, at: int) -> ChunkIndex:
+        """What the summary says of a chunk that is ``at`` in the file."""
+        offsets, end = dict[int, int](), at + len(self.data)
+        for channel, index in self.indices.items():
+            offsets[channel] = end
+            end += len(index)
+        return ChunkIndex(
+            chunk_start_offset=at,
+            chunk_length=len(self.data),
+            message_start_time=self.start,
+            message_end_time=self.end,
+            message_index_offsets=offsets,
+            message_index_length=end - at - len(self.data),
+            compression=_COMPRESSION,
+            compressed_size=len(self.data) - _CHUNK.size,
+            uncompressed_size=self.plain_size,
+        )
 
 
 def serialised(records: Iterable[McapRecord]) -> bytes:
@@ -52,14 +90,10 @@ class OpenChunk:
         self._clear()
 
     def _clear(self) -> None:
-        self._parts: list[bytes] = []
+        self._parts: list[Piece] = []
         # Of a channel: time, offset, time, offset, …
         self._entries = defaultdict[int, list[int]](list)
         self.size = 0
-
-    def __len__(self) -> int:
-        """Number of messages."""
-        return sum(map(len, self._entries.values())) // 2
 
     def define(self, record: Schema | Channel) -> None:
         """Add what messages refer to."""
@@ -67,48 +101,26 @@ class OpenChunk:
         self._parts.append(data)
         self.size += len(data)
 
-    def add(self, channel: int, sequence: int, ns: int, data: bytes) -> None:
-        """Add a message, logged and published at ``ns`` nanoseconds."""
-        length = _HEAD + len(data)
-        self._parts += _MESSAGE.pack(_OPCODE, length, channel, sequence, ns, ns), data
+    def add(self, channel: int, sequence: int, ns: int, *pieces: Piece) -> None:
+        """Add a message that lies in one or more pieces, logged and published at ``ns`` ns."""
+        length = _HEAD + sum(map(len, pieces))
+        self._parts += _MESSAGE.pack(_OPCODE, length, channel, sequence, ns, ns), *pieces
         self._entries[channel] += ns, self.size
         self.size += _PREFIX + length
 
-    def pack(self, at: int) -> PackedChunk:
-        """Compress what was collected, and begin anew.
-
-        Args:
-            at: where in the file the chunk is going to be.
-        """
+    def pack(self) -> PackedChunk:
+        """Compress what was collected, and begin anew."""
         plain = b"".join(self._parts)
+        packed = self._compressor.compress(plain)
         times = [ns for entries in self._entries.values() for ns in entries[::2]]
-        chunk = Chunk(
-            compression=_COMPRESSION,
-            data=self._compressor.compress(plain),
-            message_start_time=min(times),
-            message_end_time=max(times),
-            uncompressed_crc=crc32(plain),
-            uncompressed_size=len(plain),
-        )
-        data = serialised([chunk])
-        end, offsets, indices = at + len(data), dict[int, int](), list[bytes]()
-        for channel, entries in self._entries.items():
-            offsets[channel] = end
-            indices.append(_index(channel, entries))
-            end += len(indices[-1])
-        entry = ChunkIndex(
-            chunk_start_offset=at,
-            chunk_length=len(data),
-            message_start_time=chunk.message_start_time,
-            message_end_time=chunk.message_end_time,
-            message_index_offsets=offsets,
-            message_index_length=end - at - len(data),
-            compression=_COMPRESSION,
-            compressed_size=len(chunk.data),
-            uncompressed_size=chunk.uncompressed_size,
-        )
+        start, end = min(times, default=0), max(times, default=0)
+        head = _CHUNK.pack(
+            Opcode.CHUNK, _CHUNK.size - _PREFIX + len(packed), start, end, len(plain),
+            crc32(plain), len(_COMPRESSION), _COMPRESSION.encode(), len(packed),
+        )  # fmt: skip
+        indices = {channel: _index(channel, e) for channel, e in self._entries.items()}
         self._clear()
-        return PackedChunk(b"".join([data, *indices]), entry)
+        return PackedChunk(head + packed, indices, start, end, len(plain))
 
 
 def _index(channel: int, entries: list[int]) -> bytes:

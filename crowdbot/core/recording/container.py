@@ -27,7 +27,8 @@ from mcap.records import (
 )
 from mcap.writer import MCAP0_MAGIC
 
-from crowdbot.core.recording.chunk import OpenChunk, serialised
+from crowdbot.core.recording.camera import ImageMessage
+from crowdbot.core.recording.chunk import OpenChunk, PackedChunk, serialised
 from crowdbot.core.recording.messages import definition, to_cdr
 from crowdbot.errors import InputError
 
@@ -75,7 +76,8 @@ class McapFile:
             raise InputError(f"{path}: cannot be written: {error.strerror}") from error
         self._schemas: dict[str, Schema] = {}
         self._topics: dict[str, _Topic] = {}
-        self._chunk, self._chunks = OpenChunk(), list[ChunkIndex]()
+        self._chunk, self._large = OpenChunk(), OpenChunk()
+        self._packed, self._chunks = list[PackedChunk](), list[ChunkIndex]()
         self._stream.write(MCAP0_MAGIC + serialised([Header(profile="ros2", library="crowdbot")]))
 
     def put(self, topic: str, ns: int, message: Any, *, latched: bool = False) -> None:
@@ -86,13 +88,25 @@ class McapFile:
         self, topic: str, ns: int, msgtype: str, data: bytes, *, latched: bool = False
     ) -> None:
         """Append one message that is already serialised."""
-        opened = self._topics.get(topic)
-        if opened is None:
-            opened = self._topics[topic] = _Topic(self._open(topic, msgtype, latched))
+        opened = self._topics.get(topic) or self._open(topic, msgtype, latched)
         chunk = self._chunk
         chunk.add(opened.id, opened.messages, ns, data)
         opened.messages += 1
         if chunk.size >= CHUNK_SIZE:
+            self._finish_chunk()
+
+    def put_images(self, ns: int, images: Iterable[ImageMessage]) -> None:
+        """Append large messages in a chunk of their own.
+
+        It is packed at once, while its bytes are at hand, and follows the chunk that is open.
+        """
+        chunk = self._large
+        for image in images:
+            opened = self._topics.get(image.topic) or self._open(image.topic, image.msgtype, False)
+            chunk.add(opened.id, opened.messages, ns, *image.pieces)
+            opened.messages += 1
+        self._packed.append(chunk.pack())
+        if sum(packed.size for packed in self._packed) >= CHUNK_SIZE:
             self._finish_chunk()
 
     def flush(self) -> None:
@@ -109,7 +123,7 @@ class McapFile:
         os.fsync(self._stream.fileno())
         self._stream.close()
 
-    def _open(self, topic: str, msgtype: str, latched: bool) -> Channel:
+    def _open(self, topic: str, msgtype: str, latched: bool) -> _Topic:
         schema = self._schemas.get(msgtype)
         if schema is None:
             schema = Schema(
@@ -128,13 +142,20 @@ class McapFile:
             schema_id=schema.id,
         )
         self._chunk.define(channel)
-        return channel
+        opened = self._topics[topic] = _Topic(channel)
+        return opened
 
     def _finish_chunk(self) -> None:
-        if len(self._chunk):
-            packed = self._chunk.pack(self._stream.tell())
-            self._stream.write(packed.data)
-            self._chunks.append(packed.entry)
+        """Write the open chunk and those that were packed meanwhile."""
+        chunks, self._packed = self._packed, []
+        if self._chunk.size:
+            chunks.insert(0, self._chunk.pack())
+        at = self._stream.tell()
+        for chunk in chunks:
+            self._stream.write(chunk.data)
+            self._stream.writelines(chunk.indices.values())
+            self._chunks.append(chunk.entry(at))
+            at += chunk.size
 
     def _summary(self, at: int) -> bytes:
         """Everything after the data but the closing magic; ``at``: where it begins."""
@@ -156,6 +177,7 @@ class McapFile:
         return data + begun + pack("<I", crc32(data + begun))
 
     def _statistics(self) -> Statistics:
+        filled = [c for c in self._chunks if c.message_index_offsets]
         counts = {t.channel.id: t.messages for t in self._topics.values()}
         return Statistics(
             message_count=sum(counts.values()),
@@ -164,7 +186,7 @@ class McapFile:
             attachment_count=0,
             metadata_count=0,
             chunk_count=len(self._chunks),
-            message_start_time=min((c.message_start_time for c in self._chunks), default=0),
-            message_end_time=max((c.message_end_time for c in self._chunks), default=0),
+            message_start_time=min((c.message_start_time for c in filled), default=0),
+            message_end_time=max((c.message_end_time for c in filled), default=0),
             channel_message_counts=counts,
         )

@@ -133,11 +133,9 @@ class RecordingWriter:
         if topic := self._sensors.get(sensor):
             values = reading.values.copy()
             self._waiting.append(partial(self._measured, topic, reading.stamp, values))
-        elif self._images:  # at once, after all that waits: memory for many would be dear
-            self._catch_up()
-            ns = ros.nanoseconds(reading.stamp)
-            for image in self._cameras[sensor](reading):
-                self._file.put_bytes(image.topic, ns, image.msgtype, image.data)
+        elif self._images:  # at once: memory for many would be dear
+            images = self._cameras[sensor](reading)
+            self._file.put_images(ros.nanoseconds(reading.stamp), images)
 
     @_later
     def command(self, t: float, command: Command) -> None:
