@@ -65,7 +65,6 @@ EVENTS: tuple[tuple[str, type[Any], str], ...] = (
     ("logger", MetricLogger, "_publish"),
     ("recorder", RecordingWriter, "_catch_up"),
     ("recorder", McapFile, "_finish_chunk"),
-    ("recorder", McapFile, "put_images"),
     ("robot state", RobotStateSystem, "_calc"),
 )
 BLOCKS = tuple(dict.fromkeys(name for name, _, _ in EVENTS))

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
-from mcap.reader import make_reader
 from mcap.records import Channel, Chunk, ChunkIndex, Footer, Message, MessageIndex, SummaryOffset
 from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import Writer
 
-from crowdbot.core.recording.camera import ImageMessage
 from crowdbot.core.recording.container import CHUNK_SIZE, McapFile
 from crowdbot.core.recording.messages import clock, definition, to_cdr
-from crowdbot.core.recording.records import Records
 
 CLOCK = "rosgraph_msgs/msg/Clock"
 
@@ -108,53 +103,3 @@ def test_indices_point_at_what_they_name(tmp_path: Path) -> None:
             behind = index.chunk_start_offset + index.chunk_length
             assert min(index.message_index_offsets.values()) == behind
             assert {data[at] for at in index.message_index_offsets.values()} == {0x07}
-
-
-def image(topic: str, n: int, size: int) -> ImageMessage:
-    data = to_cdr(clock(n)) + bytes(size)
-    return ImageMessage(topic, CLOCK, [data[:3], memoryview(data)[3:]])
-
-
-def with_images(path: Path, size: int, *, rows: bool) -> Path:
-    file = McapFile(path)
-    for n in range(8):
-        file.put_images(n, [image("/image", n, size), image("/info", n, 1)])
-        if rows:
-            file.put_bytes("/row", n, CLOCK, to_cdr(clock(n)))
-    file.close()
-    return path
-
-
-@pytest.mark.parametrize("rows", [True, False])
-@pytest.mark.parametrize("size", [1000, 40 * CHUNK_SIZE])
-def test_images_have_chunks_of_their_own(tmp_path: Path, size: int, rows: bool) -> None:
-    """They follow the definitions that they need, and readers put them where they belong."""
-    path = with_images(tmp_path / "images.mcap", size, rows=rows)
-    with path.open("rb") as stream:
-        reader = make_reader(stream)
-        summary = reader.get_summary()
-        found = [(c.topic, m.log_time, len(m.data)) for _, c, m in reader.iter_messages()]
-    assert summary is not None
-    assert summary.statistics is not None
-    assert (summary.statistics.message_start_time, summary.statistics.message_end_time) == (0, 7)
-    assert summary.statistics.message_count == len(found) == (24 if rows else 16)
-    assert [ns for _, ns, _ in found] == sorted(ns for _, ns, _ in found)
-    assert {n for topic, _, n in found if topic == "/image"} == {len(to_cdr(clock(0))) + size}
-    # Also for those who read it from front to back, as after a crash.
-    assert Counter(r.topic for r in Records(path)) == Counter(topic for topic, _, _ in found)
-    names = [[type(r).__name__ for r in breakup_chunk(c)] for c in chunks(path)]
-    assert names[0][:2] == ["Schema", "Channel"]
-    assert names.count(["Message", "Message"]) == 8
-
-
-def chunks(path: Path) -> list[Chunk]:
-    with path.open("rb") as stream:
-        return [r for r in StreamReader(stream, emit_chunks=True).records if isinstance(r, Chunk)]
-
-
-def test_large_images_do_not_wait_for_others(tmp_path: Path) -> None:
-    file = McapFile(tmp_path / "images.mcap")
-    noise = np.random.default_rng(0).integers(0, 256, CHUNK_SIZE, dtype=np.uint8)
-    file.put_images(0, [ImageMessage("/image", CLOCK, [noise.data])])
-    assert (tmp_path / "images.mcap").stat().st_size > CHUNK_SIZE
-    file.close()

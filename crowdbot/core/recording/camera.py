@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,21 @@ from crowdbot.core.optical import optical
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
 from crowdbot.core.recording.template import Template
+
+Kind = Literal["depth", "colour"]
+_ENCODINGS: dict[Kind, str] = {"depth": "16UC1", "colour": "rgb8"}
+
+
+class Photograph(NamedTuple):
+    """What is kept of a camera's reading: its time (ns) and pixels, by what they show."""
+
+    ns: int
+    pixels: dict[Kind, NDArray[Any]]
+
+    @property
+    def size(self) -> int:
+        """Bytes."""
+        return sum(pixels.nbytes for pixels in self.pixels.values())
 
 
 class ImageMessage(NamedTuple):
@@ -46,33 +61,30 @@ class CameraMessages:
         self._blank = cache(lambda encoding, size: _image(head, encoding, (*info.shape, size)))
         self._pixels = math.prod(info.shape)
 
-    def __call__(self, reading: Reading) -> Iterator[ImageMessage]:
-        """The messages of one reading.
+    def keep(self, reading: Reading) -> Photograph:
+        """A copy of what is to be written of a reading.
 
         Args:
             reading: depth in m; 0 and inf, for too near and too far, both become 0, which is ROS'
                 word for no measurement in ``16UC1``.
         """
-        stamp = template.stamp(ros.nanoseconds(reading.stamp))
-        yield from self._pair(
-            "depth",
-            "16UC1",
-            stamp,
-            self._millimetres(reading.values.astype(np.float32, copy=False)),
-        )
+        depth = self._millimetres(reading.values.astype(np.float32, copy=False))
+        pixels: dict[Kind, NDArray[Any]] = {"depth": depth}
         if reading.colour is not None:
-            yield from self._pair("colour", "rgb8", stamp, reading.colour)
+            pixels["colour"] = reading.colour.copy()
+        return Photograph(ros.nanoseconds(reading.stamp), pixels)
 
-    def _pair(
-        self, kind: str, encoding: str, stamp: bytes, pixels: NDArray[Any]
-    ) -> Iterator[ImageMessage]:
-        blank = self._blank(encoding, pixels.nbytes // self._pixels)
-        for leaf, form, parts in (
-            ("image_raw", blank, (stamp, np.ascontiguousarray(pixels).data.cast("B"))),
-            ("camera_info", self._about, (stamp,)),
-        ):
-            topic = f"{self._root}/{kind}/{leaf}"
-            yield ImageMessage(topic, form.msgtype, form.pieces(*parts))
+    def messages(self, photograph: Photograph) -> Iterator[ImageMessage]:
+        """An image and a CameraInfo each."""
+        stamp = template.stamp(photograph.ns)
+        for kind, pixels in photograph.pixels.items():
+            image = self._blank(_ENCODINGS[kind], pixels.nbytes // self._pixels)
+            for leaf, form, parts in (
+                ("image_raw", image, (stamp, pixels.data.cast("B"))),
+                ("camera_info", self._about, (stamp,)),
+            ):
+                topic = f"{self._root}/{kind}/{leaf}"
+                yield ImageMessage(topic, form.msgtype, form.pieces(*parts))
 
 
 def _image(head: Any, encoding: str, shape: tuple[int, int, int]) -> Template:

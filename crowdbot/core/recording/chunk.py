@@ -30,43 +30,10 @@ Piece = bytes | memoryview
 
 
 class PackedChunk(NamedTuple):
-    """A finished chunk.
-
-    Attributes:
-        data: its record.
-        indices: of its channels; they follow it.
-        start, end: of its messages, ns; 0 without any.
-        plain_size: bytes before they were compressed.
-    """
+    """A finished chunk with the indices that follow it, and what the summary says of both."""
 
     data: bytes
-    indices: dict[int, bytes]
-    start: int
-    end: int
-    plain_size: int
-
-    @property
-    def size(self) -> int:
-        """Bytes in the file."""
-        return len(self.data) + sum(map(len, self.indices.values()))
-
-    def entry(self, at: int) -> ChunkIndex:
-        """What the summary says of a chunk that is ``at`` in the file."""
-        offsets, end = dict[int, int](), at + len(self.data)
-        for channel, index in self.indices.items():
-            offsets[channel] = end
-            end += len(index)
-        return ChunkIndex(
-            chunk_start_offset=at,
-            chunk_length=len(self.data),
-            message_start_time=self.start,
-            message_end_time=self.end,
-            message_index_offsets=offsets,
-            message_index_length=end - at - len(self.data),
-            compression=_COMPRESSION,
-            compressed_size=len(self.data) - _CHUNK.size,
-            uncompressed_size=self.plain_size,
-        )
+    entry: ChunkIndex
 
 
 def serialised(records: Iterable[McapRecord]) -> bytes:
@@ -108,19 +75,39 @@ class OpenChunk:
         self._entries[channel] += ns, self.size
         self.size += _PREFIX + length
 
-    def pack(self) -> PackedChunk:
-        """Compress what was collected, and begin anew."""
+    def pack(self, at: int) -> PackedChunk:
+        """Compress what was collected, and begin anew.
+
+        Args:
+            at: where in the file the chunk is going to be.
+        """
         plain = b"".join(self._parts)
         packed = self._compressor.compress(plain)
         times = [ns for entries in self._entries.values() for ns in entries[::2]]
-        start, end = min(times, default=0), max(times, default=0)
+        start, end = min(times), max(times)
         head = _CHUNK.pack(
             Opcode.CHUNK, _CHUNK.size - _PREFIX + len(packed), start, end, len(plain),
             crc32(plain), len(_COMPRESSION), _COMPRESSION.encode(), len(packed),
         )  # fmt: skip
-        indices = {channel: _index(channel, e) for channel, e in self._entries.items()}
+        length = len(head) + len(packed)
+        behind, offsets, indices = at + length, dict[int, int](), list[bytes]()
+        for channel, entries in self._entries.items():
+            offsets[channel] = behind
+            indices.append(_index(channel, entries))
+            behind += len(indices[-1])
+        entry = ChunkIndex(
+            chunk_start_offset=at,
+            chunk_length=length,
+            message_start_time=start,
+            message_end_time=end,
+            message_index_offsets=offsets,
+            message_index_length=behind - at - length,
+            compression=_COMPRESSION,
+            compressed_size=len(packed),
+            uncompressed_size=len(plain),
+        )
         self._clear()
-        return PackedChunk(head + packed, indices, start, end, len(plain))
+        return PackedChunk(b"".join([head, packed, *indices]), entry)
 
 
 def _index(channel: int, entries: list[int]) -> bytes:

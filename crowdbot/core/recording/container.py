@@ -27,8 +27,7 @@ from mcap.records import (
 )
 from mcap.writer import MCAP0_MAGIC
 
-from crowdbot.core.recording.camera import ImageMessage
-from crowdbot.core.recording.chunk import OpenChunk, PackedChunk, serialised
+from crowdbot.core.recording.chunk import OpenChunk, Piece, serialised
 from crowdbot.core.recording.messages import definition, to_cdr
 from crowdbot.errors import InputError
 
@@ -76,8 +75,7 @@ class McapFile:
             raise InputError(f"{path}: cannot be written: {error.strerror}") from error
         self._schemas: dict[str, Schema] = {}
         self._topics: dict[str, _Topic] = {}
-        self._chunk, self._large = OpenChunk(), OpenChunk()
-        self._packed, self._chunks = list[PackedChunk](), list[ChunkIndex]()
+        self._chunk, self._chunks = OpenChunk(), list[ChunkIndex]()
         self._stream.write(MCAP0_MAGIC + serialised([Header(profile="ros2", library="crowdbot")]))
 
     def put(self, topic: str, ns: int, message: Any, *, latched: bool = False) -> None:
@@ -85,28 +83,14 @@ class McapFile:
         self.put_bytes(topic, ns, message.__msgtype__, to_cdr(message), latched=latched)
 
     def put_bytes(
-        self, topic: str, ns: int, msgtype: str, data: bytes, *, latched: bool = False
+        self, topic: str, ns: int, msgtype: str, *pieces: Piece, latched: bool = False
     ) -> None:
-        """Append one message that is already serialised."""
+        """Append one message that is already serialised, in one or more pieces."""
         opened = self._topics.get(topic) or self._open(topic, msgtype, latched)
         chunk = self._chunk
-        chunk.add(opened.id, opened.messages, ns, data)
+        chunk.add(opened.id, opened.messages, ns, *pieces)
         opened.messages += 1
         if chunk.size >= CHUNK_SIZE:
-            self._finish_chunk()
-
-    def put_images(self, ns: int, images: Iterable[ImageMessage]) -> None:
-        """Append large messages in a chunk of their own.
-
-        It is packed at once, while its bytes are at hand, and follows the chunk that is open.
-        """
-        chunk = self._large
-        for image in images:
-            opened = self._topics.get(image.topic) or self._open(image.topic, image.msgtype, False)
-            chunk.add(opened.id, opened.messages, ns, *image.pieces)
-            opened.messages += 1
-        self._packed.append(chunk.pack())
-        if sum(packed.size for packed in self._packed) >= CHUNK_SIZE:
             self._finish_chunk()
 
     def flush(self) -> None:
@@ -146,16 +130,10 @@ class McapFile:
         return opened
 
     def _finish_chunk(self) -> None:
-        """Write the open chunk and those that were packed meanwhile."""
-        chunks, self._packed = self._packed, []
         if self._chunk.size:
-            chunks.insert(0, self._chunk.pack())
-        at = self._stream.tell()
-        for chunk in chunks:
-            self._stream.write(chunk.data)
-            self._stream.writelines(chunk.indices.values())
-            self._chunks.append(chunk.entry(at))
-            at += chunk.size
+            packed = self._chunk.pack(self._stream.tell())
+            self._stream.write(packed.data)
+            self._chunks.append(packed.entry)
 
     def _summary(self, at: int) -> bytes:
         """Everything after the data but the closing magic; ``at``: where it begins."""
@@ -177,7 +155,6 @@ class McapFile:
         return data + begun + pack("<I", crc32(data + begun))
 
     def _statistics(self) -> Statistics:
-        filled = [c for c in self._chunks if c.message_index_offsets]
         counts = {t.channel.id: t.messages for t in self._topics.values()}
         return Statistics(
             message_count=sum(counts.values()),
@@ -186,7 +163,7 @@ class McapFile:
             attachment_count=0,
             metadata_count=0,
             chunk_count=len(self._chunks),
-            message_start_time=min((c.message_start_time for c in filled), default=0),
-            message_end_time=max((c.message_end_time for c in filled), default=0),
+            message_start_time=min((c.message_start_time for c in self._chunks), default=0),
+            message_end_time=max((c.message_end_time for c in self._chunks), default=0),
             channel_message_counts=counts,
         )

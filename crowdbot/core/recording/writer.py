@@ -23,7 +23,7 @@ from crowdbot.core.interfaces import Array, Command, Reading
 from crowdbot.core.optical import OPTICAL_QUATERNION, optical
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
-from crowdbot.core.recording.camera import CameraMessages
+from crowdbot.core.recording.camera import CameraMessages, Photograph
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
@@ -34,8 +34,8 @@ BASE = "base_footprint"
 #: Frames that the recording defines itself; no sensor may own them.
 FRAMES = ("map", "odom", BASE, "base_link")
 _WALL_COLOUR = (0.3, 0.3, 0.3, 1.0)
-#: So many rows become messages without a `flush`.
-_MOST_WAITING = 8192
+#: So many rows, or bytes of images, become messages without a `flush`.
+_MOST_WAITING, _MOST_IMAGE_BYTES = 8192, 4 * 2**20
 
 _P = ParamSpec("_P")
 
@@ -90,6 +90,7 @@ class RecordingWriter:
         self._truth, self._pose = template.transform("map", BASE), template.pose_stamped("map")
         self._state_of, self._signal_of = cache(template.run_state), cache(template.signal)
         self._waiting: list[Callable[[], None]] = []
+        self._image_bytes = 0
         self._now = 0
         self._closed = False
         self._file.put(Topic.HEADER, 0, header.to_message(), latched=True)
@@ -133,9 +134,13 @@ class RecordingWriter:
         if topic := self._sensors.get(sensor):
             values = reading.values.copy()
             self._waiting.append(partial(self._measured, topic, reading.stamp, values))
-        elif self._images:  # at once: memory for many would be dear
-            images = self._cameras[sensor](reading)
-            self._file.put_images(ros.nanoseconds(reading.stamp), images)
+        elif self._images:
+            camera = self._cameras[sensor]
+            photograph = camera.keep(reading)
+            self._waiting.append(partial(self._photographed, camera, photograph))
+            self._image_bytes += photograph.size
+            if self._image_bytes >= _MOST_IMAGE_BYTES:
+                self._catch_up()
 
     @_later
     def command(self, t: float, command: Command) -> None:
@@ -220,13 +225,17 @@ class RecordingWriter:
 
     def _catch_up(self) -> None:
         """Write all that waits."""
-        waiting, self._waiting = self._waiting, []
+        waiting, self._waiting, self._image_bytes = self._waiting, [], 0
         for write in waiting:
             write()
 
     def _measured(self, topic: SensorTopic, stamp: float, values: Array) -> None:
         ns = ros.nanoseconds(stamp)
         self._file.put_bytes(topic.name, ns, topic.msgtype, topic.message(ns, values))
+
+    def _photographed(self, camera: CameraMessages, photograph: Photograph) -> None:
+        for image in camera.messages(photograph):
+            self._file.put_bytes(image.topic, photograph.ns, image.msgtype, *image.pieces)
 
     def _value(self, topic: Topic, t: float, name: str, value: float) -> None:
         blank = self._signal_of(name)
