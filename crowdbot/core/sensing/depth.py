@@ -30,12 +30,9 @@ Lens = tuple[float, float, float, float, float]
 #: that the processor compares several at once.
 UP, BEGIN, END, DOWN, DEPTH = range(5)
 OUTLINE = 5
-EMPTY = (math.inf, math.inf, -math.inf, -math.inf, math.inf)
 #: Scratch per column: direction ahead and to the left in the world, where a body begins and ends.
 AHEAD, ASIDE, NEAR, FAR = range(4)
 WAYS = 4
-#: Columns are painted so many at a time.
-LANES = 8
 FARTHEST = 4  # of a lens
 _ROOM = 1e-6  # m; what is so close before the camera has no projection
 _TOUCH = 1e-12  # m; depths of bodies around the camera
@@ -151,14 +148,6 @@ def _outline(
 
 
 @kernel
-def _clear(outline: Image, first: int, last: int) -> None:
-    """Say that nothing shows in columns."""
-    for k in range(OUTLINE):
-        for c in range(first, last):
-            outline[k, c] = EMPTY[k]
-
-
-@kernel
 def _range(edge: Image, rows: int) -> tuple[int, int]:
     """The least and the greatest row of an edge, in columns in which the body shows."""
     least, greatest = np.float32(rows), np.float32(0.0)
@@ -245,10 +234,7 @@ def _paint_body(
 ) -> None:  # fmt: skip
     """Paint what was found of a body in the columns [first, last)."""
     _outline(low, high, first, last, up.shape[0], lens, ways, outline)
-    left, right = first // LANES * LANES, -(-last // LANES) * LANES
-    _clear(outline, left, first)
-    _clear(outline, last, right)
-    _paint_outlined(low, high, (left, right), up, lens, outline, image)
+    _paint_outlined(low, high, (first, last), up, lens, outline, image)
 
 
 @kernel
@@ -317,8 +303,8 @@ def paint(
         lean, cos, sin: (W,) depth per metre of way over the floor; of the columns' azimuths.
         walls, wall_heights: (S, 4), (S, 2).
         discs: (D, 5) upright cylinders.
-        ways, outline: (`WAYS`, W), (`OUTLINE`, W') scratch, W' the multiple of `LANES` from W on.
-        image: (H, W') result; what is beyond W is of no use.
+        ways, outline: (`WAYS`, W), (`OUTLINE`, W) scratch.
+        image: (H, W) result.
     """
     for r in range(up.shape[0]):
         image[r] = _measured(-z / up[r] if up[r] < 0.0 else math.inf, lens)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Pinhole
-from crowdbot.core.sensing.depth import EMPTY, LANES, OUTLINE, WAYS, paint
+from crowdbot.core.sensing.depth import OUTLINE, WAYS, paint
 
 Array = NDArray[np.float64]
 
@@ -31,11 +31,8 @@ class Pixels:
         azimuth = np.arctan(self.left)
         self._cos, self._sin = np.cos(azimuth), np.sin(azimuth)
         self._lens = pinhole.focal, column, row, nearest, farthest
-        # Columns are painted several at a time, some of them beyond the last.
-        self._padded = -(-pinhole.width // LANES) * LANES
         self._ways = np.empty((WAYS, pinhole.width))
-        self._outline = np.empty((OUTLINE, self._padded), np.float32)
-        self._outline[:] = np.array(EMPTY)[:, np.newaxis]
+        self._outline = np.empty((OUTLINE, pinhole.width), np.float32)
 
     def photograph(
         self,
@@ -56,10 +53,9 @@ class Pixels:
         Returns:
             (H, W) depth along the axis, m: 0 for too near, inf for nothing in reach.
         """
-        rows, columns = self.shape
-        image = np.empty((rows, self._padded), np.float32)
+        image = np.empty(self.shape, np.float32)
         paint(
             *at, yaw, self._lens, self.up, self.lean, self._cos, self._sin,
             walls, wall_heights, discs, self._ways, self._outline, image,
         )  # fmt: skip
-        return image if columns == self._padded else np.ascontiguousarray(image[:, :columns])
+        return image

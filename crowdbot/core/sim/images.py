@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.interfaces import Pose, Reading, RobotState, Sensor
+from crowdbot.core.kernel import kernel
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim import ports
 
 Array = NDArray[np.float64]
-_COLUMNS = [s.X, s.Y, s.VX, s.VY, s.DIR_X, s.DIR_Y, s.WALKED, s.WAITING]
+_COLUMNS = (s.X, s.Y, s.VX, s.VY, s.DIR_X, s.DIR_Y, s.WALKED, s.WAITING)
 #: Draws what a camera shows: the scene and the robot's pose to (H, W, 3).
 Painter = Callable[[Scene, Pose], NDArray[np.uint8]]
 
@@ -32,7 +33,16 @@ def capture(robot: RobotState, people: Array | None, out: Array) -> None:
     """Write what a camera sees: the robot's state and the crowd's rows (N, C), if any."""
     out[: ports.ROBOT_STATE_SIZE] = robot
     if people is not None:
-        out[ports.ROBOT_STATE_SIZE :] = people[:, _COLUMNS].ravel()
+        _pick(people, out[ports.ROBOT_STATE_SIZE :])
+
+
+@kernel
+def _pick(people: Array, out: Array) -> None:
+    """Write `_COLUMNS` of all people, one person after the other."""
+    width = len(_COLUMNS)
+    for i in range(people.shape[0]):
+        for k in range(width):
+            out[i * width + k] = people[i, _COLUMNS[k]]
 
 
 def show(scene: Scene, view: Array) -> Pose:
