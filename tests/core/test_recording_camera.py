@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
-from crowdbot.core.interfaces import Reading, SensorInfo
+from crowdbot.core.interfaces import Photograph, Reading, SensorInfo
 from crowdbot.core.library import open_spec, pick
 from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.header import RecordingHeader, RobotHeader
 from crowdbot.core.registry import discover
+from crowdbot.core.sensing.millimetres import millimetres
 from crowdbot.core.urdf import to_urdf
 
 with warnings.catch_warnings():
@@ -53,7 +54,7 @@ def _recorded(folder: Path, record: Any, colour: bool = False) -> dict[str, list
     )  # fmt: skip
     writer.state(0.0, (0.0, 0.0, 0.0, 0.0, 0.0), None)
     picture = np.arange(144, dtype=np.uint8).reshape(6, 8, 3) if colour else None
-    writer.reading("camera", Reading(0.125, DEPTH, picture))  # type: ignore[arg-type]
+    writer.photograph("camera", Photograph(0.125, millimetres(DEPTH), picture))
     writer.reading("imu", Reading(0.25, np.array([0.1, 0.2, 0.3, 1.0, 2.0, 9.81])))
     writer.reading("bumper", Reading(0.25, np.array([0.0, 1.0, 0.0])))
     writer.close(None, True, "timeout")

@@ -18,7 +18,9 @@ from crowdbot.core.interfaces.robot import (
     RobotState,
 )
 from crowdbot.core.interfaces.sensor import (
+    MillimetreCamera,
     NoiseGenerator,
+    Photograph,
     Pinhole,
     Reading,
     Sensor,
@@ -33,9 +35,11 @@ __all__ = [
     "EnvironmentParts",
     "HolonomicDrive",
     "Metric",
+    "MillimetreCamera",
     "NoValidCommand",
     "NoiseGenerator",
     "Observation",
+    "Photograph",
     "Pinhole",
     "Planner",
     "Pose",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,6 +83,20 @@ class Reading(NamedTuple):
     colour: NDArray[np.uint8] | None = None
 
 
+class Photograph(NamedTuple):
+    """What a recording keeps of a camera's reading, and the time at which it was taken (s).
+
+    Attributes:
+        millimetres: (height, width) uint16, whole millimetres as ROS has them in ``16UC1``: 0
+            where nothing was measured.
+        colour: (height, width, 3) uint8 of a camera that has it.
+    """
+
+    stamp: float
+    millimetres: NDArray[np.uint16]
+    colour: NDArray[np.uint8] | None = None
+
+
 class Sensor(Protocol):
     """A sensor without memory."""
 
@@ -92,6 +106,20 @@ class Sensor(Protocol):
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Return new values of ``info().shape``. ``pose`` is base_link's, world frame."""
+        ...
+
+
+@runtime_checkable
+class MillimetreCamera(Protocol):
+    """A camera that has an image in whole millimetres with less ado than a reading in m.
+
+    A camera need not be one: where it is recorded, its reading is rounded.
+    """
+
+    def millimetres(
+        self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator
+    ) -> NDArray[np.uint16]:
+        """What `Sensor.read` would return, rounded as in `Photograph`; a new array."""
         ...
 
 

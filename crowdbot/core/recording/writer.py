@@ -19,11 +19,11 @@ from typing import Any, Concatenate, Literal, ParamSpec, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Array, Command, Reading
+from crowdbot.core.interfaces import Array, Command, Photograph, Reading
 from crowdbot.core.optical import OPTICAL_QUATERNION, optical
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
-from crowdbot.core.recording.camera import CameraMessages, Photograph
+from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
@@ -58,6 +58,9 @@ class RecordingWriter:
     """Writes what the simulation hands over; all times are simulated seconds, >= 0.
 
     Arrays belong to the writer from then on, but those of readings, which it copies.
+
+    Attributes:
+        images: whether images are written, which are large.
     """
 
     def __init__(
@@ -82,7 +85,7 @@ class RecordingWriter:
         self._header = header
         self._ros = record != "none"
         self._people = PeopleMessages(header.agents) if header.agents else None
-        self._images = record == "all"
+        self.images = record == "all"
         cameras = {n: i for n, i in header.sensors.items() if i.camera is not None}
         self._cameras = {n: CameraMessages(n, i) for n, i in cameras.items()}
         self._sensors = sensor_topics({n: i for n, i in header.sensors.items() if n not in cameras})
@@ -128,19 +131,21 @@ class RecordingWriter:
             self._ros_state(ns, robot, agents)
 
     def reading(self, sensor: str, reading: Reading) -> None:
-        """One reading of a sensor that the header lists."""
-        if not self._ros:
-            return
-        if topic := self._sensors.get(sensor):
+        """One reading of a sensor that the header lists and that is no camera."""
+        if self._ros:
             values = reading.values.copy()
+            topic = self._sensors[sensor]
             self._waiting.append(partial(self._measured, topic, reading.stamp, values))
-        elif self._images:
-            camera = self._cameras[sensor]
-            photograph = camera.keep(reading)
-            self._waiting.append(partial(self._photographed, camera, photograph))
-            self._image_bytes += photograph.size
-            if self._image_bytes >= _MOST_IMAGE_BYTES:
-                self._catch_up()
+
+    def photograph(self, camera: str, photograph: Photograph) -> None:
+        """One image of a camera that the header lists."""
+        if not self.images:
+            return
+        self._waiting.append(partial(self._photographed, self._cameras[camera], photograph))
+        self._image_bytes += photograph.millimetres.nbytes
+        self._image_bytes += 0 if photograph.colour is None else photograph.colour.nbytes
+        if self._image_bytes >= _MOST_IMAGE_BYTES:
+            self._catch_up()
 
     @_later
     def command(self, t: float, command: Command) -> None:
@@ -234,8 +239,9 @@ class RecordingWriter:
         self._file.put_bytes(topic.name, ns, topic.msgtype, topic.message(ns, values))
 
     def _photographed(self, camera: CameraMessages, photograph: Photograph) -> None:
-        for image in camera.messages(photograph):
-            self._file.put_bytes(image.topic, photograph.ns, image.msgtype, *image.pieces)
+        ns = ros.nanoseconds(photograph.stamp)
+        for image in camera(photograph):
+            self._file.put_bytes(image.topic, ns, image.msgtype, *image.pieces)
 
     def _value(self, topic: Topic, t: float, name: str, value: float) -> None:
         blank = self._signal_of(name)

@@ -21,35 +21,42 @@ from crowdbot.core.sensing.bodies import BOTTOM, RADIUS, TOP, X, Y
 from crowdbot.core.sensing.columns import OVERLAP
 
 Array = NDArray[np.float64]
-Image = NDArray[np.float32]
-#: Focal length, column and row of the axis, pixels; nearest and farthest depth measured, m.
-Lens = tuple[float, float, float, float, float]
+Edges = NDArray[np.float32]
+#: Depths in m, or whole millimetres.
+Image = NDArray[np.float32] | NDArray[np.uint16]
+#: Focal length, column and row of the axis, pixels; nearest and farthest depth measured, m;
+#: steps per metre to which depth is rounded, or 0.
+Lens = tuple[float, float, float, float, float, float]
 
 #: What is known of a body in a column: its top shows in the rows [UP, BEGIN), its face in
-#: [BEGIN, END) and its bottom in [END, DOWN), the face at DEPTH; as float32, like the pixels, so
-#: that the processor compares several at once.
-UP, BEGIN, END, DOWN, DEPTH = range(5)
-OUTLINE = 5
+#: [BEGIN, END) and its bottom in [END, DOWN); as float32, which the processor compares several at
+#: once.
+UP, BEGIN, END, DOWN = range(4)
+EDGES = 4
 #: Scratch per column: direction ahead and to the left in the world, where a body begins and ends.
 AHEAD, ASIDE, NEAR, FAR = range(4)
 WAYS = 4
-FARTHEST = 4  # of a lens
+FARTHEST, STEPS = 4, 5  # of a lens
 _ROOM = 1e-6  # m; what is so close before the camera has no projection
 _TOUCH = 1e-12  # m; depths of bodies around the camera
-_INF = np.float32(math.inf)
+#: Whole millimetres that stand for nothing in reach, until an image is finished.
+_NOTHING = np.float32(65535.0)
 
 
 @kernel
 def _measured(depth: float, lens: Lens) -> np.float32:
-    """A depth as the camera gives it: 0 for too near, inf for too far."""
-    _, _, _, nearest, farthest = lens
+    """A depth as the camera gives it: 0 for too near, inf, or `_NOTHING`, for too far."""
+    _, _, _, nearest, farthest, steps = lens
+    if steps > 0.0:
+        rounded = np.rint(np.float32(depth) * np.float32(steps))
+        return np.float32(0.0) if depth < nearest else rounded if depth <= farthest else _NOTHING
     return np.float32(0.0 if depth < nearest else depth if depth <= farthest else math.inf)
 
 
 @kernel
 def _between(right: float, left: float, lens: Lens, columns: int) -> tuple[int, int]:
     """Columns whose rays go to the left by ``right`` to ``left`` per metre, one more a side."""
-    focal, centre, _, _, _ = lens
+    focal, centre, _, _, _, _ = lens
     first = max(0.0, centre - focal * left)
     last = min(columns - 1.0, centre - focal * right + 1.0)
     return (int(first), int(last) + 1) if first <= last else (0, 0)
@@ -122,19 +129,19 @@ def _cross_wall(
 @kernel
 def _outline(
     low: float, high: float, first: int, last: int, rows: float, lens: Lens, ways: Array,
-    outline: Image,
+    edges: Edges, faces: Image,
 ) -> None:  # fmt: skip
-    """Work out in which rows of the columns [first, last) a body shows.
+    """Work out in which rows of the columns [first, last) a body shows, and how its face reads.
 
     A ray of row r is at the depth d over a height h if r < horizon - h focal / d.
 
     Args:
         low, high: heights of the body, m.
     """
-    focal, _, horizon, nearest, farthest = lens
-    near, far, depth = ways[NEAR, first:last], ways[FAR, first:last], outline[DEPTH, first:last]
-    up, begin = outline[UP, first:last], outline[BEGIN, first:last]
-    end, down = outline[END, first:last], outline[DOWN, first:last]
+    focal, _, horizon, _, farthest, _ = lens
+    near, far, face = ways[NEAR, first:last], ways[FAR, first:last], faces[first:last]
+    up, begin = edges[UP, first:last], edges[BEGIN, first:last]
+    end, down = edges[END, first:last], edges[DOWN, first:last]
     for c in range(near.shape[0]):
         hit = near[c] <= farthest
         scale, behind = focal / max(near[c], _TOUCH), focal / max(far[c], _TOUCH)
@@ -144,11 +151,11 @@ def _outline(
         begin[c] = min(max(over, 0.0), rows) if hit else math.inf
         end[c] = min(max(under + 1.0, 0.0), rows) if hit else -math.inf
         down[c] = min(max(under_behind + 1.0, 0.0), rows) if hit else -math.inf
-        depth[c] = (0.0 if near[c] < nearest else near[c]) if hit else math.inf
+        face[c] = _measured(near[c], lens)
 
 
 @kernel
-def _range(edge: Image, rows: int) -> tuple[int, int]:
+def _range(edge: Edges, rows: int) -> tuple[int, int]:
     """The least and the greatest row of an edge, in columns in which the body shows."""
     least, greatest = np.float32(rows), np.float32(0.0)
     for row in edge:
@@ -159,82 +166,81 @@ def _range(edge: Image, rows: int) -> tuple[int, int]:
 
 @kernel
 def _paint_face(
-    rows: tuple[int, int], columns: tuple[int, int], outline: Image, image: Image
+    rows: tuple[int, int], columns: tuple[int, int], edges: Edges, faces: Image, image: Image
 ) -> None:
     """Paint a face into rows, not all of which it covers in every column."""
     left, right = columns
-    begin, end = outline[BEGIN, left:right], outline[END, left:right]
-    depth = outline[DEPTH, left:right]
+    begin, end, face = edges[BEGIN, left:right], edges[END, left:right], faces[left:right]
     for r in range(*rows):
         row, line = np.float32(r), image[r, left:right]
         for c in range(line.shape[0]):
-            new = depth[c] if (begin[c] <= row) & (row < end[c]) else _INF
-            line[c] = new if new < line[c] else line[c]
+            shows = (begin[c] <= row) & (row < end[c]) & (face[c] < line[c])
+            line[c] = face[c] if shows else line[c]
 
 
 @kernel
 def _paint_full_face(
-    rows: tuple[int, int], columns: tuple[int, int], outline: Image, image: Image
+    rows: tuple[int, int], columns: tuple[int, int], faces: Image, image: Image
 ) -> None:
     """Paint a face into rows that it covers in every column in which it shows."""
     left, right = columns
-    depth = outline[DEPTH, left:right]
+    face = faces[left:right]
     for r in range(*rows):
         line = image[r, left:right]
         for c in range(line.shape[0]):
-            line[c] = depth[c] if depth[c] < line[c] else line[c]
+            line[c] = face[c] if face[c] < line[c] else line[c]
 
 
 @kernel
 def _paint_level(
-    height: float, edges: tuple[int, int], rows: tuple[int, int], columns: tuple[int, int],
-    up: Array, lens: Lens, outline: Image, image: Image,
+    height: float, between: tuple[int, int], rows: tuple[int, int], columns: tuple[int, int],
+    up: Array, lens: Lens, edges: Edges, image: Image,
 ) -> None:  # fmt: skip
     """Paint a top or a bottom at a height, which reaches from one edge to another."""
     left, right = columns
-    begin, end = outline[edges[0], left:right], outline[edges[1], left:right]
+    begin, end = edges[between[0], left:right], edges[between[1], left:right]
     for r in range(*rows):
         row, line = np.float32(r), image[r, left:right]
-        depth = _measured(height / up[r], lens)
+        depth = image.dtype.type(_measured(height / up[r], lens))
         for c in range(line.shape[0]):
-            new = depth if (begin[c] <= row) & (row < end[c]) else _INF
-            line[c] = new if new < line[c] else line[c]
+            shows = (begin[c] <= row) & (row < end[c]) & (depth < line[c])
+            line[c] = depth if shows else line[c]
 
 
 @kernel
 def _paint_outlined(
-    low: float, high: float, columns: tuple[int, int], up: Array, lens: Lens, outline: Image,
-    image: Image,
+    low: float, high: float, columns: tuple[int, int], up: Array, lens: Lens, edges: Edges,
+    faces: Image, image: Image,
 ) -> None:  # fmt: skip
     """Paint a body into the columns of its outline, where nothing nearer is."""
     left, right = columns
     rows = up.shape[0]
-    first_begin, last_begin = _range(outline[BEGIN, left:right], rows)
-    first_end, last_end = _range(outline[END, left:right], rows)
+    first_begin, last_begin = _range(edges[BEGIN, left:right], rows)
+    first_end, last_end = _range(edges[END, left:right], rows)
     if first_begin > last_begin:  # it shows nowhere
         return
     if high < 0.0:  # else the camera does not see the top
-        first, _ = _range(outline[UP, left:right], rows)
-        _paint_level(high, (UP, BEGIN), (first, last_begin), columns, up, lens, outline, image)
+        first, _ = _range(edges[UP, left:right], rows)
+        _paint_level(high, (UP, BEGIN), (first, last_begin), columns, up, lens, edges, image)
     if low > 0.0:
-        _, last = _range(outline[DOWN, left:right], rows)
-        _paint_level(low, (END, DOWN), (first_end, last), columns, up, lens, outline, image)
+        _, last = _range(edges[DOWN, left:right], rows)
+        _paint_level(low, (END, DOWN), (first_end, last), columns, up, lens, edges, image)
     if last_begin < first_end:
-        _paint_face((first_begin, last_begin), columns, outline, image)
-        _paint_full_face((last_begin, first_end), columns, outline, image)
-        _paint_face((first_end, last_end), columns, outline, image)
+        _paint_face((first_begin, last_begin), columns, edges, faces, image)
+        _paint_full_face((last_begin, first_end), columns, faces, image)
+        _paint_face((first_end, last_end), columns, edges, faces, image)
     else:
-        _paint_face((first_begin, last_end), columns, outline, image)
+        _paint_face((first_begin, last_end), columns, edges, faces, image)
 
 
 @kernel
 def _paint_body(
     first: int, last: int, low: float, high: float, up: Array, lens: Lens, ways: Array,
-    outline: Image, image: Image,
+    edges: Edges, faces: Image, image: Image,
 ) -> None:  # fmt: skip
     """Paint what was found of a body in the columns [first, last)."""
-    _outline(low, high, first, last, up.shape[0], lens, ways, outline)
-    _paint_outlined(low, high, (first, last), up, lens, outline, image)
+    _outline(low, high, first, last, up.shape[0], lens, ways, edges, faces)
+    _paint_outlined(low, high, (first, last), up, lens, edges, faces, image)
 
 
 @kernel
@@ -247,7 +253,7 @@ def _in_view(low: float, high: float, up: Array, farthest: float) -> bool:
 @kernel
 def _paint_walls(
     x: float, y: float, z: float, ahead: float, aside: float, lens: Lens, up: Array, lean: Array,
-    walls: Array, heights: Array, ways: Array, outline: Image, image: Image,
+    walls: Array, heights: Array, ways: Array, edges: Edges, faces: Image, image: Image,
 ) -> None:  # fmt: skip
     """Paint upright plates, seen in the direction (ahead, aside) of the world."""
     farthest = lens[FARTHEST]
@@ -262,13 +268,13 @@ def _paint_walls(
         left0, left1 = ahead * py - aside * px, ahead * qy - aside * qx
         first, last = _columns_of_wall(fore0, left0, fore1, left1, lens, lean.shape[0])
         _cross_wall(px, py, qx - px, qy - py, first, last, ways, lean)
-        _paint_body(first, last, low, high, up, lens, ways, outline, image)
+        _paint_body(first, last, low, high, up, lens, ways, edges, faces, image)
 
 
 @kernel
 def _paint_discs(
     x: float, y: float, z: float, ahead: float, aside: float, lens: Lens, up: Array, lean: Array,
-    discs: Array, ways: Array, outline: Image, image: Image,
+    discs: Array, ways: Array, edges: Edges, faces: Image, image: Image,
 ) -> None:  # fmt: skip
     """Paint upright cylinders, seen in the direction (ahead, aside) of the world."""
     farthest = lens[FARTHEST]
@@ -283,28 +289,38 @@ def _paint_discs(
         first, last = _columns_of_disc(fore, ahead * py - aside * px, r, lens, lean.shape[0])
         if first < last:
             _cross_disc(px, py, r, first, last, ways, lean)
-            _paint_body(first, last, low, high, up, lens, ways, outline, image)
+            _paint_body(first, last, low, high, up, lens, ways, edges, faces, image)
+
+
+@kernel
+def _finish(image: Image) -> None:
+    """Say 0 where nothing is in reach."""
+    nothing, zero = image.dtype.type(_NOTHING), image.dtype.type(0)
+    for r in range(image.shape[0]):
+        line = image[r]
+        for c in range(line.shape[0]):
+            line[c] = zero if line[c] == nothing else line[c]
 
 
 @kernel
 def paint(
     x: float, y: float, z: float, yaw: float, lens: Lens, up: Array, lean: Array, cos: Array,
-    sin: Array, walls: Array, wall_heights: Array, discs: Array, ways: Array, outline: Image,
-    image: Image,
+    sin: Array, walls: Array, wall_heights: Array, discs: Array, ways: Array, edges: Edges,
+    faces: Image, image: Image,
 ) -> None:  # fmt: skip
-    """Depth along the axis of a level camera, m; 0 for too near, inf for nothing in reach.
+    """Depth along the axis of a level camera; 0 for too near, inf for nothing in reach.
 
-    The floor z = 0 is seen.
+    The floor z = 0 is seen. Of whole numbers 0 stands for both.
 
     Args:
         x, y, z, yaw: camera in the world frame, m and rad.
-        lens: focal length, column and row of the axis (pixels), nearest and farthest depth (m).
+        lens: of the camera.
         up: (H,) rise of the rows' rays per metre of depth, falling evenly.
         lean, cos, sin: (W,) depth per metre of way over the floor; of the columns' azimuths.
         walls, wall_heights: (S, 4), (S, 2).
         discs: (D, 5) upright cylinders.
-        ways, outline: (`WAYS`, W), (`OUTLINE`, W) scratch.
-        image: (H, W) result.
+        ways, edges, faces: (`WAYS`, W), (`EDGES`, W), (W,) scratch, the last like the image.
+        image: (H, W) result; of whole numbers only if the lens has steps.
     """
     for r in range(up.shape[0]):
         image[r] = _measured(-z / up[r] if up[r] < 0.0 else math.inf, lens)
@@ -312,5 +328,9 @@ def paint(
     for c in range(lean.shape[0]):
         ways[AHEAD, c] = ahead * cos[c] - aside * sin[c]
         ways[ASIDE, c] = aside * cos[c] + ahead * sin[c]
-    _paint_walls(x, y, z, ahead, aside, lens, up, lean, walls, wall_heights, ways, outline, image)
-    _paint_discs(x, y, z, ahead, aside, lens, up, lean, discs, ways, outline, image)
+    _paint_walls(
+        x, y, z, ahead, aside, lens, up, lean, walls, wall_heights, ways, edges, faces, image
+    )
+    _paint_discs(x, y, z, ahead, aside, lens, up, lean, discs, ways, edges, faces, image)
+    if lens[STEPS] > 0.0:
+        _finish(image)

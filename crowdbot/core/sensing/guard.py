@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from numbers import Integral
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.fault import described
-from crowdbot.core.interfaces import Sensor, SensorInfo, SensorWithMemory
+from crowdbot.core.interfaces import MillimetreCamera, Sensor, SensorInfo, SensorWithMemory
 from crowdbot.core.registry import Registry
 from crowdbot.core.ticks import TICKS_PER_SECOND
 from crowdbot.dsl.base import SensorSpec
@@ -41,7 +42,10 @@ def build_sensor(registry: Registry, spec: SensorSpec) -> Sensor | SensorWithMem
     specs = [spec, *(spec.noise.values() if isinstance(spec, ProximitySpec) else ())]
     owners = (registry.owner(registry.find(s.category, s.kind)) for s in specs)
     built: Sensor | SensorWithMemory = sensor
-    return built if all(o.name == "builtin" for o in owners) else Watched(spec.kind, sensor, info)
+    if all(o.name == "builtin" for o in owners):
+        return built
+    watched = WatchedCamera if isinstance(sensor, MillimetreCamera) else Watched
+    return watched(spec.kind, sensor, info)
 
 
 class Watched:
@@ -60,13 +64,7 @@ class Watched:
         Raises:
             PluginError: it raised, or returned what is no reading.
         """
-        try:
-            values = np.asarray(self._sensor.read(*given), np.float64)
-        except CrowdbotError:
-            raise
-        except (Exception, SystemExit) as error:
-            text = f"sensor {self._kind} at t = {given[2]:g} s: {described(error)}"
-            raise PluginError(text) from error
+        values = self._asked(lambda *a: np.asarray(self._sensor.read(*a), np.float64), *given)
         if values.shape != self._info.shape:
             raise PluginError(
                 f"sensor {self._kind} returned shape {values.shape}; info() says {self._info.shape}"
@@ -75,7 +73,34 @@ class Watched:
             raise PluginError(f"sensor {self._kind} returned NaN; nothing in reach is inf")
         if self._info.memory and not np.all(np.isfinite(given[-1])):
             raise PluginError(f"sensor {self._kind} left a memory that is not finite")
-        return values
+        return cast(Array, values)
+
+    def _asked(self, question: Callable[..., Any], *given: Any) -> Any:
+        try:
+            return question(*given)
+        except CrowdbotError:
+            raise
+        except (Exception, SystemExit) as error:
+            text = f"sensor {self._kind} at t = {given[2]:g} s: {described(error)}"
+            raise PluginError(text) from error
+
+
+class WatchedCamera(Watched):
+    """A camera that has images in whole millimetres, watched as well."""
+
+    def millimetres(self, *given: Any) -> NDArray[np.uint16]:
+        """What the camera sees, in whole millimetres.
+
+        Raises:
+            PluginError: it raised, or returned what is no image.
+        """
+        image = self._asked(self._sensor.millimetres, *given)
+        if getattr(image, "dtype", None) != np.uint16 or image.shape != self._info.shape:
+            what = f"{getattr(image, 'dtype', type(image).__name__)} {np.shape(image)}"
+            raise PluginError(
+                f"sensor {self._kind}: millimetres() returned {what}, not uint16 {self._info.shape}"
+            )
+        return cast(NDArray[np.uint16], image)
 
 
 def _check(kind: str, info: object) -> None:

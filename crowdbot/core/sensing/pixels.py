@@ -6,9 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Pinhole
-from crowdbot.core.sensing.depth import OUTLINE, WAYS, paint
+from crowdbot.core.sensing.depth import EDGES, WAYS, Image, paint
 
 Array = NDArray[np.float64]
+#: 65535 mm are needed for what is too far, m.
+MOST_MILLIMETRES = 65.534
 
 
 class Pixels:
@@ -32,30 +34,32 @@ class Pixels:
         self._cos, self._sin = np.cos(azimuth), np.sin(azimuth)
         self._lens = pinhole.focal, column, row, nearest, farthest
         self._ways = np.empty((WAYS, pinhole.width))
-        self._outline = np.empty((OUTLINE, pinhole.width), np.float32)
+        self._edges = np.empty((EDGES, pinhole.width), np.float32)
 
-    def photograph(
+    def paint(
         self,
+        image: Image,
         at: tuple[float, float, float],
         yaw: float,
         walls: Array,
         wall_heights: Array,
         discs: Array,
-    ) -> NDArray[np.float32]:
-        """What the camera sees of walls, upright cylinders and the floor z = 0.
+    ) -> None:
+        """Write what the camera sees of walls, upright cylinders and the floor z = 0.
 
         Args:
+            image: (H, W) depth along the axis. As float32 in m: 0 for too near, inf for nothing
+                in reach. As uint16 in whole millimetres, 0 for both: the former as
+                `crowdbot.core.sensing.millimetres` has it; for a camera that measures less than
+                `MOST_MILLIMETRES`.
             at: where it is, world frame, m.
             yaw: where it looks, world frame, rad.
             walls, wall_heights: (S, 4), (S, 2), m, as in `crowdbot.core.sensing.scene.Scene`.
             discs: (D, 5) cylinders, as in `crowdbot.core.sensing.bodies`.
-
-        Returns:
-            (H, W) depth along the axis, m: 0 for too near, inf for nothing in reach.
         """
-        image = np.empty(self.shape, np.float32)
+        lens = (*self._lens, 1000.0 if image.dtype == np.uint16 else 0.0)
+        faces = np.empty(self.shape[1], image.dtype)
         paint(
-            *at, yaw, self._lens, self.up, self.lean, self._cos, self._sin,
-            walls, wall_heights, discs, self._ways, self._outline, image,
+            *at, yaw, lens, self.up, self.lean, self._cos, self._sin, walls, wall_heights, discs,
+            self._ways, self._edges, faces, image,
         )  # fmt: skip
-        return image

@@ -209,4 +209,17 @@ class Scene:
         Returns:
             (H, W) depth along the axis, m: 0 for too near, inf for nothing in reach.
         """
-        return pixels.photograph(at, yaw, self.walls, self.wall_heights, self.cylinders)
+        image = np.empty(pixels.shape, np.float32)
+        pixels.paint(image, at, yaw, self.walls, self.wall_heights, self.cylinders)
+        return image
+
+    def photograph_millimetres(
+        self, pixels: Pixels, at: tuple[float, float, float], yaw: float
+    ) -> NDArray[np.uint16]:
+        """As `photograph`, in whole millimetres; 0 also for nothing in reach.
+
+        The camera measures less than `crowdbot.core.sensing.pixels.MOST_MILLIMETRES`.
+        """
+        image = np.empty(pixels.shape, np.uint16)
+        pixels.paint(image, at, yaw, self.walls, self.wall_heights, self.cylinders)
+        return image

@@ -110,6 +110,7 @@ def build_diagram(
             seed=run_seed,
             robot=robot_name,
             on_reading=log.writer.reading,
+            on_photograph=log.writer.photograph if log.writer.images else None,
             painters=_painters({n: x.info() for n, x in built.items()}, scene),
         ),
     )

@@ -13,8 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.interfaces import Pose, Reading, RobotState, Sensor
+from crowdbot.core.interfaces import (
+    MillimetreCamera,
+    Photograph,
+    Pose,
+    Reading,
+    RobotState,
+    Sensor,
+)
 from crowdbot.core.kernel import kernel
+from crowdbot.core.sensing.millimetres import millimetres
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim import ports
 
@@ -67,28 +75,43 @@ class Images:
             painter: draws the colour image of a camera that takes some.
         """
         self._sensor, self._rng, self._painter = sensor, rng, painter
-        self._view: Array | None = None
-        self._reading = Reading(-1.0, np.zeros(0))
+        self._quick = sensor if isinstance(sensor, MillimetreCamera) else None
+        self._stamp, self._view = -1.0, np.zeros(0)
+        self._depth: Array | None = None
+        self._colour: NDArray[np.uint8] | None = None
 
-    def take(self, scene: Scene, stamp: float, view: Array) -> Reading:
-        """A reading of the scene as it is shown now, which is how ``view`` has it."""
-        robot = RobotState(*view[: ports.ROBOT_STATE_SIZE].tolist())
-        pose = Pose(robot.x, robot.y, robot.yaw)
-        self._reading = Reading(-1.0, np.zeros(0))  # its memory is free for the next, and warm
-        image = self._sensor.read(scene, pose, stamp, self._rng(stamp))
-        image = image.astype(np.float32, copy=False)
-        image.setflags(write=False)
-        colour = None if self._painter is None else self._painter(scene, pose)
-        if colour is not None:
-            colour.setflags(write=False)
-        self._view = view.copy()
-        self._reading = Reading(stamp, image, colour)
-        return self._reading
+    def photograph(self, scene: Scene, pose: Pose, stamp: float, view: Array) -> Photograph:
+        """What is recorded of the scene as it is shown now, which is how ``view`` has it.
+
+        Depth in m is made only if somebody asks for a reading.
+        """
+        self._keep(scene, pose, stamp, view)
+        if self._quick is None:
+            depth = millimetres(self._read(scene, pose))
+        else:
+            depth = self._quick.millimetres(scene, pose, stamp, self._rng(stamp))
+        return Photograph(stamp, depth, self._colour)
 
     def reading(self, scene: Scene, stamp: float, view: Array) -> Reading:
-        """The reading that was taken of ``view``; taken again unless it is the latest one."""
-        fits = self._view is not None and np.array_equal(self._view, view)
-        if fits and self._reading.stamp == stamp:
-            return self._reading
-        show(scene, view)
-        return self.take(scene, stamp, view)
+        """The reading of ``view``; the scene shows it afterwards if it was not taken before."""
+        fits = self._stamp == stamp and np.array_equal(self._view, view)
+        if not fits or self._depth is None:
+            pose = show(scene, view)
+            if not fits:
+                self._keep(scene, pose, stamp, view)
+            return Reading(stamp, self._read(scene, pose), self._colour)
+        return Reading(stamp, self._depth, self._colour)
+
+    def _keep(self, scene: Scene, pose: Pose, stamp: float, view: Array) -> None:
+        """Begin another image."""
+        self._stamp, self._view, self._depth = stamp, view.copy(), None
+        self._colour = None if self._painter is None else self._painter(scene, pose)
+        if self._colour is not None:
+            self._colour.setflags(write=False)
+
+    def _read(self, scene: Scene, pose: Pose) -> Array:
+        """Depth in m, kept."""
+        read = self._sensor.read(scene, pose, self._stamp, self._rng(self._stamp))
+        self._depth = read.astype(np.float32, copy=False)
+        self._depth.setflags(write=False)
+        return self._depth

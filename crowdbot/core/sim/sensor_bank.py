@@ -18,6 +18,7 @@ from pydrake.systems.framework import Context, DiscreteStateIndex, LeafSystem, S
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.interfaces import (
+    Photograph,
     Pose,
     Reading,
     RobotState,
@@ -118,17 +119,20 @@ class SensorBank(LeafSystem):
         seed: int,
         robot: str,
         on_reading: Callable[[str, Reading], None],
+        on_photograph: Callable[[str, Photograph], None] | None = None,
         painters: Mapping[str, Painter] = MappingProxyType({}),
     ) -> None:
         """Take the sensors.
 
         Args:
             crowd_size: length of the crowd's state, 0 without people.
+            on_reading: gets each reading of sensors other than cameras.
+            on_photograph: gets each image of cameras, by the camera's name.
             painters: what draws the colour images of cameras, by the camera's name.
         """
         super().__init__()
         self._scene = scene
-        self._on_reading = on_reading
+        self._on_reading, self._on_photograph = on_reading, on_photograph
         self._idle = SensorStream(seed, robot, "").at(0)
         people = len(s.view(np.zeros(crowd_size))[1]) if crowd_size else 0
         self.slots, size = lay_out({n: x.info() for n, x in sensors.items()}, people)
@@ -184,17 +188,20 @@ class SensorBank(LeafSystem):
         pose, t = Pose(robot.x, robot.y, robot.yaw), tick * TICK
         for name in due:
             if name in self._images:
-                self._photograph(name, people, bank, robot, t)
+                self._photograph(name, people, bank, robot, pose, t)
             else:
                 self._read(name, bank, pose, t, tick)
 
     def _photograph(
-        self, name: str, people: Array | None, bank: Array, robot: RobotState, t: float
+        self, name: str, people: Array | None, bank: Array, robot: RobotState, pose: Pose, t: float
     ) -> None:
         slot = self.slots[name]
         bank[slot.stamp] = t
-        capture(robot, people, bank[slot.values])
-        self._on_reading(name, self._images[name].take(self._scene, t, bank[slot.values]))
+        view = bank[slot.values]
+        capture(robot, people, view)
+        if self._on_photograph is not None:
+            image = self._images[name].photograph(self._scene, pose, t, view)
+            self._on_photograph(name, image)
 
     def _see(self, context: Context, robot: RobotState) -> Array | None:
         """Show the scene as it is now; returns the crowd's rows, if any."""

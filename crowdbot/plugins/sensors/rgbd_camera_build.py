@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Pinhole, Pose, SensorInfo
 from crowdbot.core.kernel import kernel
-from crowdbot.core.sensing.pixels import Pixels
+from crowdbot.core.sensing.millimetres import millimetres
+from crowdbot.core.sensing.pixels import MOST_MILLIMETRES, Pixels
 from crowdbot.core.sensing.place import mount_of, placed
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
@@ -44,6 +45,7 @@ class RgbdCamera:
             camera=pinhole,
         )
         self._pixels = Pixels(pinhole, spec.depth_min, spec.depth_max)
+        self._exact = spec.noise == spec.resolution == 0.0 and spec.depth_max < MOST_MILLIMETRES
 
     def info(self) -> SensorInfo:
         """Constant description."""
@@ -62,6 +64,15 @@ class RgbdCamera:
         if spec.resolution > 0.0:
             _round(depth, spec.resolution, spec.depth_min, spec.depth_max)
         return cast(Array, depth)
+
+    def millimetres(
+        self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator
+    ) -> NDArray[np.uint16]:
+        """Depth (H, W) in whole millimetres, 0 for too near and for nothing in reach."""
+        if self._exact:
+            at, yaw = placed(self._spec.mount, scene, pose)
+            return scene.photograph_millimetres(self._pixels, at, yaw)
+        return millimetres(self.read(scene, pose, t, rng))
 
 
 @kernel

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -11,7 +13,7 @@ _PER_METRE = np.float32(1000.0)
 
 
 @njit(cache=True, error_model="numpy")
-def millimetres(depth: NDArray[np.float32]) -> NDArray[np.uint16]:
+def millimetres(depth: NDArray[np.floating[Any]]) -> NDArray[np.uint16]:
     """Millimetres (H, W) of depths in m, rounded to even; 0 for too far and for NaN."""
     found = np.empty(depth.shape, np.uint16)
     for r in range(depth.shape[0]):
