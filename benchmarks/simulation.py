@@ -4,7 +4,8 @@ Runs the challenge's corridor with several numbers of people, without camera, wi
 and, where EGL is there, with colour images, recording on; and, interleaved with it, the multibody
 plant alone: the floor that Drake sets. Prints CPU time per simulated second. All is measured as a
 campaign does it: in a process with the environment of a worker, that is on one thread and with
-its settings of the C library's allocator (``--here`` leaves the environment as it is).
+its settings of the C library's allocator (``--here`` leaves the environment as it is). What a
+camera adds to a run is worked out apart, by runs that take turns (`turns.py`): the last column.
 
     python benchmarks/simulation.py
     python benchmarks/simulation.py --planner dwa --record used --agents 100
@@ -21,12 +22,14 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
+from turns import in_turns
 
 from crowdbot.api import registry
 from crowdbot.core.library import open_spec, pick
@@ -55,8 +58,6 @@ CAMERAS = {
     "depth": "robots.robot.sensors.camera.colour=false",
     "colour": "robots.robot.sensors.camera.colour=true",
 }
-#: So often the whole run is repeated for each time that its parts are.
-WHOLE_RUNS = 6
 DENSITY = {50: "d0125", 100: "d0250", 200: "d0500"}
 #: The blocks, and the methods in which they work.
 EVENTS: tuple[tuple[str, type[Any], str], ...] = (
@@ -165,19 +166,15 @@ def parts_of(case: Case) -> list[float]:
 def measure(cases: Sequence[Case], repeat: int) -> dict[Case, list[float]]:
     """The least that was counted of each case: whole run, plant alone, blocks.
 
-    Cases take turns, for the machine may have other work to do. Whole runs are what is compared,
-    to a few per cent: they are counted more often, but for colour, which differs by more.
+    Cases take turns, for the machine may have other work to do.
     """
     wholes: dict[Case, list[float]] = {case: [] for case in cases}
     parts: dict[Case, list[list[float]]] = {case: [] for case in cases}
     for case in cases:
         whole(replace(case, seconds=1.0))  # compiles
     for _ in range(repeat):
-        for turn in range(WHOLE_RUNS):
-            for case in cases:
-                if turn == 0 or case.camera != "colour":
-                    wholes[case].append(whole(case))
         for case in cases:
+            wholes[case].append(whole(case))
             parts[case].append(parts_of(case))
     return {c: [min(wholes[c]), *(min(p) for p in zip(*parts[c], strict=True))] for c in cases}
 
@@ -232,8 +229,9 @@ def main() -> None:
     for agents in counts:
         cases = [Case(agents, kind, given.planner, given.record, given.seconds) for kind in kinds]
         least = measure(cases, given.repeat)
+        spent = in_turns({case.camera: partial(whole, case) for case in cases}, given.repeat)
         for case, best in least.items():
-            numbers = [*row(case, best), best[0] / least[cases[0]][0]]
+            numbers = [*row(case, best), spent[case.camera] / spent[kinds[0]]]
             shown = " ".join(f"{n:11.2f}" for n in numbers)
             print(f"{agents:6} {case.camera:>6}", shown)
 
