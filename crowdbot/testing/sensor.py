@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.component import Component
-from crowdbot.core.interfaces import SensorInfo
+from crowdbot.core.interfaces import MillimetreCamera, SensorInfo
 from crowdbot.core.registry import Registry
+from crowdbot.core.sensing.millimetres import millimetres
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.dsl.proximity import ProximitySpec
@@ -193,6 +194,29 @@ def check_distances_are_true(component: Component[Any], registry: Registry | Non
             )
 
 
+def check_millimetres_are_the_reading(
+    component: Component[Any], registry: Registry | None = None
+) -> None:
+    """Of a camera with ``millimetres``: they are its reading, rounded, from equal random numbers.
+
+    If this fails, recordings show something else than planners get. Whole millimetres are
+    rounded to even; what is not measured, or beyond 65.535 m, is 0.
+    """
+    for sensor in _sensors(component, registry):
+        rate = sensor.info().rate
+        if not isinstance(sensor, MillimetreCamera):
+            continue
+        for scene in (empty(), crowded()):
+            for k in range(len(POSES)):
+                reading = Probe(sensor)(_shown(scene, k), k)
+                given = pose_of(k), k / rate, sensor_rng(0, "robot", "sensor", k)
+                image = np.asarray(sensor.millimetres(scene, *given))
+                assert image.dtype == np.uint16, f"millimetres() returned {image.dtype}"
+                assert image.shape == reading.shape, f"shape {image.shape}, not {reading.shape}"
+                other = int(np.count_nonzero(image != millimetres(reading)))
+                assert not other, f"{other} of {image.size} pixels are not those of the reading"
+
+
 CHECKS: tuple[Callable[..., None], ...] = (
     check_info,
     check_reading_is_numbers,
@@ -203,6 +227,7 @@ CHECKS: tuple[Callable[..., None], ...] = (
     check_memory_is_all_it_keeps,
     check_sees_people,
     check_distances_are_true,
+    check_millimetres_are_the_reading,
 )
 
 

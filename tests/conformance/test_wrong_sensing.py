@@ -17,6 +17,8 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.dsl.proximity import ProximitySpec
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 from crowdbot.plugins.sensors.lidar2d_build import build as lidar2d
+from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
+from crowdbot.plugins.sensors.rgbd_camera_build import RgbdCamera
 from crowdbot.testing import noise, sensor
 
 Array = NDArray[np.float64]
@@ -205,6 +207,33 @@ class Noisy:
 def test_a_lidar_that_is_never_exact() -> None:
     component = made(WrongLidarSpec, lambda spec, generators: Noisy(spec))
     assert_fails(sensor.check_exact_without_noise, component, "without noise")
+
+
+class WrongCameraSpec(RgbdCameraSpec):
+    """A camera."""
+
+    kind: Literal["acme.camera"] = "acme.camera"  # type: ignore[assignment]
+
+
+@pytest.mark.parametrize(
+    ("change", "because"),
+    [
+        (lambda image: image, None),
+        (lambda image: image + np.uint16(image > 0), "not those of the reading"),
+        (lambda image: image.T, "shape"),
+        (lambda image: image.astype(np.int64), "int64"),
+    ],
+)
+def test_a_camera_with_other_millimetres(change: Any, because: str | None) -> None:
+    class Turned(RgbdCamera):
+        def millimetres(self, *given: Any) -> Any:
+            return change(super().millimetres(*given))
+
+    component, check = made(WrongCameraSpec, Turned), sensor.check_millimetres_are_the_reading
+    if because:
+        assert_fails(check, component, because)
+    else:
+        check(component, BUILT_IN)
 
 
 def test_a_lidar_that_looks_to_the_other_side() -> None:

@@ -85,7 +85,8 @@ class Images:
 
         Depth in m is made only if somebody asks for a reading.
         """
-        self._keep(scene, pose, stamp, view)
+        self._begin(stamp, view)
+        self._paint(scene, pose)
         if self._quick is None:
             depth = millimetres(self._read(scene, pose))
         else:
@@ -93,25 +94,32 @@ class Images:
         return Photograph(stamp, depth, self._colour)
 
     def reading(self, scene: Scene, stamp: float, view: Array) -> Reading:
-        """The reading of ``view``; the scene shows it afterwards if it was not taken before."""
+        """The reading of ``view``, made unless it is there; the scene may show it afterwards."""
         fits = self._stamp == stamp and np.array_equal(self._view, view)
-        if not fits or self._depth is None:
-            pose = show(scene, view)
+        if not fits:
+            self._begin(stamp, view)
+        depth = self._depth
+        if depth is None:
+            pose = show(scene, self._view)
             if not fits:
-                self._keep(scene, pose, stamp, view)
-            return Reading(stamp, self._read(scene, pose), self._colour)
-        return Reading(stamp, self._depth, self._colour)
+                self._paint(scene, pose)
+            depth = self._read(scene, pose)
+        return Reading(stamp, depth, self._colour)
 
-    def _keep(self, scene: Scene, pose: Pose, stamp: float, view: Array) -> None:
-        """Begin another image."""
-        self._stamp, self._view, self._depth = stamp, view.copy(), None
-        self._colour = None if self._painter is None else self._painter(scene, pose)
-        if self._colour is not None:
+    def _begin(self, stamp: float, view: Array) -> None:
+        """Forget the latest image: its memory is free for the next, and warm."""
+        self._stamp, self._view = stamp, view.copy()
+        self._depth = self._colour = None
+
+    def _paint(self, scene: Scene, pose: Pose) -> None:
+        """Draw the colour image, if the camera takes some."""
+        if self._painter is not None:
+            self._colour = self._painter(scene, pose)
             self._colour.setflags(write=False)
 
     def _read(self, scene: Scene, pose: Pose) -> Array:
         """Depth in m, kept."""
-        read = self._sensor.read(scene, pose, self._stamp, self._rng(self._stamp))
-        self._depth = read.astype(np.float32, copy=False)
-        self._depth.setflags(write=False)
-        return self._depth
+        depth = self._sensor.read(scene, pose, self._stamp, self._rng(self._stamp))
+        self._depth = depth = depth.astype(np.float32, copy=False)
+        depth.setflags(write=False)
+        return depth
