@@ -15,7 +15,7 @@ from pydrake.systems.analysis import Simulator
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd_setup import build_crowd
-from crowdbot.core.interfaces import Command, Observation, Planner, Reading, RobotState
+from crowdbot.core.interfaces import Command, Observation, Photograph, Planner, Reading, RobotState
 from crowdbot.core.library import open_spec, pick
 from crowdbot.core.planner_host import PlannerHost
 from crowdbot.core.realise import realise
@@ -71,6 +71,8 @@ class Memory:
 
     states: list[tuple[float, Any, Any, Any]] = field(default_factory=list)
     readings: dict[str, list[Reading]] = field(default_factory=dict)
+    photographs: dict[str, list[Photograph]] = field(default_factory=dict)
+    images: bool = True
     commands: list[tuple[float, Command]] = field(default_factory=list)
     trips: list[tuple[Any, ...]] = field(default_factory=list)
     contacts: list[dict[str, float]] = field(default_factory=list)
@@ -81,6 +83,9 @@ class Memory:
 
     def reading(self, name: str, reading: Reading) -> None:
         self.readings.setdefault(name, []).append(reading)
+
+    def photograph(self, name: str, photograph: Photograph) -> None:
+        self.photographs.setdefault(name, []).append(photograph)
 
     def command(self, t: float, command: Command) -> None:
         self.commands.append((t, command))
@@ -158,6 +163,7 @@ def rig(
     engine: CrowdEngine | None = None,
     *,
     sensors: Collection[str] = ("odometry",),
+    visible: Collection[str] | None = None,
     seed: int = 0,
     initialize: bool = True,
     body: Mapping[str, Any] | None = None,
@@ -165,7 +171,8 @@ def rig(
 ) -> Rig:
     """Build the diagram of a scenario; ``engine`` replaces the crowd it describes.
 
-    ``body`` replaces fields of the robot's model.
+    ``visible`` sensors are those that the planner gets, all by default; ``body`` replaces fields
+    of the robot's model.
     """
     reg = registry()
     ((name, robot),) = world.robots.items()
@@ -181,7 +188,8 @@ def rig(
     host.reset(task, infos, seed)
     blocks = build_diagram(
         world, name, parts, model, engine, host, log, reg,
-        run_seed=seed, sensors=sensors, visible=[n for n in sensors if n in robot.sensors],
+        run_seed=seed, sensors=sensors,
+        visible=[n for n in (sensors if visible is None else visible) if n in robot.sensors],
         tick=tick,
     )  # fmt: skip
     simulator: Any = Simulator(blocks.diagram)

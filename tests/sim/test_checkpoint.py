@@ -7,6 +7,7 @@ from pydrake.systems.analysis import Simulator
 from sim_worlds import Rig, rig, scenario
 
 from crowdbot.core.interfaces import Command, Observation
+from crowdbot.core.sensing.millimetres import millimetres
 
 SENSORS = {
     "camera": "{kind: rgbd_camera, width: 64, height: 48, rate: 8, noise: 0.0014,"
@@ -44,6 +45,14 @@ class ByEverything:
         return Command(0.3 + 0.1 * np.sin(total + obs.t), 0.5 * np.cos(100.0 * total))
 
 
+class ByTime(ByEverything):
+    """Steers by none of them."""
+
+    def step(self, obs: Observation) -> Command:
+        self.seen.append(obs)
+        return Command(0.3, 0.5 * np.cos(obs.t))
+
+
 def _rig() -> tuple[Rig, ByEverything]:
     planner = ByEverything()
     return rig(scenario(*WORLD), planner, sensors=ALL), planner
@@ -60,6 +69,10 @@ def test_one_advance_equals_many() -> None:
     assert {(r.values.shape, r.values.dtype.name) for r in images} == {((48, 64), "float32")}
     assert [r.stamp for r in images] == [n // 2 / 8.0 for n in range(24)]
     assert len({r.values.tobytes() for r in images}) == 12
+    # What is recorded is what the planner gets, rounded.
+    assert [p.stamp for p in one.memory.photographs["camera"]] == [n / 8.0 for n in range(12)]
+    for photograph, reading in zip(one.memory.photographs["camera"], images[::2], strict=True):
+        np.testing.assert_array_equal(photograph.millimetres, millimetres(reading.values))
 
 
 def test_a_clone_goes_on_bit_by_bit() -> None:
@@ -82,6 +95,25 @@ def test_a_clone_goes_on_bit_by_bit() -> None:
         for name in ALL:
             assert mine.readings[name].stamp == theirs.readings[name].stamp
             assert mine.readings[name].values.tobytes() == theirs.readings[name].values.tobytes()
+
+
+def test_looking_at_images_changes_nothing_else() -> None:
+    """An image that a planner asks for is made from what was kept, not from the world."""
+    found = []
+    for sensors in (ALL, ALL[:2]):
+        exact = "robots.robot.sensors.camera.noise=0"
+        planner = ByTime()
+        run = rig(scenario(*WORLD, exact), planner, sensors=ALL, visible=sensors)
+        run.advance(1.5)
+        assert set(planner.seen[-1].readings) == set(sensors)
+        found.append((run.everything(), run.memory))
+    (state, memory), (other_state, other_memory) = found
+    assert state == other_state
+    for name, readings in memory.readings.items():
+        for mine, theirs in zip(readings, other_memory.readings[name], strict=True):
+            assert mine.values.tobytes() == theirs.values.tobytes()
+    images = zip(memory.photographs["camera"], other_memory.photographs["camera"], strict=True)
+    assert all(a.millimetres.tobytes() == b.millimetres.tobytes() for a, b in images)
 
 
 def test_images_are_not_part_of_the_state() -> None:
