@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from sensing_worlds import REGISTRY, Array, read, scalar, scene_of, sensor
 
@@ -85,12 +85,17 @@ SHAPES = st.sampled_from([(4.5, 1.0), (4.5, 0.3), (2.0, 1.5)])
 
 
 def _nearest_in_zone(hit: Array, angle: Array, length: float, radius: float) -> float:
-    """Least of distances along bearings that lie in the zone, by the design's formula."""
-    seen = (hit >= 0.0) & (hit <= zone_length(np.abs(angle), length, radius))
+    """Least of distances along bearings that lie in the zone, by the design's formula.
+
+    A wide zone reaches farther than its length to the sides; the sensor's range does not.
+    """
+    reach = np.minimum(zone_length(np.abs(angle), length, radius), length)
+    seen = (hit >= 0.0) & (hit <= reach)
     return float(np.min(hit[seen], initial=math.inf))
 
 
 @settings(max_examples=100, deadline=None)
+@example((2.0, 1.5), 1.0, 2.0, 0.0, 1.0)
 @given(SHAPES, st.floats(-1.5, 1.5), st.floats(0.3, 4.6), st.floats(-3.0, 3.0), st.floats(0, 3))
 def test_a_slanted_wall_is_measured_exactly(
     shape: tuple[float, float], tilt: float, away: float, yaw: float, cut: float

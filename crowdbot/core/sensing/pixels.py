@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Pinhole
-from crowdbot.core.sensing.depth import EDGES, WAYS, Image, paint
+from crowdbot.core.sensing.depth import paint
+from crowdbot.core.sensing.outline import EDGES, WAYS, Image
 
 Array = NDArray[np.float64]
 #: 65535 mm are needed for what is too far, m.
