@@ -164,6 +164,7 @@ def rig(
     *,
     sensors: Collection[str] = ("odometry",),
     visible: Collection[str] | None = None,
+    images: bool = True,
     seed: int = 0,
     initialize: bool = True,
     body: Mapping[str, Any] | None = None,
@@ -171,15 +172,15 @@ def rig(
 ) -> Rig:
     """Build the diagram of a scenario; ``engine`` replaces the crowd it describes.
 
-    ``visible`` sensors are those that the planner gets, all by default; ``body`` replaces fields
-    of the robot's model.
+    ``visible`` sensors are those that the planner gets, all by default; ``images`` says whether
+    they are recorded; ``body`` replaces fields of the robot's model.
     """
     reg = registry()
     ((name, robot),) = world.robots.items()
     parts, model = reg.build(world.environment), replace(reg.build(robot.model), **(body or {}))
     if engine is None and world.crowd is not None:
         engine = build_crowd(world, realise(world), parts, reg)
-    memory = Memory()
+    memory = Memory(images=images)
     ids = np.zeros(0, np.int64) if engine is None else engine.agents.id
     log = RunLog(cast(RecordingWriter, memory), ids)
     host = PlannerHost(planner, "test", model.limits)

@@ -116,6 +116,16 @@ def test_looking_at_images_changes_nothing_else() -> None:
     assert all(a.millimetres.tobytes() == b.millimetres.tobytes() for a, b in images)
 
 
+def test_images_need_no_recording() -> None:
+    """A planner gets the same images where none are recorded."""
+    planners = ByEverything(), ByEverything()
+    runs = [rig(scenario(*WORLD), p, sensors=ALL, images=p is planners[0]) for p in planners]
+    for run in runs:
+        run.advance(0.5)
+    assert runs[0].everything() == runs[1].everything()
+    assert (len(runs[0].memory.photographs["camera"]), runs[1].memory.photographs) == (4, {})
+
+
 def test_images_are_not_part_of_the_state() -> None:
     small, _ = _rig()
     size = len(small.everything())
