@@ -17,6 +17,8 @@ from crowdbot.dsl.base import Mount
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import build
 
+ERRORS = {"noise": 0.01, "resolution": 0.003, "bits": 7, "dropout": 0.1, "max_incidence": 1.0}
+
 
 def test_rounded_to_even_and_zero_where_nothing_was_measured() -> None:
     depth = np.array([[0.0, 0.4, math.inf, 1.2345, 65.535, 65.5351, math.nan]], np.float32)
@@ -28,7 +30,7 @@ def test_rounded_to_even_and_zero_where_nothing_was_measured() -> None:
     st.integers(0, 2**32 - 1),
     st.integers(2, 40),
     st.sampled_from([0.7, 9.0, 65.5, 65.534, 65.535, 80.0]),
-    st.sampled_from([{}, {"noise": 0.01}, {"resolution": 0.003}]),
+    st.sampled_from([{}, *({n: x} for n, x in ERRORS.items())]),
 )
 def test_a_camera_rounds_its_own_reading(
     seed: int, width: int, farthest: float, errors: dict[str, float]

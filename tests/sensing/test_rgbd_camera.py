@@ -171,9 +171,60 @@ def test_quantised() -> None:
     assert len(np.unique(hits)) > 100
 
 
+def test_bits_are_steps_of_the_range() -> None:
+    spec = {"depth_min": 0.5, "depth_max": 8.5}
+    true = read(camera_at(0.3, **spec), scene_of())
+    depth = read(camera_at(0.3, bits=5, **spec), scene_of())
+    hits = np.isfinite(true) & (true > 0.0)
+    expected = np.maximum(np.floor(true[hits] / 0.25) * 0.25, 0.5)
+    assert np.array_equal(depth[hits], expected)
+    assert np.array_equal(depth[~hits], true[~hits])
+    assert len(np.unique(expected)) > 20
+
+
+def test_pixels_are_lost() -> None:
+    camera, scene = camera_at(100.0, dropout=0.2), scene_of(FACING)
+    depths = [read(camera, scene, tick=k) for k in range(4)]
+    assert camera.info().random
+    assert np.mean(np.isinf(depths)) == pytest.approx(0.2, abs=0.005)
+    assert set(np.unique(depths[0]).tolist()) == {3.0, math.inf}
+    assert not np.array_equal(depths[0], depths[1])
+    assert np.array_equal(depths[2], read(camera, scene, tick=2))
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.floats(-0.9, 0.9), st.floats(0.3, 1.4))
+def test_what_is_struck_at_a_slant_is_not_seen(yaw: float, limit: float) -> None:
+    """A wall x = 3 and the floor, each with the angle of its own normal to the ray."""
+    scene = scene_of([[3.0, -99.0, 3.0, 99.0]])
+    limited = camera_at(0.8, yaw, max_incidence=limit, width=64, height=48, **LOW)
+    left, up = rays(limited)
+    depth = read(limited, scene)
+    whole = read(camera_at(0.8, yaw, width=64, height=48, **LOW), scene)
+    ahead, length = math.cos(yaw) - left * math.sin(yaw), np.sqrt(1.0 + left**2 + up**2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        on_floor = (up < 0.0) & ((ahead <= 0.0) | (-0.8 / up < 3.0 / ahead))
+    cosine = np.where(on_floor, -up, ahead) / length
+    seen, sure = cosine > math.cos(limit), np.abs(cosine - math.cos(limit)) > 1e-6
+    np.testing.assert_allclose(depth[sure & seen], whole[sure & seen], rtol=1e-6)
+    assert np.all(np.isinf(depth[sure & ~seen]))
+
+
+def test_a_slanted_body_hides_what_is_behind_it() -> None:
+    scene = scene_of([[2.0, 0.0, 4.0, 0.2], [6.0, -99.0, 6.0, 99.0]])
+    plain, limited = (
+        read(camera_at(0.8, max_incidence=limit, **LOW), scene) for limit in (math.pi / 2, 1.0)
+    )
+    behind = (plain > 2.5) & (plain < 3.5)
+    assert behind.sum() > 100
+    assert np.all(np.isinf(limited[behind]))
+
+
 @pytest.mark.parametrize(
     "fields",
     [
+        {"bits": 33}, {"bits": -1}, {"dropout": 1.0}, {"dropout": -0.1}, {"max_incidence": 0.0},
+        {"max_incidence": 2.0},
         {"width": 0}, {"height": 0}, {"width": 1}, {"height": -3}, {"width": 4096, "height": 4096},
         {"depth_min": 3.0, "depth_max": 3.0}, {"horizontal_view": math.pi},
         {"horizontal_view": 0.0}, {"noise": -1.0}, {"rate": 129.0}, {"rate": 0.0},

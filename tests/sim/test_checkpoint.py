@@ -11,7 +11,7 @@ from crowdbot.core.sensing.millimetres import millimetres
 
 SENSORS = {
     "camera": "{kind: rgbd_camera, width: 64, height: 48, rate: 8, noise: 0.0014,"
-    " resolution: 0.001, mount: {x: -0.087, z: 0.287}}",
+    " resolution: 0.001, dropout: 0.05, mount: {x: -0.087, z: 0.287}}",
     "imu": "{kind: imu, rate: 64, gyro_bias: 0.01, gyro_walk: 0.01, force_bias: 0.1,"
     " force_walk: 0.1, mount: {x: 0.056, y: 0.062, z: 0.0202}}",
     "bumper": "{kind: bumper}",

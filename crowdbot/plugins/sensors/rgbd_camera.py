@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 
 from crowdbot.core.component import Component
 from crowdbot.dsl.base import Mount, SensorSpec
+from crowdbot.dsl.proximity import Incidence
 from crowdbot.dsl.quantities import (
     NonNegativeLength,
     PositiveFrequency,
@@ -40,12 +41,23 @@ class RgbdCameraSpec(SensorSpec):
     )
     depth_min: NonNegativeLength = Field(default=0.4, description="Nearest depth measured, m.")
     depth_max: PositiveLength = Field(default=8.0, description="Farthest depth measured, m.")
+    max_incidence: Incidence = Field(
+        default=math.pi / 2,
+        description="Surfaces struck at a larger angle to their normal read inf, rad.",
+    )
     noise: Annotated[float, Ge(0)] = Field(
         default=0.0,
         description="Standard deviation of depth per squared depth, 1/m; 0.0014 is a Kinect's.",
     )
     resolution: NonNegativeLength = Field(
         default=0.0, description="Depths are rounded to multiples of this, m; 0: not."
+    )
+    bits: Annotated[int, Ge(0), Le(32)] = Field(
+        default=0,
+        description="Depths are rounded down to 2^bits steps of the range; 0: not.",
+    )
+    dropout: Annotated[float, Ge(0), Lt(1)] = Field(
+        default=0.0, description="Probability that a pixel is lost and reads inf."
     )
     colour: bool = Field(
         default=False, description="Whether it takes colour images too; they need EGL."

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Pinhole, Pose, SensorInfo
 from crowdbot.core.kernel import kernel
+from crowdbot.core.sensing.columns import Grid
 from crowdbot.core.sensing.millimetres import millimetres
 from crowdbot.core.sensing.pixels import MOST_MILLIMETRES, Pixels
 from crowdbot.core.sensing.place import mount_of, placed
@@ -41,11 +42,14 @@ class RgbdCamera:
             ros_type="sensor_msgs/msg/Image",
             range_min=spec.depth_min,
             range_max=spec.depth_max,
-            random=spec.noise > 0.0,
+            random=spec.noise > 0.0 or spec.dropout > 0.0,
             camera=pinhole,
         )
         self._pixels = Pixels(pinhole, spec.depth_min, spec.depth_max)
-        self._exact = spec.noise == spec.resolution == 0.0 and spec.depth_max < MOST_MILLIMETRES
+        self._step = (spec.depth_max - spec.depth_min) / 2.0**spec.bits if spec.bits else 0.0
+        self._limited = spec.max_incidence < math.pi / 2
+        errors = spec.noise, spec.resolution, spec.bits, spec.dropout
+        self._exact = not any(errors) and not self._limited and spec.depth_max < MOST_MILLIMETRES
 
     def info(self) -> SensorInfo:
         """Constant description."""
@@ -56,14 +60,34 @@ class RgbdCamera:
         del t
         spec = self._spec
         at, yaw = placed(spec.mount, scene, pose)
-        depth = scene.photograph(self._pixels, at, yaw)
+        if self._limited:
+            depth = self._facing(scene, at, yaw)
+        else:
+            depth = scene.photograph(self._pixels, at, yaw)
         if spec.noise > 0.0:
             # Drawn for every pixel, so that one's noise does not depend on what others see.
             noise = rng.standard_normal(self._info.shape, dtype=np.float32)
             _disturb(depth, noise, spec.noise, spec.depth_min, spec.depth_max)
         if spec.resolution > 0.0:
             _round(depth, spec.resolution, spec.depth_min, spec.depth_max)
+        if spec.bits:
+            _round_down(depth, self._step, spec.depth_min)
+        if spec.dropout > 0.0:
+            depth[rng.random(self._info.shape) < spec.dropout] = np.inf
         return cast(Array, depth)
+
+    def _facing(self, scene: Scene, at: tuple[float, float, float], yaw: float) -> Image:
+        """Depth (H, W) of what is not struck at too large an angle; ray by ray."""
+        spec, pixels = self._spec, self._pixels
+        lean = pixels.lean[::-1]  # azimuths of a grid rise: its columns run from right to left
+        grid = Grid(np.arctan(pixels.left[::-1]), pixels.up, lean)
+        stretch = np.sqrt(1.0 + (pixels.up[:, np.newaxis] * lean) ** 2) / lean
+        reach = spec.depth_max * float(stretch.max())
+        length, incidence, _ = scene.cast_grid(grid, at, yaw, reach, floor=True)
+        depth = length / stretch
+        depth[depth < spec.depth_min] = 0.0
+        depth[(incidence > spec.max_incidence) | (depth > spec.depth_max)] = np.inf
+        return np.ascontiguousarray(depth[:, ::-1], np.float32)
 
     def millimetres(
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator
@@ -99,6 +123,15 @@ def _round(depth: Image, step: float, nearest: float, farthest: float) -> None:
             if 0.0 < depth[r, c] < math.inf:
                 rounded = round(depth[r, c] / step) * step
                 depth[r, c] = min(max(rounded, nearest), farthest)
+
+
+@kernel
+def _round_down(depth: Image, step: float, nearest: float) -> None:
+    """Round the depths that were measured down to multiples of ``step``, in place."""
+    for r in range(depth.shape[0]):
+        for c in range(depth.shape[1]):
+            if 0.0 < depth[r, c] < math.inf:
+                depth[r, c] = max(math.floor(depth[r, c] / step) * step, nearest)
 
 
 def build(spec: RgbdCameraSpec) -> RgbdCamera:
