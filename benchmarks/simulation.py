@@ -29,7 +29,7 @@ from typing import Any, Literal
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
-from turns import in_turns
+from turns import WARM_UP, in_turns
 
 from crowdbot.api import registry
 from crowdbot.core.library import open_spec, pick
@@ -217,6 +217,8 @@ def main() -> None:
     given = parser.parse_args()
     if not given.here:
         become_worker()
+    if given.seconds <= WARM_UP or given.repeat < 1:
+        parser.error(f"--seconds: more than {WARM_UP}; --repeat: at least 1")
     counts = [int(n) for n in given.agents.split(",")]
     if not set(counts) <= {0, *DENSITY}:
         parser.error(f"--agents: the challenge has 0, {', '.join(map(str, DENSITY))}")

@@ -20,28 +20,28 @@ from crowdbot.core.sim.recorder import Recorder
 
 Job = Callable[[], object]
 #: Seconds at the start that do not count: they prepare templates and fill caches.
-_WARM_UP = 2
+WARM_UP = 2
 
 
 def in_turns(jobs: Mapping[str, Job], repeat: int) -> dict[str, float]:
     """CPU time of each job, s: the sum of the least of each simulated second.
 
     Args:
-        jobs: runs of equal length, longer than `_WARM_UP`; they can be pickled.
+        jobs: runs of equal length, longer than `WARM_UP`; they can be pickled.
         repeat: how often they are run.
     """
     process, pipes = get_context("spawn").Process, {}
     workers = []
     for name, job in jobs.items():
         pipes[name], theirs = get_context("spawn").Pipe()
-        workers.append(process(target=_work, args=(job, repeat, theirs)))
+        workers.append(process(target=_work, args=(job, repeat, theirs), daemon=True))
         workers[-1].start()
         theirs.close()
     rounds = [_round(pipes) for _ in range(repeat)]
     for worker in workers:
         worker.join()
     return {
-        name: sum(map(min, zip(*(spent[name][_WARM_UP:] for spent in rounds), strict=True)))
+        name: sum(map(min, zip(*(spent[name][WARM_UP:] for spent in rounds), strict=True)))
         for name in jobs
     }
 

@@ -200,12 +200,13 @@ def check_millimetres_are_the_reading(
     """Of a camera with ``millimetres``: they are its reading, rounded, from equal random numbers.
 
     If this fails, recordings show something else than planners get. Whole millimetres are
-    rounded to even; what is not measured, or beyond 65.535 m, is 0.
+    rounded to even; what is not measured, or beyond 65.535 m, is 0. Each image is a new array.
     """
     for sensor in _sensors(component, registry):
         rate = sensor.info().rate
         if not isinstance(sensor, MillimetreCamera):
             continue
+        earlier = np.zeros(0, np.uint16)
         for scene in (empty(), crowded()):
             for k in range(len(POSES)):
                 reading = Probe(sensor)(_shown(scene, k), k)
@@ -215,6 +216,8 @@ def check_millimetres_are_the_reading(
                 assert image.shape == reading.shape, f"shape {image.shape}, not {reading.shape}"
                 other = int(np.count_nonzero(image != millimetres(reading)))
                 assert not other, f"{other} of {image.size} pixels are not those of the reading"
+                assert not np.shares_memory(image, earlier), "an image takes an earlier one's place"
+                earlier = image
 
 
 CHECKS: tuple[Callable[..., None], ...] = (

@@ -215,10 +215,19 @@ class WrongCameraSpec(RgbdCameraSpec):
     kind: Literal["acme.camera"] = "acme.camera"  # type: ignore[assignment]
 
 
+KEPT = np.zeros((240, 320), np.uint16)
+
+
+def same_place(image: NDArray[np.uint16]) -> NDArray[np.uint16]:
+    KEPT[:] = image
+    return KEPT
+
+
 @pytest.mark.parametrize(
     ("change", "because"),
     [
         (lambda image: image, None),
+        (same_place, "an earlier one's place"),
         (lambda image: image + np.uint16(image > 0), "not those of the reading"),
         (lambda image: image.T, "shape"),
         (lambda image: image.astype(np.int64), "int64"),

@@ -34,7 +34,7 @@ from crowdbot.core.sensing.outline import (
     cross_wall,
     measured,
     outline,
-)  # fmt: skip
+)
 
 Array = NDArray[np.float64]
 

@@ -89,7 +89,7 @@ class WatchedCamera(Watched):
     """A camera that has images in whole millimetres, watched as well."""
 
     def millimetres(self, *given: Any) -> NDArray[np.uint16]:
-        """What the camera sees, in whole millimetres.
+        """What the camera sees, in whole millimetres; copied, for it is written later.
 
         Raises:
             PluginError: it raised, or returned what is no image.
@@ -100,7 +100,7 @@ class WatchedCamera(Watched):
             raise PluginError(
                 f"sensor {self._kind}: millimetres() returned {what}, not uint16 {self._info.shape}"
             )
-        return cast(NDArray[np.uint16], image)
+        return cast(NDArray[np.uint16], image.copy())
 
 
 def _check(kind: str, info: object) -> None:

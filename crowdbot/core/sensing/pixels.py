@@ -50,9 +50,8 @@ class Pixels:
 
         Args:
             image: (H, W) depth along the axis. As float32 in m: 0 for too near, inf for nothing
-                in reach. As uint16 in whole millimetres, 0 for both: the former as
-                `crowdbot.core.sensing.millimetres` has it; for a camera that measures less than
-                `MOST_MILLIMETRES`.
+                in reach. As uint16 that of `crowdbot.core.sensing.millimetres`, 0 for both; only
+                for a camera that measures less than `MOST_MILLIMETRES`.
             at: where it is, world frame, m.
             yaw: where it looks, world frame, rad.
             walls, wall_heights: (S, 4), (S, 2), m, as in `crowdbot.core.sensing.scene.Scene`.

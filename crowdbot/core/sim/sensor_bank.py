@@ -127,7 +127,7 @@ class SensorBank(LeafSystem):
         Args:
             crowd_size: length of the crowd's state, 0 without people.
             on_reading: gets each reading of sensors other than cameras.
-            on_photograph: gets each image of cameras, by the camera's name.
+            on_photograph: gets each image of cameras; None where images are not recorded.
             painters: what draws the colour images of cameras, by the camera's name.
         """
         super().__init__()

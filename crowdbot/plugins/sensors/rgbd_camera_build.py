@@ -48,6 +48,9 @@ class RgbdCamera:
         self._pixels = Pixels(pinhole, spec.depth_min, spec.depth_max)
         self._step = (spec.depth_max - spec.depth_min) / 2.0**spec.bits if spec.bits else 0.0
         self._limited = spec.max_incidence < math.pi / 2
+        # Azimuths of a grid rise: its columns run from right to left.
+        azimuth, lean = np.arctan(self._pixels.left[::-1]), self._pixels.lean[::-1]
+        self._grid = Grid(azimuth, self._pixels.up, lean)
         errors = spec.noise, spec.resolution, spec.bits, spec.dropout
         self._exact = not any(errors) and not self._limited and spec.depth_max < MOST_MILLIMETRES
 
@@ -78,10 +81,8 @@ class RgbdCamera:
 
     def _facing(self, scene: Scene, at: tuple[float, float, float], yaw: float) -> Image:
         """Depth (H, W) of what is not struck at too large an angle; ray by ray."""
-        spec, pixels = self._spec, self._pixels
-        lean = pixels.lean[::-1]  # azimuths of a grid rise: its columns run from right to left
-        grid = Grid(np.arctan(pixels.left[::-1]), pixels.up, lean)
-        stretch = np.sqrt(1.0 + (pixels.up[:, np.newaxis] * lean) ** 2) / lean
+        spec, grid = self._spec, self._grid
+        stretch = np.sqrt(1.0 + (grid.rise[:, np.newaxis] * grid.lean) ** 2) / grid.lean
         reach = spec.depth_max * float(stretch.max())
         length, incidence, _ = scene.cast_grid(grid, at, yaw, reach, floor=True)
         depth = length / stretch
