@@ -1,7 +1,11 @@
 # Everything from nothing but Python 3.11 or newer, pip, venv and make.
 #   make demo    set up, then run one challenge scenario
+#   make check   set up, then run what a change has to pass before each commit, in 90 s
 #   make test    set up, then run every check
 #   make setup   only prepare .venv/
+#   make coverage  run all tests, then write docs/reference/coverage.md
+#   make changelog show the entries since the last release, as they will be printed
+#   make check-js  lint the JavaScript of the pages (needs node and npm)
 #   make lock    rewrite requirements.lock (needs uv)
 
 PYTHON ?= python3
@@ -9,17 +13,45 @@ BIN := .venv/bin
 READY := .venv/ready-$(shell cat requirements.lock pyproject.toml | cksum | cut -d' ' -f1)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: demo test setup lock clean
+JS := scripts/js
+JS_READY := $(JS)/node_modules/.package-lock.json
+
+.PHONY: demo check test lint coverage changelog check-js js-where-node-is setup lock clean
 
 demo: setup
 	$(BIN)/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
 
-test: setup
+check: lint
+	$(BIN)/pytest -n auto -q -m "not slow and not jupedsim"
+
+test: lint js-where-node-is
+	$(BIN)/pytest -n auto
+
+lint: setup
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/codespell
+	$(BIN)/python scripts/check_vocabulary.py
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -n auto
+
+coverage: setup
+	$(BIN)/python scripts/write_coverage.py
+
+changelog: setup
+	$(BIN)/towncrier build --draft --version next
+
+check-js: $(JS_READY)
+	node $(JS)/lint.mjs
+
+js-where-node-is:
+	@if command -v node >/dev/null && command -v npm >/dev/null && $(MAKE) --no-print-directory $(JS_READY); \
+	then $(MAKE) --no-print-directory check-js; \
+	else echo "the JavaScript of the pages is not linted: that needs node 20 and npm"; fi
+
+$(JS_READY): $(JS)/package-lock.json
+	npm ci --prefix $(JS) --silent
+	@touch $@
 
 setup: $(READY)
 
@@ -36,4 +68,5 @@ lock:
 		--quiet --group dev pyproject.toml -o requirements.lock
 
 clean:
-	rm -rf crowdbot/__pycache__/kernels-* .venv runs .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf crowdbot/__pycache__/kernels-* .venv runs .mypy_cache .pytest_cache .ruff_cache .hypothesis \
+		.coverage $(JS)/node_modules

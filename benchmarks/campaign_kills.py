@@ -38,10 +38,10 @@ def main() -> int:
             time.sleep(draw.uniform(0.0, length))
             os.kill(running.pid, signal.SIGKILL)
             running.wait()
-            print(f"kill {number + 1}: {len(_outcome(killed))} runs there", flush=True)
+            print(f"kill {number + 1}: {len(outcome(killed))} runs there", flush=True)
         ended = _start(killed, chosen.seconds).wait()
-        same = ended == 0 and _outcome(killed) == _outcome(whole)
-        print(f"{len(_outcome(whole))} runs, {'all equal' if same else 'DIFFERENT'}")
+        same = ended == 0 and outcome(killed) == outcome(whole)
+        print(f"{len(outcome(whole))} runs, {'all equal' if same else 'DIFFERENT'}")
         return 0 if same else 1
 
 
@@ -52,7 +52,7 @@ def _start(out: Path, seconds: float) -> subprocess.Popen[bytes]:
     return subprocess.Popen(command)
 
 
-def _outcome(out: Path) -> dict[str, tuple[str, str]]:
+def outcome(out: Path) -> dict[str, tuple[str, str]]:
     """Run -> trajectory hash and scores."""
     found = {}
     for file in sorted(out.glob("challenge-2020/*/*/*/run.json")):

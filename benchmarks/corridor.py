@@ -19,11 +19,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd_setup import build_crowd
-from crowdbot.core.library import open_spec
-from crowdbot.core.realise import realise
-from crowdbot.core.registry import discover
-from crowdbot.core.ticks import TICKS_PER_SECOND
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.population.realise import realise
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.scenarios.library import open_spec
+from crowdbot.core.sim.build_crowd import build_crowd
+from crowdbot.core.support.ticks import TICKS_PER_SECOND
 
 HALF_WIDTH = 5.0  # of the corridor, m
 EVERY = 8  # ticks between samples
@@ -84,7 +85,7 @@ def main() -> None:
     for scenario in open_spec("challenge-2020", registry).scenarios:
         name = scenario.id.rpartition("/")[2]
         if fnmatch(name, given.only):
-            parts = registry.build(scenario.environment)
+            parts = build_environment(registry, scenario.environment)
             engine = build_crowd(scenario, realise(scenario), parts, registry)
             assert engine is not None
             found["-".join(name.split("-")[1:3])].append(measure(engine, given.seconds))

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld, policy_of
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.contact import DISC
+from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS
+from crowdbot.core.crowd.contact.robot_contact import DISC
+from crowdbot.core.crowd.desired_acceleration import desired_acceleration
+from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdView
-from crowdbot.core.crowd.push import PLACED_COLUMNS
 from crowdbot.core.crowd.step import tick
-from crowdbot.core.crowd.torus import ENDLESS
-from crowdbot.core.crowd.willed import willed
 
 Array = NDArray[np.float64]
 
@@ -59,10 +59,10 @@ def whole_step(
     flat = CrowdEngine(agents, world, chosen).initial_state()
     _, rows = s.view(flat)
     n = len(agents)
-    robots, order, everybody = np.zeros((0, 8)), np.arange(n), np.ones(n, np.bool_)
-    stiffness, reaction = np.full(n, CONTACT_STIFFNESS), np.zeros((n, 2))
-    placed = np.zeros((n, PLACED_COLUMNS))
-    in_turn = np.argsort(agents.id)
+    robots, everybody = np.zeros((0, 8)), np.ones(n, np.bool_)
+    people = AgentParameters.of(agents, np.full(n, CONTACT_STIFFNESS))
+    place = WorldParameters.of(world)
+    scratch = Scratch(np.zeros((n, 2)), np.zeros((n, PLACED_COLUMNS)), np.arange(n))
 
     def step() -> None:
         view = CrowdView(
@@ -71,13 +71,7 @@ def whole_step(
             goal=np.ascontiguousarray(rows[:, s.GOAL_X : s.GOAL_Y + 1]),
             present=everybody, robot=robots[:, :5], walls=walls, dt=DT, decides=everybody,
         )  # fmt: skip
-        rows[:, s.AX : s.AY + 1] = willed(chosen, view)
-        tick(
-            flat, s.AGENT_COLUMNS, robots, DISC, DT, agents.id, in_turn, agents.radius,
-            agents.mass, agents.preferred_speed, agents.max_speed, agents.start_time, everybody,
-            agents.at_goal, agents.flow, agents.route, agents.first, world.entrance, world.out,
-            False, ENDLESS, True, world.response, world.stiffness, world.dissipation,
-            walls, world.pillars, stiffness, np.uint64(0), reaction, placed, order,
-        )  # fmt: skip
+        rows[:, s.AX : s.AY + 1] = desired_acceleration(chosen, view)
+        tick(flat, robots, DISC, world.pillars, DT, *people, *place, *scratch)
 
     return step

@@ -25,8 +25,8 @@ def crowdbot_planners():
 WORDS = '''"""Words."""
 from typing import Literal
 from pydantic import Field
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import PlannerSpec
+from crowdbot.dsl.component import Component
+from crowdbot.dsl.component_specs import PlannerSpec
 from crowdbot.dsl.quantities import PositiveLength, PositiveSpeed
 class Spec(PlannerSpec):
     """A planner."""

@@ -27,8 +27,8 @@ from collections import defaultdict
 from pathlib import Path
 
 from crowdbot.api import registry
-from crowdbot.core.library import open_spec
-from crowdbot.core.scores_table import read_scores_csv
+from crowdbot.core.scenarios.library import open_spec
+from crowdbot.core.scoring.scores_csv import read_scores_csv
 
 SUITE = "challenge-2020"
 

@@ -23,11 +23,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd_setup import build_crowd
-from crowdbot.core.library import open_spec
-from crowdbot.core.realise import realise
-from crowdbot.core.registry import discover
-from crowdbot.core.ticks import TICK, TICKS_PER_SECOND
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.population.realise import realise
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.scenarios.library import open_spec
+from crowdbot.core.sim.build_crowd import build_crowd
+from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND
 from crowdbot.dsl.scenario import Scenario
 
 Array = NDArray[np.float64]
@@ -38,7 +39,7 @@ FIRST, LAST = 2.5, 47.5  # where a driving robot starts and turns, m
 
 def engine_of(scenario: Scenario) -> CrowdEngine:
     registry = discover()
-    parts = registry.build(scenario.environment)
+    parts = build_environment(registry, scenario.environment)
     engine = build_crowd(scenario, realise(scenario), parts, registry)
     assert engine is not None
     return engine

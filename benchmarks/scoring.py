@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.api import registry
-from crowdbot.core.evaluate import score
-from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.core.scoring.evaluate import score
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.arrays import Array
 
 RATE = 16.0
 LENGTH, WIDTH = 45.0, 8.0

@@ -32,15 +32,17 @@ from pydrake.systems.primitives import ConstantVectorSource
 from turns import WARM_UP, in_turns
 
 from crowdbot.api import registry
-from crowdbot.core.library import open_spec, pick
-from crowdbot.core.lock import population
-from crowdbot.core.planner_source import resolve_planner
+from crowdbot.core.campaign.worker_process import worker_environment
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.container import McapFile
-from crowdbot.core.sim.campaign.process import worker_environment
+from crowdbot.core.robots import build_model
+from crowdbot.core.scenarios.library import open_spec, pick
+from crowdbot.core.scenarios.lock import population
+from crowdbot.core.sim.built_run import build_run, robot_task
 from crowdbot.core.sim.control.differential_drive import wheel_gains
 from crowdbot.core.sim.crowd_system import CrowdSystem
-from crowdbot.core.sim.diagram import robot_task
 from crowdbot.core.sim.metric_logger import MetricLogger
 from crowdbot.core.sim.planner_system import PlannerSystem
 from crowdbot.core.sim.plant import add_plant, place_robot
@@ -63,7 +65,7 @@ DENSITY = {50: "d0125", 100: "d0250", 200: "d0500"}
 EVENTS: tuple[tuple[str, type[Any], str], ...] = (
     ("crowd", CrowdSystem, "_update"),
     ("sensors", SensorBank, "_update"),
-    ("camera", SensorBank, "_photograph"),
+    ("camera", SensorBank, "_take_frame"),
     ("planner", PlannerSystem, "_update"),
     ("logger", MetricLogger, "_publish"),
     ("recorder", RecordingWriter, "_catch_up"),
@@ -93,23 +95,22 @@ class Case:
 
 def whole(case: Case) -> float:
     """CPU ms per simulated second of a recorded run."""
-    world = case.scenario()
+    world, choice = case.scenario(), resolve_planner(case.planner, registry())
     with tempfile.TemporaryDirectory() as folder:
-        outcome = record_robot(
-            RunSetup(
-                scenario=world,
-                agents=population(world, registry()).agents,
-                registry=registry(),
-                choice=resolve_planner(case.planner, registry()),
-                seed=0,
-                recording=Path(folder) / "run.mcap",
-                record=case.record,
-                stage="benchmark",
-                progress=None,
-                stop=lambda: False,
-                on_hang=None,
-            )
+        setup = RunSetup(
+            scenario=world,
+            agents=population(world, registry()).agents,
+            registry=registry(),
+            choice=choice,
+            seed=0,
+            recording=Path(folder) / "run.mcap",
+            record=case.record,
+            stage="benchmark",
+            progress=None,
+            stop=lambda: False,
+            on_hang=None,
         )
+        outcome = record_robot(setup, build_run(world, registry(), choice, case.record))
     return 1e3 * outcome.cpu_time / outcome.sim_time
 
 
@@ -117,8 +118,8 @@ def plant_alone(world: Scenario, seconds: float) -> float:
     """CPU ms per simulated second of the robot in its corridor, wheels turning."""
     (robot,) = world.robots.values()
     builder = DiagramBuilder()
-    parts = registry().build(world.environment)
-    rig = add_plant(builder, parts, registry().build(robot.model), wheel_gains(6.3, 0.0352))
+    parts = build_environment(registry(), world.environment)
+    rig = add_plant(builder, parts, build_model(registry(), robot.model), wheel_gains(6.3, 0.0352))
     wheels = builder.AddSystem(ConstantVectorSource([0.0, 0.0, 10.0, 10.0]))
     desired = rig.plant.get_desired_state_input_port(rig.model)
     builder.Connect(wheels.get_output_port(), desired)

@@ -5,37 +5,33 @@ Names below are imported when they are first used, so that ``import crowdbot`` s
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from crowdbot.lazy import lazy_names
 
 if TYPE_CHECKING:
     from crowdbot.api import evaluate, expand, load, results, score, simulate
-    from crowdbot.core.commands import Commands
-    from crowdbot.core.evaluate import Scores
-    from crowdbot.core.questionnaires import Questionnaires
-    from crowdbot.core.score import Score
-    from crowdbot.core.sim.request import Run
-    from crowdbot.core.trajectory import Trajectories
+    from crowdbot.core.runs.request import Run
+    from crowdbot.core.scoring.evaluate import Scores
+    from crowdbot.core.trajectories.commands import Commands
+    from crowdbot.core.trajectories.questionnaires import Questionnaires
+    from crowdbot.core.trajectories.trajectories import Trajectories
+    from crowdbot.core.types.score import Score
     from crowdbot.dsl.expand import Expansion as Suite
     from crowdbot.dsl.scenario import Scenario
     from crowdbot.errors import CrowdbotError
 
 _HOMES = {
-    "Commands": "crowdbot.core.commands",
-    "CrowdbotError": "crowdbot.errors",
-    "Questionnaires": "crowdbot.core.questionnaires",
-    "Run": "crowdbot.core.sim.request",
-    "Scenario": "crowdbot.dsl.scenario",
-    "Score": "crowdbot.core.score",
-    "Scores": "crowdbot.core.evaluate",
-    "Suite": "crowdbot.dsl.expand:Expansion",
-    "Trajectories": "crowdbot.core.trajectory",
-    "evaluate": "crowdbot.api",
-    "expand": "crowdbot.api",
-    "load": "crowdbot.api",
-    "results": "crowdbot.api",
-    "score": "crowdbot.api",
-    "simulate": "crowdbot.api",
+    "crowdbot.api": "evaluate expand load results score simulate",
+    "crowdbot.core.runs.request": "Run",
+    "crowdbot.core.scoring.evaluate": "Scores",
+    "crowdbot.core.trajectories.commands": "Commands",
+    "crowdbot.core.trajectories.questionnaires": "Questionnaires",
+    "crowdbot.core.trajectories.trajectories": "Trajectories",
+    "crowdbot.core.types.score": "Score",
+    "crowdbot.dsl.expand": "Expansion=Suite",
+    "crowdbot.dsl.scenario": "Scenario",
+    "crowdbot.errors": "CrowdbotError",
 }
 
 __all__ = [
@@ -57,11 +53,8 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    if name not in _HOMES:
-        raise AttributeError(f"module 'crowdbot' has no attribute '{name}'")
-    module, _, attribute = _HOMES[name].partition(":")
-    return getattr(importlib.import_module(module), attribute or name)
+if not TYPE_CHECKING:
+    __getattr__ = lazy_names(__name__, _HOMES)
 
 
 def __dir__() -> list[str]:

@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from crowdbot.core.library import open_spec, pick
-from crowdbot.core.registry import Registry, discover
+from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.scenario import Scenario
 
 if TYPE_CHECKING:
-    from crowdbot.core.commands import Commands
-    from crowdbot.core.evaluate import MetricParameters, Scores
-    from crowdbot.core.questionnaires import Questionnaires
     from crowdbot.core.results.rows import Results
-    from crowdbot.core.sim.outcome import Progress
-    from crowdbot.core.sim.request import Run
-    from crowdbot.core.trajectory import Trajectories
+    from crowdbot.core.runs.outcome import Progress
+    from crowdbot.core.runs.request import Recorded, Run
+    from crowdbot.core.scoring.evaluate import MetricParameters, Scores
+    from crowdbot.core.trajectories.commands import Commands
+    from crowdbot.core.trajectories.questionnaires import Questionnaires
+    from crowdbot.core.trajectories.trajectories import Trajectories
 
 
 @cache
@@ -53,28 +53,88 @@ def expand(suite: Expansion) -> list[Scenario]:
 
 def simulate(
     scenario: Scenario,
+    *,
     planner: str = "dwa",
+    planner_settings: Sequence[str] = (),
     seed: int = 0,
     out: str | Path | None = None,
+    suite: str = "scenarios",
+    record: Recorded = "all",
+    references: bool = True,
+    force: bool = False,
+    metrics: str | Sequence[str] = "*",
+    replay: bool = True,
+    step_budget: float | None = None,
     progress: Callable[[Progress], None] | None = None,
-    **options: Any,
+    stop: Callable[[], bool] = lambda: False,
 ) -> Run:
-    """Simulate, record and score one run; see `crowdbot.core.sim.simulate.simulate`."""
+    """Simulate, record and score one run; a complete run with the same hashes is reused.
+
+    Args:
+        scenario: from `load` or `expand`.
+        planner: kind, YAML file or ``file.py:Class``.
+        planner_settings: ``key=value`` texts that change its parameters.
+        seed: of the run: sensor noise and planner.
+        out: root of the run directories; None uses a temporary folder that lives as long as the
+            result.
+        suite: name of the first folder below ``out``.
+        record: which sensors are simulated and recorded: ``all``; ``used``, those that the
+            planner reads; ``none``, only what scores need.
+        references: whether the calibration runs are made where they are missing.
+        force: whether a complete run is made again.
+        metrics: one or several globs over metric names.
+        replay: whether the replay page is written.
+        step_budget: wall time that a planner step may take, s; None: any.
+        progress: called several times a simulated second.
+        stop: asked several times a simulated second; True ends the run.
+
+    Raises:
+        InputError: the scenario has no robot, the planner, the folder or an option is wrong, or
+            the lock of the suite does not fit it any more.
+        UnknownNameError: no metric answers to a pattern.
+        PlannerHungError: a planner step never returned; a ``.partial`` directory is left.
+        Interrupted: ``stop`` returned True; a ``.partial`` directory is left.
+    """
     from crowdbot.core.sim.simulate import simulate as simulate_it
 
     return simulate_it(
         scenario,
         registry(),
         planner=planner,
+        planner_settings=planner_settings,
         seed=seed,
         out=None if out is None else Path(out),
+        suite=suite,
+        record=record,
+        references=references,
+        force=force,
+        metrics=_patterns(metrics),
+        replay=replay,
+        step_budget=step_budget,
         progress=progress,
-        **options,
+        stop=stop,
     )
 
 
+def _patterns(metrics: str | Sequence[str]) -> Sequence[str] | None:
+    """What a record says of the metrics; None is all of them."""
+    if metrics == "*":
+        return None
+    return [metrics] if isinstance(metrics, str) else metrics
+
+
 def evaluate(run: Run, metrics: str | Sequence[str] = "*") -> Scores:
-    """Score a run again from its recording."""
+    """Score a run again from its recording.
+
+    Args:
+        run: from `simulate`.
+        metrics: one or several globs over metric names.
+
+    Raises:
+        UnknownNameError: no metric answers to a pattern.
+        InputError: its recording cannot be read.
+        PluginError: a metric failed.
+    """
     refs = run.references
     return score(run.trajectories, refs.robot_alone, refs.crowd_alone, metrics=metrics)
 
@@ -83,15 +143,33 @@ def score(
     crowded: Trajectories | None = None,
     robot_alone: Trajectories | None = None,
     crowd_alone: Trajectories | None = None,
+    *,
     commands: Commands | None = None,
     commands_baseline: Commands | None = None,
-    questionnaires: Questionnaires | Mapping[str, Any] | None = None,
+    questionnaires: Questionnaires | Mapping[str, object] | None = None,
     metrics: str | Sequence[str] = "*",
     variants: str | Sequence[str] = "all",
     parameters: MetricParameters | None = None,
 ) -> Scores:
-    """Score trajectories, commands and answers; see `crowdbot.core.evaluate.score`."""
-    from crowdbot.core.evaluate import score as score_it
+    """Score trajectories, commands and answers, of crowdbot or of anybody else.
+
+    Args:
+        crowded: the run; None where only commands or answers are known.
+        robot_alone: the same robot without people, where known.
+        crowd_alone: the same people without robot, where known.
+        commands: the user's and the final commands.
+        commands_baseline: commands of a drive of the same user without shared control.
+        questionnaires: answers; see `Questionnaires.from_mapping`.
+        metrics: one or several globs over metric names; each must match.
+        variants: ``all``, or the names of the variants to keep.
+        parameters: metric -> field -> value; what is left out keeps its default.
+
+    Raises:
+        UnknownNameError: no metric or variant answers to a name.
+        InputError: there is nothing to score, a metric is retired, or a value does not fit.
+        PluginError: a metric failed.
+    """
+    from crowdbot.core.scoring.evaluate import score as score_it
 
     return score_it(
         registry(),
@@ -108,7 +186,14 @@ def score(
 
 
 def results(root: str | Path = "runs") -> Results:
-    """All runs, scores and failures of a campaign; see `crowdbot.core.results.store.load`."""
+    """All runs, scores and failures below a folder, as a campaign leaves them.
+
+    Args:
+        root: of the run directories.
+
+    Raises:
+        InputError: there is no such folder, or a run in it is damaged.
+    """
     from crowdbot.core.results.store import load as load_results
 
     return load_results(Path(root))

@@ -8,7 +8,7 @@
     │   └── UnknownNameError      1   a kind, id or suite that does not exist; carries near names
     ├── UsageError                2   the command line itself is wrong
     ├── PluginError               3   a plugin failed; names the plugin
-    │   ├── PlannerError          3   a planner raised, or returned something that is no command
+    │   ├── PlannerError          3   a planner raised, or returned something that is not a command
     │   └── PlannerHungError      3   a planner step never returned; ended by the watchdog
     ├── SimulationError           4   the simulation itself failed
     │   └── MissingLibraryError   4   a system library that Drake needs is not installed
@@ -72,7 +72,7 @@ class PluginError(CrowdbotError):
 
 
 class PlannerError(PluginError):
-    """A planner raised, or returned something that is no command."""
+    """A planner raised, or returned something that is not a command."""
 
 
 class PlannerHungError(PluginError):

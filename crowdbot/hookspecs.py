@@ -15,8 +15,8 @@ import pluggy
 if TYPE_CHECKING:
     from importlib.resources.abc import Traversable
 
-    from crowdbot.core.component import Component
-    from crowdbot.dsl.base import (
+    from crowdbot.dsl.component import Component
+    from crowdbot.dsl.component_specs import (
         CostFunctionSpec,
         CrowdPolicySpec,
         EnvironmentSpec,
@@ -44,7 +44,7 @@ def crowdbot_environments() -> Sequence[Component[EnvironmentSpec]]:  # type: ig
 
     Called once, while the registry is built, before any document is read. The components are
     built later, once for each recording:
-    `crowdbot.core.builds.BuildEnvironment`.
+    `crowdbot.core.interfaces.build_functions.BuildEnvironment`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -66,7 +66,7 @@ def crowdbot_robots() -> Sequence[Component[RobotSpec]]:  # type: ignore[empty-b
 
     Called once, while the registry is built, before any document is read. The components are
     built later, once for each recording:
-    `crowdbot.core.builds.BuildRobot`.
+    `crowdbot.core.interfaces.build_functions.BuildRobot`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -88,7 +88,7 @@ def crowdbot_sensors() -> Sequence[Component[SensorSpec]]:  # type: ignore[empty
 
     Called once, while the registry is built, before any document is read. The components are
     built later, when a run is prepared, and where they are simulated:
-    `crowdbot.core.builds.BuildSensor`.
+    `crowdbot.core.interfaces.build_functions.BuildSensor`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -110,7 +110,7 @@ def crowdbot_noise_generators() -> Sequence[Component[NoiseSpec]]:  # type: igno
 
     Called once, while the registry is built, before any document is read. The components are
     built later, before their sensor, in the order of their names:
-    `crowdbot.core.builds.BuildNoise`.
+    `crowdbot.core.interfaces.build_functions.BuildNoise`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -132,7 +132,7 @@ def crowdbot_planners() -> Sequence[Component[PlannerSpec]]:  # type: ignore[emp
 
     Called once, while the registry is built, before any document is read. The components are
     built later, once for each recording with a robot, also for the one without people:
-    `crowdbot.core.builds.BuildPlanner`.
+    `crowdbot.core.interfaces.build_functions.BuildPlanner`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -154,7 +154,7 @@ def crowdbot_crowd_policies() -> Sequence[Component[CrowdPolicySpec]]:  # type: 
 
     Called once, while the registry is built, before any document is read. The components are
     built later, once for each recording with people:
-    `crowdbot.core.builds.BuildPolicy`.
+    `crowdbot.core.interfaces.build_functions.BuildPolicy`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -176,7 +176,7 @@ def crowdbot_cost_functions() -> Sequence[Component[CostFunctionSpec]]:  # type:
 
     Called once, while the registry is built, before any document is read. The components are
     built later, before the policy that minimises them:
-    `crowdbot.core.builds.BuildCost`.
+    `crowdbot.core.interfaces.build_functions.BuildCost`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -194,11 +194,11 @@ def crowdbot_cost_functions() -> Sequence[Component[CostFunctionSpec]]:  # type:
 def crowdbot_metrics() -> Sequence[Component[MetricSpec]]:  # type: ignore[empty-body]
     """Return the metrics this package provides.
 
-    Functions of what was recorded; each is a ``MetricComponent`` with a label and a card.
+    Functions of what was recorded; each is made by ``declare_metric`` and has a card.
 
     Called once, while the registry is built, before any document is read. The components are
     built later, once for each scoring:
-    `crowdbot.core.builds.BuildMetric`.
+    `crowdbot.core.interfaces.build_functions.BuildMetric`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -217,7 +217,7 @@ def crowdbot_scenario_dirs() -> Sequence[Traversable]:  # type: ignore[empty-bod
     """Return folders with suites: ``office.yaml`` of the plugin ``acme`` is ``acme:office``.
 
     Called once, while the registry is built. Folders are looked into when a document is named
-    that is no path, or extends ``NAME:...``; they may lie in an archive.
+    that is not a path, or extends ``NAME:...``; they may lie in an archive.
 
     Returns:
         A list or tuple of folders. Parts that others extend go into a folder inside.

@@ -14,20 +14,21 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel, SerializeAsAny
 from pydantic.fields import FieldInfo
 
-from crowdbot.core.registry import Registry, discover
+from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.dsl.areas import Area
 from crowdbot.dsl.assets import Asset
-from crowdbot.dsl.base import CATEGORIES, ComponentSpec, Mount, Range, Rectangle
+from crowdbot.dsl.component_specs import CATEGORIES
 from crowdbot.dsl.parameters import (
-    AccelerationDraw,
-    Draw,
-    DurationDraw,
-    LengthDraw,
-    MassDraw,
+    AccelerationSample,
+    DurationSample,
+    LengthSample,
+    MassSample,
+    Sample,
     SpeedDistribution,
-    SpeedDraw,
+    SpeedSample,
 )
 from crowdbot.dsl.quantities import UNITS, Quantity
+from crowdbot.dsl.spec import ComponentSpec, Mount, Range, Rectangle
 from crowdbot.dsl.suite import ScenarioDocument, Seeds, SuiteDocument, SuiteHead
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "scenario.md"
@@ -47,7 +48,7 @@ A quantity is a number in the unit of its column, or text with a unit of the sam
 as `80 cm/s`. World frame: x along the corridor, y left, z up, angles counter-clockwise.
 """
 _COMPONENTS = ("environment", "crowd policy", "cost function", "robot", "sensor", "noise")
-_DRAWS = (LengthDraw, SpeedDraw, AccelerationDraw, MassDraw, DurationDraw)
+_DRAWS = (LengthSample, SpeedSample, AccelerationSample, MassSample, DurationSample)
 _SHARED = (Asset, Mount, Range, Rectangle, Area, SpeedDistribution, *_DRAWS)
 #: Fields that a document's reader checks; the models do not know their types.
 _READ = {
@@ -216,7 +217,7 @@ def _default(info: FieldInfo) -> str:
     if info.is_required():
         return "required"
     value = info.default
-    if isinstance(value, Draw):
+    if isinstance(value, Sample):
         return f"{value.value:.6g}"
     if isinstance(value, BaseModel):
         return "its defaults"

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from crowdbot.cli.schema import Document, build, to_text
-from crowdbot.core.registry import discover
+from crowdbot.cli.schema import DocumentKind, build, to_text
+from crowdbot.core.registry.registry import discover
 
 FOLDER = Path(__file__).parent.parent / "scenario_specs" / "schema"
 
@@ -16,7 +16,7 @@ FOLDER = Path(__file__).parent.parent / "scenario_specs" / "schema"
 def schema_texts() -> dict[str, str]:
     """File name -> text of every committed schema."""
     registry = discover(allow=())
-    return {f"{d}.v1.schema.json": to_text(build(d, registry)) for d in Document}
+    return {f"{d}.v1.schema.json": to_text(build(d, registry)) for d in DocumentKind}
 
 
 if __name__ == "__main__":

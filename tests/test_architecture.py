@@ -1,50 +1,124 @@
-"""The lists that the import rules are written in are complete."""
+"""What the import contracts cannot say."""
 
 from __future__ import annotations
 
 import ast
-import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+
 import crowdbot
+from scripts import architecture
+from tests.paths import TESTS
 
 PACKAGE = Path(crowdbot.__file__).parent
-PROJECT = PACKAGE.parent / "pyproject.toml"
+MIRRORED = ["core", "plugins", "dsl", "cli", "testing"]
 
 
-def contract(name: str) -> set[str]:
-    """Source modules of one import-linter contract."""
-    contracts = tomllib.loads(PROJECT.read_text("utf-8"))["tool"]["importlinter"]["contracts"]
-    (found,) = (c for c in contracts if c["name"] == name)
-    return set(found["source_modules"])
+@pytest.fixture(scope="module")
+def found() -> architecture.Architecture:
+    """What the script counts, once for all tests."""
+    return architecture.measure()
 
 
-def test_every_part_of_core_but_sim_is_kept_from_drake() -> None:
-    parts = {p.stem for p in (PACKAGE / "core").iterdir() if p.suffix == ".py" or p.is_dir()}
-    expected = {f"crowdbot.core.{p}" for p in parts - {"__init__", "__pycache__", "sim"}}
-    assert contract("only core.sim knows Drake") - {"crowdbot.plugins"} == expected
+def test_no_file_of_core_is_loose(found: architecture.Architecture) -> None:
+    assert found.loose_files == []
 
 
-def test_words_and_deeds_are_apart() -> None:
-    """A plugin's word module imports no numbers library; only its ``_build`` twin may."""
+def test_no_import_goes_up_not_even_for_types(found: architecture.Architecture) -> None:
+    assert found.upward == []
+
+
+def test_no_files_import_in_a_circle_not_even_for_types(found: architecture.Architecture) -> None:
+    assert found.circles == []
+    assert found.room_circles == []
+
+
+def test_the_table_of_the_decision_is_current(found: architecture.Architecture) -> None:
+    text = architecture.PAGE.read_text("utf-8")
+    assert architecture.page_with_table(text, found) == text, (
+        ".venv/bin/python scripts/architecture.py --write"
+    )
+
+
+def test_circles_are_found_through_others_and_chains_are_none() -> None:
+    chain = [("a", "b"), ("b", "c"), ("d", "c")]
+    assert architecture.circles(chain) == []
+    assert architecture.circles([*chain, ("c", "a")]) == [["a", "b", "c"]]
+    assert architecture.circles([]) == []
+
+
+@pytest.mark.parametrize(
+    ("importer", "imported", "up"),
+    [
+        ("crowdbot.dsl.suite", "crowdbot.core.support.ticks", True),
+        ("crowdbot.core.support.ticks", "crowdbot.dsl.suite", False),
+        ("crowdbot.core.crowd.engine", "crowdbot.core.sim.plant", True),
+        ("crowdbot.core.crowd.engine", "crowdbot.core.sensing.noise", True),  # beside it
+        ("crowdbot.core.sim.plant", "crowdbot.core.crowd.engine", False),
+        ("crowdbot.core.crowd.engine", "crowdbot.core.crowd.contact.geometry", False),
+    ],
+)
+def test_what_goes_up(importer: str, imported: str, up: bool) -> None:
+    assert architecture.goes_up(importer, imported) is up
+
+
+def test_only_the_simulation_imports_drake() -> None:
+    users = [f.relative_to(PACKAGE) for f in _sources() if "pydrake" in set(_imported(f))]
+    assert users
+    # The conformance kit drives robots of others, too.
+    allowed = (("core", "sim"), ("testing",))
+    assert [f for f in users if not any(f.parts[: len(a)] == a for a in allowed)] == []
+
+
+def test_what_validating_imports_needs_no_numbers_library() -> None:
+    """Of a plugin's two files only the ``_build`` one may import what is slow to import."""
     heavy = {"numpy", "numba", "pydrake"}
     for file in (PACKAGE / "plugins").rglob("*.py"):
-        if file.stem.endswith("_build"):
-            continue
-        imported = {
-            name.split(".")[0]
-            for node in ast.walk(ast.parse(file.read_text("utf-8")))
-            for name in (
-                [a.name for a in node.names]
-                if isinstance(node, ast.Import)
-                else [node.module or ""]
-                if isinstance(node, ast.ImportFrom)
-                else []
-            )
-        }
-        assert not imported & heavy, file
+        if not file.stem.endswith("_build"):
+            assert not heavy & set(_imported(file)), file
 
 
 def test_core_never_names_plugins() -> None:
     for file in (PACKAGE / "core").rglob("*.py"):
         assert "crowdbot.plugins" not in file.read_text("utf-8"), file
+
+
+def test_no_two_public_classes_have_the_same_name() -> None:
+    """Whoever reads a name in a message, a page or a traceback has one place to look."""
+    places: dict[str, list[str]] = {}
+    for file in _sources():
+        for node in ast.parse(file.read_text("utf-8")).body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                places.setdefault(node.name, []).append(str(file.relative_to(PACKAGE)))
+    assert {name: files for name, files in places.items() if len(files) > 1} == {}
+
+
+@pytest.mark.parametrize("part", MIRRORED)
+def test_tests_mirror_the_code(part: str) -> None:
+    folders = [f.relative_to(TESTS) for f in (TESTS / part).rglob("*/") if f.name != "__pycache__"]
+    assert [f for f in folders if not (PACKAGE / f / "__init__.py").is_file()] == []
+
+
+def test_tests_are_packages_and_import_one_another_by_their_whole_path() -> None:
+    """Otherwise two helpers of one name are one module, and where pytest starts matters."""
+    for file in TESTS.rglob("*.py"):
+        if "data" not in file.relative_to(TESTS).parts:
+            beside = {other.stem for other in file.parent.glob("*.py")} - {"__init__"}
+            assert (file.parent / "__init__.py").is_file(), file
+            assert not beside & set(_imported(file)), file
+
+
+def _sources() -> Iterator[Path]:
+    """All modules of crowdbot."""
+    return PACKAGE.rglob("*.py")
+
+
+def _imported(file: Path) -> Iterator[str]:
+    """The top-level names of all packages that a file imports, wherever in it."""
+    for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name.split(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield "." if node.level else (node.module or "").split(".")[0]

@@ -5,12 +5,13 @@ from __future__ import annotations
 import importlib.util
 import subprocess
 import sys
-from pathlib import Path
 from types import ModuleType
 
 import pytest
 
-SCRIPT = Path(__file__).parent.parent / "scripts" / "check_machine.py"
+from tests.paths import ROOT
+
+SCRIPT = ROOT / "scripts" / "check_machine.py"
 
 
 @pytest.fixture

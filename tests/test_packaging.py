@@ -7,7 +7,9 @@ import sys
 import zipfile
 from pathlib import Path
 
-ROOT = Path(__file__).parent.parent
+from tests.paths import ROOT
+
+ROOT = ROOT
 
 
 def test_the_wheel_is_complete(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 A module ``crowdbot/cli/x.py`` offers the command ``x``: a function ``x``, or a `typer.Typer`
 named ``x`` for a command with commands of its own. Its docstring ends with an example. Heavy
 imports stay inside functions: ``--help`` imports every command. Modules that begin with an
-underscore are no commands.
+underscore are not commands.
 """
 
 from __future__ import annotations

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from crowdbot.core.sim.campaign.campaign import Listener, State
-    from crowdbot.core.sim.campaign.job import Done, Job
-    from crowdbot.core.sim.campaign.plan import Plan
+    from crowdbot.core.campaign.job import Done, Job
+    from crowdbot.core.campaign.plan import Plan
+    from crowdbot.core.campaign.run import Listener, State
 
 _COLUMNS = ("arrived", "timeout", "planner_failed", "failed")
 
@@ -25,8 +25,8 @@ def show(plan: Plan) -> Iterator[Listener]:
     if logging.getLogger("crowdbot").level > logging.INFO:
         yield _silent
         return
-    there = sum(bool(w.status) for w in plan.wanted)
-    _say(f"{len(plan.wanted)} runs, {there} complete, {len(plan.jobs)} jobs to do")
+    complete = sum(bool(r.status) for r in plan.runs)
+    _say(f"{len(plan.runs)} runs, {complete} complete, {len(plan.jobs)} jobs to do")
     lines = _Lines()
     if not sys.stderr.isatty():
         yield lines
@@ -89,7 +89,7 @@ def _table(state: State) -> RenderableType:
         table.add_column(name)
     counts = _counts(state)
     for label in state.plan.labels:
-        total = sum(w.label == label for w in state.plan.wanted)
+        total = sum(r.label == label for r in state.plan.runs)
         done = sum(counts[label].values())
         bar = ProgressBar(total=total, completed=done, width=20)
         cells = [Text(str(counts[label][c])) for c in _COLUMNS]
@@ -129,7 +129,7 @@ def _counts(state: State) -> dict[str, Counter[str]]:
 
 def _summary(state: State) -> None:
     for label, counts in _counts(state).items():
-        total = sum(w.label == label for w in state.plan.wanted)
+        total = sum(r.label == label for r in state.plan.runs)
         found = ", ".join(f"{counts[c]} {c}" for c in _COLUMNS if counts[c])
         _say(f"{label}: {sum(counts.values())} of {total}: {found}")
 

@@ -8,9 +8,9 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from crowdbot.cli._plugin_table import table
-from crowdbot.core.component import Component
-from crowdbot.core.fault import described
-from crowdbot.core.registry import Registry
+from crowdbot.core.registry.plugin_errors import describe_error
+from crowdbot.core.registry.registry import Registry
+from crowdbot.dsl.component import Component
 from crowdbot.errors import CrowdbotError, InputError, UnknownNameError
 
 _BAD = ("failed", "unexpected pass")
@@ -115,8 +115,7 @@ def as_table(results: list[Result], *, passed: bool, all_lines: bool) -> str:
         if passed or r.result != "passed"
     ]
     lines = [table([["component", "check", "result", "reason"], *rows])] if rows else []
-    for advice in dict.fromkeys(f"{r.check}: {r.advice}" for r in results if r.advice):
-        lines.append(advice)
+    lines += dict.fromkeys(f"{r.check}: {r.advice}" for r in results if r.advice)
     counts = {word: sum(r.result == word for r in results) for word in (*_BAD, "expected failure")}
     told = [f"{n} {word}" for word, n in counts.items() if n]
     skipped = sum(r.result == "skipped" for r in results)
@@ -167,7 +166,7 @@ def _outcome(check: Callable[[], None], expected: str) -> tuple[str, str]:
 def _reason(error: BaseException) -> str:
     if isinstance(error, AssertionError | CrowdbotError):
         return str(error) or type(error).__name__
-    return described(error)
+    return describe_error(error)
 
 
 def _shown(text: str, whole: bool) -> str:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from importlib import metadata
 from typing import Any
 
 from crowdbot.cli._plugin_table import table
-from crowdbot.core.component import Component
-from crowdbot.core.plugin import BUILTIN, Plugin
-from crowdbot.core.registry import Registry
+from crowdbot.core.registry.plugin import BUILTIN, Plugin
+from crowdbot.core.registry.registry import Registry
+from crowdbot.dsl.component import Component
+from crowdbot.dsl.metric_component import MetricComponent
 
 _FIELDS = ("field", "type", "unit", "default", "description")
 
@@ -32,7 +34,7 @@ def as_dict(component: Component[Any], registry: Registry) -> dict[str, Any]:
         "successor": component.successor,
         "fields": [dict(zip(_FIELDS, row, strict=True)) for row in _fields(component.spec)],
         "example": {"kind": component.kind, **component.examples[0]} if component.examples else {},
-        **({"label": _label(component)} if component.category == "metric" else {}),
+        **({"label": _label(component)} if isinstance(component, MetricComponent) else {}),
     }
 
 
@@ -85,15 +87,12 @@ def _documentation(owner: Plugin) -> str:
     return next((urls[label] for label in wanted if label in urls), "")
 
 
-def _label(component: Component[Any]) -> dict[str, Any]:
-    label = getattr(component, "label", None)
-    if label is None:
-        return {}
+def _label(metric: MetricComponent[Any]) -> dict[str, Any]:
     return {
-        "symbol": label.symbol,
-        "unit": label.unit,
-        "better": str(label.better),
-        "variants": list(label.variants),
+        "symbol": metric.symbol,
+        "unit": metric.unit,
+        "better": metric.better,
+        "variants": list(metric.variants),
     }
 
 
@@ -120,9 +119,7 @@ def _type_name(annotation: Any) -> str:
         return "map of names"
     text = getattr(annotation, "__name__", "") if not hasattr(annotation, "__args__") else ""
     words = {"int": "integer", "str": "text", "bool": "true/false"}
-    return words.get(text, text) or str(annotation).replace("typing.", "").replace(
-        "crowdbot.dsl.base.", ""
-    )
+    return words.get(text, text) or re.sub(r"typing\.|crowdbot\.dsl\.\w+\.", "", str(annotation))
 
 
 def _short(value: Any) -> str:

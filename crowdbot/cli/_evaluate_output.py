@@ -12,11 +12,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.core.aside import write_aside
+from crowdbot.core.support.atomic_write import atomic_write
 
 if TYPE_CHECKING:
-    from crowdbot.core.recording.rescore import Rescored
-    from crowdbot.core.score import Score
+    from crowdbot.core.runs.rescore import Rescored
+    from crowdbot.core.types.score import Score
 
 _LINE_EVERY = 5.0  # s
 
@@ -39,7 +39,7 @@ def print_table(result: Rescored) -> None:
     from rich.console import Console
     from rich.text import Text
 
-    from crowdbot.core.scores_table import scores_table
+    from crowdbot.core.scoring.scores_csv import scores_table
 
     source = result.source
     seed = "" if source.seed is None else f"seed {source.seed}"
@@ -55,7 +55,7 @@ def write_file(path: Path, results: Sequence[Rescored]) -> None:
     Raises:
         InputError: it cannot be written.
     """
-    from crowdbot.core.scores_table import COLUMNS, cells_of, write_table
+    from crowdbot.core.scoring.scores_csv import COLUMNS, cells_of, write_table
 
     if path.suffix.lower() == ".json":
         _write_json(path, [as_document(r) for r in results])
@@ -124,4 +124,4 @@ def _fields(score: Score) -> dict[str, Any]:
 
 
 def _write_json(path: Path, document: Any) -> None:
-    write_aside(path, json.dumps(document, indent=2, allow_nan=False) + "\n")
+    atomic_write(path, json.dumps(document, indent=2, allow_nan=False) + "\n")

@@ -13,8 +13,8 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from string import Template
 
-from crowdbot.core.plugin import BUILTIN, Plugin
-from crowdbot.core.registry import Registry
+from crowdbot.core.registry.plugin import BUILTIN, Plugin
+from crowdbot.core.registry.registry import Registry
 from crowdbot.errors import InputError
 
 _SUFFIX = ".tmpl"
@@ -41,14 +41,14 @@ def write_package(name: str, out: Path | None, registry: Registry) -> Path:
     folder = out or Path(f"crowdbot-{name.replace('_', '-')}")
     if os.path.lexists(folder):
         raise InputError(f"{folder} exists already; name another folder with --out")
-    aside = folder.with_name(f".{folder.name}.{os.getpid()}.part")
+    partial = folder.with_name(f".{folder.name}.{os.getpid()}.part")
     try:
-        _write(name, aside)
-        aside.rename(folder)
+        _write(name, partial)
+        partial.rename(folder)
     except OSError as error:
         raise InputError(f"{folder}: cannot be written: {error.strerror}") from error
     finally:
-        shutil.rmtree(aside, ignore_errors=True)
+        shutil.rmtree(partial, ignore_errors=True)
     return folder
 
 
@@ -57,7 +57,7 @@ def _check_name(name: str, registry: Registry) -> None:
         fit = re.sub(r"[^a-z0-9_]+", "_", name.lower()).strip("_").lstrip("0123456789")
         advice = f"; '{fit}' would do" if fit else ""
         raise InputError(
-            f"'{name}' is no name for a plugin: lower-case letters, digits and _ after a first "
+            f"'{name}' is not a name for a plugin: lower-case letters, digits and _ after a first "
             f"letter{advice}"
         )
     if name == BUILTIN or keyword.iskeyword(name):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from crowdbot.core.registry import Registry
+    from crowdbot.core.registry.registry import Registry
 
 Plugins = Annotated[
     list[Path] | None,
@@ -39,15 +39,15 @@ def installed(
         InputError: there is nothing at a path.
         PluginError: a plugin given by hand failed.
     """
-    from crowdbot.core.chatter import chatter_to_stderr
-    from crowdbot.core.registry import discover
+    from crowdbot.core.registry.registry import discover
+    from crowdbot.core.support.stdout_guard import stdout_to_stderr
     from crowdbot.errors import InputError, PluginError
 
     paths = list(plugin or ())
     for path in paths:
         if not path.exists():
             raise InputError(f"--plugin {path}: no such file or folder")
-    with chatter_to_stderr():
+    with stdout_to_stderr():
         registry = discover(extra=paths, allow=() if no_plugins else None)
     log = logging.getLogger("crowdbot")
     for line in registry.unknown_allowed():

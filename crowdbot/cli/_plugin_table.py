@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from crowdbot.core.component import Component
-from crowdbot.core.discovery import ALLOW
-from crowdbot.core.plugin import Plugin
-from crowdbot.core.registry import Registry
+from crowdbot.core.registry.entry_points import ALLOW
+from crowdbot.core.registry.plugin import Plugin
+from crowdbot.core.registry.registry import Registry
+from crowdbot.dsl.component import Component
 
 _HEAD = ["plugin", "distribution", "api", "state", "provides"]
 _FEW = 6

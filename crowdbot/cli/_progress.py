@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
-from crowdbot.core.kernel_cache import nothing_compiled
+from crowdbot.core.support.compile_cache import nothing_compiled
 
 if TYPE_CHECKING:
-    from crowdbot.core.sim.outcome import Progress as Report
+    from crowdbot.core.runs.outcome import Progress as Report
 
 _COMPILES = "the first run compiles"
 #: How long nothing may be seen without an excuse, s.

@@ -46,7 +46,7 @@ def bundle(
     Example: crowdbot bundle runs --suite challenge-2020 --planner dwa --out team.cbz --team Us
     """
     from crowdbot.core.bundle.pack import Submission, pack
-    from crowdbot.core.library import open_suite
+    from crowdbot.core.scenarios.library import open_suite
 
     registry = installed(plugin, no_plugins)
     expansion, lock = open_suite(suite, registry)

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli._options import NoPlugins, Plugins, installed
-from crowdbot.cli.simulate import Record
+from crowdbot.cli.simulate import RecordChoice
 
 if TYPE_CHECKING:
-    from crowdbot.core.sim.campaign.campaign import State
-    from crowdbot.core.sim.campaign.plan import Plan
+    from crowdbot.core.campaign.plan import Plan
+    from crowdbot.core.campaign.run import State
 
 _Set = Annotated[
     list[str] | None,
@@ -32,7 +32,7 @@ _Only = Annotated[str | None, typer.Option(metavar="GLOB", help="Only scenarios 
 _Seeds = Annotated[str, typer.Option(metavar="0,1,2|0..4", help="Run seeds.")]
 _Out = Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")]
 _Jobs = Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")]
-_Record = Annotated[Record, typer.Option(help="Sensors to simulate and record.")]
+_Record = Annotated[RecordChoice, typer.Option(help="Sensors to simulate and record.")]
 
 
 def campaign(
@@ -42,7 +42,7 @@ def campaign(
     only: _Only = None,
     out: _Out = Path("runs"),
     jobs: _Jobs = 0,
-    record: _Record = Record.used,
+    record: _Record = RecordChoice.used,
     replay: Annotated[bool, typer.Option(help="Write the replay pages.")] = True,
     overrides: _Set = None,
     planner_set: _PlannerSet = None,
@@ -61,11 +61,11 @@ def campaign(
 
     Example: crowdbot campaign challenge-2020 --planner dwa --planner goal_seek --jobs 2
     """
-    from crowdbot.core.sim.campaign.order import Order
-    from crowdbot.core.sim.campaign.plan import make_plan
+    from crowdbot.core.campaign.plan import make_plan
+    from crowdbot.core.campaign.request import CampaignRequest
 
     registry = installed(plugin, no_plugins)
-    order = Order(
+    request = CampaignRequest(
         suites=suites,
         planners=planner or (),
         seeds=read_seeds(seeds),
@@ -78,7 +78,7 @@ def campaign(
         plugins=plugin or (),
         retry_failed=retry_failed,
     )
-    plan = make_plan(order, registry)
+    plan = make_plan(request, registry)
     size = _size(jobs)
     if dry_run:
         _print_plan(plan, size, as_json=as_json)
@@ -108,35 +108,35 @@ def read_seeds(text: str) -> list[int]:
 
 
 def _size(jobs: int) -> int:
-    from crowdbot.core.recording.rescore import available_cores
+    from crowdbot.core.runs.rescore import available_cores
 
     return jobs or available_cores()
 
 
 def _run(plan: Plan, size: int, cluster: str | None) -> State:
     from crowdbot.cli._campaign_view import show
-    from crowdbot.core.sim.campaign.campaign import run_campaign
-    from crowdbot.core.sim.campaign.crew import Crew, LocalCrew
+    from crowdbot.core.campaign.run import run_campaign
+    from crowdbot.core.campaign.worker_pool import LocalWorkerPool, WorkerPool
 
-    crew: Crew
+    pool: WorkerPool
     if cluster is None:
-        crew = LocalCrew(min(size, max(1, len(plan.jobs))))
+        pool = LocalWorkerPool(min(size, max(1, len(plan.jobs))))
     else:
-        from crowdbot.core.sim.campaign.cluster import ClusterCrew
+        from crowdbot.core.campaign.dask_pool import DaskWorkerPool
 
-        crew = ClusterCrew(cluster, plan.out)
-        size = crew.size
+        pool = DaskWorkerPool(cluster, plan.out)
+        size = pool.size
     with show(plan) as listener:
-        return run_campaign(plan, crew, size, listener)
+        return run_campaign(plan, pool, size, listener)
 
 
 def _print_plan(plan: Plan, size: int, *, as_json: bool) -> None:
     import shutil
 
-    there = sum(bool(w.status) for w in plan.wanted)
+    complete = sum(bool(r.status) for r in plan.runs)
     facts: dict[str, Any] = {
-        "runs": len(plan.wanted),
-        "complete": there,
+        "runs": len(plan.runs),
+        "complete": complete,
         "to_run": plan.count("run"),
         "references": plan.references,
         "references_to_run": plan.count("robot_alone") + plan.count("crowd_alone"),
@@ -150,7 +150,7 @@ def _print_plan(plan: Plan, size: int, *, as_json: bool) -> None:
         return
     root = next(p for p in (plan.out, *plan.out.parents) if p.exists())
     free = shutil.disk_usage(root).free
-    typer.echo(f"runs        {facts['runs']}, {there} complete, {facts['to_run']} to run")
+    typer.echo(f"runs        {facts['runs']}, {complete} complete, {facts['to_run']} to run")
     typer.echo(f"references  {facts['references']}, {facts['references_to_run']} to run")
     typer.echo(f"time        about {plan.seconds / size / 60.0:.1f} min with {size} processes")
     typer.echo(f"disk        about {plan.size / 1e9:.2f} GB, {free / 1e9:.0f} GB free")
@@ -160,7 +160,7 @@ def _document(state: State) -> dict[str, Any]:
     statuses = list(state.statuses.values())
     return {
         "out": str(state.plan.out),
-        "runs": len(state.plan.wanted),
+        "runs": len(state.plan.runs),
         "made": state.made,
         "statuses": {s: statuses.count(s) for s in sorted(set(statuses))},
         "failures": [

@@ -10,10 +10,10 @@ import typer
 from crowdbot.cli._options import NoPlugins, Plugins, installed
 
 if TYPE_CHECKING:
-    from crowdbot.core.comparand import Comparand
-    from crowdbot.core.diff import Difference
+    from crowdbot.core.runs.diff_side import DiffSide
+    from crowdbot.core.support.json_diff import Difference
 
-#: A longer value pushes its neighbour aside instead of all others.
+#: A longer value moves its neighbour to the right, and no others.
 _WIDEST = 72
 _SIDE = "SUITE/ID, FILE#ID, a file with one scenario, or a run directory."
 
@@ -33,12 +33,12 @@ def diff(
 
     Example: crowdbot diff challenge-2020/in-d0125-slow-c01-r02 challenge-2020/in-d0125-slow-c20-r02
     """
-    from crowdbot.core.comparand import read_comparand
-    from crowdbot.core.diff import differences
+    from crowdbot.core.runs.diff_side import read_diff_side
+    from crowdbot.core.support.json_diff import differences
 
     registry = installed(plugin, no_plugins)
-    first = read_comparand(a, registry)
-    second = read_comparand(b, registry, overrides or ())
+    first = read_diff_side(a, registry)
+    second = read_diff_side(b, registry, overrides or ())
     found = {"scenario": list(differences(first.scenario, second.scenario))}
     if first.run is not None and second.run is not None:
         found["run"] = list(differences(first.run, second.run))
@@ -50,7 +50,7 @@ def diff(
     raise typer.Exit(1 if any(found.values()) else 0)
 
 
-def _document(a: Comparand, b: Comparand, found: dict[str, list[Difference]]) -> dict[str, Any]:
+def _document(a: DiffSide, b: DiffSide, found: dict[str, list[Difference]]) -> dict[str, Any]:
     return {
         "equal": not any(found.values()),
         "a": {"name": a.name, "hash": a.hash},
@@ -59,8 +59,8 @@ def _document(a: Comparand, b: Comparand, found: dict[str, list[Difference]]) ->
     }
 
 
-def _print(a: Comparand, b: Comparand, found: dict[str, list[Difference]]) -> None:
-    from crowdbot.core.diff import shown
+def _print(a: DiffSide, b: DiffSide, found: dict[str, list[Difference]]) -> None:
+    from crowdbot.core.support.json_diff import shown
 
     for letter, side in (("a", a), ("b", b)):
         typer.echo(f"{letter}  {side.name}  {side.hash}")

@@ -15,8 +15,8 @@ from crowdbot.cli._options import NoPlugins, Plugins, installed
 from crowdbot.errors import UnknownNameError, UsageError
 
 if TYPE_CHECKING:
-    from crowdbot.core.recording.rescore import Request, Rescored
-    from crowdbot.core.registry import Registry
+    from crowdbot.core.registry.registry import Registry
+    from crowdbot.core.runs.rescore import Rescored, RescoreRequest
 
 _Runs = Annotated[
     list[Path] | None,
@@ -93,16 +93,16 @@ def evaluate(
 
     Example: crowdbot evaluate runs/challenge-2020/counter-d0500-fast-c20-r05/dwa/seed-0
     """
-    from crowdbot.core.chatter import chatter_to_stderr
-    from crowdbot.core.recording.rescore import Request, available_cores, rescore
-    from crowdbot.core.recording.source import expand_paths
+    from crowdbot.core.runs.recordings import expand_paths
+    from crowdbot.core.runs.rescore import RescoreRequest, available_cores, rescore
+    from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
     paths: list[Path | None] = [*expand_paths(runs or [])] or [None]
     _check_usage(len(paths), paths[0], out, (commands, questionnaires), user_topic)
     registry = installed(plugin, no_plugins)
     chosen = _chosen(registry, metrics, variant, experimental)
     requests = [
-        Request(
+        RescoreRequest(
             path=path,
             robot_alone=robot_alone,
             crowd_alone=crowd_alone,
@@ -119,7 +119,7 @@ def evaluate(
         )
         for path in paths
     ]
-    with chatter_to_stderr():
+    with stdout_to_stderr():
         if len(requests) == 1:
             results = [rescore(requests[0], registry)]
         else:
@@ -146,7 +146,7 @@ def _check_usage(
 
 def _chosen(registry: Registry, metrics: str, variant: str, experimental: bool) -> tuple[str, ...]:
     """Patterns of the metrics; wrong names are found before the first run is read."""
-    from crowdbot.core.evaluate import metric_specs
+    from crowdbot.core.scoring.evaluate import metric_specs
 
     known = registry.components("metric")
     patterns = [metrics]
@@ -163,10 +163,10 @@ def _chosen(registry: Registry, metrics: str, variant: str, experimental: bool) 
     return tuple(patterns)
 
 
-def _each(requests: list[Request], registry: Registry, jobs: int) -> list[Rescored]:
+def _each(requests: list[RescoreRequest], registry: Registry, jobs: int) -> list[Rescored]:
     """All runs, with progress, then what went wrong."""
     from crowdbot.cli._evaluate_output import show_progress
-    from crowdbot.core.recording.rescore import rescore_all
+    from crowdbot.core.runs.rescore import rescore_all
 
     results: list[Rescored] = []
     failed = 0

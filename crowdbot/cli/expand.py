@@ -10,7 +10,7 @@ import typer
 from crowdbot.cli._options import NoPlugins, Plugins, installed
 
 if TYPE_CHECKING:
-    from crowdbot.core.registry import Registry
+    from crowdbot.core.registry.registry import Registry
     from crowdbot.dsl.expand import Expansion
     from crowdbot.dsl.scenario import Scenario
 
@@ -39,7 +39,7 @@ def expand(
 
     Example: crowdbot expand challenge-2020 --only 'counter-*-c50-*'
     """
-    from crowdbot.core.library import open_spec
+    from crowdbot.core.scenarios.library import open_spec
 
     if explain and one is None:
         raise typer.BadParameter("--explain goes with --one ID")
@@ -63,7 +63,7 @@ def _matching(expansion: Expansion, only: str | None) -> list[Scenario]:
     Raises:
         UnknownNameError: none does.
     """
-    from crowdbot.core.library import select
+    from crowdbot.core.scenarios.library import select
     from crowdbot.errors import UnknownNameError
 
     if only is None:
@@ -75,13 +75,13 @@ def _matching(expansion: Expansion, only: str | None) -> list[Scenario]:
 
 
 def _one(
-    expansion: Expansion, wanted: str, registry: Registry, *, as_json: bool, explain: bool
+    expansion: Expansion, pattern: str, registry: Registry, *, as_json: bool, explain: bool
 ) -> str:
-    from crowdbot.core.library import pick
+    from crowdbot.core.scenarios.library import pick
     from crowdbot.dsl.canonical import canonical_bytes, dump_scenario_yaml
     from crowdbot.dsl.explain import explain_yaml
 
-    scenario = pick(expansion, wanted)
+    scenario = pick(expansion, pattern)
     if as_json:
         text = canonical_bytes(scenario, registry.spec_versions(scenario)).decode()
         content = {**_row(expansion, scenario, registry), "scenario": json.loads(text)}

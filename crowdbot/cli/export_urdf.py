@@ -12,8 +12,8 @@ from crowdbot.cli._options import NoPlugins, Plugins, installed
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from crowdbot.core.interfaces import SensorInfo
-    from crowdbot.core.registry import Registry
+    from crowdbot.core.registry.registry import Registry
+    from crowdbot.core.types.sensor import SensorInfo
     from crowdbot.dsl.scenario import Robot
 
 
@@ -37,9 +37,9 @@ def export_urdf(
 
     Example: crowdbot export-urdf robot --spec challenge-2020 --out turtlebot2.urdf
     """
-    from crowdbot.core.aside import write_aside
     from crowdbot.core.robots import build_model
-    from crowdbot.core.urdf import to_urdf
+    from crowdbot.core.robots.urdf_export import to_urdf
+    from crowdbot.core.support.atomic_write import atomic_write
 
     registry = installed(plugin, no_plugins)
     sensors: Mapping[str, SensorInfo] = {}
@@ -52,12 +52,12 @@ def export_urdf(
     if out is None:
         typer.echo(text, nl=False)
     else:
-        write_aside(out, text)
+        atomic_write(out, text)
         typer.echo(str(out), err=True)
 
 
 def _robot(registry: Registry, name: str, spec: str, id_: str | None) -> Robot:
-    from crowdbot.core.library import open_spec, pick
+    from crowdbot.core.scenarios.library import open_spec, pick
     from crowdbot.errors import UnknownNameError
 
     expansion = open_spec(spec, registry)
@@ -68,6 +68,6 @@ def _robot(registry: Registry, name: str, spec: str, id_: str | None) -> Robot:
 
 
 def _sensors(registry: Registry, robot: Robot) -> Mapping[str, SensorInfo]:
-    from crowdbot.core.sensing.guard import build_sensor
+    from crowdbot.core.sensing.build import build_sensor
 
     return {name: build_sensor(registry, spec).info() for name, spec in robot.sensors.items()}

@@ -10,7 +10,7 @@ import typer
 from crowdbot.cli._options import NoPlugins, Plugins, installed
 
 if TYPE_CHECKING:
-    from crowdbot.core.registry import Registry
+    from crowdbot.core.registry.registry import Registry
     from crowdbot.dsl.expand import Expansion
     from crowdbot.dsl.lock import LockFiles
 
@@ -34,7 +34,7 @@ def lock(
 
     Example: crowdbot lock my_suite.yaml; crowdbot lock challenge-2020 --check
     """
-    from crowdbot.core.library import open_suite
+    from crowdbot.core.scenarios.library import open_suite
 
     if check and redraw:
         raise typer.BadParameter("--check writes nothing, --redraw writes; give one of them")
@@ -47,7 +47,7 @@ def lock(
 
 
 def _check(expansion: Expansion, files: LockFiles, registry: Registry, *, as_json: bool) -> None:
-    from crowdbot.core.lock_check import differences
+    from crowdbot.core.scenarios.lock_check import differences
     from crowdbot.errors import InputError
 
     if not files.lock_path.exists():
@@ -70,8 +70,8 @@ def _check(expansion: Expansion, files: LockFiles, registry: Registry, *, as_jso
 def _write(
     expansion: Expansion, files: LockFiles, registry: Registry, *, redraw: bool, as_json: bool
 ) -> None:
-    from crowdbot.core.library import check_writable
-    from crowdbot.core.lock import make_lock, write_lock
+    from crowdbot.core.scenarios.library import check_writable
+    from crowdbot.core.scenarios.lock import make_lock, write_lock
 
     check_writable(files)
     keep = files.lock_path.exists() and not redraw

@@ -87,7 +87,7 @@ def check(
     Example: crowdbot plugins check goal_seek
     """
     from crowdbot.cli._check import Result, as_table, chosen, failed_plugins, run_checks
-    from crowdbot.core.chatter import chatter_to_stderr
+    from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
     if name is None and not plugin:
         raise typer.BadParameter("name a plugin or a kind, or give one by --plugin")
@@ -95,7 +95,7 @@ def check(
     results: list[Result] = failed_plugins(registry, name)
     if not results:
         components = chosen(registry, name)
-        with chatter_to_stderr():
+        with stdout_to_stderr():
             results = [r for c in components for r in run_checks(c, registry)]
     if as_json:
         typer.echo(json.dumps([r.as_dict() for r in results], indent=2))

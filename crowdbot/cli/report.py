@@ -144,7 +144,7 @@ def _with_reference(results: Results, given: Results | None) -> tuple[Results, t
 
 def _replays(results: Results, root: Path, out: Path) -> dict[str, str]:
     """Run id -> address of its replay page as seen from the report, where there is one."""
-    from crowdbot.core.run_directory import REPLAY
+    from crowdbot.core.runs.run_directory import REPLAY
 
     pages = {r.run_id: root / r.directory / REPLAY for r in results.runs}
     here = out.resolve().parent

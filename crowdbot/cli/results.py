@@ -11,7 +11,7 @@ import typer
 
 if TYPE_CHECKING:
     from crowdbot.core.results.rows import Results
-    from crowdbot.core.results.tables import Summary
+    from crowdbot.core.results.tables import GroupSummary
 
 results = typer.Typer(
     add_completion=False, invoke_without_command=True, pretty_exceptions_enable=False
@@ -162,7 +162,7 @@ def _only(found: Results, planners: list[str] | None, status: str | None) -> Res
     )
 
 
-def _line(summary: Summary) -> dict[str, Any]:
+def _line(summary: GroupSummary) -> dict[str, Any]:
     return {
         **summary.group,
         "metric": summary.metric,

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli._options import NoPlugins, Plugins, installed
-from crowdbot.core.aside import write_aside
+from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import UsageError
 
 if TYPE_CHECKING:
-    from crowdbot.core.registry import Registry
+    from crowdbot.core.registry.registry import Registry
 
 
-class Document(StrEnum):
+class DocumentKind(StrEnum):
     """What a schema describes."""
 
     SUITE = "suite"
@@ -28,7 +28,7 @@ class Document(StrEnum):
 
 def schema(
     document: Annotated[
-        Document, typer.Argument(help="part: a file that others name in 'extends'.")
+        DocumentKind, typer.Argument(help="part: a file that others name in 'extends'.")
     ],
     canonical: Annotated[
         bool,
@@ -44,7 +44,7 @@ def schema(
 
     Example: crowdbot schema suite --out suite.schema.json
     """
-    if canonical and document not in (Document.SCENARIO, Document.PLANNER):
+    if canonical and document not in (DocumentKind.SCENARIO, DocumentKind.PLANNER):
         raise UsageError(
             f"a {document} has no canonical form; 'crowdbot schema scenario --canonical' is that "
             "of its scenarios"
@@ -53,7 +53,7 @@ def schema(
     if out is None:
         typer.echo(text, nl=False)
     else:
-        write_aside(out, text.encode())
+        atomic_write(out, text.encode())
 
 
 def build(document: str, registry: Registry, *, canonical: bool = False) -> dict[str, Any]:
@@ -61,12 +61,12 @@ def build(document: str, registry: Registry, *, canonical: bool = False) -> dict
     from crowdbot.dsl import schema as schemas
 
     metrics = registry.components("metric")
-    if document == Document.PLANNER:
+    if document == DocumentKind.PLANNER:
         planners = [c.spec for c in registry.components("planner").values()]
         return schemas.planner_schema(planners, canonical=canonical)
-    if document == Document.SUITE:
+    if document == DocumentKind.SUITE:
         return schemas.suite_schema(registry.scenario_model, metrics)
-    if document == Document.PART:
+    if document == DocumentKind.PART:
         return schemas.part_schema(registry.scenario_model)
     if canonical:
         return schemas.canonical_scenario_schema(registry.scenario_model)

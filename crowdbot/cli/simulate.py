@@ -18,10 +18,10 @@ import typer
 from crowdbot.cli._options import NoPlugins, Plugins, installed
 
 if TYPE_CHECKING:
-    from crowdbot.core.sim.request import Run
+    from crowdbot.core.runs.request import Run
 
 
-class Record(StrEnum):
+class RecordChoice(StrEnum):
     """Which sensors are simulated and recorded."""
 
     all = "all"
@@ -49,7 +49,9 @@ def simulate(
     out: Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")] = Path(
         "runs"
     ),
-    record: Annotated[Record, typer.Option(help="Sensors to simulate and record.")] = Record.all,
+    record: Annotated[
+        RecordChoice, typer.Option(help="Sensors to simulate and record.")
+    ] = RecordChoice.all,
     references: Annotated[
         bool, typer.Option(help="Run robot_alone and crowd_alone where they are missing.")
     ] = True,
@@ -67,10 +69,10 @@ def simulate(
     Example: crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
     """
     from crowdbot.cli._progress import show_progress
-    from crowdbot.core.chatter import chatter_to_stderr
-    from crowdbot.core.library import open_spec, pick
+    from crowdbot.core.scenarios.library import open_spec, pick
+    from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
-    with chatter_to_stderr():
+    with stdout_to_stderr():
         registry = installed(plugin, no_plugins)
         expansion = open_spec(spec, registry, overrides or ())
         chosen = pick(expansion, scenario)
@@ -163,8 +165,8 @@ def _end_hung_process() -> None:
 
 
 def _print(run: Run, *, as_json: bool) -> None:
-    from crowdbot.core.run_directory import REPLAY, SCORES
-    from crowdbot.core.scores_table import headlines, read_scores_csv, scores_table
+    from crowdbot.core.runs.run_directory import REPLAY, SCORES
+    from crowdbot.core.scoring.scores_csv import headlines, read_scores_csv, scores_table
 
     rows = read_scores_csv(run.directory / SCORES)
     if run.record["status"] == "planner_failed":
@@ -201,7 +203,7 @@ def _print(run: Run, *, as_json: bool) -> None:
 
 
 def _summary(run: Run) -> str:
-    from crowdbot.core.provenance import remarks
+    from crowdbot.core.runs.provenance import remarks
 
     record = run.record
     ending = {

@@ -13,7 +13,7 @@ from crowdbot.cli._options import NoPlugins, Plugins, installed
 from crowdbot.errors import SpecError, UnknownNameError
 
 if TYPE_CHECKING:
-    from crowdbot.core.registry import Registry
+    from crowdbot.core.registry.registry import Registry
     from crowdbot.dsl.diagnostics import Diagnostic
 
 _LOG = logging.getLogger(__name__)
@@ -57,7 +57,7 @@ def validate(
 
 def _check(spec: str, registry: Registry) -> tuple[int, list[Diagnostic]]:
     """Number of scenarios, errors."""
-    from crowdbot.core.library import open_spec
+    from crowdbot.core.scenarios.library import open_spec
     from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
 
     try:

@@ -15,8 +15,8 @@ from crowdbot.cli._options import NoPlugins, Plugins, installed
 if TYPE_CHECKING:
     from crowdbot.core.bundle.archive import Archive
     from crowdbot.core.bundle.check import ClaimedRun
-    from crowdbot.core.bundle.judge import Judgement
-    from crowdbot.core.registry import Registry
+    from crowdbot.core.bundle.rerun_verdict import RerunVerdict
+    from crowdbot.core.registry.registry import Registry
     from crowdbot.dsl.expand import Expansion
 
 _SAYS = {
@@ -44,7 +44,7 @@ def verify(
         typer.Option(metavar="FILE.py:CLASS", help="The planner, where it is not installed."),
     ] = None,
     suite: Annotated[
-        str | None, typer.Option(metavar="SPEC", help="The suite, where it is no packaged one.")
+        str | None, typer.Option(metavar="SPEC", help="The suite, where it is not a packaged one.")
     ] = None,
     save: Annotated[
         bool, typer.Option("--save", help="Write the outcome to NAME.verified.json beside it.")
@@ -59,16 +59,16 @@ def verify(
     """
     from crowdbot.core.bundle.archive import open_archive
     from crowdbot.core.bundle.verification import content_hash, save_verification
-    from crowdbot.core.chatter import chatter_to_stderr
+    from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
     registry = installed(plugin, no_plugins)
     seed = secrets.randbelow(2**32) if seed is None else seed
     size = None if everything else sample
-    with open_archive(bundle) as archive, chatter_to_stderr():
+    with open_archive(bundle) as archive, stdout_to_stderr():
         digest = content_hash(bundle)
-        judgement = _verify(archive, registry, suite, planner, (size, seed, digest))
+        verdict = _verify(archive, registry, suite, planner, (size, seed, digest))
         label, edition = archive.manifest.label, archive.manifest.edition.name
-    document = _document(judgement, seed, digest)
+    document = _document(verdict, seed, digest)
     if save:
         save_verification(bundle, document)
     if as_json:
@@ -83,10 +83,10 @@ def _verify(
     registry: Registry,
     suite: str | None,
     planner: str | None,
-    draw: tuple[int | None, int, str],
-) -> Judgement:
+    sample: tuple[int | None, int, str],
+) -> RerunVerdict:
     from crowdbot.core.bundle.check import check_members, check_suite, claimed_runs
-    from crowdbot.core.bundle.judge import Judgement
+    from crowdbot.core.bundle.rerun_verdict import RerunVerdict
 
     problems = list(check_members(archive))
     runs, wrong = claimed_runs(archive)
@@ -94,14 +94,14 @@ def _verify(
     problems += [p for p in wrong if p not in problems]
     problems += [p for p in check_suite(archive, expansion, registry) if p not in problems]
     if problems:
-        return Judgement(outcome="invalid", findings=tuple(problems))
-    if draw[0] == 0:
-        return Judgement(outcome="not re-run")
-    return _make_again(archive, expansion, registry, planner, runs, draw)
+        return RerunVerdict(outcome="invalid", findings=tuple(problems))
+    if sample[0] == 0:
+        return RerunVerdict(outcome="not re-run")
+    return _make_reruns(archive, expansion, registry, planner, runs, sample)
 
 
 def _suite(archive: Archive, registry: Registry, given: str | None) -> Expansion:
-    from crowdbot.core.library import open_spec, suite_names
+    from crowdbot.core.scenarios.library import open_spec, suite_names
     from crowdbot.errors import InputError
 
     name = archive.manifest.edition.suite
@@ -115,48 +115,53 @@ def _suite(archive: Archive, registry: Registry, given: str | None) -> Expansion
     return expansion
 
 
-def _make_again(
+def _make_reruns(
     archive: Archive,
     expansion: Expansion,
     registry: Registry,
     planner: str | None,
     runs: Sequence[ClaimedRun],
-    draw: tuple[int | None, int, str],
-) -> Judgement:
+    sample: tuple[int | None, int, str],
+) -> RerunVerdict:
     from crowdbot.cli._progress import show_progress
     from crowdbot.cli.simulate import _end_hung_process, _import_simulate, _interruptible
-    from crowdbot.core.bundle.judge import Again, Judgement, judge
+    from crowdbot.core.bundle.rerun_verdict import RerunVerdict, verdict_of
 
     _import_simulate()  # says what is missing where Drake cannot be imported
-    from crowdbot.core.sim.verify import NotRunnable, Rerun, choose_planner, draw_sample, make_again
+    from crowdbot.core.campaign.verify import (
+        NotRunnable,
+        RerunSetup,
+        choose_planner,
+        draw_sample,
+        make_rerun,
+    )
 
     try:
         choice = choose_planner(archive.manifest, registry, planner)
     except NotRunnable as error:
-        return Judgement(outcome="cannot be re-run", findings=(str(error),))
-    size, seed, content = draw
-    found: list[Again] = []
+        return RerunVerdict(outcome="cannot be re-run", findings=(str(error),))
+    size, seed, content = sample
     with _interruptible() as stop, show_progress() as progress:
-        rerun = Rerun(
+        setup = RerunSetup(
             expansion=expansion, registry=registry, choice=choice, progress=progress, stop=stop,
             on_hang=_end_hung_process,
         )  # fmt: skip
-        for number in draw_sample(runs, size, seed, content):
-            found.append(make_again(rerun, runs[number]))
-    return judge(found)
+        numbers = draw_sample(runs, size, seed, content)
+        reruns = [make_rerun(setup, runs[number]) for number in numbers]
+    return verdict_of(reruns)
 
 
-def _document(judgement: Judgement, seed: int, digest: str) -> dict[str, Any]:
-    from crowdbot.core import provenance
-    from crowdbot.core.bundle.judge import FINE
+def _document(verdict: RerunVerdict, seed: int, digest: str) -> dict[str, Any]:
+    from crowdbot.core.bundle.rerun_verdict import FINE
+    from crowdbot.core.runs import provenance
 
     return {
-        "outcome": judgement.outcome,
-        "ok": judgement.outcome in FINE,
+        "outcome": verdict.outcome,
+        "ok": verdict.outcome in FINE,
         "sha256": digest,
         "seed": seed,
-        "findings": list(judgement.findings),
-        "runs": dict(judgement.relations),
+        "findings": list(verdict.findings),
+        "runs": dict(verdict.relations),
         "crowdbot": provenance.versions()["crowdbot"],
         "machine": provenance.machine(),
     }

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli._options import NoPlugins, Plugins, installed
-from crowdbot.core.aside import write_aside
+from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError, UsageError
 
 if TYPE_CHECKING:
-    from crowdbot.core.registry import Registry
+    from crowdbot.core.registry.registry import Registry
     from crowdbot.core.view.shapes import Drawing
 
 _FORMATS = (".html", ".svg", ".png")
@@ -49,7 +49,9 @@ def view(
             raise UsageError(f"{spec} is a run, whose page is there already: no ID, --out or --set")
         path = _replay(Path(spec))
     else:
-        path, facts = _draw(installed(plugin, no_plugins), spec, scenario, out, overrides or [])
+        path, facts = _render_map(
+            installed(plugin, no_plugins), spec, scenario, out, overrides or []
+        )
     if as_json:
         typer.echo(json.dumps({"path": str(path), "facts": facts}, indent=2, ensure_ascii=False))
     else:
@@ -59,7 +61,7 @@ def view(
 
 
 def _replay(run: Path) -> Path:
-    from crowdbot.core.run_directory import RECORD, REPLAY
+    from crowdbot.core.runs.run_directory import RECORD, REPLAY
 
     if not (run / RECORD).is_file():
         raise InputError(f"{run}: no run directory, there is no {RECORD} in it")
@@ -68,32 +70,34 @@ def _replay(run: Path) -> Path:
     return run / REPLAY
 
 
-def _draw(
-    registry: Registry, spec: str, wanted: str | None, out: Path | None, overrides: list[str]
+def _render_map(
+    registry: Registry, spec: str, pattern: str | None, out: Path | None, overrides: list[str]
 ) -> tuple[Path, dict[str, str]]:
-    from crowdbot.core.library import open_spec, pick
-    from crowdbot.core.lock import population
-    from crowdbot.core.view.build import build_scene
-    from crowdbot.core.view.draw import draw
+    from crowdbot.core.scenarios.library import open_spec, pick
+    from crowdbot.core.scenarios.lock import population
+    from crowdbot.core.view.build import build_map_content
     from crowdbot.core.view.facts import scenario_facts
+    from crowdbot.core.view.render import render
     from crowdbot.dsl.canonical import content_hash
 
     if out is not None and out.suffix.lower() not in _FORMATS:
         raise UsageError(f"--out {out}: the name must end in {', '.join(_FORMATS)}")
     expansion = open_spec(spec, registry, overrides)
-    chosen = pick(expansion, wanted)
+    chosen = pick(expansion, pattern)
     people = population(chosen, registry)
     spec_hash = content_hash(chosen, registry.spec_versions(chosen))
     facts = scenario_facts(chosen, people.agents, spec_hash)
     title = chosen.id if expansion.single else f"{expansion.suite_id}/{chosen.id}"
     path = out or Path(f"{chosen.id.replace('/', '_')}.html")
-    scene = build_scene(chosen, people.agents, registry)
+    content = build_map_content(chosen, people.agents, registry)
     heading = path.suffix.lower() != ".html"
-    write_aside(path, _content(draw(scene, title, facts, heading=heading), path.suffix.lower()))
+    atomic_write(
+        path, _serialise(render(content, title, facts, heading=heading), path.suffix.lower())
+    )
     return path, facts
 
 
-def _content(drawing: Drawing, suffix: str) -> bytes:
+def _serialise(drawing: Drawing, suffix: str) -> bytes:
     if suffix == ".png":
         from crowdbot.core.view.png import to_png
 

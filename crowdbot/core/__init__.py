@@ -3,6 +3,6 @@
 Only `crowdbot.core.sim` knows Drake.
 """
 
-from crowdbot.core.kernel_cache import use_kernel_cache
+from crowdbot.core.support.compile_cache import use_kernel_cache
 
 use_kernel_cache()

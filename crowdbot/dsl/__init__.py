@@ -1,4 +1,91 @@
-"""The words of crowdbot: specs, YAML, matrices, hashes, diagnostics.
+"""The scenario language: specs, YAML, matrices, hashes, diagnostics.
 
-Imports the standard library, pydantic and ruamel.yaml only.
+Its names here are what the spec side of a plugin imports; the build side is in
+`crowdbot.core.interfaces`. The language imports the standard library, pydantic and ruamel.yaml
+only.
 """
+
+from crowdbot.dsl.assets import Asset
+from crowdbot.dsl.component import Component
+from crowdbot.dsl.component_specs import (
+    CostFunctionSpec,
+    CrowdPolicySpec,
+    EnvironmentSpec,
+    MetricSpec,
+    NoiseSpec,
+    PlannerSpec,
+    RobotSpec,
+    SensorSpec,
+)
+from crowdbot.dsl.metric_component import Better, MetricComponent, MetricVariant, declare_metric
+from crowdbot.dsl.metric_invariants import MetricInvariants
+from crowdbot.dsl.quantities import (
+    Angle,
+    Length,
+    NonNegativeDamping,
+    NonNegativeDuration,
+    NonNegativeLength,
+    NonNegativeSpeed,
+    NonNegativeSteeringStiffness,
+    PositiveAcceleration,
+    PositiveAngle,
+    PositiveAngularAcceleration,
+    PositiveAngularSpeed,
+    PositiveDensity,
+    PositiveDuration,
+    PositiveFrequency,
+    PositiveLength,
+    PositiveMass,
+    PositiveSpeed,
+    PositiveStiffness,
+    Quantity,
+    Speed,
+)
+from crowdbot.dsl.range_sensor import MOST_RAYS, Incidence, RangeSensorSpec
+from crowdbot.dsl.spec import ComponentSpec, Mount, Range, Rectangle, Spec
+
+__all__ = [
+    "MOST_RAYS",
+    "Angle",
+    "Asset",
+    "Better",
+    "Component",
+    "ComponentSpec",
+    "CostFunctionSpec",
+    "CrowdPolicySpec",
+    "EnvironmentSpec",
+    "Incidence",
+    "Length",
+    "MetricComponent",
+    "MetricInvariants",
+    "MetricSpec",
+    "MetricVariant",
+    "Mount",
+    "NoiseSpec",
+    "NonNegativeDamping",
+    "NonNegativeDuration",
+    "NonNegativeLength",
+    "NonNegativeSpeed",
+    "NonNegativeSteeringStiffness",
+    "PlannerSpec",
+    "PositiveAcceleration",
+    "PositiveAngle",
+    "PositiveAngularAcceleration",
+    "PositiveAngularSpeed",
+    "PositiveDensity",
+    "PositiveDuration",
+    "PositiveFrequency",
+    "PositiveLength",
+    "PositiveMass",
+    "PositiveSpeed",
+    "PositiveStiffness",
+    "Quantity",
+    "Range",
+    "RangeSensorSpec",
+    "Rectangle",
+    "RobotSpec",
+    "SensorSpec",
+    "Spec",
+    "Speed",
+    "declare_metric",
+]

@@ -60,7 +60,7 @@ class _Table:
         return Node(top, tuple(found))
 
     def _columns(self, number: int, line: str) -> list[str | None] | None:
-        """Names of the columns, None for one of no use; None for a header that is none."""
+        """Names of the columns, None for one of no use; None for a header that is not one."""
         if not line:
             self._add(
                 "the table is empty", Mark(self.source), f"columns: {', '.join(_REQUIRED)}, …"

@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 from pydantic import Discriminator, Field, Tag
 
-from crowdbot.dsl.base import Rectangle, Spec
 from crowdbot.dsl.quantities import Angle, Length, PositiveLength
+from crowdbot.dsl.spec import Rectangle, Spec
 from crowdbot.dsl.unions import AnyOf
 
 

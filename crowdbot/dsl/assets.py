@@ -14,8 +14,8 @@ from typing import Annotated, Any
 from annotated_types import MinLen
 from pydantic import ConfigDict, Field, PrivateAttr, model_validator
 
-from crowdbot.dsl.base import Spec
-from crowdbot.dsl.text_files import open_file
+from crowdbot.dsl.bounded_files import open_file
+from crowdbot.dsl.spec import Spec
 from crowdbot.errors import InputError
 
 MAX_BYTES = 1 << 30
@@ -89,7 +89,7 @@ def sha256_of(file: Path) -> str:
     """SHA-256 of a file's content, in hexadecimal digits.
 
     Raises:
-        OSError: it cannot be read, is no plain file or larger than 1 GiB.
+        OSError: it cannot be read, is not a plain file or larger than 1 GiB.
     """
     with open_file(file) as stream:
         digest, size = hashlib.sha256(), 0

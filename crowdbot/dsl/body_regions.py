@@ -1,4 +1,4 @@
-"""How stiff the regions of a human body are: words for a stiffness.
+"""How stiff the regions of a human body are: names for a stiffness.
 
 The values are the effective spring constants of the body model of ISO/TS 15066:2016, annex A,
 table A.3, which go back to BG/BGIA recommendations U 001/2009. The standard itself is not free;
@@ -47,10 +47,10 @@ class BodyRegion:
 
     @staticmethod
     def parse(value: object) -> object:
-        """The stiffness of a region (N/m); what is no bare word is left alone.
+        """The stiffness of a region (N/m); what is not a bare word is left alone.
 
         Raises:
-            PydanticCustomError: ``quantity``, the word is no region.
+            PydanticCustomError: ``quantity``, the word is not a region.
         """
         if not isinstance(value, str) or not value.isidentifier():
             return value

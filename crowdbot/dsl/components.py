@@ -4,15 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from crowdbot.dsl.base import ComponentSpec, CostFunctionSpec, CrowdPolicySpec
-from crowdbot.dsl.proximity import ProximitySpec
+from crowdbot.dsl.component_specs import CostFunctionSpec, CrowdPolicySpec
 from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.spec import ComponentSpec
 
 Path = tuple[str, ...]
 
 
 def components(scenario: Scenario) -> Iterator[tuple[Path, ComponentSpec]]:
-    """Path and spec of every component."""
+    """Path and spec of every component; those that others are made of follow them."""
+    for path, spec in _stated(scenario):
+        yield path, spec
+        for name, part in spec.parts().items():
+            yield (*path, spec.parts_field, name), part
+
+
+def _stated(scenario: Scenario) -> Iterator[tuple[Path, ComponentSpec]]:
     yield ("environment",), scenario.environment
     if (crowd := scenario.crowd) is not None:
         yield from _policy(("crowd",), crowd.policy, crowd.costs)
@@ -21,10 +28,7 @@ def components(scenario: Scenario) -> Iterator[tuple[Path, ComponentSpec]]:
     for name, robot in scenario.robots.items():
         yield ("robots", name, "model"), robot.model
         for sensor, spec in robot.sensors.items():
-            above = ("robots", name, "sensors", sensor)
-            yield above, spec
-            for noise, generator in spec.noise.items() if isinstance(spec, ProximitySpec) else ():
-                yield (*above, "noise", noise), generator
+            yield ("robots", name, "sensors", sensor), spec
 
 
 def _policy(

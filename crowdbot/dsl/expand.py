@@ -17,10 +17,10 @@ from crowdbot.dsl.installed import Installed
 from crowdbot.dsl.matrix import REPLICATE, combinations
 from crowdbot.dsl.merge import merge, nest, undot
 from crowdbot.dsl.nodes import Entry, Node, parse, to_data
-from crowdbot.dsl.reuse import ValidParts
 from crowdbot.dsl.scenario import Scenario
-from crowdbot.dsl.suite import Suite, read_suite
+from crowdbot.dsl.suite import ParsedSuite, read_suite
 from crowdbot.dsl.validation import locate, validate
+from crowdbot.dsl.validation_cache import ValidParts
 from crowdbot.errors import SpecError, UsageError
 
 #: With these the rest of a document is still worth looking at.
@@ -64,7 +64,7 @@ def load_document(
     *,
     name: str = "",
     installed: Installed | None = None,
-) -> Suite:
+) -> ParsedSuite:
     """Read a suite or scenario file and everything it extends.
 
     Args:
@@ -87,7 +87,7 @@ def load_document(
 
 
 def expand_document(
-    suite: Suite, scenario_model: type[Scenario], overrides: Sequence[str] = ()
+    suite: ParsedSuite, scenario_model: type[Scenario], overrides: Sequence[str] = ()
 ) -> Expansion:
     """Expand and validate all scenarios of a document.
 
@@ -130,7 +130,7 @@ class _Bare:
 class _Expander:
     """One expansion: memories of shared parts, and the errors so far."""
 
-    def __init__(self, suite: Suite, model: type[Scenario], overrides: Sequence[str]) -> None:
+    def __init__(self, suite: ParsedSuite, model: type[Scenario], overrides: Sequence[str]) -> None:
         self._suite, self._model = suite, model
         self._errors: dict[tuple[str, Mark, str], _Folded] = {}
         self._problems = list(suite.problems)

@@ -10,11 +10,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from crowdbot.dsl.agents_csv import read_agents
+from crowdbot.dsl.bounded_files import read_text
 from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
 from crowdbot.dsl.finder import Finder, Roots
 from crowdbot.dsl.merge import merge, undot
 from crowdbot.dsl.nodes import Node, parse
-from crowdbot.dsl.text_files import read_text
 from crowdbot.errors import SpecError
 
 MAX_INCLUDES = 64

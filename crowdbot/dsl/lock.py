@@ -1,8 +1,8 @@
 """A lock: which scenarios a suite has, with hashes, and the agents that were drawn for them.
 
-Two files beside ``NAME.yaml``: ``NAME.lock.json`` (`Lock`) and ``NAME.agents.csv``, the tables of
-all draws one below the other, whose first column names the draw. The words only: nothing is drawn
-here, and no table becomes numbers.
+Two files beside ``NAME.yaml``: ``NAME.lock.json`` (`Lock`) and ``NAME.agents.csv``, all tables one
+below the other, whose first column, ``draw``, names the table. Text only: nothing is drawn here,
+and no table is turned into numbers.
 """
 
 from __future__ import annotations
@@ -11,33 +11,24 @@ import csv
 import hashlib
 import io
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from annotated_types import Ge
 from pydantic import Field, ValidationError
 
-from crowdbot.dsl.areas import Area
-from crowdbot.dsl.base import Spec
-from crowdbot.dsl.spawning import CLEAR_OF_ROBOT
+from crowdbot.dsl.spec import Spec
 from crowdbot.errors import InputError
-
-if TYPE_CHECKING:
-    from crowdbot.dsl.scenario import Scenario
 
 #: The version of the lock format that this release reads and writes.
 LOCK = 1
 
-#: What of a crowd has no part in its drawing; everything else of it, and the environment, has.
-NOT_DRAWN = ("policy", "policies", "costs", "robot_response")
-
 Values = dict[str, Any]
 
 
-class Draw(Spec):
+class LockedTable(Spec):
     """A table of agents."""
 
     inputs: str = Field(description="Hash of everything that the drawing depends on.")
@@ -65,23 +56,23 @@ class Lock(Spec):
     suite: str = Field(description="Id of the suite.")
     kinds: dict[str, int] = Field(description="Kind -> spec_version of all components.")
     common: Values = Field(description="Fields that are equal in all scenarios.")
-    draws: dict[str, Draw] = Field(description="The tables, by name.")
+    draws: dict[str, LockedTable] = Field(description="The tables, by name.")
     scenarios: dict[str, LockedScenario] = Field(description="By id, in the suite's order.")
 
-    def draw_of(self, inputs: str) -> str | None:
+    def table_of(self, inputs: str) -> str | None:
         """The name of the table that was drawn from these inputs."""
         return self._by_inputs.get(inputs)
 
     @cached_property
     def _by_inputs(self) -> dict[str, str]:
-        return {draw.inputs: name for name, draw in self.draws.items()}
+        return {table.inputs: name for name, table in self.draws.items()}
 
     def values_of(self, id_: str) -> Values:
         """All fields of one scenario when it was locked, by dotted path."""
         return {**self.common, **self.scenarios[id_].values}
 
     def text(self) -> str:
-        """The file: JSON, one line a scenario, a draw or a common field."""
+        """The file: JSON, one line a scenario, a table or a common field."""
         parts = []
         for name, value in self.model_dump(mode="json").items():
             if isinstance(value, dict) and value:
@@ -112,16 +103,16 @@ class LockFiles:
         """The lock.
 
         Raises:
-            InputError: there is none, or it is none.
+            InputError: there is none, or it is not a lock.
         """
         return parse_lock(_read(self.lock_path), self.lock_path.name, self.spec)
 
     @cached_property
     def tables(self) -> dict[str, str]:
-        """Draw -> its table as text; "" -> a table of nobody.
+        """Name -> table as text; "" -> a table of nobody.
 
         Raises:
-            InputError: the file is missing, or is no such file.
+            InputError: the file is missing, or is not such a file.
         """
         return split_tables(_read(self.agents_path), self.agents_path.name)
 
@@ -146,20 +137,6 @@ class LockFiles:
         return f"'crowdbot lock {self.spec}'"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Locked:
-    """Where a scenario is locked.
-
-    Attributes:
-        files: of the suite.
-        origin: gives the scenario as the suite has it, without ``--set`` and whatever else was
-            changed since.
-    """
-
-    files: LockFiles
-    origin: Callable[[], Scenario]
-
-
 def lock_paths(document: Path) -> tuple[Path, Path]:
     """The lock and the agents beside a document."""
     return document.with_suffix(".lock.json"), document.with_suffix(".agents.csv")
@@ -169,7 +146,7 @@ def parse_lock(text: str, name: str, spec: str) -> Lock:
     """A lock from its text.
 
     Raises:
-        InputError: it is none, or a newer release wrote it.
+        InputError: it is not a lock, or a newer release wrote it.
     """
     again = f"restore it, or delete it and run 'crowdbot lock {spec}'"
     try:
@@ -184,62 +161,42 @@ def parse_lock(text: str, name: str, spec: str) -> Lock:
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         place = ".".join(str(p) for p in first["loc"])
-        raise InputError(f"{name} is no lock: {place}: {first['msg']}; {again}") from None
+        raise InputError(f"{name} is not a lock: {place}: {first['msg']}; {again}") from None
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{name} is no lock: {error}; {again}") from None
+        raise InputError(f"{name} is not a lock: {error}; {again}") from None
 
 
 def split_tables(text: str, name: str) -> dict[str, str]:
-    """Draw -> its table as text, taken from the file of all tables; "" -> a table of nobody.
+    """Name -> table as text, taken from the file of all tables; "" -> a table of nobody.
 
     Raises:
-        InputError: the text is no such file.
+        InputError: the text is not such a file.
     """
     try:
         rows = list(csv.reader(io.StringIO(text, newline=""), strict=True))
     except csv.Error as error:
-        raise InputError(f"{name} is no table of agents: {error}") from None
+        raise InputError(f"{name} is not a table of agents: {error}") from None
     if not rows or rows[0][:1] != ["draw"] or not all(rows):
-        raise InputError(f"{name} is no table of agents: its first column must be 'draw'")
+        raise InputError(f"{name} is not a table of agents: its first column must be 'draw'")
     grouped: dict[str, list[list[str]]] = {"": [rows[0][1:]]}
     for row in rows[1:]:
         grouped.setdefault(row[0], [rows[0][1:]]).append(row[1:])
-    return {draw: _to_csv(table) for draw, table in grouped.items()}
+    return {key: _to_csv(table) for key, table in grouped.items()}
 
 
 def join_tables(tables: Mapping[str, str]) -> str:
     """The file of all tables; tables without agents have no rows in it."""
     lines: list[list[str]] = []
-    for draw, text in tables.items():
+    for name, text in tables.items():
         header, *rows = csv.reader(io.StringIO(text, newline=""))
         lines = lines or [["draw", *header]]
-        lines += [[draw, *row] for row in rows]
+        lines += [[name, *row] for row in rows]
     return _to_csv(lines or [["draw"]])
 
 
 def table_hash(table: str) -> str:
     """The realisation hash of a table as text."""
     return f"cb1-sha256:{hashlib.sha256(table.encode()).hexdigest()}"
-
-
-def draw_inputs(scenario: Scenario) -> str:
-    """Hash of everything that the drawing of a scenario's crowd may depend on."""
-    content = scenario.model_dump(mode="json", include={"environment", "crowd"})
-    crowd = {k: v for k, v in (content["crowd"] or {}).items() if k not in NOT_DRAWN}
-    robots = {"robots": starts} if (starts := _starts_among_people(scenario)) else {}
-    text = json.dumps({**content, "crowd": crowd, **robots}, sort_keys=True, separators=(",", ":"))
-    return table_hash(text)
-
-
-def _starts_among_people(scenario: Scenario) -> list[tuple[float, float]]:
-    """Starts of robots that are so near to an area of people that they may move somebody."""
-    crowd, zones = scenario.crowd, scenario.environment.zones
-    if crowd is None:
-        return []
-    places = [*([crowd.flow.area] if crowd.flow else []), *(s.area for s in crowd.spawns.values())]
-    areas = [Area.of(zones[p]) if isinstance(p, str) else p for p in places]
-    starts = sorted(robot.task.start[:2] for robot in scenario.robots.values())
-    return [xy for xy in starts if any(a.distance(*xy) < CLEAR_OF_ROBOT for a in areas)]
 
 
 def split_values(all_values: Mapping[str, Values]) -> tuple[Values, dict[str, Values]]:

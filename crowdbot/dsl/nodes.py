@@ -120,7 +120,7 @@ def parse(text: str, source: Source, problems: list[Diagnostic], shift: int = 0)
         shift: columns by which the first line of the text is moved in the source.
 
     Raises:
-        SpecError: the text is no YAML, or nothing sensible can follow.
+        SpecError: the text is not YAML, or nothing sensible can follow.
     """
     return _Builder(text, source, problems, shift).document()
 

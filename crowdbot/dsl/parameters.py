@@ -7,7 +7,6 @@ from typing import Annotated, Any, ClassVar
 from annotated_types import Ge
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
-from crowdbot.dsl.base import Spec
 from crowdbot.dsl.quantities import (
     NonNegativeDuration,
     NonNegativeLength,
@@ -18,10 +17,11 @@ from crowdbot.dsl.quantities import (
     PositiveSpeed,
     Quantity,
 )
+from crowdbot.dsl.spec import Spec
 from crowdbot.dsl.unions import AnyOf
 
 
-class Draw(Spec):
+class Sample(Spec):
     """A number that each agent draws: even between value - spread and value + spread.
 
     A bare number is short for one without spread.
@@ -38,7 +38,7 @@ class Draw(Spec):
         return {"value": value} if isinstance(value, int | float | str) else value
 
     @model_validator(mode="after")
-    def _stays_positive(self) -> Draw:
+    def _stays_positive(self) -> Sample:
         if self.spread > self.value or (self.spread == self.value and not self.may_be_zero):
             raise ValueError(
                 f"the spread {self.spread:g} must be smaller than the value {self.value:g}"
@@ -46,21 +46,21 @@ class Draw(Spec):
         return self
 
 
-class LengthDraw(Draw):
+class LengthSample(Sample):
     """A length, m; each agent draws evenly between value - spread and value + spread."""
 
     value: PositiveLength = Field(description="Middle, m.")
     spread: NonNegativeLength = Field(default=0.0, description="Largest difference from it, m.")
 
 
-class SpeedDraw(Draw):
+class SpeedSample(Sample):
     """A speed, m/s; each agent draws evenly between value - spread and value + spread."""
 
     value: PositiveSpeed = Field(description="Middle, m/s.")
     spread: NonNegativeSpeed = Field(default=0.0, description="Largest difference from it, m/s.")
 
 
-class AccelerationDraw(Draw):
+class AccelerationSample(Sample):
     """An acceleration, m/s^2; each agent draws evenly between value - spread and value + spread."""
 
     value: PositiveAcceleration = Field(description="Middle, m/s^2.")
@@ -69,7 +69,7 @@ class AccelerationDraw(Draw):
     )
 
 
-class MassDraw(Draw):
+class MassSample(Sample):
     """A mass, kg; each agent draws evenly between value - spread and value + spread."""
 
     value: PositiveMass = Field(description="Middle, kg.")
@@ -78,7 +78,7 @@ class MassDraw(Draw):
     )
 
 
-class DurationDraw(Draw):
+class DurationSample(Sample):
     """A duration, s; each agent draws evenly between value - spread and value + spread."""
 
     may_be_zero: ClassVar[bool] = True
@@ -102,7 +102,7 @@ def _speed_tag(value: Any) -> str:
 
 #: Preferred speeds: normal, or even around a value.
 SpeedChoice = Annotated[
-    Annotated[SpeedDraw, Tag("<uniform>")] | Annotated[SpeedDistribution, Tag("<normal>")],
+    Annotated[SpeedSample, Tag("<uniform>")] | Annotated[SpeedDistribution, Tag("<normal>")],
     Discriminator(_speed_tag),
     AnyOf(),
 ]

@@ -75,7 +75,7 @@ class Quantity:
         """Turn text into an SI float; leave everything else to the float schema.
 
         Raises:
-            PydanticCustomError: ``quantity``, the text is no number with a unit of this
+            PydanticCustomError: ``quantity``, the text is not a number with a unit of this
                 dimension; its context has ``text``, ``dimension``, ``units`` and ``hint``.
         """
         if not isinstance(value, str):

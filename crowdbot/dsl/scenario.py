@@ -1,12 +1,13 @@
 """Scenario: everything the robot meets, fully explicit. No planner.
 
-The classes here are typed with abstract component specs. `crowdbot.core.registry` narrows them
-to the components that are installed; the base classes refuse to validate.
+The classes here are typed with abstract component specs. `crowdbot.core.registry.registry` narrows
+them to the components that are installed; the base classes refuse to validate.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le, Lt
@@ -20,16 +21,15 @@ from pydantic import (
 )
 
 from crowdbot.dsl.areas import GoalArea
-from crowdbot.dsl.base import (
+from crowdbot.dsl.body_regions import BodyRegion
+from crowdbot.dsl.component_specs import (
     CostFunctionSpec,
     CrowdPolicySpec,
     EnvironmentSpec,
     RobotSpec,
     SensorSpec,
-    Spec,
 )
-from crowdbot.dsl.body_regions import BodyRegion
-from crowdbot.dsl.lock import Locked
+from crowdbot.dsl.lock import LockFiles
 from crowdbot.dsl.parameters import SpeedDistribution
 from crowdbot.dsl.quantities import (
     Angle,
@@ -47,6 +47,7 @@ from crowdbot.dsl.quantities import (
     PositiveStiffness,
 )
 from crowdbot.dsl.spawning import Agents, RouteEnd, Spawn
+from crowdbot.dsl.spec import Spec
 
 #: What an agent does at the end of its route.
 AtGoal = Literal["portal", RouteEnd]
@@ -179,7 +180,7 @@ class Goal(Spec):
     zone: str = Field(description="Name of the goal zone.")
 
 
-class Task(Spec):
+class TaskSpec(Spec):
     """What the robot is asked to do."""
 
     start: tuple[Length, Length, Angle] = Field(
@@ -199,7 +200,7 @@ class Robot(Spec):
         description="How commands become motion. Default of a holonomic robot: force.",
     )
     sensors: dict[str, SerializeAsAny[SensorSpec]] = Field(default={}, description="Named sensors.")
-    task: Task
+    task: TaskSpec
 
     @field_validator("control")
     @classmethod
@@ -239,6 +240,20 @@ class Rates(Spec):
         if value not in (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0):
             raise ValueError("must be a power of two from 1 to 128 Hz")
         return value
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Locked:
+    """Where a scenario is locked.
+
+    Attributes:
+        files: of the suite.
+        origin: gives the scenario as the suite has it, without ``--set`` and whatever else was
+            changed since.
+    """
+
+    files: LockFiles
+    origin: Callable[[], Scenario]
 
 
 class Scenario(Spec):
@@ -289,5 +304,5 @@ __all__ = [
     "RobotResponse",
     "Scenario",
     "SpeedDistribution",
-    "Task",
+    "TaskSpec",
 ]

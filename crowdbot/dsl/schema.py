@@ -14,9 +14,9 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from pydantic import BaseModel
 
-from crowdbot.dsl.base import ComponentSpec
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.dsl.schema_parts import Json, Parts, described
+from crowdbot.dsl.spec import ComponentSpec
 from crowdbot.dsl.suite import FORMAT, ScenarioDocument, SuiteDocument
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from crowdbot.dsl.components import components
 from crowdbot.dsl.diagnostics import Diagnostic
 from crowdbot.dsl.nodes import Node
-from crowdbot.dsl.scenario import Scenario, Task
+from crowdbot.dsl.scenario import Scenario, TaskSpec
 from crowdbot.dsl.semantics_agents import check_agents
 from crowdbot.dsl.semantics_crowd import check_crowd
 from crowdbot.dsl.semantics_facts import Facts
@@ -33,7 +33,7 @@ def _check_kinds(scenario: Scenario, tree: Node) -> Iterator[Diagnostic]:
             yield missing_field(tree, place, "kind")
 
 
-def _check_task(facts: Facts, name: str, task: Task) -> Iterator[Diagnostic]:
+def _check_task(facts: Facts, name: str, task: TaskSpec) -> Iterator[Diagnostic]:
     zones, path = facts.scenario.environment.zones, ("robots", name, "task")
     if task.goal.zone not in zones:
         yield facts.unknown("zone", task.goal.zone, zones, *path, "goal", "zone")

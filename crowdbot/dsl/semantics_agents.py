@@ -65,7 +65,7 @@ def _check_overlaps(facts: Facts) -> Iterator[Diagnostic]:
 
 
 def overlapping(discs: Sequence[Disc]) -> Iterator[tuple[int, int]]:
-    """Each disc (x, y, radius) that overlaps one before it, with that one; touching is none."""
+    """Each disc (x, y, radius) that overlaps one before it, with that one; they may touch."""
     side = 2.0 * max((d[2] for d in discs), default=1.0)
     cells: dict[tuple[int, int], list[int]] = {}
     for k, (x, y, radius) in enumerate(discs):

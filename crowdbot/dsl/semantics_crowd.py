@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from crowdbot.dsl.base import CrowdPolicySpec
+from crowdbot.dsl.component_specs import CrowdPolicySpec
 from crowdbot.dsl.diagnostics import Diagnostic
 from crowdbot.dsl.scenario import Flow
 from crowdbot.dsl.semantics_facts import Facts

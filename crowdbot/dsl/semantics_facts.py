@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from crowdbot.dsl.areas import Area
-from crowdbot.dsl.base import Rectangle
 from crowdbot.dsl.diagnostics import Diagnostic, Mark
 from crowdbot.dsl.nodes import Node
 from crowdbot.dsl.scenario import Crowd, Scenario
+from crowdbot.dsl.spec import Rectangle
 from crowdbot.dsl.validation import mark_of
 from crowdbot.errors import did_you_mean, nearest
 

@@ -1,6 +1,6 @@
 """Who is in a crowd, beside its flow: spawns, goal areas, explicit agents.
 
-Everything is drawn once by `crowdbot.core.realise`; these are the words for it.
+Everything is drawn once by `crowdbot.core.population.realise`; these are its specs.
 """
 
 from __future__ import annotations
@@ -17,14 +17,13 @@ from pydantic import (
 )
 
 from crowdbot.dsl.areas import Place
-from crowdbot.dsl.base import Spec
 from crowdbot.dsl.parameters import (
-    AccelerationDraw,
-    DurationDraw,
-    LengthDraw,
-    MassDraw,
+    AccelerationSample,
+    DurationSample,
+    LengthSample,
+    MassSample,
     SpeedChoice,
-    SpeedDraw,
+    SpeedSample,
 )
 from crowdbot.dsl.quantities import (
     Angle,
@@ -36,6 +35,7 @@ from crowdbot.dsl.quantities import (
     PositiveMass,
     PositiveSpeed,
 )
+from crowdbot.dsl.spec import Spec
 from crowdbot.dsl.unions import AnyOf
 
 #: What an agent with a route does at its end.
@@ -136,14 +136,14 @@ class Spawn(Spec):
     )
     standing: bool = Field(default=False, description="Whether they stay where they are.")
     speed: SpeedChoice | None = Field(default=None, description="Preferred speed, m/s.")
-    radius: LengthDraw | None = Field(default=None, description="Radius of the disc, m.")
-    mass: MassDraw | None = Field(default=None, description="Mass in the physics, kg.")
-    max_speed: SpeedDraw | None = Field(default=None, description="Largest walking speed, m/s.")
-    max_acceleration: AccelerationDraw | None = Field(
+    radius: LengthSample | None = Field(default=None, description="Radius of the disc, m.")
+    mass: MassSample | None = Field(default=None, description="Mass in the physics, kg.")
+    max_speed: SpeedSample | None = Field(default=None, description="Largest walking speed, m/s.")
+    max_acceleration: AccelerationSample | None = Field(
         default=None, description="Largest acceleration by own will, m/s^2."
     )
-    start_time: DurationDraw = Field(
-        default=DurationDraw(value=0.0), description="When each enters the world, s."
+    start_time: DurationSample = Field(
+        default=DurationSample(value=0.0), description="When each enters the world, s."
     )
     policy: Names = Field(
         default=(),

@@ -23,13 +23,13 @@ from typing import Annotated, Any
 from annotated_types import Ge, Le
 from pydantic import Field, WithJsonSchema
 
-from crowdbot.dsl.base import Spec
 from crowdbot.dsl.diagnostics import Diagnostic, Mark
 from crowdbot.dsl.finder import Finder
 from crowdbot.dsl.installed import Installed, check_metrics, check_versions
 from crowdbot.dsl.matrix import MAX_COMBINATIONS, REPLICATE, Axis, read_axes
 from crowdbot.dsl.nodes import Node, count, to_data
 from crowdbot.dsl.selection import Kept, read_selection
+from crowdbot.dsl.spec import Spec
 from crowdbot.dsl.validation import validate
 from crowdbot.errors import did_you_mean, nearest
 
@@ -115,7 +115,7 @@ class ScenarioDocument(Spec):
 
 
 @dataclass(frozen=True, slots=True)
-class Suite:
+class ParsedSuite:
     """A document, read and taken apart; its scenarios are not validated yet.
 
     Attributes:
@@ -143,7 +143,7 @@ class Suite:
 
 def read_suite(
     root: Node, problems: list[Diagnostic], installed: Installed | None = None
-) -> Suite | None:
+) -> ParsedSuite | None:
     """Take a document apart.
 
     Args:
@@ -174,16 +174,16 @@ def read_suite(
     return _scenario(root, body, problems) if single else _suite(root, body, problems)
 
 
-def _scenario(root: Node, body: Node, problems: list[Diagnostic]) -> Suite:
+def _scenario(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite:
     name, title = _text(body.child("id"), ""), _text(body.child("title"), "")
     _check_elsewhere(body, ("references",), problems)
     _check_references(root, problems)
-    return Suite(
+    return ParsedSuite(
         name, title, name, None, body, (), (), _metrics(root), _references(root), tuple(problems)
     )
 
 
-def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> Suite:
+def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite:
     head = root.child("suite")
     name = _text(head.child("id") if head else None, "suite")
     title = _text(head.child("title") if head else None, "")
@@ -200,7 +200,7 @@ def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> Suite:
     crowd_axes = _crowd_axes(root, axes, problems)
     kept = read_selection(root, axes, problems)
     _check_size(root, body, axes, problems)
-    return Suite(
+    return ParsedSuite(
         name, title, name, seed, body, axes, crowd_axes, _metrics(root), _references(root),
         tuple(problems), kept,
     )  # fmt: skip

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import (
+from crowdbot.dsl import (
+    Component,
     CostFunctionSpec,
     CrowdPolicySpec,
     EnvironmentSpec,

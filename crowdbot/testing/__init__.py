@@ -8,11 +8,23 @@
     def test_conformance(check):
         check()
 
-``parametrize_with_checks`` needs pytest, `crowdbot.testing.strategies` hypothesis:
+`random_view` and `costs_at` are for tests of cost functions, `installed` for those of a plugin's
+health. ``parametrize_with_checks`` needs pytest, `crowdbot.testing.strategies` hypothesis:
 ``pip install crowdbot[testing]``. `checks_for` needs neither.
 """
 
+from crowdbot.testing.around import installed
 from crowdbot.testing.checks import bind, checks_for, checks_of
+from crowdbot.testing.crowd_views import random_view
+from crowdbot.testing.evaluated_costs import costs_at
 from crowdbot.testing.parametrize import parametrize_with_checks
 
-__all__ = ["bind", "checks_for", "checks_of", "parametrize_with_checks"]
+__all__ = [
+    "bind",
+    "checks_for",
+    "checks_of",
+    "costs_at",
+    "installed",
+    "parametrize_with_checks",
+    "random_view",
+]

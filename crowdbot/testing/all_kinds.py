@@ -15,12 +15,12 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 from ruamel.yaml import YAML
 
-from crowdbot.core.component import Component
-from crowdbot.core.registry import Registry
-from crowdbot.dsl.base import ComponentSpec
+from crowdbot.core.registry.build_reference import load_build
+from crowdbot.core.registry.registry import Registry
 from crowdbot.dsl.canonical import to_yaml
-from crowdbot.dsl.proximity import ProximitySpec
+from crowdbot.dsl.component import Component
 from crowdbot.dsl.quantities import UNITS, Quantity
+from crowdbot.dsl.spec import ComponentSpec
 from crowdbot.dsl.validation import nested_model
 from crowdbot.testing.around import installed
 
@@ -88,7 +88,7 @@ def check_round_trip(component: Component[Any]) -> None:
 def check_fields_are_described(component: Component[Any]) -> None:
     """Every field has a description, and numbers say their unit.
 
-    If this fails, use a quantity of ``crowdbot.dsl.quantities``, or end the description with
+    If this fails, use a quantity of ``crowdbot.dsl``, or end the description with
     ``, UNIT.``; a number without unit is a "weight", "factor", "fraction", "ratio" or "share".
     """
     for path, field in _fields(component.spec):
@@ -118,7 +118,7 @@ def check_build_resolves(component: Component[Any]) -> None:
     ``build(spec)``; ``build(spec, noise)`` of a sensor of distances; ``build(spec, costs, agents)``
     of a crowd policy.
     """
-    build = component.load_build()
+    build = load_build(component)
     try:
         signature = inspect.signature(build)
     except ValueError:  # written in C: nothing to look at
@@ -134,12 +134,12 @@ def check_build_resolves(component: Component[Any]) -> None:
 
 def _given(component: Component[Any]) -> tuple[str, ...]:
     """What the build function of a component is called with."""
-    if issubclass(component.spec, ProximitySpec):
-        return ("spec", "noise")
-    return ("spec", "costs", "agents") if component.category == "crowd policy" else ("spec",)
+    parts = (component.spec.parts_field,) if component.spec.parts_field else ()
+    more = ("costs", "agents") if component.category == "crowd policy" else ()
+    return ("spec", *parts, *more)
 
 
-def check_words_are_light(component: Component[Any]) -> None:
+def check_spec_is_light(component: Component[Any]) -> None:
     """Importing the module of the spec imports neither pydrake nor numba nor numpy.
 
     If this fails, move what computes into the module that ``build`` names.
@@ -177,7 +177,7 @@ CHECKS = (
     check_fields_are_described,
     check_unknown_field_is_refused,
     check_build_resolves,
-    check_words_are_light,
+    check_spec_is_light,
     check_entry_point_yields_it,
 )
 

@@ -1,4 +1,4 @@
-"""A metric's card: the page that says what its numbers mean, and whether it tells the truth.
+"""A metric's card: the page that says what its numbers mean, compared with the code.
 
 The form is fixed, so that cards can be compared with the code: a table of two columns, then the
 sections of `SECTIONS`; those of variants and parameters begin with a table.
@@ -12,10 +12,10 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from crowdbot.core.component import Component
-from crowdbot.core.score_label import MetricComponent
+from crowdbot.dsl.component import Component
+from crowdbot.dsl.metric_component import MetricComponent
 from crowdbot.testing import degenerate
-from crowdbot.testing.scored import scores_of
+from crowdbot.testing.scored import metric_of, scores_of
 
 SECTIONS = (
     "Formula",
@@ -35,22 +35,27 @@ def check_card_says_what_the_scores_say(component: Component[Any]) -> None:
 
     If this fails, correct the card; ``docs/reference/metrics/risk.md`` shows the form.
     """
-    assert isinstance(component, MetricComponent), "no MetricComponent"
-    text, label = component.read_card(), component.label
+    metric, text = metric_of(component), component.read_card()
     title = text.splitlines()[0]
     assert title == f"# {component.kind}", f"the card is called '{title}'"
     sections = re.findall(r"^## (.+)$", text, re.MULTILINE)
     assert sections == list(SECTIONS), (
-        f"sections are {', '.join(sections)}; wanted are {', '.join(SECTIONS)}"
+        f"sections are {', '.join(sections)}; expected are {', '.join(SECTIONS)}"
     )
     head = {name: value for name, value in rows(text.partition("\n## ")[0]) if name}
     assert tuple(head) == HEAD, (
-        f"the table at the head has {', '.join(head)}; wanted are {', '.join(HEAD)}"
+        f"the table at the head has {', '.join(head)}; expected are {', '.join(HEAD)}"
     )
-    for name in ("symbol", "category", "unit", "better"):
-        assert head[name] == getattr(label, name), f"{name}: '{head[name]}'"
+    declared = {
+        "symbol": metric.symbol,
+        "category": metric.score_category,
+        "unit": metric.unit,
+        "better": metric.better,
+    }
+    for name, text_of_it in declared.items():
+        assert head[name] == text_of_it, f"{name}: '{head[name]}', declared is '{text_of_it}'"
     assert all(head.values()), "an empty cell in the table at the head"
-    _assert_variants(label, dict(_named(section(text, "Variants"))))
+    _assert_variants(metric, dict(_named(section(text, "Variants"))))
     _assert_parameters(component, dict(_named(section(text, "Parameters"))))
     for name in SECTIONS:
         assert section(text, name).strip(), f"section '{name}' is empty"
@@ -65,9 +70,9 @@ def check_card_examples_run(component: Component[Any]) -> None:
     text = re.sub(r"^```.*$", "", section(component.read_card(), "Worked example"), flags=re.M)
     test = doctest.DocTestParser().get_doctest(text, {}, component.kind, "card", 0)
     assert any(e.want for e in test.examples), "the card shows no result of '>>>'"
-    told = io.StringIO()
-    doctest.DocTestRunner(verbose=False).run(test, out=told.write)
-    assert not told.getvalue(), told.getvalue()
+    output = io.StringIO()
+    doctest.DocTestRunner(verbose=False).run(test, out=output.write)
+    assert not output.getvalue(), output.getvalue()
 
 
 def section(text: str, name: str) -> str:
@@ -90,13 +95,10 @@ def _named(text: str) -> Iterator[tuple[str, list[str]]]:
             yield name.strip("`"), cells
 
 
-def _assert_variants(label: Any, table: Mapping[str, list[str]]) -> None:
-    expected = {
-        v: [label.units.get(v, label.unit), label.betters.get(v, label.better)]
-        for v in label.variants
-    }
+def _assert_variants(metric: MetricComponent[Any], table: Mapping[str, list[str]]) -> None:
+    declared = {name: [v.unit, v.better] for name, v in metric.variants.items()}
     found = {name: cells[:2] for name, cells in table.items()}
-    assert found == expected, f"variants, unit and better: {found}, the label says {expected}"
+    assert found == declared, f"variants, unit and better: {found}, declared are {declared}"
 
 
 def _assert_parameters(component: Component[Any], table: Mapping[str, list[str]]) -> None:
@@ -107,7 +109,7 @@ def _assert_parameters(component: Component[Any], table: Mapping[str, list[str]]
         number = float(value) if isinstance(value, int | float) else None
         said = re.match(r"[-+0-9.e]+", default)
         if number is not None and not isinstance(value, bool):
-            assert said, f"parameter {name}: '{default}' is no number"
+            assert said, f"parameter {name}: '{default}' is not a number"
             close = abs(float(said[0]) - number) <= 1e-4 * abs(number)
             assert close, f"parameter {name}: default is {number:g}, the card says {default}"
         else:
@@ -119,7 +121,7 @@ def _assert_reasons(component: Component[Any], text: str) -> None:
     for name, world in degenerate.worlds().items():
         for one in scores_of(component, world).values():
             assert not one.reason or f"`{one.reason}`" in modes, (
-                f"{name}: '{one.reason}' is no failure mode of the card"
+                f"{name}: '{one.reason}' is not a failure mode of the card"
             )
             for extra in one.extras:
                 assert f"`{extra}`" in text, f"the card does not explain the extra '{extra}'"

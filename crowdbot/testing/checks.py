@@ -8,8 +8,8 @@ from functools import partial
 from typing import Any
 from unittest import SkipTest
 
-from crowdbot.core.component import Component
-from crowdbot.core.registry import Registry
+from crowdbot.core.registry.registry import Registry
+from crowdbot.dsl.component import Component
 from crowdbot.testing import (
     all_kinds,
     commanded_motion,
@@ -75,8 +75,8 @@ def checks_for(
 def bind(check: Check, component: Component[Any], registry: Registry | None) -> Callable[[], None]:
     """A check of one component; the registry goes to those who ask for it.
 
-    What computes is not looked at while the words or the reference to the deeds are wrong: it
-    would fail for their reason in all checks, each with advice that does not help.
+    What computes is not looked at while the spec or the reference to the build function is wrong:
+    it would fail for their reason in all checks, each with advice that does not help.
     """
     given = (component, registry) if _wants_registry(check) else (component,)
     bound = partial(check, *given)

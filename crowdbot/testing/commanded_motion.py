@@ -10,11 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.component import Component
-from crowdbot.core.interfaces import Command, EnvironmentParts, Pose, RobotModel, RobotState
-from crowdbot.core.registry import Registry, discover
+from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.robots import MODES, build_model
-from crowdbot.core.ticks import TICK
+from crowdbot.core.support.ticks import TICK
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.motion import Command, Pose
+from crowdbot.core.types.robot import RobotModel, RobotState
+from crowdbot.dsl.component import Component
 
 #: Seconds to get up to speed, and seconds that are measured.
 _SETTLE, _MEASURE = 1.0, 1.0

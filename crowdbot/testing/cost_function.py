@@ -9,27 +9,27 @@ from typing import Any
 
 import numpy as np
 from numba.core.errors import NumbaError
-from numpy.typing import NDArray
 
-from crowdbot.core.component import Component
 from crowdbot.core.crowd import CrowdView
-from crowdbot.core.crowd.calls import address_of
-from crowdbot.core.crowd.cost import (
+from crowdbot.core.crowd.velocity_search.cost import (
     BASE,
     EXCESS,
-    FLOOR,
     GRADIENT,
+    LOWER_BOUND,
     OPTIMUM,
     PREPARE,
     CompiledCost,
     NumpyCost,
 )
-from crowdbot.core.crowd.evaluate import Evaluator
-from crowdbot.core.crowd.gradient import Descent
-from crowdbot.core.crowd.mix import Mix
-from crowdbot.core.registry import Registry
+from crowdbot.core.crowd.velocity_search.cost_calls import address_of
+from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
+from crowdbot.core.crowd.velocity_search.gradient import Descent
+from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.types.arrays import Array
+from crowdbot.dsl.component import Component
 from crowdbot.testing.around import around, built, specs_of
-from crowdbot.testing.cost_parts import above_floor, bases_of, forgets_work, stops_at_budget
+from crowdbot.testing.cost_parts import above_lower_bound, bases_of, forgets_work, stops_at_budget
 from crowdbot.testing.crowd_views import (
     SEEDS,
     arrays_of,
@@ -40,7 +40,6 @@ from crowdbot.testing.crowd_views import (
     turned,
 )
 
-Array = NDArray[np.float64]
 Cost = CompiledCost | NumpyCost
 
 _SIGNATURES = {
@@ -49,13 +48,13 @@ _SIGNATURES = {
     "excess": EXCESS,
     "gradient": GRADIENT,
     "optimum": OPTIMUM,
-    "floor": FLOOR,
+    "lower_bound": LOWER_BOUND,
 }
 _TURN = 0.7  # rad
 
 
 def check_signatures(component: Component[Any], registry: Registry | None = None) -> None:
-    """Compiled functions have the signatures of ``crowdbot.core.crowd.cost``; weight and range fit.
+    """Compiled functions have the signatures of the contract; weight and range fit.
 
     If this fails, write ``@njit(EXCESS, cache=True, error_model="numpy")`` before the function
     that is named, and begin ``params`` with the range and 0.0 or 1.0.
@@ -144,19 +143,19 @@ def check_excess_stops_above_budget(
                 assert not wrong, wrong
 
 
-def check_floor_is_below_excess(
+def check_lower_bound_is_below_excess(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """Where there is a ``floor``, it is between zero and the excess.
+    """Where there is a ``lower_bound``, it is between zero and the excess.
 
-    If this fails, the search passes over candidates that might win: leave out of the floor
+    If this fails, the search passes over candidates that might win: leave out of the lower bound
     whatever is not certain.
     """
     for cost in _costs(component, registry):
-        if isinstance(cost, CompiledCost) and cost.floor is not None:
+        if isinstance(cost, CompiledCost) and cost.lower_bound is not None:
             for seed in SEEDS:
                 view = random_view(seed)
-                wrong = above_floor(cost, view, _candidates(view))
+                wrong = above_lower_bound(cost, view, _candidates(view))
                 assert not wrong, wrong
 
 
@@ -240,7 +239,7 @@ CHECKS: tuple[Callable[..., None], ...] = (
     check_excess_is_not_negative,
     check_candidates_are_independent,
     check_excess_stops_above_budget,
-    check_floor_is_below_excess,
+    check_lower_bound_is_below_excess,
     check_work_is_written,
     check_gradient,
     check_input_is_not_changed,
@@ -266,14 +265,14 @@ def _candidates(view: CrowdView) -> Array:
 
 def _total(cost: Cost, view: CrowdView, velocities: Array) -> Array:
     """Costs (N, S) without their weight, of a mix of this function alone."""
-    mix = Mix([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
-    return Evaluator(mix).total(view, velocities)
+    costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
+    return Evaluator(costs).total(view, velocities)
 
 
 def _assert_compiled(name: str, function: Any, signature: Any) -> None:
-    if function is None and name in ("gradient", "optimum", "floor"):
+    if function is None and name in ("gradient", "optimum", "lower_bound"):
         return
-    assert hasattr(function, "nopython_signatures"), f"{name} is no compiled function"
+    assert hasattr(function, "nopython_signatures"), f"{name} is not a compiled function"
     try:
         address_of(function, signature)
     except (KeyError, TypeError, NumbaError, AttributeError) as error:
@@ -293,7 +292,9 @@ def _assert_gradient(cost: CompiledCost) -> None:
     alone = replace(cost, weight=1.0)
     for seed in range(3 * len(SEEDS)):
         view = random_view(seed)
-        found = -Descent(Mix([alone], view.agents, relaxation_time=0.5)).accelerations(view)
+        found = -Descent(WeightedCosts([alone], view.agents, relaxation_time=0.5)).accelerations(
+            view
+        )
         total = _total(cost, view, view.velocity[:, None] + around_it)
         with np.errstate(invalid="ignore"):
             slope = (total[:, 1::2] - total[:, ::2]) / (2.0 * step)

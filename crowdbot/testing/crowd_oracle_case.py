@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import Agents
-from crowdbot.dsl.base import CostFunctionSpec
-from crowdbot.plugins.crowd.velocity_space import VelocitySpaceSpec
+from crowdbot.core.types.arrays import Array
+from crowdbot.dsl.component_specs import CostFunctionSpec
+from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
 from crowdbot.testing.crowd_oracle_policy import cost_spec, policy_spec
 
-Array = NDArray[np.float64]
 #: Arrays of a case's trajectories.
 COLUMNS = ("t", "id", "x", "y", "vx", "vy")
 
@@ -32,7 +32,7 @@ class Case:
         agents: mass is the original's, without unit.
         goal: (N, 2).
         walls: (S, 4) edges of the obstacles, counter-clockwise around each.
-        torus: (x0, x1, y0, y1) or None.
+        periodic_boundary: (x0, x1, y0, y1) or None.
         policies: spec and cost functions of each policy; ``agents.policy`` counts them.
     """
 
@@ -43,7 +43,7 @@ class Case:
     agents: Agents
     goal: Array
     walls: Array
-    torus: tuple[float, float, float, float] | None
+    periodic_boundary: tuple[float, float, float, float] | None
     policies: list[tuple[VelocitySpaceSpec, list[CostFunctionSpec]]]
 
 
@@ -78,7 +78,7 @@ def case_of(name: str, given: dict[str, Any], columns: Sequence[NDArray[Any]]) -
         agents=_agents(given, ids),
         goal=np.array([a.get("goal", a["pos"]) for a in given["agents"]], np.float64),
         walls=_edges(given.get("obstacles") or []),
-        torus=_torus(given["world"]),
+        periodic_boundary=_periodic_boundary(given["world"]),
         policies=[
             (policy_spec(p["attrs"]), [cost_spec(c) for c in p["cost"]]) for p in given["policies"]
         ],
@@ -127,7 +127,7 @@ def _edges(polygons: list[list[list[float]]]) -> Array:
     return np.array(edges, np.float64).reshape(-1, 4)
 
 
-def _torus(world: dict[str, str]) -> tuple[float, float, float, float] | None:
+def _periodic_boundary(world: dict[str, str]) -> tuple[float, float, float, float] | None:
     if not str(world.get("type", "Infinite")).lower().startswith("toric"):
         return None
     x, y = 0.5 * float(world["width"]), 0.5 * float(world["height"])

@@ -14,12 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.crowd.evaluate import Evaluator
-from crowdbot.core.crowd.gradient import Descent
 from crowdbot.core.crowd.policy import CrowdView
-from crowdbot.core.crowd.sampling import Sampler
-from crowdbot.testing.crowd_oracle_case import Array, Case
-from crowdbot.testing.crowd_oracle_step import Mask, Stepper
+from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
+from crowdbot.core.crowd.velocity_search.gradient import Descent
+from crowdbot.core.crowd.velocity_search.sampling import Sampler
+from crowdbot.core.types.arrays import Array, Mask
+from crowdbot.testing.crowd_oracle_case import Case
+from crowdbot.testing.crowd_oracle_step import Stepper
 
 #: Velocities closer than this agree, m/s.
 CLOSE = 5e-4
@@ -145,7 +146,7 @@ def by_cost_alone(
     Args:
         rounding: how far each candidate may be off, m/s. The original's choice then counts at its
             cheapest, and the minimum is that of the candidates at their dearest: one that rounding
-            forbids is no competitor, one that rounding allows is a choice.
+            forbids is not a competitor, one that rounding allows is a choice.
     """  # fmt: skip
     found = np.zeros(len(state), np.bool_)
     push = stepper.push(state) if np.any(who) else state[:, 2:]
@@ -158,12 +159,12 @@ def by_cost_alone(
         if isinstance(minimiser, Sampler):
             velocities = minimiser.candidates(view)
         elif minimiser.is_closed:
-            best, time = minimiser.choose(view), max(policy.mix.relaxation_time, view.dt)
+            best, time = minimiser.choose(view), max(policy.costs.relaxation_time, view.dt)
             chosen = state[:, 2:] + (theirs - push - state[:, 2:]) * (time / view.dt)
             velocities = np.stack([best, np.where(np.isfinite(chosen), chosen, 0.0)], axis=1)
         else:
             velocities = minimiser.search.candidates(view)
-        cheapest, dearest = _costs(Evaluator(policy.mix), view, velocities, rounding)
+        cheapest, dearest = _costs(Evaluator(policy.costs), view, velocities, rounding)
         least = np.min(dearest, axis=1, keepdims=True)
         with np.errstate(invalid="ignore"):
             cheap = cheapest <= least + np.maximum(RELATIVE * np.abs(least), ABSOLUTE)

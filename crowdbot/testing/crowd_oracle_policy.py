@@ -1,4 +1,4 @@
-"""Policies of the original crowd engine in our words.
+"""Policies of the original crowd engine as specs of ours.
 
 Names, attributes and defaults are those of its XML files.
 """
@@ -9,21 +9,22 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from crowdbot.dsl.base import CostFunctionSpec, Range
-from crowdbot.plugins.crowd.foe_avoidance import FoeAvoidanceSpec
-from crowdbot.plugins.crowd.goal_reaching_force import GoalReachingForceSpec
-from crowdbot.plugins.crowd.karamouzas import KaramouzasSpec
-from crowdbot.plugins.crowd.moussaid import MoussaidSpec
-from crowdbot.plugins.crowd.orca import OrcaSpec
-from crowdbot.plugins.crowd.paris import ParisSpec
-from crowdbot.plugins.crowd.pledestrians import PledestriansSpec
-from crowdbot.plugins.crowd.power_law import PowerLawSpec
-from crowdbot.plugins.crowd.random_function import RandomFunctionSpec
-from crowdbot.plugins.crowd.rvo import RvoSpec
-from crowdbot.plugins.crowd.social_forces_avoidance import SocialForcesAvoidanceSpec
-from crowdbot.plugins.crowd.ttca_dca import TtcaDcaSpec
-from crowdbot.plugins.crowd.van_toll import VanTollSpec
-from crowdbot.plugins.crowd.velocity_space import VelocitySpaceSpec
+from crowdbot.dsl.component_specs import CostFunctionSpec
+from crowdbot.dsl.spec import Range
+from crowdbot.plugins.crowd.cost_functions.foe_avoidance import FoeAvoidanceSpec
+from crowdbot.plugins.crowd.cost_functions.goal_reaching_force import GoalReachingForceSpec
+from crowdbot.plugins.crowd.cost_functions.karamouzas import KaramouzasSpec
+from crowdbot.plugins.crowd.cost_functions.moussaid import MoussaidSpec
+from crowdbot.plugins.crowd.cost_functions.orca import OrcaSpec
+from crowdbot.plugins.crowd.cost_functions.paris import ParisSpec
+from crowdbot.plugins.crowd.cost_functions.pledestrians import PledestriansSpec
+from crowdbot.plugins.crowd.cost_functions.power_law import PowerLawSpec
+from crowdbot.plugins.crowd.cost_functions.random_function import RandomFunctionSpec
+from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
+from crowdbot.plugins.crowd.cost_functions.social_forces_avoidance import SocialForcesAvoidanceSpec
+from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
+from crowdbot.plugins.crowd.cost_functions.van_toll import VanTollSpec
+from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
 
 #: Cost functions: our spec, and our name of each attribute. A later attribute replaces an
 #: earlier one with the same name of ours: U0 of the social forces overwrites V0.
@@ -62,7 +63,7 @@ def cost_spec(given: Mapping[str, str]) -> CostFunctionSpec:
     """The spec of one ``costfunction`` element.
 
     Raises:
-        ValueError: its name is unknown, or one of its numbers is none.
+        ValueError: its name is unknown, or one of its values is not a number.
     """
     name = given.get("name", "")
     if name not in COSTS:
@@ -82,7 +83,7 @@ def policy_spec(given: Mapping[str, str]) -> VelocitySpaceSpec:
     """The spec of one ``Policy`` element.
 
     Raises:
-        ValueError: an option is unknown, or one of its numbers is none.
+        ValueError: an option is unknown, or one of its values is not a number.
     """
 
     def option(name: str, default: str) -> Any:

@@ -6,17 +6,16 @@ import math
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from crowdbot.core.crowd.bodies import most_bodies, write_bodies
-from crowdbot.core.crowd.geometry import nearest_on_segment
-from crowdbot.core.crowd.neighbours import BODY_COLUMNS
+from crowdbot.core.crowd.build import build_cost
+from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.policy import CrowdView
-from crowdbot.core.registry import discover
-from crowdbot.plugins.crowd.velocity_space_build import VelocitySpace
-from crowdbot.testing.crowd_oracle_case import Array, Case
-
-Mask = NDArray[np.bool_]
+from crowdbot.core.crowd.velocity_search.neighbour_discs import most_discs, write_discs
+from crowdbot.core.crowd.velocity_search.neighbours import DISC_COLUMNS
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.types.arrays import Array, Mask
+from crowdbot.plugins.crowd.policies.velocity_space_build import VelocitySpace
+from crowdbot.testing.crowd_oracle_case import Case
 
 
 class Stepper:
@@ -27,7 +26,7 @@ class Stepper:
         registry = discover()
         self.policies = [
             VelocitySpace(
-                spec, [registry.build(c) for c in costs], case.agents,
+                spec, [build_cost(registry, c) for c in costs], case.agents,
                 parity=True, weight=case.agents.mass,
             )
             for spec, costs in case.policies
@@ -44,12 +43,12 @@ class Stepper:
 
     def random(self) -> list[Array]:
         """State of all random numbers, a copy."""
-        return [p.mix.random.copy() for p in self.policies]
+        return [p.costs.random.copy() for p in self.policies]
 
     def restore(self, random: list[Array]) -> None:
         """Go back to a state of all random numbers."""
         for policy, state in zip(self.policies, random, strict=True):
-            policy.mix.random[:] = state
+            policy.costs.random[:] = state
 
     def view(self, state: Array, policy: int, who: Mask | None = None) -> CrowdView:
         """What agents see at a state (N, 4), for those who follow a policy."""
@@ -61,15 +60,20 @@ class Stepper:
             agents=case.agents, position=np.ascontiguousarray(filled[:, :2]),
             velocity=np.ascontiguousarray(filled[:, 2:]), goal=case.goal, present=present,
             robot=np.zeros((0, 5)), walls=case.walls, dt=case.dt,
-            decides=mine if who is None else mine & who, torus=case.torus, diagonal=False,
+            decides=mine if who is None else mine & who,
+            periodic_boundary=case.periodic_boundary, diagonal=False,
         )  # fmt: skip
 
     def push(self, state: Array) -> Array:
         """Change of velocity (N, 2) by contact forces in one step."""
         view, agents = self.view(state, 0), self.case.agents
-        bodies = np.zeros((most_bodies(len(agents), 0, view.torus is not None), BODY_COLUMNS))
-        box = np.array(view.torus if view.torus is not None else (0.0, 0.0, 0.0, 0.0))
-        count = write_bodies(
+        bodies = np.zeros(
+            (most_discs(len(agents), 0, view.periodic_boundary is not None), DISC_COLUMNS)
+        )
+        box = np.array(
+            view.periodic_boundary if view.periodic_boundary is not None else (0.0, 0.0, 0.0, 0.0)
+        )
+        count = write_discs(
             view.position, view.velocity, view.goal, agents.radius, agents.preferred_speed,
             view.present, view.robot, view.pillars, box, False, self._images, bodies,
         )  # fmt: skip

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.component import Component
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdPolicy, CrowdView, CrowdWorld
-from crowdbot.core.crowd.willed import willed
-from crowdbot.core.registry import Registry
+from crowdbot.core.crowd.desired_acceleration import desired_acceleration
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.types.arrays import Array
+from crowdbot.dsl.component import Component
 from crowdbot.testing.around import around, built, specs_of
 from crowdbot.testing.crowd_views import (
     SEEDS,
@@ -24,7 +24,6 @@ from crowdbot.testing.crowd_views import (
     turned,
 )
 
-Array = NDArray[np.float64]
 #: Makes the policy of a set of agents anew.
 Factory = Callable[[Agents], CrowdPolicy]
 
@@ -69,7 +68,7 @@ def check_input_is_not_changed(component: Component[Any], registry: Registry | N
 
 
 def check_same_view_twice(component: Component[Any], registry: Registry | None = None) -> None:
-    """Two policies of the same words give the same answers to the same views, to the bit.
+    """Two policies of the same spec give the same answers to the same views, to the bit.
 
     If this fails, the policy draws from a generator that is not its own, or depends on the time.
     """
@@ -161,7 +160,7 @@ def _factories(component: Component[Any], registry: Registry | None) -> Iterator
         costs = []
         if getattr(spec, "needs_costs", False):
             (words,) = specs_of(known.find("cost function", "ttca_dca"), known)
-            costs = [known.build(words)]
+            costs = [built(known, words)]
 
         def make(agents: Agents, spec: Any = spec, costs: Any = costs) -> CrowdPolicy:
             policy: CrowdPolicy = built(known, spec, costs, agents)
@@ -187,7 +186,7 @@ def _assert_answer(name: str, make: Factory, view: CrowdView) -> None:
 
 def _will(make: Factory, view: CrowdView) -> Array:
     """Accelerations (N, 2), m/s^2, of a policy made anew."""
-    return willed(make(view.agents), view)
+    return desired_acceleration(make(view.agents), view)
 
 
 def _assert_same(one: Array, two: Array, change: str) -> None:

@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import Agents, CrowdView
+from crowdbot.core.types.arrays import Array
 from crowdbot.testing.around import RECORDED
-
-Array = NDArray[np.float64]
 
 #: Views that every check of crowds looks at.
 SEEDS = range(4)

@@ -7,13 +7,11 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.trajectory import Trajectories
-from crowdbot.testing.views import with_people
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.arrays import Array
+from crowdbot.testing.symmetries import with_people
 from crowdbot.testing.worlds import World, random_world
-
-Array = NDArray[np.float64]
 
 
 def worlds() -> Mapping[str, World]:

@@ -8,30 +8,22 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, cast
 from unittest import SkipTest
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import (
-    Command,
-    Observation,
-    Planner,
-    Pose,
-    Reading,
-    RobotLimits,
-    RobotState,
-    SensorInfo,
-    Task,
-    Truth,
-)
-from crowdbot.core.planner_host import PlannerHost, named_signal
-from crowdbot.core.registry import Registry
+from crowdbot.core.planning.host import PlannerHost, named_signal
+from crowdbot.core.planning.planner import Observation, Planner, Task, Truth
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
-
-Array = NDArray[np.float64]
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Command, Pose
+from crowdbot.core.types.robot import RobotLimits, RobotState
+from crowdbot.core.types.sensor import Reading, SensorInfo
+from crowdbot.dsl.component_specs import SensorSpec
 
 RATE = 16.0  # steps per second
 LIMITS = RobotLimits(v_min=-0.65, v_max=0.65, w_max=3.14, a_max=1.0, alpha_max=2.0)
@@ -105,9 +97,8 @@ def _answering(need: str, registry: Registry) -> Any:
     kinds = registry.components("sensor")
     for component in sorted(kinds.values(), key=lambda c: c.kind != need):
         model = registry.spec_model("sensor", component.kind)
-        sensor = registry.build(
-            model.model_validate({"kind": component.kind, **component.examples[0]})
-        )
+        spec = model.model_validate({"kind": component.kind, **component.examples[0]})
+        sensor = build_sensor(registry, cast(SensorSpec, spec))
         if need in (component.kind, sensor.info().category):
             return sensor
     return None
@@ -145,7 +136,7 @@ class Driven:
         """Reset the planner and drive so many steps.
 
         Raises:
-            PlannerError: the planner raised, or returned what is no command.
+            PlannerError: the planner raised, or returned what is not a command.
         """
         infos = {n: replace(s.info(), frame=n) for n, s in self._sensors.items()}
         memory = {n: np.zeros(i.memory) for n, i in infos.items()}

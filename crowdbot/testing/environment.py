@@ -6,15 +6,13 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.component import Component
-from crowdbot.core.interfaces import EnvironmentParts
-from crowdbot.core.registry import Registry
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.dsl.component import Component
 from crowdbot.testing.around import around, built, specs_of, with_zone
-from crowdbot.testing.free_floor import Grid, seen_sides, viewpoints
-
-Array = NDArray[np.float64]
+from crowdbot.testing.free_floor import FreeFloorGrid, seen_sides, viewpoints
 
 
 def check_parts(component: Component[Any], registry: Registry | None = None) -> None:
@@ -43,7 +41,7 @@ def check_parts(component: Component[Any], registry: Registry | None = None) -> 
 
 
 def check_zones_and_portals(component: Component[Any], registry: Registry | None = None) -> None:
-    """Zones are counter-clockwise polygons and portals boxes; all that the words name are there.
+    """Zones are counter-clockwise polygons and portals boxes; all that the spec names are there.
 
     If this fails, hand on ``spec.zones`` (``zone.polygon``) and ``spec.portals`` (x, then y).
     """
@@ -53,7 +51,7 @@ def check_zones_and_portals(component: Component[Any], registry: Registry | None
     for spec in (*examples, *zoned):
         parts: EnvironmentParts = built(known, spec)
         lacking = sorted(set(getattr(spec, "zones", {})) - set(parts.zones))
-        assert not lacking, f"the words have a zone '{lacking[0]}', the parts have not"
+        assert not lacking, f"the spec has a zone '{lacking[0]}', the parts have not"
         assert set(parts.portals) >= set(getattr(spec, "portals", {})), "a portal is missing"
         for name, zone in parts.zones.items():
             _assert_outline(f"zone '{name}'", zone)
@@ -70,7 +68,7 @@ def check_zones_are_on_the_floor(
     If this fails, a zone lies outside of the place, or something stands in the middle of it.
     """
     for parts in _parts(component, registry):
-        grid = Grid(parts)
+        grid = FreeFloorGrid(parts)
         for name, zone in parts.zones.items():
             centre = zone.mean(axis=0)
             assert grid.is_free(centre), f"zone '{name}' has something in its centre {centre}"
@@ -94,27 +92,25 @@ def check_free_side_is_on_the_left(
 
 
 def check_is_closed(component: Component[Any], registry: Registry | None = None) -> None:
-    """A robot cannot drive out between the walls, unless there are none or the floor is a torus.
+    """A robot cannot drive out between walls, unless there are none or the boundary is periodic.
 
     If this fails, there is a gap of more than 0.2 m, or ``stops_robot`` is wrong. A place that is
     meant to be open says so: ``Component(exceptions={"check_is_closed": "why"})``.
     """
     for parts in _parts(component, registry):
-        if parts.torus is not None or not len(parts.walls):
+        if parts.periodic_boundary is not None or not len(parts.walls):
             continue
         if not np.any(parts.stops_robot):
             assert parts.solids, "no wall stops a robot"
             continue
-        grid = Grid(parts)
+        grid = FreeFloorGrid(parts)
         for x, y in viewpoints(parts):
             out = grid.way_out(x, y)
             assert out is None, f"from ({x:g}, {y:g}) a robot gets out at {out}"
 
 
-def check_same_words_same_place(
-    component: Component[Any], registry: Registry | None = None
-) -> None:
-    """Built twice from the same words it is the same place.
+def check_same_spec_same_place(component: Component[Any], registry: Registry | None = None) -> None:
+    """Built twice from the same spec it is the same place.
 
     If this fails, something is drawn at random: put the numbers, or a seed, into the spec.
     """
@@ -144,7 +140,7 @@ CHECKS: tuple[Callable[..., None], ...] = (
     check_zones_are_on_the_floor,
     check_free_side_is_on_the_left,
     check_is_closed,
-    check_same_words_same_place,
+    check_same_spec_same_place,
     check_runs,
 )
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.core.library import open_spec
-from crowdbot.core.registry import Registry, discover
+from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.core.scenarios.library import open_spec
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.testing import tiny
 

@@ -6,11 +6,10 @@ import math
 from collections import deque
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import EnvironmentParts
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.environment import EnvironmentParts
 
-Array = NDArray[np.float64]
 #: Side of a cell of the grid; a robot of this radius is looked at, m.
 CELL = 0.1
 _AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1))
@@ -19,7 +18,7 @@ _MOST = 600
 _BEAMS = 360
 
 
-class Grid:
+class FreeFloorGrid:
     """Cells of the floor within the walls that stop a robot, and a margin around them."""
 
     def __init__(self, parts: EnvironmentParts) -> None:
@@ -27,8 +26,8 @@ class Grid:
         self._walls = parts.walls[parts.stops_robot]
         points = [self._walls.reshape(-1, 2), *parts.solids, parts.pillars[:, :2]]
         points += [np.asarray(zone) for zone in parts.zones.values()]
-        if parts.torus is not None:
-            points.append(np.reshape(parts.torus, (2, 2)).T)
+        if parts.periodic_boundary is not None:
+            points.append(np.reshape(parts.periodic_boundary, (2, 2)).T)
         found = np.concatenate(points) if points else np.zeros((0, 2))
         self._low = found.min(axis=0) if len(found) else np.zeros(2)
         self._high = found.max(axis=0) if len(found) else np.zeros(2)
@@ -108,7 +107,7 @@ def viewpoints(parts: EnvironmentParts) -> list[tuple[float, float]]:
     """Centres of all zones; without any, the point with most room around it."""
     if parts.zones:
         return [tuple(zone.mean(axis=0).tolist()) for zone in parts.zones.values()]
-    return [Grid(parts).widest()]
+    return [FreeFloorGrid(parts).widest()]
 
 
 def seen_sides(parts: EnvironmentParts, x: float, y: float) -> dict[int, bool]:

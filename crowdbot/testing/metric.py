@@ -1,4 +1,4 @@
-"""What every metric must keep to. Its label and its laws say which numbers to expect.
+"""What every metric must keep to. Its declaration says which numbers to expect.
 
 Worlds are random, but the same in each test run.
 """
@@ -12,57 +12,50 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.commands import Commands
-from crowdbot.core.component import Component
-from crowdbot.core.score import Score
-from crowdbot.core.score_label import MetricComponent
-from crowdbot.core.trajectory import Trajectories
+from crowdbot.core.trajectories.commands import Commands
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.score import Score
+from crowdbot.dsl.component import Component
+from crowdbot.dsl.component_specs import MetricSpec
 from crowdbot.testing import degenerate
 from crowdbot.testing.card import check_card_examples_run, check_card_says_what_the_scores_say
-from crowdbot.testing.scored import Scored, laws_of, scores_of, signalled, variants_of
-from crowdbot.testing.views import (
-    COMMAND_VIEWS,
-    VIEWS,
+from crowdbot.testing.scored import Scored, invariants_of, metric_of, scores_of, with_signals
+from crowdbot.testing.symmetries import (
+    COMMAND_SYMMETRIES,
+    RUN_SYMMETRIES,
     arrays_of,
-    heavier,
-    perturbed,
+    perturb,
+    scale_masses,
     with_people,
-    writable,
+    writable_copy,
 )
 from crowdbot.testing.worlds import World, portal_world, random_world, straight_world
 
 #: Random worlds that each check looks at.
 _SEEDS = range(10)
-_DIRECTIONS = ("higher", "lower", "reference", "none")
 
 
-def check_label(component: Component[Any]) -> None:
-    """Symbol, category, unit, direction and variants are declared, and laws name variants.
+def check_declaration(component: Component[Any]) -> None:
+    """The metric is declared as one, by a spec of a metric, and has a card.
 
-    If this fails, use ``MetricComponent(label=ScoreLabel(...))``; ``units``, ``betters`` and
-    ``laws`` are keyed by variant.
+    If this fails, use ``declare_metric(Spec, symbol=..., unit=..., better=..., category=...)``
+    with a spec that derives from ``MetricSpec``, and write ``cards/NAME.md`` beside it.
     """
-    assert isinstance(component, MetricComponent), "no MetricComponent: where is its label?"
-    label = component.label
-    assert label.metric == component.kind, f"the label is that of {label.metric}"
-    for name in ("symbol", "category", "unit"):
-        assert getattr(label, name).strip(), f"the label has no {name}"
-    assert label.variants, "the label has no variant"
-    assert len(set(label.variants)) == len(label.variants), "a variant is listed twice"
-    assert {label.better, *label.betters.values()} <= set(_DIRECTIONS), "no such direction"
-    for name, keyed in (("units", label.units), ("betters", label.betters)):
-        assert set(keyed) <= set(label.variants), f"{name}: no such variant"
-    assert set(component.laws) <= set(label.variants), "laws: no such variant"
+    metric = metric_of(component)
+    assert issubclass(metric.spec, MetricSpec), f"{metric.spec.__name__} is not a MetricSpec"
+    place = metric.card_place or "the argument 'card'"
+    assert metric.has_card(), f"'{metric.kind}' has no card; it is looked for in {place}"
 
 
 def check_scores_are_well_formed(component: Component[Any]) -> None:
     """Each variant is scored once; numbers are finite and within their bounds, or there is none.
 
-    If this fails, return one score a variant, made by the label, with a status and a reason
-    instead of NaN, infinity or an exception; or correct ``least``, ``most`` and ``whole``.
+    If this fails, return one score a variant, made by a ``ScoreFactory``, with a status and a
+    reason instead of NaN, infinity or an exception; or correct ``minimum``, ``maximum`` and
+    ``integer``.
     """
     for seed in _SEEDS:
-        world = signalled(component, random_world(seed))
+        world = with_signals(component, random_world(seed))
         for part in (world, replace(world, robot_alone=None, crowd_alone=None)):
             _assert_well_formed(component, scores_of(component, part))
 
@@ -75,7 +68,7 @@ def check_degenerate_runs(component: Component[Any]) -> None:
     for name, world in degenerate.worlds().items():
         try:
             _assert_well_formed(component, scores_of(component, world))
-            _assert_well_formed(component, scores_of(component, signalled(component, world)))
+            _assert_well_formed(component, scores_of(component, with_signals(component, world)))
         except Exception as error:
             raise AssertionError(f"{name}: {error}") from error
 
@@ -86,90 +79,92 @@ def check_pure(component: Component[Any]) -> None:
     If this fails, copy before you change an array, and keep nothing between two calls.
     """
     for seed in _SEEDS:
-        world = signalled(component, random_world(seed))
-        open_world = writable(world)
-        before = arrays_of(open_world)
-        first = scores_of(component, open_world)
-        changed = [name for name, data in arrays_of(open_world).items() if before[name] != data]
+        world = with_signals(component, random_world(seed))
+        unprotected, another = writable_copy(world), writable_copy(world)
+        before = arrays_of(unprotected)
+        first = scores_of(component, unprotected)
+        changed = [name for name, data in arrays_of(unprotected).items() if before[name] != data]
         assert not changed, f"changed its input: {', '.join(changed)}"
-        assert scores_of(component, writable(world)) == first, "the same run scored differently"
+        assert scores_of(component, another) == first, "the same run scored differently"
         assert scores_of(component, world) == first, "the same run scored differently"
 
 
-def check_point_of_view(component: Component[Any]) -> None:
+def check_symmetries(component: Component[Any]) -> None:
     """Translation, rotation, reflection, a later start and another order of people change nothing.
 
     If this fails, an angle is not wrapped, a coordinate is used for itself, or time counts from
-    zero; or name the view in ``Laws(exceptions=...)`` and say why.
+    zero; or declare ``changes_with={"rotate": why}``.
     """
     for seed in _SEEDS:
-        world = signalled(component, random_world(seed))
+        world = with_signals(component, random_world(seed))
         found = scores_of(component, world)
-        for name, view in VIEWS.items():
-            seen = _each_command(_each_run(world, view), COMMAND_VIEWS.get(name))
-            again = scores_of(component, seen)
+        for name, change in RUN_SYMMETRIES.items():
+            changed = _each_command(_each_run(world, change), COMMAND_SYMMETRIES.get(name))
+            again = scores_of(component, changed)
             _assert_same(component, found, again, name)
 
 
-def check_itself(component: Component[Any]) -> None:
-    """A run that is its own reference scores what ``Laws(itself=...)`` says.
+def check_self_value(component: Component[Any]) -> None:
+    """A run that is its own reference scores the declared ``self_value``.
 
     If this fails, numerator and denominator are not computed alike.
     """
     for seed in _SEEDS:
-        run = signalled(component, random_world(seed)).run
+        run = with_signals(component, random_world(seed)).run
         found = scores_of(component, World(run=run, robot_alone=run, crowd_alone=run))
         for variant, one in found.items():
-            expected = laws_of(component, variant).itself
+            expected = invariants_of(component, variant).self_value
             if expected is not None and one.value is not None:
                 assert _near(one.value, expected), f"{variant}: {one.value}, not {expected}"
 
 
-def check_sampling(component: Component[Any]) -> None:
-    """The same straight motion, sampled twice as often, scores as ``Laws(finer=...)`` says.
+def check_refinement(component: Component[Any]) -> None:
+    """The same straight motion, sampled twice as often, scores as ``refinement`` declares.
 
     If this fails, a sum over samples lacks its dt, or has one too many.
     """
     for seed in range(4):
-        coarse = scores_of(component, signalled(component, straight_world(seed, 32.0)))
-        fine = scores_of(component, signalled(component, straight_world(seed, 64.0)))
+        coarse = scores_of(component, with_signals(component, straight_world(seed, 32.0)))
+        fine = scores_of(component, with_signals(component, straight_world(seed, 64.0)))
         for variant, one in coarse.items():
-            _assert_sampled(variant, laws_of(component, variant).finer, one, fine[variant])
+            _assert_refined(
+                variant, invariants_of(component, variant).refinement, one, fine[variant]
+            )
 
 
 def check_more_people(component: Component[Any]) -> None:
-    """One person more moves the value only the way that ``Laws(more_people=...)`` says.
+    """One person more moves the value only the way that ``more_people`` declares.
 
     If this fails, people are averaged where the nearest, or the sum, was meant.
     """
-    promised = {v: laws_of(component, v).more_people for v in variants_of(component)}
-    if set(promised.values()) == {"free"}:
+    declared = {v: invariants_of(component, v).more_people for v in metric_of(component).variants}
+    if set(declared.values()) == {"free"}:
         return
 
     for seed in _SEEDS:
-        world = signalled(component, random_world(seed))
+        world = with_signals(component, random_world(seed))
         assert world.run.agents is not None
         columns = range(len(world.run.agents.id))
         more = scores_of(component, world)
         for left_out in columns:
             fewer = with_people(world.run, [c for c in columns if c != left_out])
             for variant, one in scores_of(component, replace(world, run=fewer)).items():
-                _assert_ordered(variant, promised[variant], one, more[variant])
+                _assert_ordered(variant, declared[variant], one, more[variant])
 
 
 def check_masses(component: Component[Any]) -> None:
-    """All masses times c multiply the value by c to the power ``Laws(mass=...)``.
+    """All masses times c multiply the value by c to the power ``mass_exponent``.
 
     If this fails, masses enter where they should not, or not where they should.
     """
     for seed in _SEEDS:
-        world = signalled(component, random_world(seed))
+        world = with_signals(component, random_world(seed))
         light = scores_of(component, world)
-        heavy = scores_of(component, _each_run(world, lambda run: heavier(run, 4.0)))
+        heavy = scores_of(component, _each_run(world, lambda run: scale_masses(run, 4.0)))
         for variant, one in light.items():
             assert one.status == heavy[variant].status, variant
             if one.value is not None:
-                expected = one.value * 4.0 ** laws_of(component, variant).mass
+                expected = one.value * 4.0 ** invariants_of(component, variant).mass_exponent
                 assert _near(heavy[variant].value, expected), f"{variant}: {heavy[variant]}"
 
 
@@ -177,11 +172,11 @@ def check_teleports_add_nothing(component: Component[Any]) -> None:
     """People who pass a portal score like people who walk on.
 
     If this fails, a flagged jump counts as a step: as length, as speed, as a contact. Declare
-    ``teleport`` in ``Laws(exceptions=...)`` only where places themselves are compared.
+    ``changes_with={"teleport": why}`` only where places themselves are compared.
     """
     for seed in range(4):
-        walked = scores_of(component, signalled(component, portal_world(seed, through=False)))
-        jumped = scores_of(component, signalled(component, portal_world(seed, through=True)))
+        walked = scores_of(component, with_signals(component, portal_world(seed, through=False)))
+        jumped = scores_of(component, with_signals(component, portal_world(seed, through=True)))
         _assert_same(component, walked, jumped, "teleport")
 
 
@@ -191,7 +186,7 @@ def check_rounding(component: Component[Any]) -> None:
     If this fails, compare with a tolerance instead of with equality.
     """
     for seed in _SEEDS:
-        _assert_robust(component, signalled(component, random_world(seed)), seed)
+        _assert_robust(component, with_signals(component, random_world(seed)), seed)
     for name, world in degenerate.on_thresholds().items():
         for seed in range(3):
             try:
@@ -201,15 +196,15 @@ def check_rounding(component: Component[Any]) -> None:
 
 
 CHECKS: tuple[Callable[[Component[Any]], None], ...] = (
-    check_label,
+    check_declaration,
     check_card_says_what_the_scores_say,
     check_card_examples_run,
     check_scores_are_well_formed,
     check_degenerate_runs,
     check_pure,
-    check_point_of_view,
-    check_itself,
-    check_sampling,
+    check_symmetries,
+    check_self_value,
+    check_refinement,
     check_more_people,
     check_masses,
     check_teleports_add_nothing,
@@ -245,16 +240,19 @@ def _each_command(world: World, change: Callable[[Commands], Commands] | None) -
 
 # --------------------------------------------------------------------- assertions
 def _assert_well_formed(component: Component[Any], found: Scored) -> None:
-    assert tuple(found) == variants_of(component), f"scored {', '.join(found)}"
+    declared = tuple(metric_of(component).variants)
+    assert tuple(found) == declared, f"scored {', '.join(found)}, declared {', '.join(declared)}"
     for variant, one in found.items():
         _assert_numbers(one)
-        _assert_labelled(component, one)
+        _assert_as_declared(component, one)
         if one.value is not None:
-            laws = laws_of(component, variant)
+            known = invariants_of(component, variant)
             slack = 1e-9 * max(1.0, abs(one.value))
-            bounds = f"{variant}: {one.value} is not within {laws.least} to {laws.most}"
-            assert laws.least - slack <= one.value <= laws.most + slack, bounds
-            assert not laws.whole or one.value == int(one.value), f"{variant}: {one.value}"
+            bounds = f"{variant}: {one.value} is not within {known.minimum} to {known.maximum}"
+            assert known.minimum - slack <= one.value <= known.maximum + slack, bounds
+            assert not known.integer or one.value == int(one.value), (
+                f"{variant}: {one.value} is not an integer"
+            )
 
 
 def _assert_numbers(one: Score) -> None:
@@ -268,23 +266,23 @@ def _assert_numbers(one: Score) -> None:
         assert one.lower <= one.upper, f"{one.variant}: bounds in the wrong order"
 
 
-def _assert_labelled(component: Component[Any], one: Score) -> None:
-    assert isinstance(component, MetricComponent)
-    label = component.label
+def _assert_as_declared(component: Component[Any], one: Score) -> None:
+    declared = metric_of(component)
+    variant = declared.variants[one.variant]
     expected = (
-        label.metric,
-        label.symbol,
-        label.category,
-        label.units.get(one.variant, label.unit),
-        label.betters.get(one.variant, label.better),
+        declared.kind,
+        declared.symbol,
+        declared.score_category,
+        variant.unit,
+        variant.better,
     )
     found = (one.metric, one.symbol, one.category, one.unit, one.better)
-    assert found == expected, f"{one.variant} says {found}, its label {expected}"
+    assert found == expected, f"{one.variant} says {found}, its declaration {expected}"
 
 
 def _assert_same(component: Component[Any], one: Scored, two: Scored, change: str) -> None:
     for variant, a in one.items():
-        if change in laws_of(component, variant).exceptions:
+        if change in invariants_of(component, variant).changes_with:
             continue
         b = two[variant]
         assert (a.status, a.reason) == (b.status, b.reason), f"{change}, {variant}: {a} {b}"
@@ -294,24 +292,24 @@ def _assert_same(component: Component[Any], one: Scored, two: Scored, change: st
             )
 
 
-def _assert_sampled(variant: str, law: str, coarse: Score, fine: Score) -> None:
-    if law == "free":
+def _assert_refined(variant: str, refinement: str, coarse: Score, fine: Score) -> None:
+    if refinement == "free":
         return
     assert coarse.status == fine.status, f"{variant}: {coarse.status} became {fine.status}"
     if coarse.value is None or fine.value is None:
         return
-    factor, slack = {"same": (1, 1e-9), "near": (1, 0.05), "double": (2, 0.05)}[law]
+    factor, slack = {"same": (1, 1e-9), "near": (1, 0.05), "double": (2, 0.05)}[refinement]
     expected = factor * coarse.value
     close = math.isclose(
-        fine.value, expected, rel_tol=slack, abs_tol=1e-9 + slack * (law == "near")
+        fine.value, expected, rel_tol=slack, abs_tol=1e-9 + slack * (refinement == "near")
     )
-    assert close, f"{variant}: {coarse.value} became {fine.value}, which is not {law}"
+    assert close, f"{variant}: {coarse.value} became {fine.value}, which is not {refinement}"
 
 
-def _assert_ordered(variant: str, law: str, fewer: Score, more: Score) -> None:
-    if law == "free" or fewer.value is None or more.value is None:
+def _assert_ordered(variant: str, monotony: str, fewer: Score, more: Score) -> None:
+    if monotony == "free" or fewer.value is None or more.value is None:
         return
-    up = more.value - fewer.value if law == "up" else fewer.value - more.value
+    up = more.value - fewer.value if monotony == "up" else fewer.value - more.value
     assert up >= -1e-9 * max(1.0, abs(more.value)), (
         f"{variant}: {fewer.value} became {more.value} with one person more"
     )
@@ -319,11 +317,11 @@ def _assert_ordered(variant: str, law: str, fewer: Score, more: Score) -> None:
 
 def _assert_robust(component: Component[Any], world: World, seed: int) -> None:
     found = scores_of(component, world)
-    again = scores_of(component, _each_run(world, lambda run: perturbed(run, 1e-12, seed)))
+    again = scores_of(component, _each_run(world, lambda run: perturb(run, 1e-12, seed)))
     for variant, a in found.items():
         b = again[variant]
         assert (a.status, a.reason) == (b.status, b.reason), f"{variant}: {a} became {b}"
-        if laws_of(component, variant).whole:
+        if invariants_of(component, variant).integer:
             assert a.value == b.value, f"{variant}: {a.value} became {b.value}"
 
 

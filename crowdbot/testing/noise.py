@@ -6,14 +6,11 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.component import Component
-from crowdbot.core.interfaces import NoiseGenerator
-from crowdbot.core.registry import Registry
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.sensing.sensor import NoiseGenerator
+from crowdbot.dsl.component import Component
 from crowdbot.testing.around import around, built, specs_of
-
-Array = NDArray[np.float64]
 
 #: Distances as sensors hand them over: hits near and far, nothing hit, nobody looked.
 _DISTANCES = (

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from crowdbot.core.component import Component
-from crowdbot.core.registry import Registry
-from crowdbot.dsl.base import ComponentSpec
+from crowdbot.core.registry.registry import Registry
+from crowdbot.dsl.component import Component
+from crowdbot.dsl.spec import ComponentSpec
 from crowdbot.errors import PlannerError
 from crowdbot.testing.around import around, built, specs_of
 from crowdbot.testing.drive import AT_GOAL, COURSES, UNREACHABLE, Course, Driven, sensors_for
@@ -44,14 +44,14 @@ def check_commands_are_within_limits(
 def check_reset_is_deterministic(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """Two planners of the same words and seed give the same commands.
+    """Two planners of the same spec and seed give the same commands.
 
     If this fails, draw from ``np.random.default_rng(seed)``, made in ``reset``; ask no clock.
     """
     for driver in _drivers(component, registry):
         course = COURSES["people in a room"]
         one, two = (_drive("people in a room", driver(course)) for _ in range(2))
-        _assert_same(one, two, "two planners of the same words")
+        _assert_same(one, two, "two planners of the same spec")
 
 
 def check_runs_are_independent(component: Component[Any], registry: Registry | None = None) -> None:

@@ -8,17 +8,16 @@ from dataclasses import fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.component import Component
-from crowdbot.core.interfaces import RobotModel
-from crowdbot.core.registry import Registry
+from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots.check import check_model as checked
-from crowdbot.dsl.base import ComponentSpec
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.robot import RobotModel
+from crowdbot.dsl.component import Component
+from crowdbot.dsl.spec import ComponentSpec
 from crowdbot.testing.around import around, built, specs_of
 from crowdbot.testing.commanded_motion import EMPTY_FLOOR
 
-Array = NDArray[np.float64]
 #: How far a body may stick out of its footprint, or stay behind it, m.
 _OUT, _BEHIND = 0.03, 0.15
 #: Parts that hang higher than the robot is said to be, m.
@@ -53,7 +52,7 @@ def check_model(component: Component[Any], registry: Registry | None = None) -> 
 
 
 def check_model_is_constant(component: Component[Any], registry: Registry | None = None) -> None:
-    """Built twice from the same words it is the same robot.
+    """Built twice from the same spec it is the same robot.
 
     If this fails, the description holds the time, a path of this machine or a random number.
     """

@@ -1,4 +1,4 @@
-"""Scores of one metric in a world, and what its words promise about them."""
+"""Scores of one metric in a world, and what its component declares about them."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.component import Component
-from crowdbot.core.evaluate import score
-from crowdbot.core.laws import Laws
-from crowdbot.core.registry import Plugin, assemble
-from crowdbot.core.score import Score
-from crowdbot.core.score_label import MetricComponent
+from crowdbot.core.registry.registry import Plugin, assemble
+from crowdbot.core.scoring.evaluate import score
+from crowdbot.core.types.score import Score
+from crowdbot.dsl.component import Component
+from crowdbot.dsl.metric_component import MetricComponent
+from crowdbot.dsl.metric_invariants import MetricInvariants
 from crowdbot.testing.worlds import World
 
 Scored = Mapping[str, Score]
 
 
-def signalled(component: Component[Any], world: World) -> World:
+def with_signals(component: Component[Any], world: World) -> World:
     """A world in which the run has the signals that a metric says it reads.
 
     They are smooth in time, the same at every sampling rate, and between 0 and 1.
@@ -38,17 +38,18 @@ def signalled(component: Component[Any], world: World) -> World:
 def scores_of(component: Component[Any], world: World) -> dict[str, Score]:
     """Variant -> score of a world."""
     plugin = Plugin(name="checked", distribution="checked", components=(component,))
-    found = score(assemble([plugin]), **world.given(), metrics=component.kind)
+    found = score(assemble([plugin]), **world.score_arguments(), metrics=component.kind)
     return {s.variant: s for s in found}
 
 
-def laws_of(component: Component[Any], variant: str) -> Laws:
-    """What a variant promises."""
-    laws: Mapping[str, Laws] = getattr(component, "laws", {})
-    return laws.get(variant, Laws())
+def metric_of(component: Component[Any]) -> MetricComponent[Any]:
+    """The component, which has to be that of a metric."""
+    assert isinstance(component, MetricComponent), (
+        f"'{component.kind}' is not a MetricComponent; use declare_metric"
+    )
+    return component
 
 
-def variants_of(component: Component[Any]) -> tuple[str, ...]:
-    """Names of the variants, in order."""
-    assert isinstance(component, MetricComponent), "no MetricComponent"
-    return component.label.variants
+def invariants_of(component: Component[Any], variant: str) -> MetricInvariants:
+    """What holds for the values of a variant."""
+    return metric_of(component).variants[variant].invariants

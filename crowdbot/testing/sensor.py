@@ -10,19 +10,19 @@ from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.component import Component
-from crowdbot.core.interfaces import MillimetreCamera, SensorInfo
-from crowdbot.core.registry import Registry
-from crowdbot.core.sensing.millimetres import millimetres
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.sensing.depth_mm import depth_mm
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.dsl.proximity import ProximitySpec
+from crowdbot.core.sensing.sensor import DepthCamera
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.dsl.component import Component
+from crowdbot.dsl.range_sensor import RangeSensorSpec
 from crowdbot.testing.around import around, built, specs_of
 from crowdbot.testing.sensor_scenes import POSES, crowded, empty, in_front, pose_of, robot_at
 
-Array = NDArray[np.float64]
 _ROS_TYPE = re.compile(r"[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*")
 #: Categories whose values are distances of what stands there, inf for nothing.
 _DISTANCES = ("infrared", "lidar", "ultrasound")
@@ -100,7 +100,7 @@ def check_readings_are_new(component: Component[Any], registry: Registry | None 
 def check_equal_draws_give_equal_readings(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """Two sensors of the same words read the same from the same scenes and random numbers.
+    """Two sensors of the same spec read the same from the same scenes and random numbers.
 
     If this fails, something is drawn from another generator than ``rng``, or from the clock.
     """
@@ -109,7 +109,7 @@ def check_equal_draws_give_equal_readings(
         scene = crowded()
         for k in range(len(POSES)):
             same = np.array_equal(one(_shown(scene, k), k), two(_shown(scene, k), k))
-            assert same, f"reading {k} differs between two sensors of the same words"
+            assert same, f"reading {k} differs between two sensors of the same spec"
 
 
 def check_random_says_whether_it_draws(
@@ -134,7 +134,7 @@ def check_exact_without_noise(component: Component[Any], registry: Registry | No
     """
     known = around(component, registry)
     for spec in specs_of(component, known):
-        if isinstance(spec, ProximitySpec) and not spec.noise and not spec.dropout:
+        if isinstance(spec, RangeSensorSpec) and not spec.noise and not spec.dropout:
             assert not _draws(built(known, spec)), "draws random numbers without noise"
 
 
@@ -197,24 +197,24 @@ def check_distances_are_true(component: Component[Any], registry: Registry | Non
 def check_millimetres_are_the_reading(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """Of a camera with ``millimetres``: they are its reading, rounded, from equal random numbers.
+    """Of a camera with ``depth_mm``: they are its reading, rounded, from equal random numbers.
 
     If this fails, recordings show something else than planners get. Whole millimetres are
     rounded to even; what is not measured, or beyond 65.535 m, is 0. Each image is a new array.
     """
     for sensor in _sensors(component, registry):
         rate = sensor.info().rate
-        if not isinstance(sensor, MillimetreCamera):
+        if not isinstance(sensor, DepthCamera):
             continue
         earlier = np.zeros(0, np.uint16)
         for scene in (empty(), crowded()):
             for k in range(len(POSES)):
                 reading = Probe(sensor)(_shown(scene, k), k)
                 given = pose_of(k), k / rate, sensor_rng(0, "robot", "sensor", k)
-                image = np.asarray(sensor.millimetres(scene, *given))
-                assert image.dtype == np.uint16, f"millimetres() returned {image.dtype}"
+                image = np.asarray(sensor.depth_mm(scene, *given))
+                assert image.dtype == np.uint16, f"depth_mm() returned {image.dtype}"
                 assert image.shape == reading.shape, f"shape {image.shape}, not {reading.shape}"
-                other = int(np.count_nonzero(image != millimetres(reading)))
+                other = int(np.count_nonzero(image != depth_mm(reading)))
                 assert not other, f"{other} of {image.size} pixels are not those of the reading"
                 assert not np.shares_memory(image, earlier), "an image takes an earlier one's place"
                 earlier = image
@@ -264,7 +264,7 @@ def _assert_info(info: SensorInfo) -> None:
     assert len(info.mount) == 4, f"the mount is {info.mount}"
     assert all(math.isfinite(x) for x in info.mount), f"the mount is {info.mount}"
     assert 0.0 <= info.range_min <= info.range_max, f"{info.range_min} to {info.range_max} m"
-    assert _ROS_TYPE.fullmatch(info.ros_type), f"'{info.ros_type}' is no ROS type"
+    assert _ROS_TYPE.fullmatch(info.ros_type), f"'{info.ros_type}' is not a ROS type"
     assert isinstance(info.memory, int), f"memory is {info.memory}"
     assert info.memory >= 0, f"memory is {info.memory}"
     if info.angles is not None:

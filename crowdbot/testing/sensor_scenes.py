@@ -6,8 +6,10 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import Pose, RobotState, SensorInfo
 from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.robot import RobotState
+from crowdbot.core.types.sensor import SensorInfo
 
 #: A robot that drives on an arc; x, y (m), yaw (rad), one for each reading.
 POSES = tuple(Pose(0.05 * k, 0.01 * k * k, 0.2 * k) for k in range(6))

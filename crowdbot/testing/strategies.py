@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
-from crowdbot.core.component import Component
-from crowdbot.core.registry import Registry
-from crowdbot.dsl.base import ComponentSpec
+from crowdbot.core.registry.registry import Registry
+from crowdbot.dsl.component import Component
+from crowdbot.dsl.spec import ComponentSpec
 from crowdbot.testing.around import around
 
 #: At most so many fields differ from the examples.

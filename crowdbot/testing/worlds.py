@@ -10,13 +10,11 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.commands import Commands
-from crowdbot.core.questionnaires import TLX_SCALES, USE_ITEMS, Questionnaires
-from crowdbot.core.trajectory import Trajectories
-
-Array = NDArray[np.float64]
+from crowdbot.core.trajectories.commands import Commands
+from crowdbot.core.trajectories.questionnaires import TLX_SCALES, USE_ITEMS, Questionnaires
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.arrays import Array
 
 _RATE = 16.0
 _GOAL = (3.0, 0.5)
@@ -33,8 +31,8 @@ class World:
     commands_baseline: Commands | None = None
     questionnaires: Questionnaires | None = None
 
-    def given(self) -> dict[str, Any]:
-        """As `crowdbot.core.evaluate.score` takes it."""
+    def score_arguments(self) -> dict[str, Any]:
+        """Arguments of `crowdbot.core.scoring.evaluate.score`."""
         return {
             "crowded": self.run,
             "robot_alone": self.robot_alone,

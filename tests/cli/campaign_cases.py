@@ -8,6 +8,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from tests.waiting import AT_MOST
+
 TINY = ["challenge-2020", "--only", "in-d0125-slow-c01-*", "--set",
         "robots.robot.task.time_limit=1 s", "--no-replay", "--jobs", "2"]  # fmt: skip
 
@@ -20,7 +22,7 @@ def start(out: Path, *more: str) -> subprocess.Popen[str]:
     )  # fmt: skip
 
 
-def run(out: Path, *more: str, timeout: float = 240.0) -> tuple[int, dict[str, Any], str]:
+def run(out: Path, *more: str, timeout: float = AT_MOST) -> tuple[int, dict[str, Any], str]:
     """Exit code, the summary, and what was said."""
     running = start(out, *more, "--json")
     said, err = running.communicate(timeout=timeout)

@@ -3,7 +3,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from simulate_cases import Shell
+
+from tests.cli.simulate_cases import Shell
 
 
 @pytest.fixture

@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from crowdbot import cli
+from tests.waiting import AT_MOST
 
 ID = "in-d0125-slow-c01-r02"
 FILES = {"run.json", "scenario.yaml", "run.mcap", "scores.csv", "replay.html"}
@@ -79,7 +80,8 @@ def planner_file(folder: Path, step: str = "return (0.3, 0.1)", **more: str) -> 
 def process(out: Path, *more: str, seconds: float = 1.0) -> subprocess.Popen[str]:
     """The command in a process of its own; its watchdog has little patience."""
     code = (
-        "import sys; from crowdbot.cli import main; from crowdbot.core.watchdog import Watchdog; "
+        "import sys; from crowdbot.cli import main; "
+        "from crowdbot.core.planning.watchdog import Watchdog; "
         "Watchdog.__init__.__defaults__ = (1.0, 0.5, None); sys.exit(main())"
     )
     argv = ["simulate", "challenge-2020", ID, *limit(seconds), "--out", str(out), *more]
@@ -89,7 +91,7 @@ def process(out: Path, *more: str, seconds: float = 1.0) -> subprocess.Popen[str
     )  # fmt: skip
 
 
-def finished(running: subprocess.Popen[str], timeout: float = 60.0) -> Answer:
+def finished(running: subprocess.Popen[str], timeout: float = AT_MOST) -> Answer:
     out, err = running.communicate(timeout=timeout)
     assert "Traceback" not in out + err
     return Answer(running.returncode, out, err)

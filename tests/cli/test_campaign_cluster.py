@@ -7,12 +7,15 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from campaign_cases import outcome, run, start
+
+from tests.cli.campaign_cases import outcome, run, start
+from tests.waiting import AT_MOST, wait_until
+
+pytestmark = pytest.mark.slow
 
 
 def _free_port() -> int:
@@ -40,10 +43,8 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]
         subprocess.Popen([*command, "--local-directory", str(tmp_path / str(i))], **quiet)  # type: ignore[call-overload]
         for i in range(2)
     ]
-    end = time.monotonic() + 60.0
-    while not _listens(address) and time.monotonic() < end:
-        time.sleep(0.1)
     try:
+        wait_until(lambda: _listens(address))
         yield address, workers
     finally:
         for process in (*workers, scheduler):
@@ -57,11 +58,9 @@ def test_a_killed_worker_changes_nothing(
     address, workers = cluster
     out = tmp_path / "runs"
     running = start(out, "--planner", "goal_seek", "--cluster", address)
-    end = time.monotonic() + 120.0
-    while not list(out.rglob("*.partial")) and time.monotonic() < end:
-        time.sleep(0.02)
+    wait_until(lambda: running.poll() is not None or list(out.rglob("*.partial")))
     os.kill(workers[0].pid, signal.SIGKILL)
-    said, err = running.communicate(timeout=180.0)
+    said, err = running.communicate(timeout=AT_MOST)
     assert running.returncode == 0, said + err
     local = tmp_path / "local"
     assert run(local, "--planner", "goal_seek")[0] == 0

@@ -9,11 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.cli import main
-from crowdbot.core.diff import ABSENT, differences
+from crowdbot.core.support.json_diff import ABSENT, differences
+from tests.paths import ROOT
 
 Captured = pytest.CaptureFixture[str]
 A, B = "challenge-2020/in-d0125-slow-c01-r02", "challenge-2020/in-d0125-slow-c20-r02"
-ROOT = Path(__file__).parents[2]
+ROOT = ROOT
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers(-3, 3) | st.text("abc", max_size=2),
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text("abc"), inner, max_size=3),

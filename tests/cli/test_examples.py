@@ -10,8 +10,9 @@ import pytest
 
 from crowdbot import cli
 from crowdbot.core.recording import read_trajectories
+from tests.paths import ROOT
 
-EXAMPLES = Path(__file__).parents[2] / "scenario_specs" / "examples"
+EXAMPLES = ROOT / "scenario_specs" / "examples"
 
 
 @pytest.mark.parametrize(

@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 from crowdbot.cli import main
-from crowdbot.core.aside import write_aside
 from crowdbot.core.interfaces import RobotModel
-from crowdbot.core.registry import discover
-from crowdbot.core.urdf import to_urdf
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.robots import build_model
+from crowdbot.core.robots.urdf_export import to_urdf
+from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import CrowdbotError, InputError
 
 with warnings.catch_warnings():
@@ -57,7 +58,7 @@ def test_masses_are_those_of_the_plant(capsys: pytest.CaptureFixture[str]) -> No
     from pydrake.multibody.parsing import Parser
     from pydrake.multibody.plant import MultibodyPlant
 
-    model: RobotModel = discover().build(discover().find("robot", "turtlebot2").spec())
+    model: RobotModel = build_model(discover(), discover().find("robot", "turtlebot2").spec())
     assert main(["export-urdf", "turtlebot2"]) == 0
     texts = {"sdf": model.description, "urdf": capsys.readouterr().out}
     found = {}
@@ -97,7 +98,7 @@ def _model(sdf: str) -> RobotModel:
     from dataclasses import replace
 
     registry = discover()
-    built: RobotModel = registry.build(registry.find("robot", "turtlebot2").spec())
+    built: RobotModel = build_model(registry, registry.find("robot", "turtlebot2").spec())
     return replace(built, description=sdf)
 
 
@@ -149,5 +150,5 @@ def test_nothing_is_left_of_a_file_that_failed(tmp_path: Path) -> None:
     folder = tmp_path / "taken"
     folder.mkdir()
     with pytest.raises(InputError, match="taken: cannot be written"):
-        write_aside(folder, "text")
+        atomic_write(folder, "text")
     assert [p.name for p in tmp_path.iterdir()] == ["taken"]

@@ -7,18 +7,19 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from simulate_cases import Shell
 
 from crowdbot.core.recording import read_trajectories
+from tests.cli.simulate_cases import Shell
+
+pytestmark = pytest.mark.slow
 
 PLUGIN = '''
 import sys
 from typing import Literal
 import numpy as np
-from crowdbot.core.component import Component
-from crowdbot.core.interfaces import SensorInfo
-from crowdbot.core.score_label import MetricComponent, ScoreLabel
-from crowdbot.dsl.base import CrowdPolicySpec, MetricSpec, SensorSpec
+from crowdbot.dsl import Component
+from crowdbot.core.interfaces import ScoreFactory, SensorInfo
+from crowdbot.dsl import CrowdPolicySpec, MetricSpec, SensorSpec, declare_metric
 from crowdbot.hookspecs import hookimpl
 
 class SensorWords(SensorSpec):
@@ -33,7 +34,8 @@ class MetricWords(MetricSpec):
     """A metric."""
     kind: Literal["faulty.metric"] = "faulty.metric"
 
-LABEL = ScoreLabel(metric="faulty.metric", symbol="F", category="task", unit="m", better="lower")
+METRIC = declare_metric(MetricWords, build="faulty:Metric", symbol="F", unit="m", better="lower",
+                        category="task", card="# faulty.metric\\n")
 
 class Sensor:
     def __init__(self, spec):
@@ -66,30 +68,30 @@ def crowdbot_crowd_policies():
 
 @hookimpl
 def crowdbot_metrics():
-    return [MetricComponent(spec=MetricWords, build="faulty:Metric", summary="m", label=LABEL,
-                            card="# faulty.metric\\n")]
+    return [METRIC]
 '''
 FINE = {
     "init": "pass",
     "read": "return np.zeros(1)",
     "velocities": "return view.velocity.copy()",
-    "score": "print('hello'); return [LABEL.ok('corrected', 1.0)]",
+    "score": "print('hello'); return [ScoreFactory(METRIC).ok('corrected', 1.0)]",
 }
 FAILING = {
     "sensor cannot be built": ("init", "raise ValueError('no')", "sensor 'faulty.sensor' ("),
-    "sensor raises": ("read", "raise ValueError('no')", "sensor faulty.sensor at t = 0 s: Value"),
-    "sensor leaves": ("read", "sys.exit(0)", "sensor faulty.sensor at t = 0 s: SystemExit: 0"),
-    "reading too long": ("read", "return np.zeros(3)", "sensor faulty.sensor returned shape (3,)"),
+    "sensor raises": ("read", "raise ValueError('no')", "read at t = 0 s: ValueError: no ("),
+    "sensor leaves": ("read", "sys.exit(0)", "read at t = 0 s: SystemExit: 0"),
+    "reading too long": ("read", "return np.zeros(3)", "): read returned shape (3,); info"),
     "policy raises": ("velocities", "raise ValueError('no')",
-        "crowd policy faulty.policy at t = 0 s: V"),
+        "decision at t = 0 s: ValueError: no ("),
     "policy is nan": ("velocities", "return view.velocity * np.nan",
-        "policy faulty.policy returned"),
-    "metric raises": ("score", "1 / 0", "metric 'faulty.metric' of plugin "),
+        "): returned [nan, nan] for agent "),
+    "metric raises": ("score", "1 / 0", "): score: ZeroDivisionError: division by zero ("),
     "metric leaves": ("score", "sys.exit(0)", "SystemExit: 0"),
-    "metric is nan": ("score", "return [LABEL.ok('corrected', np.nan)]", "nan must not escape"),
-    "metric is empty": ("score", "return []", "variants none; its label says corrected"),
+    "metric is nan": ("score", "return [ScoreFactory(METRIC).ok('corrected', np.nan)]",
+        "nan must not escape"),
+    "metric is empty": ("score", "return []", "variants none; declared are corrected"),
     "metric is nothing": ("score", "return None", "returned None; a list of scores is wanted"),
-    "metric is no score": ("score", "return [3.0]", "returned 3.0 instead of its own scores"),
+    "metric is not a score": ("score", "return [3.0]", "returned 3.0 instead of its own scores"),
 }  # fmt: skip
 SETTINGS = (
     "robots.robot.sensors.x={kind: faulty.sensor}",

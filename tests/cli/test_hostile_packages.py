@@ -6,7 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from plugin_packages import HEAD, Site, planner
+
+from tests.cli.plugin_packages import HEAD, Site, planner
+
+pytestmark = pytest.mark.slow
 
 SPEC = """
 class Spec(PlannerSpec):
@@ -58,7 +61,7 @@ BROKEN = {
     "no_literal": (spec("str = 'no_literal.go'"), "Spec: kind must be one literal"),
     "no_text": (spec("Literal[3] = 3"), "Spec: kind must be one literal"),
     "two_kinds": (spec("Literal['two_kinds.a', 'two_kinds.b'] = 'two_kinds.a'"), "one literal"),
-    "no_spec": (returning("[Component(spec=int, build='a:b', summary='')]"), "is no spec"),
+    "no_spec": (returning("[Component(spec=int, build='a:b', summary='')]"), "is not a spec"),
     "unknown_type": (spec("Literal['unknown_type.go'] = 'unknown_type.go'", "    x: 'Nowhere'"),
                      "unknown_type.go: Spec cannot be built"),
     "odd_type": (spec("Literal['odd_type.go'] = 'odd_type.go'", "    x: object() = 1"),
@@ -74,7 +77,7 @@ BROKEN = {
                 "class Spec(MetricSpec):\n    kind: Literal['no_card.m'] = 'no_card.m'\n"
                 "@hookimpl\ndef crowdbot_metrics():\n"
                 "    return [Component(spec=Spec, build='a:b', summary='')]",
-                "metric 'no_card.m' has no label"),
+                "metric 'no_card.m' is not a MetricComponent; use declare_metric"),
     "folder": (HEAD + "@hookimpl\ndef crowdbot_scenario_dirs():\n    return ['suites']",
                "crowdbot_scenario_dirs returned 'suites' (str)"),
 }  # fmt: skip
@@ -169,11 +172,12 @@ def test_a_document_that_names_what_failed_is_told(site: Site) -> None:
 def test_a_build_that_does_not_resolve(site: Site) -> None:
     done = site.run("plugins", "check", "good.go")
     assert done.returncode == 1
-    assert "good.go: build 'nowhere:build' not found" in done.stdout
+    assert "'good.go': build 'nowhere:build' not found" in done.stdout
     done = site.run("simulate", "challenge-2020", "in-d0125-slow-c01-r02", "--planner", "good.go")
     assert done.returncode == 3
     assert done.stderr.endswith(
-        "error: good.go: build 'nowhere:build' not found: No module named 'nowhere'\n"
+        "error: planner 'good.go' (crowdbot-good 0.3): build 'nowhere:build' not found: No module "
+        "named 'nowhere'\n"
     )
     assert not (site.folder / "runs").exists()
 

@@ -7,10 +7,11 @@ from pathlib import Path
 import pytest
 
 from crowdbot.cli import main
-from crowdbot.core import lock as locks
+from crowdbot.core.scenarios import lock as locks
+from tests.paths import DATA
 
 Captured = pytest.CaptureFixture[str]
-PARTS = Path(__file__).parent.parent / "data" / "diagnostics" / "parts"
+PARTS = DATA / "diagnostics" / "parts"
 SUITE = """\
 crowdbot: 1
 suite: {id: s}

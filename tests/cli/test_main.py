@@ -8,6 +8,7 @@ import pytest
 
 from crowdbot import cli
 from crowdbot.errors import CrowdbotError, PluginError, SimulationError, UsageError
+from tests.waiting import AT_MOST
 
 COMMANDS = [c for c in cli.command_names() if c in ("validate", "expand", "plugins")]
 
@@ -73,7 +74,7 @@ def test_exit_codes(
         raise error
 
     monkeypatch.delenv("CROWDBOT_DEBUG", raising=False)
-    monkeypatch.setattr("crowdbot.core.registry.discover", fail)
+    monkeypatch.setattr("crowdbot.core.registry.registry.discover", fail)
     assert cli.main(["plugins"]) == code
     shown = capsys.readouterr().err
     assert shown.startswith(text)
@@ -85,7 +86,7 @@ def test_debug_shows_the_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
         raise ZeroDivisionError
 
     monkeypatch.setenv("CROWDBOT_DEBUG", "1")
-    monkeypatch.setattr("crowdbot.core.registry.discover", fail)
+    monkeypatch.setattr("crowdbot.core.registry.registry.discover", fail)
     with pytest.raises(ZeroDivisionError):
         cli.main(["plugins"])
 
@@ -96,7 +97,7 @@ def run(*code: str, **env: str) -> subprocess.CompletedProcess[str]:
         capture_output=True,
         text=True,
         env={**os.environ, **env},
-        timeout=60,
+        timeout=AT_MOST,
         check=False,
     )
 
@@ -121,7 +122,7 @@ def test_module_can_be_run() -> None:
 def test_a_closed_pipe_is_no_error() -> None:
     command = f"set -o pipefail; {sys.executable} -m crowdbot expand challenge-2020 | head -1"
     done = subprocess.run(
-        ["bash", "-c", command], capture_output=True, text=True, timeout=60, check=False
+        ["bash", "-c", command], capture_output=True, text=True, timeout=AT_MOST, check=False
     )
     assert done.stdout.startswith("in-d0125-slow-c01-r02")
     assert done.stderr == ""

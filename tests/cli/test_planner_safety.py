@@ -10,13 +10,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from simulate_cases import FILES, Shell, finished, planner_file, process
+
+from tests.cli.simulate_cases import FILES, Shell, finished, planner_file, process
+
+pytestmark = pytest.mark.slow
 
 PLUGIN = '''
 import sys
 from typing import ClassVar, Literal
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import PlannerSpec
+from crowdbot.dsl import Component
+from crowdbot.dsl import PlannerSpec
 from crowdbot.hookspecs import hookimpl
 CROWDBOT_API = 1
 
@@ -64,9 +67,9 @@ FAILING = {
     "interrupts": ({"step": "raise KeyboardInterrupt"}, "step: KeyboardInterrupt"),
     "its own way out": ({"step": "raise type('Out', (BaseException,), {})('bye')"}, "Out: bye"),
     "generator exit": ({"step": "raise GeneratorExit"}, "step: GeneratorExit"),
-    "interrupts init": ({"init": "raise KeyboardInterrupt"}, "cannot be made: KeyboardInterrupt"),
-    "exits in init": ({"init": "sys.exit(3)"}, "cannot be made: SystemExit: 3"),
-    "raises in init": ({"init": "raise ValueError('no')"}, "cannot be made: ValueError: no"),
+    "interrupts init": ({"init": "raise KeyboardInterrupt"}, "cannot be built: KeyboardInterrupt"),
+    "exits in init": ({"init": "sys.exit(3)"}, "cannot be built: SystemExit: 3"),
+    "raises in init": ({"init": "raise ValueError('no')"}, "cannot be built: ValueError: no"),
     "raises in reset": ({"reset": "raise ValueError('no')"}, "reset: ValueError: no"),
     "changes time": ({"step": "obs.t = 3.0"}, "FrozenInstanceError"),
     "changes the zone": ({"step": "obs.goal_zone[0] = 1.0"}, "read-only"),
@@ -100,7 +103,7 @@ def test_a_planner_that_fails(source: Any, case: str, shell: Shell, tmp_path: Pa
 def test_what_is_built_must_be_a_planner(shell: Shell, tmp_path: Path) -> None:
     answer = shell(*plugin_file(tmp_path, build="Spec"), *QUIET)
     assert answer.code == 3
-    assert "cannot be made" in answer.err
+    assert "cannot be built" in answer.err
     (tmp_path / "unsafe.py").write_text(
         (tmp_path / "unsafe.py").read_text().replace("unsafe:Spec", "unsafe:dict")
         + "\ndef dict(spec): return {}\n"
@@ -119,7 +122,7 @@ def test_it_fails_in_the_calibration_run_as_well(shell: Shell, tmp_path: Path) -
         (run / answer.json["references"]["robot_alone"]).with_name("run.json").read_text()
     )
     assert alone["status"] == "planner_failed"
-    assert "planner 'Mine': step: ZeroDivisionError" in alone["reason"]
+    assert "): step: ZeroDivisionError" in alone["reason"]
     assert shell.leftovers() == []
 
 
@@ -149,13 +152,13 @@ def test_nothing_that_a_planner_says_reaches_stdout(tmp_path: Path) -> None:
 
 
 def test_the_budget_of_a_step(shell: Shell, tmp_path: Path) -> None:
-    slow = {"step": "time.sleep(0.06 if obs.t > 0.4 else 0.0); return (0.1, 0.0)"}
+    slow = {"step": "time.sleep(0.6 if obs.t > 0.4 else 0.0); return (0.1, 0.0)"}
     options = [*file_options(tmp_path, **slow), *QUIET, "--json"]
     assert shell(*options).code == 0
-    answer = shell(*options, "--step-budget", "0.05")
+    answer = shell(*options, "--step-budget", "0.5")
     assert answer.code == 3
-    assert answer.json["step_budget"] == 0.05
-    assert "the budget is 0.05 s" in answer.json["reason"]
+    assert answer.json["step_budget"] == 0.5
+    assert "the budget is 0.5 s" in answer.json["reason"]
     assert 0.4 < answer.json["sim_time"] < 0.6
     again = shell(*options)
     assert again.json["reused"] is False  # another run than the one with a budget
@@ -172,7 +175,7 @@ def test_the_time_of_steps_is_a_metric(shell: Shell, tmp_path: Path) -> None:
     step = "time.sleep(0.01); return (0.1, 0.0)"
     answer = shell(*file_options(tmp_path, step=step), *QUIET, "--json")
     found = {s["metric"]: s["value"] for s in answer.json["scores"]}
-    assert 0.01 <= found["mean_planner_time"] <= found["max_planner_time"] < 1.0
+    assert 0.01 <= found["mean_planner_time"] <= found["max_planner_time"]
 
 
 # ----------------------------------------------------------------------- the truth

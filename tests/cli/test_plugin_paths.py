@@ -7,10 +7,13 @@ import os
 from pathlib import Path
 
 import pytest
-from plugin_packages import Site, planner
+
+from tests.cli.plugin_packages import Site, planner
+
+pytestmark = pytest.mark.slow
 
 ENTRY = '[project]\nname = "crowdbot-acme"\n[project.entry-points.crowdbot]\nacme = "acme_go"\n'
-DEEDS = """
+MODULE = """
 from crowdbot.core.interfaces import Command
 
 class Go:
@@ -25,9 +28,9 @@ def write(folder: Path, *, source: str = "", entry: str = ENTRY) -> Path:
     package = folder / source / "acme_go"
     package.mkdir(parents=True)
     (folder / "pyproject.toml").write_text(entry, encoding="utf-8")
-    text = planner("acme.go", build="acme_go.deeds:Go")
+    text = planner("acme.go", build="acme_go.go_build:Go")
     (package / "__init__.py").write_text(text, encoding="utf-8")
-    (package / "deeds.py").write_text(DEEDS, encoding="utf-8")
+    (package / "go_build.py").write_text(MODULE, encoding="utf-8")
     return folder
 
 

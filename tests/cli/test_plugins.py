@@ -2,12 +2,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 
 from crowdbot.cli import main
-from crowdbot.core.registry import Plugin, Registry, assemble, discover
+from crowdbot.core.registry.registry import Plugin, Registry, assemble, discover
+from tests.paths import ROOT
 
 Captured = pytest.CaptureFixture[str]
 
@@ -17,7 +17,7 @@ def broken(monkeypatch: pytest.MonkeyPatch) -> None:
     plugin = Plugin(name="bad", distribution="crowdbot-x 0.1", error="ImportError: no\n'torch'")
     registry = assemble([*discover(allow=()).plugins, plugin])
     found: Callable[..., Registry] = lambda **_: registry  # noqa: E731 - a stand-in
-    monkeypatch.setattr("crowdbot.core.registry.discover", found)
+    monkeypatch.setattr("crowdbot.core.registry.registry.discover", found)
 
 
 @pytest.mark.usefixtures("broken")
@@ -48,6 +48,7 @@ def test_show(capsys: Captured) -> None:
     assert rows["mount.yaw"][2] == "rad"
 
 
+@pytest.mark.slow
 def test_show_every_kind(capsys: Captured) -> None:
     registry = discover(allow=())
     for plugin in registry.plugins:
@@ -76,7 +77,7 @@ def test_what_is_built_in_is_described_where_it_says() -> None:
 
     from crowdbot.cli._component_page import reference
 
-    root = Path(__file__).parent.parent.parent
+    root = ROOT
     registry = discover(allow=())
     for plugin in registry.plugins:
         for component in plugin.components:

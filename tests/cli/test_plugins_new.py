@@ -8,9 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from plugin_packages import Site
 
 from crowdbot.cli import main
+from tests.cli.plugin_packages import Site
+
+pytestmark = pytest.mark.slow
 
 Captured = pytest.CaptureFixture[str]
 
@@ -81,8 +83,8 @@ def test_the_other_scenario_runs(site: Site) -> None:
         ("My-Lab", "'my_lab' would do"),
         ("3d", "'d' would do"),
         ("a.b", "'a_b' would do"),
-        ("../x", "is no name"),
-        ("", "is no name"),
+        ("../x", "is not a name"),
+        ("", "is not a name"),
         ("builtin", "cannot be the name of a plugin"),
         ("class", "cannot be the name of a plugin"),
     ],

@@ -40,7 +40,7 @@ def test_components_of_plugins_are_in_it(tmp_path: Path) -> None:
     (tmp_path / "plugins").mkdir()
     (tmp_path / "plugins" / "acme_rooms.py").write_text(
         "from typing import Literal\n"
-        "from crowdbot.core.component import Component\n"
+        "from crowdbot.dsl.component import Component\n"
         "from crowdbot.dsl.base import EnvironmentSpec\n"
         "from crowdbot.hookspecs import hookimpl\n"
         "class RoomSpec(EnvironmentSpec):\n"
@@ -54,7 +54,7 @@ def test_components_of_plugins_are_in_it(tmp_path: Path) -> None:
     )
     code = (
         "from pathlib import Path\n"
-        "from crowdbot.core.registry import discover\n"
+        "from crowdbot.core.registry.registry import discover\n"
         "from crowdbot.cli.schema import build\n"
         "import json\n"
         "schema = build('suite', discover(extra=[Path('plugins/acme_rooms.py')], allow=()))\n"

@@ -5,14 +5,16 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
-import time
 from pathlib import Path
 
 import pytest
-from simulate_cases import FILES, ID, Shell, finished, planner_file, process
 
+from crowdbot.core.planning.watchdog import Watchdog
 from crowdbot.core.recording import read_trajectories
-from crowdbot.core.watchdog import Watchdog
+from tests.cli.simulate_cases import FILES, ID, Shell, finished, planner_file, process
+from tests.waiting import wait_until
+
+pytestmark = pytest.mark.slow
 
 # ---------------------------------------------------------------------- bad input
 WRONG = {
@@ -198,13 +200,16 @@ def test_a_planner_that_swallows_every_interruption(tmp_path: Path) -> None:
 # --------------------------------------------------------------------- interrupted
 def _wait_for(out: Path, size: int, running: subprocess.Popen[str]) -> Path:
     """The recording of a run that is going on, once it has some size."""
-    end = time.monotonic() + 60.0
-    while time.monotonic() < end and running.poll() is None:
-        for file in out.glob("challenge-2020/**/run.mcap"):
-            if file.stat().st_size > size:
-                return file
-        time.sleep(0.02)
-    raise AssertionError(f"no recording: {running.communicate()}")
+    found: list[Path] = []
+
+    def grown() -> bool:
+        files = out.glob("challenge-2020/**/run.mcap")
+        found.extend(file for file in files if file.stat().st_size > size)
+        return bool(found)
+
+    wait_until(lambda: running.poll() is not None or grown())
+    assert found, f"no recording: {running.communicate()}"
+    return found[0]
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])

@@ -1,13 +1,13 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import pytest
 
 from crowdbot.cli import main
+from tests.paths import DATA
 
-DATA = Path(__file__).parent.parent / "data" / "diagnostics"
+DATA = DATA / "diagnostics"
 BAD = str(DATA / "E102_unknown_field.yaml")
 
 Captured = pytest.CaptureFixture[str]

@@ -18,14 +18,14 @@ from numpy.typing import NDArray
 
 from crowdbot.cli import main
 from crowdbot.core.interfaces import EnvironmentParts, RobotModel
-from crowdbot.core.library import open_spec, pick
-from crowdbot.core.realisation import Realisation
-from crowdbot.core.realise import realise
-from crowdbot.core.registry import Registry, discover
-from crowdbot.core.view.build import build_scene, field_of_view
-from crowdbot.core.view.draw import draw
+from crowdbot.core.population.realisation import Realisation
+from crowdbot.core.population.realise import realise
+from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.core.scenarios.library import open_spec, pick
+from crowdbot.core.view.build import build_map_content, field_of_view
+from crowdbot.core.view.map_content import MapContent, extent
 from crowdbot.core.view.png import to_png
-from crowdbot.core.view.scene import Scene, extent
+from crowdbot.core.view.render import render
 from crowdbot.core.view.shapes import DARK, LIGHT, LOOKS
 from crowdbot.core.view.shapes import Path as Line
 from crowdbot.core.view.svg import to_svg
@@ -55,11 +55,11 @@ def texts(svg: ET.Element) -> list[str]:
 def test_everybody_is_drawn_where_they_start(svg: ET.Element) -> None:
     scenario = pick(open_spec("challenge-2020", REGISTRY), ONE[2])
     people = realise(scenario)
-    scene = build_scene(scenario, people, REGISTRY)
+    content = build_map_content(scenario, people, REGISTRY)
     discs = of_role(svg, "person-")
     assert len(discs) == len(people) == 200
     top = next(float(r.get("y", "nan")) for r in svg.iter(f"{SVG}rect"))
-    world = Map.around(extent(scene), top)
+    world = Map.around(extent(content), top)
     for i, disc in enumerate(discs):
         x, y = float(disc.get("cx", "nan")), float(disc.get("cy", "nan"))
         assert (x - LEFT) / world.scale + world.x0 == pytest.approx(people.x[i], abs=0.01)
@@ -94,6 +94,7 @@ def test_the_picture_is_clean_text(svg: ET.Element) -> None:
     assert set(LIGHT) == set(DARK)
 
 
+@pytest.mark.slow
 def test_every_format_shows_the_same_twice(tmp_path: Path) -> None:
     for suffix in ("svg", "html", "png"):
         files = [tmp_path / f"{n}.{suffix}" for n in "ab"]
@@ -209,9 +210,11 @@ def test_everything_an_environment_may_have() -> None:
         portals={},
         pillars=np.array([[1.0, 1.0, 0.25]]),
         pillar_heights=np.array([[0.0, 2.0]]),
-        torus=(0.0, 4.0, 0.0, 3.0),
+        periodic_boundary=(0.0, 4.0, 0.0, 3.0),
     )
-    drawing = draw(Scene(parts=parts, people=Realisation.nobody()), "t", {"a": "b"}, heading=True)
+    drawing = render(
+        MapContent(parts=parts, people=Realisation.nobody()), "t", {"a": "b"}, heading=True
+    )
     svg = ET.fromstring(to_svg(drawing))
     roles = {e.get("class", "") for e in svg.iter()}
     assert {"wall", "wall-robot", "wall-crowd", "pillar", "torus"} <= roles
@@ -246,14 +249,14 @@ def test_a_robot_that_is_no_disc(
         return replace(built, footprint=outline) if isinstance(built, RobotModel) else built
 
     monkeypatch.setattr(Registry, "build", build)
-    scene = build_scene(scenario, Realisation.nobody(), REGISTRY)
-    (robot,) = scene.robots
+    content = build_map_content(scenario, Realisation.nobody(), REGISTRY)
+    (robot,) = content.robots
     assert len(robot.outline) == points
     assert max(x for x, _ in robot.outline) == pytest.approx(
         robot.x + 0.4 + (0.178 if len(outline) == 2 else 0.0)
     )
     assert robot.radius >= 0.44
-    drawing = draw(scene, "x", {}, heading=False)
+    drawing = render(content, "x", {}, heading=False)
     (body,) = [s for s in drawing.shapes if isinstance(s, Line) and s.role == "robot" and s.inside]
     assert len(body.points) == points
     assert body.closed

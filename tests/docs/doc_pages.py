@@ -8,7 +8,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).parent.parent.parent
+from tests.paths import ROOT
+
+ROOT = ROOT
 PAGES = sorted(
     [
         *ROOT.glob("*.md"),

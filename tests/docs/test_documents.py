@@ -11,11 +11,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from doc_pages import PAGES, ROOT, anchors, blocks, commands, links, name_of, read, sessions
 
 import crowdbot
 from crowdbot.cli import _load, command_names, main
-from crowdbot.core.library import pick
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.scenarios.library import pick
+from tests.docs.doc_pages import (
+    PAGES,
+    anchors,
+    blocks,
+    commands,
+    links,
+    name_of,
+    read,
+    sessions,
+)
+from tests.paths import ROOT
 
 FILES = sorted(
     f
@@ -130,6 +141,7 @@ def test_own_arrays_print_what_the_page_shows() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_the_crowd_alone_prints_what_the_page_shows() -> None:
     page = ROOT / "docs" / "howto" / "simulate_a_crowd.md"
     (shown,) = (b.text for b in blocks(page) if b.language == "text")
@@ -138,16 +150,26 @@ def test_the_crowd_alone_prints_what_the_page_shows() -> None:
     assert done.stdout == shown
 
 
+@pytest.mark.slow
+def test_the_diagram_of_a_run_can_be_drawn(tmp_path: Path) -> None:
+    script = ROOT / "docs" / "howto" / "files" / "draw_diagram.py"
+    subprocess.run([sys.executable, script], cwd=tmp_path, check=True)
+    drawn = (tmp_path / "diagram.dot").read_text(encoding="utf-8")
+    for name in ("plant", "planner", "crowd"):
+        assert f"name={name}" in drawn
+
+
+@pytest.mark.slow
 def test_people_get_through_the_floor_of_the_howto() -> None:
-    from crowdbot.core.crowd_setup import build_crowd
-    from crowdbot.core.realise import realise
-    from crowdbot.core.registry import discover
+    from crowdbot.core.population.realise import realise
+    from crowdbot.core.registry.registry import discover
+    from crowdbot.core.sim.build_crowd import build_crowd
 
     suite = crowdbot.load(ROOT / "docs" / "howto" / "files" / "my_floor.yaml")
     assert isinstance(suite, crowdbot.Suite)
     assert [s.id for s in suite.scenarios] == ["heeded", "ignored"]
     scenario, registry = suite.scenarios[0], discover(allow=())
-    parts = registry.build(scenario.environment)
+    parts = build_environment(registry, scenario.environment)
     engine = build_crowd(scenario, realise(scenario), parts, registry)
     assert engine is not None
     _, place = engine.run(30.0)
@@ -168,6 +190,8 @@ def test_decisions_are_numbered_and_whole() -> None:
     for decision in decisions:
         text = decision.read_text(encoding="utf-8")
         assert text.startswith(f"# {decision.name[:4]} "), decision.name
+        assert re.search(r"^- Status: (accepted|replaced)", text, re.M), decision.name
+        assert re.search(r"^- Date: 20\d\d-\d\d-\d\d$", text, re.M), decision.name
         for part in ("## Context", "## Decision", "## Consequences"):
             assert part in text, f"{decision.name}: {part}"
 
@@ -193,7 +217,7 @@ def test_every_dependency_has_a_reason() -> None:
 
 def test_every_metric_has_a_page() -> None:
     pages = {p.stem for p in (ROOT / "docs" / "reference" / "metrics").glob("*.md")}
-    from crowdbot.core.registry import discover
+    from crowdbot.core.registry.registry import discover
 
     assert set(discover(allow=()).components("metric")) <= pages
 

@@ -8,18 +8,19 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from doc_pages import read
 
-from crowdbot.core.library import open_spec
-from crowdbot.core.realise import realise
-from crowdbot.core.registry import discover
-from crowdbot.core.view.build import build_scene
+from crowdbot.core.population.realise import realise
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.scenarios.library import open_spec
+from crowdbot.core.view.build import build_map_content
 from crowdbot.dsl.canonical import content_hash
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import SpecError
+from tests.docs.doc_pages import read
+from tests.paths import ROOT
 
 REGISTRY = discover(allow=())
-FILES = Path(__file__).parents[2] / "docs" / "tutorial" / "files"
+FILES = ROOT / "docs" / "tutorial" / "files"
 HALL = (FILES / "my_scenario.yaml").read_text(encoding="utf-8")
 STUDY = (FILES / "my_study.yaml").read_text(encoding="utf-8")
 
@@ -159,8 +160,8 @@ def test_frames() -> None:
         "robots.robot.task.start=[1, 0, 90 deg]",
         "robots.robot.sensors.front.mount={x: 0.5, yaw: 180 deg}",
     )
-    scene = build_scene(turned, realise(turned), REGISTRY)
-    (sensor,) = scene.robots[0].sensors
+    content = build_map_content(turned, realise(turned), REGISTRY)
+    (sensor,) = content.robots[0].sensors
     assert (sensor.x, sensor.y) == pytest.approx((1.0, 0.5))
     assert 0.5 * (sensor.start + sensor.end) == pytest.approx(1.5 * math.pi)  # backwards
 

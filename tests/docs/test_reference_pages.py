@@ -8,12 +8,13 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from doc_pages import read, section
 
 from crowdbot import hookspecs
 from crowdbot.cli import _load, command_names
 from crowdbot.core import interfaces
-from crowdbot.core.registry import discover
+from crowdbot.core.crowd.build import build_cost
+from crowdbot.core.registry.registry import discover
+from tests.docs.doc_pages import read, section
 
 COMMANDS, PLUGINS = read("reference/commands.md"), read("reference/plugins.md")
 EVERYWHERE = {"--verbose", "-v", "--quiet", "-q"}
@@ -104,7 +105,7 @@ def test_every_contract_is_described_with_its_signatures(name: str) -> None:
 def test_cost_functions_have_the_described_arguments(kind: str) -> None:
     registry = discover(allow=())
     component = registry.find("cost function", kind)
-    cost = registry.build(component.spec.model_validate({"kind": kind}))
+    cost = build_cost(registry, component.spec.model_validate({"kind": kind}))
     text = section(PLUGINS, "### Cost functions")
     for name in ("base", "prepare", "excess"):
         arguments = ", ".join(inspect.signature(getattr(cost, name).py_func).parameters)
@@ -112,7 +113,7 @@ def test_cost_functions_have_the_described_arguments(kind: str) -> None:
 
 
 def test_entries_of_the_cost_arrays_are_described() -> None:
-    from crowdbot.core.crowd import cost
+    from crowdbot.core.crowd.velocity_search import cost
 
     text = section(PLUGINS, "### Cost functions")
     named = re.findall(r"`([A-Z][A-Z0-9_]+)`", text)
@@ -140,7 +141,7 @@ def test_every_quantity_is_listed_with_its_unit() -> None:
 
 
 def test_every_category_has_a_build_row() -> None:
-    from crowdbot.dsl.base import CATEGORIES
+    from crowdbot.dsl.component_specs import CATEGORIES
 
     rows = re.findall(r"^\| ([a-z ]+) \| `build\(spec", PLUGINS, re.M)
     assert set(rows) == {c.category for c in CATEGORIES}

@@ -13,9 +13,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from doc_pages import ROOT, commands, read, section
 
 import crowdbot
+from tests.docs.doc_pages import commands, read, section
+from tests.paths import ROOT
+
+pytestmark = pytest.mark.slow
 
 FILES = ROOT / "docs" / "tutorial" / "files"
 

@@ -8,15 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.core.library import open_spec
-from crowdbot.core.realise import realise
-from crowdbot.core.registry import discover
+from crowdbot.core.population.realise import realise
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.scenarios.library import open_spec
 from crowdbot.dsl.assets import Asset
 from crowdbot.dsl.canonical import content_hash, dump_scenario_yaml
 from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError, SpecError
-from crowdbot.plugins.crowd.replay import ReplaySpec
+from crowdbot.plugins.crowd.policies.replay import ReplaySpec
 
 REGISTRY = discover(allow=())
 RECORD = "t,id,x,y\n0,7,10,0\n4,7,14,3\n1.5,9,20,1\n2.5,9,20,3\n"

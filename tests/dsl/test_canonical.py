@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core.registry import discover
+from crowdbot.core.registry.registry import discover
 from crowdbot.dsl.canonical import canonical_bytes, content_hash, dump_scenario_yaml
 from crowdbot.dsl.expand import expand_document, load_document
 from crowdbot.dsl.scenario import Scenario
@@ -81,7 +81,7 @@ def changed(path: str, value: Any) -> dict[str, Any]:
 
 def test_golden_hashes_of_the_challenge() -> None:
     """A new one means: every lock file and every published result is void."""
-    from crowdbot.core.library import open_spec
+    from crowdbot.core.scenarios.library import open_spec
 
     found = {s.id: content_hash(s, KINDS) for s in open_spec("challenge-2020", REGISTRY).scenarios}
     assert found["in-d0125-slow-c01-r02"] == GOLDEN[0]
@@ -174,7 +174,7 @@ def test_dump_reads_back_to_the_same(
 
 
 def test_dump_of_every_challenge_scenario_reads_back(tmp_path: Path) -> None:
-    from crowdbot.core.library import open_spec
+    from crowdbot.core.scenarios.library import open_spec
 
     for one in open_spec("challenge-2020", REGISTRY).scenarios[::40]:
         file = tmp_path / "scenario.yaml"

@@ -7,18 +7,18 @@ from __future__ import annotations
 
 import os
 import re
-from pathlib import Path
 
 import pytest
 
-from crowdbot.core.library import installed
-from crowdbot.core.registry import discover
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.scenarios.library import installed
 from crowdbot.dsl.diagnostics import CODES, Diagnostic, Mark, Source, render
 from crowdbot.dsl.expand import expand_document, load_document
 from crowdbot.errors import SpecError
+from tests.paths import DATA, ROOT
 
-DATA = Path(__file__).parent.parent / "data" / "diagnostics"
-DOCS = Path(__file__).parents[2] / "docs" / "reference" / "errors.md"
+DATA = DATA / "diagnostics"
+DOCS = ROOT / "docs" / "reference" / "errors.md"
 REGISTRY = discover(allow=())
 CASES = sorted(p.stem for p in DATA.glob("*.yaml"))
 

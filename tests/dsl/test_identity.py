@@ -12,8 +12,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core.library import open_spec
-from crowdbot.core.registry import discover
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.scenarios.library import open_spec
 from crowdbot.dsl.canonical import canonical_bytes, content_hash, dump_scenario_yaml
 from crowdbot.dsl.expand import expand_document, load_document
 from crowdbot.dsl.lock import flatten
@@ -107,6 +107,7 @@ class Formatter:
         return self.rng.choice(["", "", " # comment", "   # a: b"])
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.large_base_example])
 @given(st.randoms(use_true_random=False))
 def test_reformatting_does_not_move_the_hash(
@@ -181,7 +182,7 @@ def test_what_is_outside_does_not(path: str) -> None:
 
 def test_parts_validated_once_give_the_same_hashes(monkeypatch: pytest.MonkeyPatch) -> None:
     """`ValidParts` is a shortcut and nothing else."""
-    from crowdbot.dsl.reuse import ValidParts
+    from crowdbot.dsl.validation_cache import ValidParts
 
     def listed() -> list[str]:
         return [hash_of(s) for s in open_spec("challenge-2020", REGISTRY).scenarios]

@@ -6,13 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.core.library import open_spec, pick, select, suite_names
-from crowdbot.core.registry import Plugin, Registry, assemble, discover
+from crowdbot.core.registry.registry import Plugin, Registry, assemble, discover
+from crowdbot.core.scenarios.library import open_spec, pick, select, suite_names
 from crowdbot.dsl.expand import Expansion
 from crowdbot.errors import InputError, SpecError, UnknownNameError
+from tests.paths import DATA
 
 REGISTRY = discover(allow=())
-DATA = Path(__file__).parent.parent / "data" / "diagnostics"
+DATA = DATA / "diagnostics"
 SUITE = "crowdbot: 1\nsuite: {id: office}\nbase: {extends: parts/minimal.yaml}\n"
 
 

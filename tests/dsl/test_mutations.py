@@ -20,20 +20,23 @@ from typing import Any
 import pytest
 from ruamel.yaml import YAML
 
-from crowdbot.core.library import installed
-from crowdbot.core.registry import discover
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.scenarios.library import installed
 from crowdbot.dsl.canonical import content_hash, to_yaml
 from crowdbot.dsl.diagnostics import CODES, Diagnostic, Source, render
 from crowdbot.dsl.expand import Expansion, expand_document, load_document
 from crowdbot.dsl.nodes import parse, to_data
 from crowdbot.dsl.quantities import UNITS
 from crowdbot.errors import SpecError
+from tests.paths import DATA
+
+pytestmark = pytest.mark.slow
 
 REGISTRY = discover(allow=())
 INSTALLED = installed(REGISTRY)
 COUNT = int(os.environ.get("CROWDBOT_MUTATIONS", "1000"))
 SEED = os.environ.get("CROWDBOT_MUTATIONS_SEED", "")
-PARTS = Path(__file__).parent.parent / "data" / "diagnostics" / "parts"
+PARTS = DATA / "diagnostics" / "parts"
 BODY = to_data(parse((PARTS / "minimal.yaml").read_text(), Source("minimal"), []))
 DOCUMENT: dict[str, Any] = {
     "crowdbot": 1,

@@ -17,12 +17,13 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from crowdbot.cli.schema import build
-from crowdbot.core.library import open_spec
-from crowdbot.core.registry import discover
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.scenarios.library import open_spec
 from crowdbot.dsl.canonical import canonical_bytes, dump_scenario_yaml, to_yaml
 from crowdbot.errors import SpecError
+from tests.paths import ROOT
 
-ROOT = Path(__file__).parents[2]
+ROOT = ROOT
 SPECS = ROOT / "scenario_specs"
 GOLDEN = ROOT / "tests" / "data" / "diagnostics"
 REGISTRY = discover(allow=())

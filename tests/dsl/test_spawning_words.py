@@ -14,9 +14,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core.library import open_spec
-from crowdbot.core.realise import realise
-from crowdbot.core.registry import discover
+from crowdbot.core.population.realise import realise
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.scenarios.library import open_spec
 from crowdbot.dsl.agents_csv import read_agents
 from crowdbot.dsl.canonical import content_hash, dump_scenario_yaml
 from crowdbot.dsl.diagnostics import Diagnostic, Source, render
@@ -24,8 +24,9 @@ from crowdbot.dsl.nodes import to_data
 from crowdbot.dsl.scenario import Crowd, Scenario
 from crowdbot.dsl.spawning import Agent
 from crowdbot.errors import SpecError
+from tests.paths import ROOT
 
-ROOT = Path(__file__).parents[2]
+ROOT = ROOT
 EXAMPLES = sorted((ROOT / "scenario_specs" / "examples").glob("*.yaml"))
 SNIPPETS = sorted((ROOT / "docs" / "howto" / "files").glob("spawn_[!b]*.yaml"))  # not the part
 REGISTRY = discover(allow=())

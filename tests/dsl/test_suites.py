@@ -7,15 +7,16 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.core.library import installed, open_spec
-from crowdbot.core.registry import discover
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.scenarios.library import installed, open_spec
 from crowdbot.dsl.canonical import content_hash
 from crowdbot.dsl.diagnostics import render
 from crowdbot.dsl.expand import Expansion, expand_document, load_document
 from crowdbot.errors import SpecError
+from tests.paths import DATA
 
 REGISTRY = discover(allow=())
-PARTS = Path(__file__).parent.parent / "data" / "diagnostics" / "parts"
+PARTS = DATA / "diagnostics" / "parts"
 HEAD = "crowdbot: 1\nsuite: {id: s, seed: 7}\nbase: {extends: minimal.yaml}\n"
 MATRIX = "matrix:\n  pace: {slow: {crowd.speed.mean: 1}, fast: {crowd.speed.mean: 2}}\n"
 AXES = MATRIX + "  flow: {in: {crowd.flow.direction: in}, back: {crowd.flow.direction: counter}}\n"

@@ -11,20 +11,22 @@ import numpy as np
 import pytest
 
 from crowdbot.cli import main
-from crowdbot.core.crowd_setup import build_crowd
-from crowdbot.core.library import open_spec
-from crowdbot.core.realise import realise
-from crowdbot.core.registry import Registry, discover
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.population.realise import realise
+from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.core.scenarios.library import open_spec
+from crowdbot.core.sim.build_crowd import build_crowd
+from tests.paths import ROOT
 
-HOWTO = Path(__file__).parent.parent.parent / "docs" / "howto" / "files"
+HOWTO = ROOT / "docs" / "howto" / "files"
 PLUGIN = """
 from typing import Literal
 import numpy as np
 from numba import njit
-from crowdbot.core.component import Component
-from crowdbot.core.crowd.cost import BASE, CompiledCost, NumpyCost
+from crowdbot.dsl import Component
+from crowdbot.core.crowd.velocity_search.cost import BASE, CompiledCost, NumpyCost
 from crowdbot.core.interfaces import EnvironmentParts, SensorInfo
-from crowdbot.dsl.base import CostFunctionSpec, CrowdPolicySpec, EnvironmentSpec, SensorSpec
+from crowdbot.dsl import CostFunctionSpec, CrowdPolicySpec, EnvironmentSpec, SensorSpec
 from crowdbot.hookspecs import hookimpl
 
 class Cost(CostFunctionSpec):
@@ -190,27 +192,42 @@ def test_components_of_others_run(odd: list[str], capsys: pytest.CaptureFixture[
 
 
 WRONG = [
-    ("crowd.costs.odd.way=raises", "odd.cost: ZeroDivisionError: division by zero"),
-    ("crowd.costs.odd.way=nan", "odd.cost returned NaN"),
-    ("crowd.costs.odd.way=shape", "odd.cost returned shape"),
-    ("crowd.costs.odd.way=compiled", "odd.cost: base is compiled for"),
-    ("crowd.costs.odd.way=plain", "odd.cost: base is not compiled"),
-    ("crowd.costs.odd.way=none", "odd.cost: build returned a NoneType"),
-    ("crowd.policy={kind: odd.policy, way: raises}", "odd.policy at t = 0 s: KeyError: 'gait'"),
-    ("crowd.policy={kind: odd.policy, way: nan}", "odd.policy returned [nan, nan] for agent 0"),
-    ("crowd.policy={kind: odd.policy, way: shape}", "odd.policy returned shape (3,)"),
-    ("crowd.policy={kind: odd.policy, way: push_nan}", "odd.policy returned [nan, nan]"),
-    ("crowd.policy={kind: odd.policy, way: none}", "odd.policy: build returned a int"),
-    ("environment.way=raises", "RuntimeError: no bricks"),
-    ("environment.way=shape", "odd.place: wall_heights must be a float64 array (1, 2)"),
-    ("environment.way=nan", "odd.place: walls must be finite"),
-    ("environment.way=zone", "odd.place: zone 'goal' must be counter-clockwise"),
-    ("robots.robot.sensors.beam.way=rate", "odd.look: info(): rate is 200.0 Hz"),
-    ("robots.robot.sensors.beam.way=frame", "odd.look: info(): frame is ''"),
-    ("robots.robot.sensors.beam.way=info_raises", "odd.look: OSError: unplugged"),
-    ("robots.robot.sensors.beam.way=raises", "odd.look at t = 0 s: ValueError: fog"),
-    ("robots.robot.sensors.beam.way=shape", "odd.look returned shape (4,); info() says (1,)"),
-    ("robots.robot.sensors.beam.way=nan", "odd.look returned NaN"),
+    (
+        "crowd.costs.odd.way=raises",
+        "odd.cost' (odd.py): evaluate: ZeroDivisionError: division by zero",
+    ),
+    ("crowd.costs.odd.way=nan", "odd.cost' (odd.py): evaluate returned NaN"),
+    ("crowd.costs.odd.way=shape", "odd.cost' (odd.py): evaluate returned shape"),
+    ("crowd.costs.odd.way=compiled", "odd.cost' (odd.py): base is compiled for"),
+    ("crowd.costs.odd.way=plain", "odd.cost' (odd.py): base is not compiled"),
+    ("crowd.costs.odd.way=none", "odd.cost' (odd.py): build returned a NoneType"),
+    (
+        "crowd.policy={kind: odd.policy, way: raises}",
+        "odd.policy' (odd.py): decision at t = 0 s: KeyError: 'gait'",
+    ),
+    (
+        "crowd.policy={kind: odd.policy, way: nan}",
+        "odd.policy' (odd.py): returned [nan, nan] for agent 0",
+    ),
+    ("crowd.policy={kind: odd.policy, way: shape}", "odd.policy' (odd.py): returned shape (3,)"),
+    ("crowd.policy={kind: odd.policy, way: push_nan}", "odd.policy' (odd.py): returned [nan, nan]"),
+    ("crowd.policy={kind: odd.policy, way: none}", "odd.policy' (odd.py): build returned a int"),
+    ("environment.way=raises", "'odd.place' (odd.py): cannot be built: RuntimeError: no bricks"),
+    ("environment.way=shape", "odd.place' (odd.py): wall_heights must be a float64 array (1, 2)"),
+    ("environment.way=nan", "odd.place' (odd.py): walls must be finite"),
+    ("environment.way=zone", "odd.place' (odd.py): zone 'goal' must be counter-clockwise"),
+    ("robots.robot.sensors.beam.way=rate", "odd.look' (odd.py): info(): rate is 200.0 Hz"),
+    ("robots.robot.sensors.beam.way=frame", "odd.look' (odd.py): info(): frame is ''"),
+    ("robots.robot.sensors.beam.way=info_raises", "odd.look' (odd.py): info: OSError: unplugged"),
+    (
+        "robots.robot.sensors.beam.way=raises",
+        "odd.look' (odd.py): read at t = 0 s: ValueError: fog",
+    ),
+    (
+        "robots.robot.sensors.beam.way=shape",
+        "odd.look' (odd.py): read returned shape (4,); info() says (1,)",
+    ),
+    ("robots.robot.sensors.beam.way=nan", "odd.look' (odd.py): read returned NaN"),
 ]
 
 
@@ -231,7 +248,7 @@ def test_costs_of_the_howto_agree_in_every_method(method: str) -> None:
     overrides = (f"crowd.policy.method={method}",)
     found: list[Any] = []
     for scenario in open_spec(str(HOWTO / "my_costs.yaml"), registry, overrides).scenarios:
-        parts = registry.build(scenario.environment)
+        parts = build_environment(registry, scenario.environment)
         engine = build_crowd(scenario, realise(scenario), parts, registry)
         assert engine is not None
         found.append(engine.run(3.0)[1])

@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
-from crowdbot.core.aside import aside
 from crowdbot.core.bundle.manifest import MANIFEST, Manifest, Member, parse_manifest
+from crowdbot.core.support.atomic_write import atomic_path
 from crowdbot.errors import InputError
 
 #: What may be in a bundle: suffix -> largest size, bytes.
@@ -34,18 +34,18 @@ def members_of(files: Mapping[str, Path | bytes]) -> dict[str, Member]:
     """Hashes and sizes, by name.
 
     Raises:
-        InputError: a file cannot be read, or is none that belongs into a bundle.
+        InputError: a file cannot be read, or does not belong into a bundle.
     """
     return {name: _member(name, content) for name, content in sorted(files.items())}
 
 
 def write_archive(path: Path, manifest: Manifest, files: Mapping[str, Path | bytes]) -> None:
-    """Write aside, then rename; members are sorted and carry no time.
+    """Write under a temporary name, then rename; members are sorted and carry no time.
 
     Raises:
         InputError: the path cannot be written, or a file cannot be read.
     """
-    with aside(path) as part, zipfile.ZipFile(part, "w", strict_timestamps=True) as archive:
+    with atomic_path(path) as part, zipfile.ZipFile(part, "w", strict_timestamps=True) as archive:
         _add(archive, MANIFEST, manifest.text().encode())
         for name in sorted(files):
             _add(archive, name, files[name])
@@ -157,7 +157,7 @@ def open_archive(path: Path) -> Iterator[Archive]:
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
     except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
-        raise InputError(f"{path} is no bundle: {error}") from None
+        raise InputError(f"{path} is not a bundle: {error}") from None
     with file:
         _check_listing(path, file)
         try:
@@ -188,7 +188,7 @@ def _check_listing(path: Path, file: zipfile.ZipFile) -> None:
     if sum(i.file_size for i in infos if not i.filename.endswith(".mcap")) > _ALL_TEXTS:
         raise InputError(f"{path}: more than {_ALL_TEXTS >> 20} MB when unpacked")
     if MANIFEST not in seen:
-        raise InputError(f"{path} is no bundle: {MANIFEST} is missing")
+        raise InputError(f"{path} is not a bundle: {MANIFEST} is missing")
 
 
 def _name_problem(name: str) -> str:
@@ -205,7 +205,7 @@ def _info_problem(info: zipfile.ZipInfo) -> str:
     kind = stat.S_IFMT(info.external_attr >> 16)
     suffix = Path(info.filename).suffix
     if kind not in (0, stat.S_IFREG):
-        return "it is no plain file"
+        return "it is not a plain file"
     if info.flag_bits & 0x1:
         return "it is encrypted"
     if info.file_size > LIMITS[suffix]:

@@ -6,15 +6,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from crowdbot.core import provenance
-from crowdbot.core import run_directory as files
 from crowdbot.core.bundle.archive import Archive
 from crowdbot.core.bundle.manifest import LOCK, BundledRun
 from crowdbot.core.bundle.pack import is_privileged, read_json
-from crowdbot.core.lock_check import spec_of
-from crowdbot.core.registry import Registry
-from crowdbot.core.score import Score
-from crowdbot.core.scores_table import parse_scores
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs import provenance
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.scenarios.lock_check import spec_of
+from crowdbot.core.scoring.scores_csv import parse_scores
+from crowdbot.core.types.score import Score
 from crowdbot.dsl.canonical import dump_scenario_yaml
 from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.scenario import Scenario
@@ -84,7 +84,7 @@ def check_suite(archive: Archive, expansion: Expansion, registry: Registry) -> I
                   f"{', '.join(lacking[:3])}"  # fmt: skip
     for run in manifest.runs:
         if run.scenario not in known:
-            yield f"{run.scenario} is no scenario of {expansion.suite_id}"
+            yield f"{run.scenario} is not a scenario of {expansion.suite_id}"
             continue
         yield from _scenario_problems(archive, run, known[run.scenario], registry)
 

@@ -10,21 +10,21 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import run_directory as files
 from crowdbot.core.bundle.archive import Archive, open_archive
 from crowdbot.core.bundle.check import ClaimedRun, check_members, claimed_runs
 from crowdbot.core.bundle.manifest import Manifest
 from crowdbot.core.bundle.verification import content_hash, read_verification
-from crowdbot.core.evaluate import score
 from crowdbot.core.recording import read_trajectories
-from crowdbot.core.registry import Registry
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.scoring.evaluate import score
 from crowdbot.errors import InputError
 
 SUFFIX = ".cbz"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Entry:
+class LeaderboardEntry:
     """One bundle on the leaderboard.
 
     Attributes:
@@ -56,7 +56,7 @@ class Entry:
         return sum(run.record.get("status") == "planner_failed" for run in self.runs)
 
 
-def load_entries(folder: Path, registry: Registry) -> tuple[list[Entry], dict[str, str]]:
+def load_entries(folder: Path, registry: Registry) -> tuple[list[LeaderboardEntry], dict[str, str]]:
     """All bundles of a folder, by file name, and those that are left out, with the reason.
 
     Raises:
@@ -74,7 +74,7 @@ def load_entries(folder: Path, registry: Registry) -> tuple[list[Entry], dict[st
     return _named_apart(entries), left_out
 
 
-def _entry(path: Path, registry: Registry) -> Entry:
+def _entry(path: Path, registry: Registry) -> LeaderboardEntry:
     with open_archive(path) as archive:
         problems = list(check_members(archive))
         runs, wrong = claimed_runs(archive)
@@ -83,7 +83,7 @@ def _entry(path: Path, registry: Registry) -> Entry:
         if not runs:
             raise InputError(f"{path}: there is no run in it")
         manifest = archive.manifest
-        entry = Entry(
+        entry = LeaderboardEntry(
             path=path,
             name=" · ".join(part for part in (manifest.team, manifest.label) if part),
             manifest=manifest,
@@ -94,7 +94,7 @@ def _entry(path: Path, registry: Registry) -> Entry:
         return _up_to_date(entry, archive, registry)
 
 
-def _named_apart(entries: Sequence[Entry]) -> list[Entry]:
+def _named_apart(entries: Sequence[LeaderboardEntry]) -> list[LeaderboardEntry]:
     times = Counter(e.name for e in entries)
     return [
         e if times[e.name] == 1 else replace(e, name=f"{e.name} ({e.path.stem})") for e in entries
@@ -116,7 +116,7 @@ def _version(recorded: Any) -> int | None:
     return value if isinstance(value, int) else None
 
 
-def _up_to_date(entry: Entry, archive: Archive, registry: Registry) -> Entry:
+def _up_to_date(entry: LeaderboardEntry, archive: Archive, registry: Registry) -> LeaderboardEntry:
     old = {metric for run in entry.runs for metric in old_metrics(run, registry)}
     if not old:
         return entry

@@ -7,12 +7,12 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.aside import write_aside
-from crowdbot.core.bundle.entries import Entry
+from crowdbot.core.bundle.entries import LeaderboardEntry
 from crowdbot.core.bundle.manifest import RULES, RULES_TEXT
 from crowdbot.core.bundle.standings import Standings
-from crowdbot.core.offline_page import render_page
 from crowdbot.core.statistics import OUTCOMES, Estimate
+from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.support.html_page import render_page
 
 _ARROWS = {"higher": "↑", "lower": "↓", "reference": "=", "none": ""}
 
@@ -34,7 +34,7 @@ def write_leaderboard(
         rules_number=RULES,
         version=metadata.version("crowdbot"),
     )
-    write_aside(path, text)
+    atomic_write(path, text)
 
 
 def _table(table: Standings) -> dict[str, Any]:
@@ -53,7 +53,7 @@ def _table(table: Standings) -> dict[str, Any]:
     }
 
 
-def _entry(table: Standings, entry: Entry) -> dict[str, Any]:
+def _entry(table: Standings, entry: LeaderboardEntry) -> dict[str, Any]:
     manifest = entry.manifest
     rank = table.rank(table.by, entry)
     return {
@@ -74,7 +74,7 @@ def _entry(table: Standings, entry: Entry) -> dict[str, Any]:
     }
 
 
-def _state(entry: Entry) -> str:
+def _state(entry: LeaderboardEntry) -> str:
     record = entry.verification
     if record is None:
         return "not verified"
@@ -101,7 +101,7 @@ def _groups(table: Standings) -> dict[str, list[dict[str, Any]]]:
     return dict(sorted(found.items()))
 
 
-def _cell(table: Standings, metric: str, entry: Entry) -> dict[str, Any]:
+def _cell(table: Standings, metric: str, entry: LeaderboardEntry) -> dict[str, Any]:
     score, rank = table.score(metric, entry), table.rank(metric, entry)
     if score is None or metric in entry.outdated:
         return {"rank": "", "value": "—", "interval": "", "note": "an older version of the metric"}

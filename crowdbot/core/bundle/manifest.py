@@ -108,7 +108,7 @@ def parse_manifest(text: str) -> Manifest:
     """A manifest from its text.
 
     Raises:
-        InputError: it is none, or a newer release wrote it.
+        InputError: it is not a manifest, or a newer release wrote it.
     """
     try:
         content = json.loads(text)
@@ -121,6 +121,6 @@ def parse_manifest(text: str) -> Manifest:
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         place = ".".join(map(str, first["loc"]))
-        raise InputError(f"{MANIFEST} is no manifest: {place}: {first['msg']}") from None
+        raise InputError(f"{MANIFEST} is not a manifest: {place}: {first['msg']}") from None
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{MANIFEST} is no manifest: {error}") from None
+        raise InputError(f"{MANIFEST} is not a manifest: {error}") from None

@@ -10,11 +10,11 @@ from importlib import metadata
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from crowdbot.core import run_directory as files
 from crowdbot.core.bundle.archive import members_of, write_archive
 from crowdbot.core.bundle.manifest import BUNDLE, LOCK, RULES, BundledRun, Edition, Manifest
-from crowdbot.core.lock_check import spec_of
-from crowdbot.core.registry import Registry
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.scenarios.lock_check import spec_of
 from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.lock import LockFiles
 from crowdbot.errors import InputError, UnknownNameError
@@ -240,12 +240,12 @@ def read_json(text: str, what: str) -> dict[str, Any]:
     """A JSON document that is a mapping.
 
     Raises:
-        InputError: it is none.
+        InputError: it is not a mapping.
     """
     try:
         document = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise InputError(f"{what} is not JSON: {error}") from None
     if not isinstance(document, dict):
-        raise InputError(f"{what} is no mapping")
+        raise InputError(f"{what} is not a mapping")
     return document

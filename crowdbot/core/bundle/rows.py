@@ -8,7 +8,7 @@ from typing import Any
 from crowdbot.core.bundle.check import ClaimedRun
 from crowdbot.core.bundle.pack import is_privileged
 from crowdbot.core.results.rows import Results, RunRow, ScoreRow
-from crowdbot.core.score import Score
+from crowdbot.core.types.score import Score
 
 
 def results_of(runs: Iterable[tuple[str, ClaimedRun]]) -> Results:

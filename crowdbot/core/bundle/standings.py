@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from crowdbot.core.bundle.entries import Entry
+from crowdbot.core.bundle.entries import LeaderboardEntry
 from crowdbot.core.bundle.rows import results_of
 from crowdbot.core.results.confounds import Finding, check_comparable, confounds
 from crowdbot.core.statistics import PlannerScore, Summary, summarise
@@ -26,29 +26,31 @@ class Standings:
 
     edition: str
     classed: str
-    entries: tuple[Entry, ...]
+    entries: tuple[LeaderboardEntry, ...]
     findings: tuple[Finding, ...]
     summary: Summary
     by: str
 
-    def rank(self, metric: str, entry: Entry) -> int | None:
+    def rank(self, metric: str, entry: LeaderboardEntry) -> int | None:
         """1 + how many are better for certain; None where it is not ranked."""
         if not entry.ranked or metric in entry.outdated:
             return None
         return self.summary.ranks(metric).get(entry.name)
 
-    def shares_rank(self, metric: str, entry: Entry) -> bool:
+    def shares_rank(self, metric: str, entry: LeaderboardEntry) -> bool:
         """Whether another entry has the same rank."""
         ranks = self.summary.ranks(metric)
         return list(ranks.values()).count(ranks.get(entry.name, 0)) > 1
 
-    def score(self, metric: str, entry: Entry) -> PlannerScore | None:
+    def score(self, metric: str, entry: LeaderboardEntry) -> PlannerScore | None:
         """The entry's score, if it is ranked."""
         found = (s for s in self.summary.scores if (s.metric, s.planner) == (metric, entry.name))
         return next(found, None)
 
 
-def standings(entries: Sequence[Entry], by: str, accept: Iterable[str]) -> list[Standings]:
+def standings(
+    entries: Sequence[LeaderboardEntry], by: str, accept: Iterable[str]
+) -> list[Standings]:
     """One table for each edition and class.
 
     Args:
@@ -60,7 +62,7 @@ def standings(entries: Sequence[Entry], by: str, accept: Iterable[str]) -> list[
         InputError: entries differ in more than the planner.
         UnknownNameError: there is no such confound.
     """
-    groups: dict[tuple[str, str], list[Entry]] = {}
+    groups: dict[tuple[str, str], list[LeaderboardEntry]] = {}
     for entry in entries:
         groups.setdefault((entry.manifest.edition.name, entry.manifest.classed), []).append(entry)
     accepted = tuple(accept)
@@ -68,7 +70,7 @@ def standings(entries: Sequence[Entry], by: str, accept: Iterable[str]) -> list[
 
 
 def _table(
-    edition: str, classed: str, entries: list[Entry], by: str, accept: tuple[str, ...]
+    edition: str, classed: str, entries: list[LeaderboardEntry], by: str, accept: tuple[str, ...]
 ) -> Standings:
     results = results_of((e.name, run) for e in entries if e.ranked for run in e.runs)
     findings = confounds(results, accept)
@@ -79,7 +81,7 @@ def _table(
     sign = {s.planner: -1.0 if s.better == "higher" else 1.0 for s in scores}
     means = {s.planner: sign[s.planner] * (s.mean.value or 0.0) for s in scores}
 
-    def order(entry: Entry) -> tuple[bool, int, int, float, str]:
+    def order(entry: LeaderboardEntry) -> tuple[bool, int, int, float, str]:
         name = entry.name
         mean = means.get(name, math.inf)  # of few and short runs, where many have failed
         return not entry.ranked, ranks.get(name, 1), entry.failed, mean, name

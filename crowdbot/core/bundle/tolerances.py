@@ -12,8 +12,8 @@ The spread of a score is twice the root mean square by which two runs of one sce
 have come apart for good: 12 scenarios of challenge-2020, planner dwa, two seeds
 (benchmarks/processor_targets.py, way ``seed``). Those of yes or no are set by hand, since twelve
 scenarios do not tell how often an outcome turns: 0.5, which no single run can be off by 10 of, so
-that only the mean judges. Rounding alone did far less: at most 2e-6 in any of these scores but
-one. Scores without a spread are not judged.
+that only the mean tells. Rounding alone did far less: at most 2e-6 in any of these scores but
+one. Scores without a spread are not compared.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.run_directory import write_json
+from crowdbot.core.runs.run_directory import write_json
 from crowdbot.errors import InputError
 
 

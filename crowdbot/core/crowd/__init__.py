@@ -1,14 +1,19 @@
-"""The crowd engine, usable without Drake."""
+"""The crowd engine, usable without Drake.
+
+- `engine`: decisions and ticks of one crowd; `step` is one tick, compiled.
+- `agents`, `world`: what stays the same; `parameters` is the form that compiled code takes.
+- `state`: what changes, one flat vector; `routes`, `portals`, `periodic_boundary` change goals.
+- `policy`: the contract of crowd policies; `build` builds and checks them,
+  `desired_acceleration` asks them, `from_spec` makes one from fields as in a scenario.
+- `contact/`: forces between people, walls, pillars and robots.
+- `velocity_search/`: policies that minimise costs over candidate velocities.
+- `recorded`: trajectories of real people, from a CSV file.
+"""
 
 from crowdbot.core.crowd.agents import LOOP, PORTAL, REMOVE, STOP, Agents
 from crowdbot.core.crowd.engine import CrowdEngine
-from crowdbot.core.crowd.policy import (
-    AcceleratingPolicy,
-    CrowdPolicy,
-    CrowdView,
-    VelocityPolicy,
-)
-from crowdbot.core.crowd.words import policy_of
+from crowdbot.core.crowd.from_spec import policy_of
+from crowdbot.core.crowd.policy import AcceleratingPolicy, CrowdPolicy, CrowdView, VelocityPolicy
 from crowdbot.core.crowd.world import CrowdWorld
 
 __all__ = [

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
+from crowdbot.core.types.arrays import Array
 
 #: What happens at the end of a route: through the flow's portals and on; standing still; out of
 #: the world for good; from the first point again.

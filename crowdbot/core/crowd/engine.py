@@ -4,24 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.agents import PORTAL, Agents
-from crowdbot.core.crowd.contact import DISC
+from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS
+from crowdbot.core.crowd.contact.robot_contact import DISC
+from crowdbot.core.crowd.desired_acceleration import desired_acceleration
+from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdPolicy, CrowdView
 from crowdbot.core.crowd.portals import draw_goal, enter
-from crowdbot.core.crowd.push import PLACED_COLUMNS
 from crowdbot.core.crowd.routes import head_for
-from crowdbot.core.crowd.step import tick
-from crowdbot.core.crowd.torus import ENDLESS
-from crowdbot.core.crowd.willed import willed
+from crowdbot.core.crowd.step import tick, ticks_without_robots
 from crowdbot.core.crowd.world import CrowdWorld
-from crowdbot.core.ticks import TICK, TICKS_PER_SECOND, ticks
+from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
+from crowdbot.core.types.arrays import Array
 
-Array = NDArray[np.float64]
 #: Makes the policy of a set of agents.
 PolicyFactory = Callable[[Agents], CrowdPolicy]
 
@@ -65,25 +66,11 @@ class CrowdEngine:
             raise ValueError(f"agents follow policy {agents.policy.max()} of {len(made)}")
         self._groups = _groups(made, agents)
         strength = [getattr(p, "contact_stiffness", CONTACT_STIFFNESS) for p in made]
-        self._push = np.array(strength, np.float64)[agents.policy]
         self._ticks_per_decision = ticks(world.decision_rate)
-        self._key = np.uint64(world.goal_key)
-        self._torus = ENDLESS if world.torus is None else np.array(world.torus, np.float64)
-        # What `tick` is handed each time: who they are, where they walk, scratch.
-        a, w, in_turn = agents, world, np.argsort(agents.id, kind="stable")
-        self._who = (
-            a.id, in_turn, a.radius, a.mass, a.preferred_speed, a.max_speed, a.start_time,
-            ~a.ignores_robot, a.at_goal, a.flow, a.route, a.first,
-        )  # fmt: skip
-        self._where = (
-            w.entrance, w.out, w.exit_point == "offset", self._torus, not w.parity, w.response,
-            w.stiffness, w.dissipation, w.walls,
-        )  # fmt: skip
-        self._scratch = (
-            np.zeros((len(a), 2)),
-            np.zeros((len(a), PLACED_COLUMNS)),
-            np.arange(len(a)),
-        )
+        self._people = AgentParameters.of(agents, np.array(strength, np.float64)[agents.policy])
+        self._place = WorldParameters.of(world)
+        n = len(agents)
+        self._scratch = Scratch(np.zeros((n, 2)), np.zeros((n, PLACED_COLUMNS)), np.arange(n))
 
     def initial_state(self) -> Array:
         """Those who start at once walk to their first goal at preferred speed; others wait."""
@@ -93,7 +80,7 @@ class CrowdEngine:
         rows[:, s.X], rows[:, s.Y] = a.x, a.y
         for i in range(len(a)):
             if a.at_goal[i] == PORTAL:
-                draw_goal(rows, i, a.id, a.radius, self.world.out[a.flow[i]], self._key)
+                draw_goal(rows, i, a.id, a.radius, self.world.out[a.flow[i]], self._place.goal_key)
             else:
                 head_for(rows, i, a.route, a.first)
             if a.start_time[i] > 0.0:
@@ -117,7 +104,7 @@ class CrowdEngine:
             flat: state vector.
             robots: (R, 8) x, y, vx, vy, physical and perceived radius, heading, yaw rate; the
                 last two may be left out.
-            outline: (K, 2) of robots that are no discs, see `robot_contact`.
+            outline: (K, 2) of robots that are not discs, see `robot_contact`.
             dt: length of a tick, s. Another one is for studies of contacts: it is the engine's
                 clock too, so that decisions come every so many ticks, not seconds.
         """
@@ -125,9 +112,33 @@ class CrowdEngine:
             robots = np.pad(robots, ((0, 0), (0, 8 - robots.shape[1])))
         if int(flat[s.TICK]) % self._ticks_per_decision == 0:
             self._decide(flat, robots)
-        tick(
-            flat, s.AGENT_COLUMNS, robots, outline, dt, *self._who, *self._where,
-            self._fixed(flat), self._push, self._key, *self._scratch,
+        tick(*self._given(flat, robots, outline, dt))
+
+    def advance_alone(self, flat: Array, most: int) -> int:
+        """Ticks without robots, in place, as `advance` makes them one by one.
+
+        Ends after a tick in which somebody's trip ends, and before the next decision.
+
+        Args:
+            flat: state vector.
+            most: how many ticks at most, 1 or more.
+
+        Returns:
+            how many ticks it were.
+        """
+        since = int(flat[s.TICK]) % self._ticks_per_decision
+        if since == 0:
+            self._decide(flat, NOBODY)
+        # What pushes from across a border moves with every tick.
+        count = min(most, self._ticks_per_decision - since)
+        count = count if self.world.periodic_boundary is None else 1
+        return int(ticks_without_robots(count, *self._given(flat, NOBODY, DISC, TICK)))
+
+    def _given(self, flat: Array, robots: Array, outline: Array, dt: float) -> tuple[Any, ...]:
+        """All that `tick` is given."""
+        return (
+            flat, robots, outline, self._fixed(flat), dt,
+            *self._people, *self._place, *self._scratch,
         )  # fmt: skip
 
     def run(self, duration: float, sample_rate: float = 16.0) -> tuple[Array, Array]:
@@ -161,7 +172,9 @@ class CrowdEngine:
         for group in self._groups:
             view = self._view(flat, rows, group.members, seen if group.heeds_robot else nobody)
             decides = np.asarray(view.decides)[:, np.newaxis]
-            np.copyto(rows[:, s.AX : s.AY + 1], willed(group.policy, view), where=decides)
+            np.copyto(
+                rows[:, s.AX : s.AY + 1], desired_acceleration(group.policy, view), where=decides
+            )
 
     def _view(
         self, flat: Array, rows: Array, members: NDArray[np.bool_], robots: Array
@@ -179,13 +192,13 @@ class CrowdEngine:
             t=float(flat[s.TICK]) * TICK,
             decides=present & members,
             pillars=self.world.pillars,
-            torus=self.world.torus,
+            periodic_boundary=self.world.periodic_boundary,
             diagonal=not self.world.parity,
         )
 
     def _fixed(self, flat: Array) -> Array:
         """Discs (D, 3) that push: pillars, and people across the border."""
-        if self.world.torus is None:
+        if self.world.periodic_boundary is None:
             return self.world.pillars
         _, rows = s.view(flat)
         reach = 2.0 * float(np.max(self.agents.radius, initial=0.0))

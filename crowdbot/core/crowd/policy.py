@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import LOOP, PORTAL, REMOVE, STOP, Agents
-from crowdbot.core.crowd.torus import Box, images
-
-Array = NDArray[np.float64]
+from crowdbot.core.crowd.periodic_boundary import Box, images
+from crowdbot.core.types.arrays import Array
 
 #: Push between overlapping people, walls and pillars where a policy does not say, 1/s^2.
 CONTACT_STIFFNESS = 62.5
@@ -33,9 +32,9 @@ class CrowdView:
         decides: (N,) whose answer is used: those present who follow this policy and heed the
             robots shown; None is all who are present. What is returned for others is ignored.
         pillars: (P, 3) x, y and radius of round obstacles, m.
-        torus: (x0, x1, y0, y1) of a floor whose opposite borders are one, m.
-        diagonal: whether the torus is seen across its corners, too; the original engine sees it
-            along one axis at a time.
+        periodic_boundary: (x0, x1, y0, y1) of a floor whose opposite borders are one, m.
+        diagonal: whether people see across the corners of the floor, too; in the original engine
+            they see along one axis at a time.
     """
 
     agents: Agents
@@ -49,7 +48,7 @@ class CrowdView:
     t: float = 0.0
     decides: NDArray[np.bool_] | None = None
     pillars: Array = field(default_factory=lambda: np.zeros((0, 3)))
-    torus: Box | None = None
+    periodic_boundary: Box | None = None
     diagonal: bool = True
 
     def others(self, reach: float = math.inf) -> Array:
@@ -60,13 +59,13 @@ class CrowdView:
         Args:
             reach: distance beyond which nobody sees a centre, m.
         """
-        if not len(self.pillars) and self.torus is None:
+        if not len(self.pillars) and self.periodic_boundary is None:
             return self.robot
         found = [self.robot, _standing(self.pillars)]
-        if self.torus is not None:
+        if self.periodic_boundary is not None:
             here = self.present
             people = np.column_stack([self.position, self.velocity, self.agents.radius])[here]
-            found.append(images(people, self.torus, reach, diagonal=self.diagonal))
+            found.append(images(people, self.periodic_boundary, reach, diagonal=self.diagonal))
         return np.concatenate(found)
 
 
@@ -84,7 +83,7 @@ class AcceleratingPolicy(Protocol):
     """
 
     def accelerations(self, view: CrowdView) -> Array:
-        """Accelerations (N, 2) by the agents' own will, held until the next decision, m/s^2."""
+        """Accelerations (N, 2) that the agents desire, held until the next decision, m/s^2."""
         ...
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd import draws
+from crowdbot.core.crowd.parameters import AgentParameters, WorldParameters
 from crowdbot.core.crowd.routes import end_trip, start_trip
 from crowdbot.core.crowd.state import (
     AT_PORTAL,
@@ -22,11 +22,12 @@ from crowdbot.core.crowd.state import (
     VX,
     VY,
     WAITING,
-    Array,
     X,
     Y,
 )
-from crowdbot.core.kernel import kernel
+from crowdbot.core.crowd.velocity_search import counter_rng
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array
 
 #: Nobody re-enters closer to a robot than this, centre to centre, m.
 CLEAR_OF_ROBOT = 1.0
@@ -49,7 +50,7 @@ def point_in(box: Array, margin: float, u: float, v: float) -> tuple[float, floa
 def entry_fraction(box: Array, x0: float, y0: float, x1: float, y1: float) -> float:
     """Fraction of the way from p0 to p1 at which a box is entered; above 1 if it is not."""
     if max(x0, x1) < box[0] - _CLEAR or min(x0, x1) > box[1] + _CLEAR:
-        return 2.0  # nearly always, and divisions are dear
+        return 2.0  # nearly always, and divisions are expensive
     enter, leave = 0.0, 1.0
     for start, step, low, high in ((x0, x1 - x0, box[0], box[1]), (y0, y1 - y0, box[2], box[3])):
         if step == 0.0:
@@ -67,8 +68,8 @@ def draw_goal(
 ) -> None:
     """Set the goal of agent i's current trip: a point of the out-portal, a radius inside."""
     trip = int(agents[i, TRIP])
-    u = draws.uniform(key, ids[i], trip, draws.GOAL, 0)
-    v = draws.uniform(key, ids[i], trip, draws.GOAL, 1)
+    u = counter_rng.uniform(key, ids[i], trip, counter_rng.GOAL, 0)
+    v = counter_rng.uniform(key, ids[i], trip, counter_rng.GOAL, 1)
     agents[i, GOAL_X], agents[i, GOAL_Y] = point_in(out, radius[i], u, v)
 
 
@@ -117,35 +118,29 @@ def enter(agents: Array, i: int, x: float, y: float, preferred: float, now: floa
 def try_to_re_enter(
     agents: Array,
     i: int,
-    ids: NDArray[np.int64],
-    radius: Array,
-    preferred: float,
+    people: AgentParameters,
+    world: WorldParameters,
     robots: Array,
-    entrance: Array,
-    out: Array,
-    keep_offset: bool,
-    key: np.uint64,
     now: float,
 ) -> None:
     """Try one point of the in-portal; start a new trip there if it is free.
 
-    Args:
-        entrance, out: (4,) boxes of the agent's flow.
-        keep_offset: the point lies in the in-portal as the agent left the out-portal; else it
-            is drawn anew in each attempt.
+    The point lies in the in-portal as the agent left the out-portal (``world.keep_offset``), or
+    is drawn anew in each attempt.
     """
-    trip, attempt = int(agents[i, TRIP]), int(agents[i, ATTEMPT])
+    flow, radius, key = people.flow[i], people.radius[i], world.goal_key
+    out, trip, attempt = world.out[flow], int(agents[i, TRIP]), int(agents[i, ATTEMPT])
     agents[i, ATTEMPT] += 1.0
-    if keep_offset:
-        u = _share(agents[i, X], out[0], out[1], radius[i])
-        v = _share(agents[i, Y], out[2], out[3], radius[i])
+    if world.keep_offset:
+        u = _share(agents[i, X], out[0], out[1], radius)
+        v = _share(agents[i, Y], out[2], out[3], radius)
     else:
-        u = draws.uniform(key, ids[i], trip, draws.ENTRY, 2 * attempt)
-        v = draws.uniform(key, ids[i], trip, draws.ENTRY, 2 * attempt + 1)
-    x, y = point_in(entrance, radius[i], u, v)
-    if not is_free(agents, i, radius, robots, x, y):
+        u = counter_rng.uniform(key, people.id[i], trip, counter_rng.ENTRY, 2 * attempt)
+        v = counter_rng.uniform(key, people.id[i], trip, counter_rng.ENTRY, 2 * attempt + 1)
+    x, y = point_in(world.entrance[flow], radius, u, v)
+    if not is_free(agents, i, people.radius, robots, x, y):
         return
     agents[i, TRIP] = trip + 1.0
     agents[i, JUMPS] += 1.0
-    draw_goal(agents, i, ids, radius, out, key)
-    enter(agents, i, x, y, preferred, now)
+    draw_goal(agents, i, people.id, people.radius, out, key)
+    enter(agents, i, x, y, people.preferred_speed[i], now)

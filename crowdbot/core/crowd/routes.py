@@ -22,11 +22,11 @@ from crowdbot.core.crowd.state import (
     TRIP_START,
     WAITING,
     WAYPOINT,
-    Array,
     X,
     Y,
 )
-from crowdbot.core.kernel import kernel
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array
 
 Rows = NDArray[np.int64]
 
@@ -60,7 +60,7 @@ def reach_fraction(
 
 @kernel
 def end_trip(agents: Array, i: int, when: float) -> None:
-    """Book the arrival of agent i; it is on no trip until it starts another."""
+    """Record the arrival of agent i; it is on no trip until it starts another."""
     agents[i, ARRIVED], agents[i, LAST_START] = when, agents[i, TRIP_START]
     agents[i, ARRIVALS] += 1.0
     agents[i, ON_TRIP] = 0.0

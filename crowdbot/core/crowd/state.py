@@ -5,10 +5,7 @@ A header is followed by one row per agent. `view` gives both as arrays without c
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from crowdbot.core.types.arrays import Array
 
 # Header: ticks since the start; sums of impulses on the robot and on people (N s); the force on
 # the robot in the current tick (N); counters of finished contacts and finished trips; torque on the
@@ -19,13 +16,14 @@ Array = NDArray[np.float64]
 ) = range(10)  # fmt: skip
 HEADER_SIZE = 10
 
-# Agent columns: position, velocity, willed acceleration, push by people and walls (m/s^2), goal;
+# Agent columns: position, velocity, desired acceleration, push by people and walls (m/s^2), goal;
 # trip number, where the agent is (below), attempts to re-enter, start of the trip, last arrival
 # (s); contact with the robot: 1 while touching, start, end (s), impulse (N s), peak force (N),
 # relative speed before (m/s), finished contacts; 1 while on a trip, start of the last finished
 # trip (s), finished trips, next point of the route, jumps through portals and across the border,
-# sizes of the torus that the agent has gone (m); way walked (m) and the unit vector of the way
-# faced, which sensors show; bearing of the contact as the robot sees it, at its start (rad).
+# how far wraps at a periodic boundary have moved the agent (m); way walked (m) and the unit vector
+# of the way faced, which sensors show; bearing of the contact as the robot sees it, at its start
+# (rad).
 (
     X, Y, VX, VY, AX, AY, PUSH_X, PUSH_Y, GOAL_X, GOAL_Y,
     TRIP, WAITING, ATTEMPT, TRIP_START, ARRIVED,

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import PORTAL
-from crowdbot.core.crowd.contact import keep_off, robot_contact
-from crowdbot.core.crowd.geometry import is_clearly_shorter
+from crowdbot.core.crowd.contact.geometry import is_clearly_shorter
+from crowdbot.core.crowd.contact.pedestrian_contact import push_apart
+from crowdbot.core.crowd.contact.robot_contact import keep_off, robot_contact
+from crowdbot.core.crowd.parameters import AgentParameters, WorldParameters
+from crowdbot.core.crowd.periodic_boundary import wrap
 from crowdbot.core.crowd.portals import enter, entry_fraction, is_free, leave, try_to_re_enter
-from crowdbot.core.crowd.push import push_apart
 from crowdbot.core.crowd.routes import end_trip, next_goal, reach_fraction
 from crowdbot.core.crowd.state import (
+    AGENT_COLUMNS,
     ARRIVALS,
     AT_PORTAL,
     AX,
@@ -35,14 +38,11 @@ from crowdbot.core.crowd.state import (
     VY,
     WAITING,
     WALKED,
-    Array,
     X,
     Y,
 )
-from crowdbot.core.crowd.torus import wrap
-from crowdbot.core.kernel import kernel
-
-Rows = NDArray[np.int64]
+from crowdbot.core.support.compile import inline_kernel, kernel
+from crowdbot.core.types.arrays import Array, Indices, Mask
 
 #: Slower people do not turn where they are pushed, m/s.
 _TURNS_ABOVE = 0.1
@@ -50,39 +50,14 @@ _TURNS_ABOVE = 0.1
 
 @kernel
 def tick(
-    flat: Array,
-    columns: int,
-    robots: Array,
-    outline: Array,
-    dt: float,
-    ids: Rows,
-    in_turn: Rows,
-    radius: Array,
-    mass: Array,
-    preferred: Array,
-    max_speed: Array,
-    start_time: Array,
-    heeds_robot: NDArray[np.bool_],
-    at_goal: Rows,
-    flow: Rows,
-    route: Array,
-    first: Rows,
-    entrance: Array,
-    out: Array,
-    keep_offset: bool,
-    torus: Array,
-    goals_wrap: bool,
-    response: Array,
-    stiffness: float,
-    dissipation: float,
-    walls: Array,
-    discs: Array,
-    push: Array,
-    key: np.uint64,
-    reaction: Array,
-    placed: Array,
-    order: Rows,
-) -> None:
+    flat: Array, robots: Array, outline: Array, discs: Array, dt: float,
+    ids: Indices, radius: Array, mass: Array, preferred_speed: Array, max_speed: Array,
+    start_time: Array, at_goal: Indices, flow: Indices, route: Array, first: Indices,
+    entry_order: Indices, heeds_robot: Mask, push: Array,
+    walls: Array, entrance: Array, out: Array, keep_offset: bool, boundary: Array,
+    goals_wrap: bool, response: Array, stiffness: float, dissipation: float, goal_key: np.uint64,
+    reaction: Array, placed: Array, order: Indices,
+) -> None:  # fmt: skip
     """Advance from tick k to k + 1.
 
     All forces come from the state at k. Those between the robot and people act on both during the
@@ -90,15 +65,22 @@ def tick(
 
     Args:
         flat: the crowd's state, changed in place.
-        robots, outline: (R, 8), (K, 2) as in `crowdbot.core.crowd.contact`.
-        in_turn: (N,) rows of agents by id: the order in which they enter.
-        torus: (4,) x0, x1, y0, y1, infinite where there is no border.
-        walls, discs, push, order, placed: what pushes, and how much, as in `push_apart`.
-        reaction: (N, 2) scratch.
-
-    Everything else is as in `Agents` and `CrowdWorld`.
+        robots, outline: (R, 8), (K, 2) as in `crowdbot.core.crowd.contact.robot_contact`.
+        discs: (D, 3) x, y, radius of fixed discs that push, m.
+        dt: length of the tick, s.
+        ids to push: fields of `AgentParameters`.
+        walls to goal_key: fields of `WorldParameters`.
+        reaction, placed, order: fields of `Scratch`.
     """
-    header, agents = flat[:HEADER_SIZE], flat[HEADER_SIZE:].reshape(-1, columns)
+    people = AgentParameters(
+        ids, radius, mass, preferred_speed, max_speed, start_time, at_goal, flow, route, first,
+        entry_order, heeds_robot, push,
+    )  # fmt: skip
+    world = WorldParameters(
+        walls, entrance, out, keep_offset, boundary, goals_wrap, response, stiffness, dissipation,
+        goal_key,
+    )  # fmt: skip
+    header, agents = flat[:HEADER_SIZE], flat[HEADER_SIZE:].reshape(-1, AGENT_COLUMNS)
     now = header[TICK] * dt
     push_apart(agents, radius, order, walls, discs, push, placed)
     for r in range(robots.shape[0]):
@@ -108,34 +90,62 @@ def tick(
     if robots.shape[0] == 0:
         reaction[:] = 0.0
     for i in range(agents.shape[0]):
-        if agents[i, WAITING] != PRESENT:
-            continue
-        x, y, arrivals = agents[i, X], agents[i, Y], agents[i, ARRIVALS]
-        ax, ay = keep_off(agents, i, radius, robots, response) if heeds_robot[i] else (0.0, 0.0)
-        ax += agents[i, PUSH_X] + reaction[i, 0] / mass[i]
-        ay += agents[i, PUSH_Y] + reaction[i, 1] / mass[i]
-        _move(agents, i, max_speed[i], ax, ay, dt)
-        if at_goal[i] == PORTAL:
-            _through(agents, i, x, y, out[flow[i]], now, dt)
-        elif agents[i, ON_TRIP] != 0.0:
-            _along(agents, i, x, y, at_goal[i], route, first, radius[i], now, dt)
         if agents[i, WAITING] == PRESENT:
-            wrap(agents, i, torus, goals_wrap)
-        header[TRIPS] += agents[i, ARRIVALS] - arrivals
-    for i in in_turn:
+            _advance(header, agents, i, people, world, robots, reaction, now, dt)
+    for i in entry_order:
         if agents[i, WAITING] == AT_PORTAL:
-            f = flow[i]
-            try_to_re_enter(
-                agents, i, ids, radius, preferred[i], robots, entrance[f], out[f], keep_offset,
-                key, now + dt,
-            )  # fmt: skip
+            try_to_re_enter(agents, i, people, world, robots, now + dt)
         elif agents[i, WAITING] == NOT_YET and start_time[i] <= now + dt:
-            x, y = agents[i, X], agents[i, Y]
-            if is_free(agents, i, radius, robots, x, y):
-                on_trip = agents[i, ON_TRIP]
-                enter(agents, i, x, y, preferred[i], now + dt)
-                agents[i, ON_TRIP] = on_trip
+            _try_to_start(agents, i, people, robots, now + dt)
     header[TICK] += 1.0
+
+
+@inline_kernel
+def _advance(
+    header: Array,
+    agents: Array,
+    i: int,
+    people: AgentParameters,
+    world: WorldParameters,
+    robots: Array,
+    reaction: Array,
+    now: float,
+    dt: float,
+) -> None:
+    """Move agent i, and let it arrive, leave or wrap."""
+    x, y, arrivals = agents[i, X], agents[i, Y], agents[i, ARRIVALS]
+    ax, ay = 0.0, 0.0
+    if people.heeds_robot[i]:
+        ax, ay = keep_off(agents, i, people.radius, robots, world.response)
+    ax += agents[i, PUSH_X] + reaction[i, 0] / people.mass[i]
+    ay += agents[i, PUSH_Y] + reaction[i, 1] / people.mass[i]
+    _move(agents, i, people.max_speed[i], ax, ay, dt)
+    if people.at_goal[i] == PORTAL:
+        _through(agents, i, x, y, world.out[people.flow[i]], now, dt)
+    elif agents[i, ON_TRIP] != 0.0:
+        _along(agents, i, x, y, people, now, dt)
+    if agents[i, WAITING] == PRESENT:
+        wrap(agents, i, world.boundary, world.goals_wrap)
+    header[TRIPS] += agents[i, ARRIVALS] - arrivals
+
+
+@kernel
+def ticks_without_robots(count: int, flat: Array, *rest: Any) -> int:
+    """Several times `tick`; ends early after one in which somebody's trip ends.
+
+    Args:
+        count: how many ticks at most.
+        flat, rest: as of `tick`, without robots.
+
+    Returns:
+        how many ticks it were.
+    """
+    trips = flat[TRIPS]
+    for done in range(count):
+        tick(flat, *rest)
+        if flat[TRIPS] != trips:
+            return done + 1
+    return count
 
 
 @kernel
@@ -148,30 +158,34 @@ def _through(agents: Array, i: int, x: float, y: float, out: Array, now: float, 
 
 @kernel
 def _along(
-    agents: Array,
-    i: int,
-    x: float,
-    y: float,
-    at_goal: int,
-    route: Array,
-    first: Rows,
-    radius: float,
-    now: float,
-    dt: float,
+    agents: Array, i: int, x: float, y: float, people: AgentParameters, now: float, dt: float
 ) -> None:
     """Agent i, which was at (x, y), goes on to its next goal if it has reached this one."""
+    radius = people.radius[i]
     fraction = reach_fraction(
         x, y, agents[i, X], agents[i, Y], agents[i, GOAL_X], agents[i, GOAL_Y], radius
     )
     if fraction <= 1.0:
         when = max(now + fraction * dt, agents[i, TRIP_START])
         end_trip(agents, i, when)
-        next_goal(agents, i, at_goal, route, first, radius, when)
+        next_goal(agents, i, people.at_goal[i], people.route, people.first, radius, when)
+
+
+@kernel
+def _try_to_start(
+    agents: Array, i: int, people: AgentParameters, robots: Array, now: float
+) -> None:
+    """Put agent i into the world where it starts, if nobody stands there."""
+    x, y = agents[i, X], agents[i, Y]
+    if is_free(agents, i, people.radius, robots, x, y):
+        on_trip = agents[i, ON_TRIP]
+        enter(agents, i, x, y, people.preferred_speed[i], now)
+        agents[i, ON_TRIP] = on_trip
 
 
 @kernel
 def _move(agents: Array, i: int, fastest: float, ax: float, ay: float, dt: float) -> None:
-    """Own will is limited to the largest speed; pushes (ax, ay) are not."""
+    """The desired acceleration reaches at most the largest speed; pushes (ax, ay) may exceed it."""
     vx = agents[i, VX] + agents[i, AX] * dt
     vy = agents[i, VY] + agents[i, AY] * dt
     if not is_clearly_shorter(vx, vy, fastest):

@@ -6,12 +6,11 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import PORTAL, Agents
-from crowdbot.core.crowd.torus import Box
+from crowdbot.core.crowd.periodic_boundary import Box
+from crowdbot.core.types.arrays import Array
 
-Array = NDArray[np.float64]
 _COLUMNS = {"walls": 4, "pillars": 3, "entrance": 4, "out": 4}
 
 
@@ -24,23 +23,23 @@ class CrowdWorld:
     Attributes:
         walls: (S, 4) segments that people avoid, m.
         pillars: (P, 3) x, y and radius of round obstacles, m.
-        torus: (x0, x1, y0, y1) of a floor whose opposite borders are one, m; infinite where it
-            has no border.
+        periodic_boundary: (x0, x1, y0, y1) of a floor whose opposite borders are one, m; infinite
+            where it has no border.
         entrance, out: (F, 4) boxes x0, x1, y0, y1 of each flow's portals, m.
         exit_point: where people come out of the in-portal: at a random point, or opposite to
             where they went into the out-portal, ``offset`` kept.
-        response: (3,) see `crowdbot.core.crowd.contact.keep_off`.
+        response: (3,) see `crowdbot.core.crowd.contact.robot_contact.keep_off`.
         robot_visible: whether people see the robot's velocity.
         stiffness, dissipation: contact with the robot, N/m and s/m.
         goal_key: key of the counter-based draws of goals and entries.
         decision_rate: Hz, a power of two up to 128.
-        parity: do as the original engine does on a torus: no images across corners, and goals
-            that do not wrap. For comparisons only.
+        parity: do as the original engine does at a periodic boundary: no images across corners,
+            and goals that do not wrap. For comparisons only.
     """
 
     walls: Array = field(default_factory=lambda: np.zeros((0, 4)))
     pillars: Array = field(default_factory=lambda: np.zeros((0, 3)))
-    torus: Box | None = None
+    periodic_boundary: Box | None = None
     entrance: Array = field(default_factory=lambda: np.zeros((0, 4)))
     out: Array = field(default_factory=lambda: np.zeros((0, 4)))
     exit_point: Literal["random", "offset"] = "random"
@@ -63,10 +62,11 @@ class CrowdWorld:
             object.__setattr__(self, name, table)
         if len(self.entrance) != len(self.out):
             raise ValueError(f"{len(self.entrance)} entrances for {len(self.out)} exits")
-        if self.torus is not None and not (
-            self.torus[0] < self.torus[1] and self.torus[2] < self.torus[3]
+        if self.periodic_boundary is not None and not (
+            self.periodic_boundary[0] < self.periodic_boundary[1]
+            and self.periodic_boundary[2] < self.periodic_boundary[3]
         ):
-            raise ValueError("torus must be (x0, x1, y0, y1) with x0 < x1 and y0 < y1")
+            raise ValueError("periodic_boundary must be (x0, x1, y0, y1) with x0 < x1 and y0 < y1")
 
     def check(self, agents: Agents) -> None:
         """Refuse agents that this world has no place for.

@@ -1,4 +1,4 @@
-"""Recordings: MCAP files with ROS 2 messages, and the raw float64 state beside them."""
+"""Recordings: MCAP files of ROS 2 messages, and the state bit by bit beside them."""
 
 from crowdbot.core.recording.commands import read_commands
 from crowdbot.core.recording.header import AgentsHeader, RecordingHeader, RobotHeader
@@ -6,6 +6,7 @@ from crowdbot.core.recording.reader import (
     RecordingInfo,
     holds_run,
     read_cones,
+    read_run,
     read_scans,
     read_trajectories,
     recording_info,
@@ -21,6 +22,7 @@ __all__ = [
     "holds_run",
     "read_commands",
     "read_cones",
+    "read_run",
     "read_scans",
     "read_trajectories",
     "recording_info",

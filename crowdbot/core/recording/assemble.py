@@ -7,13 +7,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
-import numpy as np
-from numpy.typing import NDArray
-
-from crowdbot.core.interfaces import Array
 from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.states import States, StatesReader, series
 from crowdbot.core.recording.topics import Topic
-from crowdbot.core.trajectory import Trajectories
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
 #: The last two are recorded of a robot that goes sideways.
@@ -24,15 +22,15 @@ _CONTACT = ("t0", "t1", "agent", "impulse", "peak_force", "relative_speed")
 class Collected:
     """Messages of the scoring topics, in the order they came."""
 
-    #: Topic -> message type.
-    TOPICS: ClassVar[Mapping[str, str]] = {
-        Topic.HEADER: "crowdbot_msgs/msg/RunHeader",
-        Topic.STATE: "crowdbot_msgs/msg/RunState",
-        Topic.TRIP: "crowdbot_msgs/msg/Trip",
-        Topic.CONTACTS: "crowdbot_msgs/msg/Contact",
-        Topic.SIGNAL: "crowdbot_msgs/msg/Signal",
-        Topic.PLANNER_TIME: "crowdbot_msgs/msg/Signal",
-        Topic.END: "crowdbot_msgs/msg/RunEnd",
+    #: Topic -> message types, newest format first.
+    TOPICS: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        Topic.HEADER: ("crowdbot_msgs/msg/RunHeader",),
+        Topic.STATE: ("crowdbot_msgs/msg/RunStates", "crowdbot_msgs/msg/RunState"),
+        Topic.TRIP: ("crowdbot_msgs/msg/Trip",),
+        Topic.CONTACTS: ("crowdbot_msgs/msg/Contact",),
+        Topic.SIGNAL: ("crowdbot_msgs/msg/Series", "crowdbot_msgs/msg/Signal"),
+        Topic.PLANNER_TIME: ("crowdbot_msgs/msg/Series", "crowdbot_msgs/msg/Signal"),
+        Topic.END: ("crowdbot_msgs/msg/RunEnd",),
     }
 
     def __init__(self) -> None:
@@ -54,27 +52,33 @@ class Collected:
             raise InputError(f"{path}: the recording holds no sample")
         header = RecordingHeader.from_message(self._by_topic[Topic.HEADER][0])
         try:
+            people = 0 if header.agents is None else len(header.agents.id)
+            states = StatesReader(people).states(self._by_topic[Topic.STATE])
             return Trajectories.from_arrays(
-                **self._shared(header), **self._robot(header), **self._agents(header)
+                **self._shared(header, states),
+                **self._robot(header, states.robot),
+                **self._agents(header, states),
             )
         except (InputError, ValueError) as error:
             raise InputError(f"{path}: damaged: {error}") from error
 
-    def _shared(self, header: RecordingHeader) -> dict[str, Any]:
+    def _shared(self, header: RecordingHeader, states: States) -> dict[str, Any]:
+        times = series(self._by_topic[Topic.PLANNER_TIME])
         return {
-            "t": [s.t for s in self._by_topic[Topic.STATE]],
+            "t": states.t,
             "goal_zone": header.goal_zone,
             "walls": header.walls,
-            "planner_step_time": [s.value for s in self._by_topic[Topic.PLANNER_TIME]] or None,
-            "signals": self._signals(),
+            "planner_step_time": next((rows[:, 1] for rows in times.values()), None),
+            "signals": series(self._by_topic[Topic.SIGNAL]),
         }
 
-    def _robot(self, header: RecordingHeader) -> dict[str, Any]:
+    def _robot(self, header: RecordingHeader, rows: Array) -> dict[str, Any]:
         robot = header.robot
         if robot is None:
             return {}
-        names = _ROBOT if len(self._by_topic[Topic.STATE][0].robot) == len(_ROBOT) else _ROBOT[:5]
-        rows = _rows(self._by_topic[Topic.STATE], "robot", len(names))
+        names = _ROBOT if rows.shape[1] == len(_ROBOT) else _ROBOT[:5]
+        if rows.shape[1] != len(names):
+            raise InputError(f"a sample of the robot does not have {len(names)} numbers")
         ends = self._by_topic[Topic.END]
         return {
             **{f"robot_{name}": column for name, column in zip(names, rows.T, strict=True)},
@@ -92,45 +96,20 @@ class Collected:
         bearing = [getattr(row, "bearing", math.nan) for row in rows]  # since format 2
         return {**_columns(rows, _CONTACT), "bearing": bearing}
 
-    def _agents(self, header: RecordingHeader) -> dict[str, Any]:
+    def _agents(self, header: RecordingHeader, states: States) -> dict[str, Any]:
         agents = header.agents
         if agents is None:
             return {}
-        states, m = self._by_topic[Topic.STATE], len(agents.id)
-        rows = _rows(states, "agents", 4 * m).reshape(len(states), 4, m)
         names = ("agent_x", "agent_y", "agent_vx", "agent_vy")
         trips = _columns(self._by_topic[Topic.TRIP], ("agent", "t0", "t1", "reached"))
         return {
-            **{name: rows[:, i] for i, name in enumerate(names)},
+            **{name: states.agents[:, i] for i, name in enumerate(names)},
             "agent_id": agents.id,
             "agent_radius": agents.radius,
             "agent_mass": agents.mass,
-            "agent_jump": _jump(states, m),
+            "agent_jump": states.jump[1:] if states.told.any() else None,
             **{f"trip_{name}": column for name, column in trips.items()},
         }
-
-    def _signals(self) -> dict[str, Array]:
-        series: dict[str, list[tuple[float, float]]] = {}
-        for s in self._by_topic[Topic.SIGNAL]:
-            series.setdefault(s.name, []).append((s.t, s.value))
-        return {name: np.array(rows, np.float64) for name, rows in series.items()}
-
-
-def _rows(states: list[Any], name: str, width: int) -> Array:
-    if any(getattr(s, name).shape != (width,) for s in states):
-        raise InputError(f"a sample of the {name} does not have {width} numbers")
-    return np.array([getattr(s, name) for s in states], np.float64).reshape(len(states), width)
-
-
-def _jump(states: list[Any], m: int) -> NDArray[np.bool_] | None:
-    """(N-1, M), or None where no sample told; the first sample has nothing before it."""
-    if not any(s.has_jump for s in states):
-        return None
-    jump = np.zeros((len(states) - 1, m), np.bool_)
-    for row, state in zip(jump, states[1:], strict=True):
-        if state.has_jump:
-            row[:] = state.jump
-    return jump
 
 
 def _columns(rows: list[Any], names: tuple[str, ...]) -> dict[str, list[Any]]:

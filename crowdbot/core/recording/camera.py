@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Photograph, Pinhole, SensorInfo
-from crowdbot.core.optical import optical
+from crowdbot.core.geometry.optical_frame import optical
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
 from crowdbot.core.recording.template import Template
+from crowdbot.core.types.sensor import CameraFrame, Pinhole, SensorInfo
 
 
 class ImageMessage(NamedTuple):
@@ -42,12 +42,12 @@ class CameraMessages:
         self._blank = cache(lambda encoding, size: _image(head, encoding, (*info.shape, size)))
         self._pixels = math.prod(info.shape)
 
-    def __call__(self, photograph: Photograph) -> Iterator[ImageMessage]:
+    def __call__(self, frame: CameraFrame) -> Iterator[ImageMessage]:
         """The messages of one image."""
-        stamp = template.stamp(ros.nanoseconds(photograph.stamp))
-        yield from self._pair("depth", "16UC1", stamp, photograph.millimetres)
-        if photograph.colour is not None:
-            yield from self._pair("colour", "rgb8", stamp, photograph.colour)
+        stamp = template.stamp(ros.nanoseconds(frame.stamp))
+        yield from self._pair("depth", "16UC1", stamp, frame.depth_mm)
+        if frame.colour is not None:
+            yield from self._pair("colour", "rgb8", stamp, frame.colour)
 
     def _pair(
         self, kind: str, encoding: str, stamp: bytes, pixels: NDArray[Any]

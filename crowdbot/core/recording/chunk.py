@@ -17,7 +17,8 @@ from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import Channel, ChunkIndex, McapRecord, Schema
 
-_COMPRESSION, _LEVEL = "zstd", -1
+#: The lowest level that also codes bytes by how often they come: people are packed so.
+_COMPRESSION, _LEVEL = "zstd", 1
 _MESSAGE = Struct("<BQHIQQ")  # opcode and length of a record; channel, sequence, both times
 _INDEX = Struct("<BQHI")  # opcode and length of a record; channel, length of the entries
 #: Opcode and length of a record; first and last time, size and CRC without compression; its name;

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from crowdbot.core.commands import Commands
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.records import Record, Records
 from crowdbot.core.recording.topics import Topic
-from crowdbot.core.trajectory import Array
+from crowdbot.core.trajectories.commands import Commands
+from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError, UnknownNameError
 
 _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")

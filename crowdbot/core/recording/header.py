@@ -9,13 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Array, Pinhole, RobotLimits, SensorInfo
 from crowdbot.core.recording import messages as ros
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.robot import RobotLimits
+from crowdbot.core.types.sensor import Pinhole, SensorInfo
 from crowdbot.errors import InputError
 
 #: Raised when the meaning of a ``/crowdbot/...`` message changes.
-VERSION = 2
-_READABLE = (1, 2)
+VERSION = 3
+_READABLE = (1, 2, 3)
 _LIMITS = ("v_min", "v_max", "w_max", "a_max", "alpha_max", "vy_max")
 
 
@@ -26,7 +28,7 @@ class RobotHeader:
     Attributes:
         goal: centre of the goal, world frame.
         base_height: height of base_link above the floor.
-        footprint: outline of a body that is no disc, as in `RobotModel.footprint`.
+        footprint: outline of a body that is not a disc, as in `RobotModel.footprint`.
     """
 
     radius: float
@@ -92,7 +94,7 @@ class RecordingHeader:
                 itself.
         """
         if message.version not in _READABLE:
-            known = " and ".join(map(str, _READABLE))
+            known = f"{', '.join(map(str, _READABLE[:-1]))} and {_READABLE[-1]}"
             raise InputError(
                 f"the recording has format {message.version}; this crowdbot reads formats {known}"
             )
@@ -190,7 +192,7 @@ def _camera_message(sensor: str, camera: Pinhole) -> Any:
 
 
 def _sensors(message: Any) -> dict[str, SensorInfo]:
-    """By name; format 1 tells neither cameras nor what is privileged."""
+    """By name; format 1 says neither what is a camera nor what is privileged."""
     sensors = {s.name: _sensor(s) for s in message.sensors}
     for found in getattr(message, "cameras", ()):
         camera = Pinhole(

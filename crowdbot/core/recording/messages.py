@@ -14,7 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from crowdbot.core.interfaces import Array, Pose, SensorInfo
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.sensor import SensorInfo
 
 #: Definitions of the messages that no ROS distribution has. Arrays of tables are row by row.
 DEFINITIONS = {
@@ -36,10 +38,13 @@ DEFINITIONS = {
         "crowdbot_msgs/Table goal_zone\ncrowdbot_msgs/Camera[] cameras\nstring[] privileged"
     ),
     "Camera": "string sensor\nuint32 width\nuint32 height\nfloat64 focal\nbool colour",
-    "RunState": "float64 t\nfloat64[] robot\nfloat64[] agents\nbool has_jump\nbool[] jump",
+    "RunStates": (
+        "uint32 first\nfloat64[] t\nfloat64[] robot\nbool[] has_jump\nuint8[] jump\n"
+        "float64 gain\nuint8[] agents"
+    ),
     "RunEnd": "bool complete\nstring status\nbool arrived\nfloat64 goal_time",
     "Trip": "int64 agent\nfloat64 t0\nfloat64 t1\nbool reached",
-    "Signal": "float64 t\nstring name\nfloat64 value",
+    "Series": "string name\nfloat64[] t\nfloat64[] value",
     "Contact": (
         "std_msgs/Header header\nfloat64 t0\nfloat64 t1\nint64 agent\nfloat64 impulse\n"
         "float64 peak_force\nfloat64 relative_speed\nfloat64 bearing"
@@ -48,6 +53,11 @@ DEFINITIONS = {
         "std_msgs/Header header\nint64[] id\nfloat32[] x\nfloat32[] y\nfloat32[] vx\n"
         "float32[] vy\nfloat32[] heading\nfloat32[] radius"
     ),
+}
+#: Messages of formats 1 and 2, which are read and not written any more.
+OLD_DEFINITIONS = {
+    "RunState": "float64 t\nfloat64[] robot\nfloat64[] agents\nbool has_jump\nbool[] jump",
+    "Signal": "float64 t\nstring name\nfloat64 value",
 }
 #: Fields that messages of format 1 end before.
 _SINCE_2 = {
@@ -61,7 +71,7 @@ _NO_COVARIANCE = np.zeros(36)
 def _store(*, oldest: bool = False) -> Any:
     store = get_typestore(Stores.ROS2_HUMBLE)
     types: dict[str, Any] = {}
-    for name, text in DEFINITIONS.items():
+    for name, text in {**DEFINITIONS, **OLD_DEFINITIONS}.items():
         since = _SINCE_2.get(name, "") if oldest else ""
         types.update(get_types_from_msg(text.removesuffix(since), f"crowdbot_msgs/msg/{name}"))
     store.register(types)

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Array
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
 from crowdbot.core.recording.header import AgentsHeader
+from crowdbot.core.types.arrays import Array
 
 PEOPLE = "crowdbot_msgs/msg/Pedestrians"
 MARKER = "visualization_msgs/msg/Marker"

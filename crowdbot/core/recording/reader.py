@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from crowdbot.core.interfaces import SensorInfo
-from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.assemble import Collected
 from crowdbot.core.recording.header import RecordingHeader
-from crowdbot.core.recording.records import Record, Records
-from crowdbot.core.recording.topics import Topic, is_cone, is_scan, range_topic, scan_topic
-from crowdbot.core.replay.scan import ReplayScan
-from crowdbot.core.trajectory import Trajectories
+from crowdbot.core.recording.records import Record, Records, decode
+from crowdbot.core.recording.scan_reader import Choice, ScanCollector, cones, lidars
+from crowdbot.core.recording.scans import ReplayScan
+from crowdbot.core.recording.topics import Topic
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError, UnknownNameError
 
 
@@ -60,8 +56,32 @@ def read_trajectories(path: Path, robot: str | None = None) -> Trajectories:
     collected = Collected()
     for topic, record in _of_robot(path, robot):
         _check_type(path, record, Collected.TOPICS[topic])
-        collected.add(topic, _decode(path, record))
+        collected.add(topic, decode(path, record))
     return collected.trajectories(path)
+
+
+def read_run(path: Path, max_rate: float) -> tuple[Trajectories, list[ReplayScan]]:
+    """Trajectories and what sensors of distances saw, in one pass over a run's own recording.
+
+    Args:
+        path: a recording of one robot.
+        max_rate: leave out scans so that at most this many per second remain, Hz.
+
+    Raises:
+        InputError: as `read_trajectories`.
+    """
+    collected = Collected()
+    scans = ScanCollector(path, lambda header: {**lidars(header), **cones(header)}, max_rate)
+    for record in Records(path):
+        if record.topic not in Collected.TOPICS:
+            scans.add(record)
+            continue
+        _check_type(path, record, Collected.TOPICS[record.topic])
+        message = decode(path, record)
+        if record.topic == Topic.HEADER:
+            scans.open(RecordingHeader.from_message(message))
+        collected.add(record.topic, message)
+    return collected.trajectories(path), scans.scans()
 
 
 def holds_run(path: Path) -> bool:
@@ -71,7 +91,7 @@ def holds_run(path: Path) -> bool:
         InputError: no MCAP file, or damaged.
     """
     return any(
-        record.topic.endswith(Topic.HEADER) and record.msgtype == Collected.TOPICS[Topic.HEADER]
+        record.topic.endswith(Topic.HEADER) and record.msgtype in Collected.TOPICS[Topic.HEADER]
         for record in Records(path)
     )
 
@@ -100,12 +120,12 @@ def _of_robot(path: Path, robot: str | None) -> list[tuple[str, Record]]:
     return robots.get("") or next(iter(robots.values()), [])
 
 
-def _check_type(path: Path, record: Record, expected: str) -> None:
-    if (record.msgtype, record.encoding) != (expected, "cdr"):
+def _check_type(path: Path, record: Record, expected: tuple[str, ...]) -> None:
+    if record.msgtype not in expected or record.encoding != "cdr":
         found = record.msgtype or "a message without schema"
         raise InputError(
             f"{path}: {record.topic} holds {found} ({record.encoding or 'no encoding'}), "
-            f"not {expected} (cdr)"
+            f"not {expected[0]} (cdr)"
         )
 
 
@@ -123,7 +143,7 @@ def read_scans(
         InputError: no recording of crowdbot.
         UnknownNameError: there is no such lidar.
     """
-    return _scans(path, lambda header: _lidars(header, sensor), max_rate)
+    return _scans(path, lambda header: lidars(header, sensor), max_rate)
 
 
 def read_cones(path: Path, max_rate: float | None = None) -> list[ReplayScan]:
@@ -132,28 +152,18 @@ def read_cones(path: Path, max_rate: float | None = None) -> list[ReplayScan]:
     Raises:
         InputError: no recording of crowdbot.
     """
-    return _scans(path, _cones, max_rate)
+    return _scans(path, cones, max_rate)
 
 
-def _scans(
-    path: Path,
-    choose: Callable[[RecordingHeader], dict[str, SensorInfo]],
-    max_rate: float | None,
-) -> list[ReplayScan]:
+def _scans(path: Path, choose: Choice, max_rate: float | None) -> list[ReplayScan]:
     """What was recorded on the topics that ``choose`` finds."""
-    chosen: dict[str, SensorInfo] = {}
-    found: dict[str, list[tuple[float, Any]]] = {}
-    gap = 0 if max_rate is None else round(1e9 / max_rate)
-    due: Counter[str] = Counter()
+    collector = ScanCollector(path, choose, max_rate)
     for record in _with_header(path):
         if record.topic == Topic.HEADER:
-            chosen = choose(_header(path, record))
-        elif record.topic in chosen and record.ns >= due[record.topic]:
-            due[record.topic] = record.ns - (record.ns % gap if gap else 0) + gap
-            message = _decode(path, record)
-            ranges = [message.range] if is_cone(chosen[record.topic]) else message.ranges
-            found.setdefault(record.topic, []).append((record.ns / 1e9, ranges))
-    return [_scan(topic, chosen[topic], rows) for topic, rows in found.items()]
+            collector.open(_header(path, record))
+        else:
+            collector.add(record)
+    return collector.scans()
 
 
 def recording_info(path: Path) -> RecordingInfo:
@@ -172,7 +182,7 @@ def recording_info(path: Path) -> RecordingInfo:
         elif record.topic == Topic.STATE:
             last = record.ns
         elif record.topic == Topic.END:
-            end = _decode(path, record)
+            end = decode(path, record)
     assert header is not None  # by _with_header
     return RecordingInfo(
         header=header,
@@ -199,37 +209,4 @@ def _with_header(path: Path, records: Records | None = None) -> Iterator[Record]
 
 
 def _header(path: Path, record: Record) -> RecordingHeader:
-    return RecordingHeader.from_message(_decode(path, record))
-
-
-def _decode(path: Path, record: Record) -> Any:
-    try:
-        return ros.from_cdr(record.data, record.msgtype)
-    except Exception as error:  # the decoder is generated code; anything may surface
-        raise InputError(
-            f"{path}: {record.topic}: a {record.msgtype} that cannot be decoded"
-        ) from error
-
-
-def _lidars(header: RecordingHeader, sensor: str | None) -> dict[str, SensorInfo]:
-    lidars = {n: s for n, s in header.sensors.items() if is_scan(s)}
-    if sensor is not None and sensor not in lidars:
-        raise UnknownNameError("lidar", sensor, lidars)
-    return {scan_topic(n): s for n, s in lidars.items() if sensor in (None, n)}
-
-
-def _cones(header: RecordingHeader) -> dict[str, SensorInfo]:
-    return {range_topic(n): s for n, s in header.sensors.items() if is_cone(s)}
-
-
-def _scan(topic: str, info: SensorInfo, rows: list[tuple[float, Any]]) -> ReplayScan:
-    assert info.angles is not None  # by is_scan and is_cone
-    return ReplayScan(
-        sensor=topic.rpartition("/")[0].removeprefix("/"),
-        mount=info.mount,
-        angles=info.angles,
-        range_max=info.range_max,
-        t=np.array([t for t, _ in rows]),
-        ranges=np.array([r for _, r in rows], np.float64),
-        cone=is_cone(info),
-    )
+    return RecordingHeader.from_message(decode(path, record))

@@ -9,25 +9,30 @@ from __future__ import annotations
 import mmap
 import struct
 from collections.abc import Iterator
-from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import lz4.frame  # type: ignore[import-untyped]
 import zstandard
+from isal.isal_zlib import crc32
+from mcap.data_stream import ReadDataStream
 from mcap.exceptions import EndOfFile, InvalidMagic, McapError
+from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, DataEnd, Footer, McapRecord, Message, Schema
-from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
+from mcap.stream_reader import StreamReader
 
+from crowdbot.core.recording import messages as ros
 from crowdbot.errors import InputError
 
 #: Ours are 256 KiB plus one message. Larger ones are refused before they are unpacked.
 MAX_CHUNK = 64 * 2**20
 MAX_RECORD = 2 * MAX_CHUNK
 MAX_TOTAL = 4 * 2**30
+_PREFIX = struct.Struct("<BQ")  # opcode and length of a record
+_MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, both times
 _BROKEN = (
     McapError,
-    CRCValidationError,
     zstandard.ZstdError,
     struct.error,
     ValueError,
@@ -101,7 +106,9 @@ class Records:
             raise InputError(f"{self._path}: compression '{chunk.compression}' is not supported")
         try:
             plain = _decompress(chunk)
-            return breakup_chunk(replace(chunk, compression="", data=plain), validate_crc=True)
+            if chunk.uncompressed_crc not in (0, crc32(plain)):
+                return None
+            return list(_split(plain))
         except _BROKEN:
             return None
 
@@ -135,6 +142,33 @@ def _mapped(fileno: int) -> mmap.mmap:
         return mmap.mmap(-1, 1)
 
 
+def _split(plain: bytes) -> Iterator[McapRecord]:
+    """The records of a chunk; most are messages, which are read without a stream.
+
+    Raises:
+        ValueError: a record is longer than the chunk.
+    """
+    at, end = 0, len(plain)
+    while at < end:
+        opcode, length = _PREFIX.unpack_from(plain, at)
+        at += _PREFIX.size
+        if at + length > end:
+            raise ValueError("a record is longer than its chunk")
+        if opcode == Opcode.MESSAGE:
+            channel, sequence, logged, published = _MESSAGE.unpack_from(plain, at)
+            data = plain[at + _MESSAGE.size : at + length]
+            yield Message(channel, logged, data, published, sequence)
+        elif opcode == Opcode.SCHEMA:
+            yield Schema.read(_stream(plain[at : at + length]))
+        elif opcode == Opcode.CHANNEL:
+            yield Channel.read(_stream(plain[at : at + length]))
+        at += length
+
+
+def _stream(data: bytes) -> ReadDataStream:
+    return ReadDataStream(BytesIO(data))
+
+
 def _decompress(chunk: Chunk) -> bytes:
     """Never more than the chunk admits to: the frame's own idea of its size may be a bomb."""
     if chunk.compression == "":
@@ -149,3 +183,17 @@ def _decompress(chunk: Chunk) -> bytes:
     if len(data) != chunk.uncompressed_size:
         raise ValueError("size differs from the one announced")
     return data
+
+
+def decode(path: Path, record: Record) -> Any:
+    """The message of a record.
+
+    Raises:
+        InputError: it cannot be decoded; ``path`` is for the message.
+    """
+    try:
+        return ros.from_cdr(record.data, record.msgtype)
+    except Exception as error:  # the decoder is generated code; anything may surface
+        raise InputError(
+            f"{path}: {record.topic}: a {record.msgtype} that cannot be decoded"
+        ) from error

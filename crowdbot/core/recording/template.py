@@ -12,8 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, Pose, SensorInfo
 from crowdbot.core.recording import messages as ros
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.sensor import SensorInfo
 
 _STAMP = Struct("<iI")
 _ONE, _TWO = Struct("<d"), Struct("<2d")
@@ -141,25 +143,6 @@ def numbers(shape: tuple[int, ...]) -> Template:
     """Place: values."""
     values = np.full(shape, _A)
     return Template(ros.numbers(values), values.tobytes())
-
-
-def signal(name: str) -> Template:
-    """Places: time; value."""
-    return Template(ros.new("crowdbot_msgs/Signal", t=_A, name=name, value=_B), one(_A), one(_B))
-
-
-def run_state(robot: int, agents: int, jump: int | None) -> Template:
-    """Places: time; robot, agents (float64), jump (bool), of so many entries; None: no jump."""
-    message = ros.new(
-        "crowdbot_msgs/RunState",
-        t=_A,
-        robot=np.full(robot, _B),
-        agents=np.full(agents, _C),
-        has_jump=jump is not None,
-        jump=np.ones(jump or 0, np.bool_),
-    )
-    marks = [array.tobytes() for array in (message.robot, message.agents, message.jump)]
-    return Template(message, one(_A), *marks)
 
 
 def pedestrians(count: int) -> Template:

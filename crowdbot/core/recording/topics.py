@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, SensorInfo
 from crowdbot.core.recording import template
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.sensor import SensorInfo
 
 
 class Topic(StrEnum):

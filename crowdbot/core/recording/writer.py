@@ -1,7 +1,7 @@
 """RecordingWriter: streams one run into an MCAP file with ROS 2 messages.
 
-The ``/crowdbot/...`` topics and ``/contacts`` carry the raw float64 numbers that scores are
-computed from; all others are for ROS tools and may be left out.
+The ``/crowdbot/...`` topics and ``/contacts`` carry the float64 numbers that scores are computed
+from, bit by bit; all others are for the replay page and for ROS tools and may be left out.
 
 What is handed over is kept until the next `flush` and becomes messages then, all in a row: code
 that has just run is still in the processor's caches, which between the events of a simulation it
@@ -12,23 +12,33 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache, partial, wraps
+from functools import partial, wraps
 from pathlib import Path
 from typing import Any, Concatenate, Literal, ParamSpec, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Array, Command, Photograph, Reading
-from crowdbot.core.optical import OPTICAL_QUATERNION, optical
+from crowdbot.core.geometry.optical_frame import OPTICAL_QUATERNION, optical
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
 from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
+from crowdbot.core.recording.scans import REPLAY_RATE, Thinning, whole_centimetres
+from crowdbot.core.recording.states import SeriesRows, StateSample, StatesWriter
 from crowdbot.core.recording.template import Template
-from crowdbot.core.recording.topics import SensorTopic, Topic, sensor_topics
+from crowdbot.core.recording.topics import (
+    SensorTopic,
+    Topic,
+    is_cone,
+    is_scan,
+    sensor_topics,
+)
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Command
+from crowdbot.core.types.sensor import CameraFrame, Reading
 
 BASE = "base_footprint"
 #: Frames that the recording defines itself; no sensor may own them.
@@ -75,15 +85,16 @@ class RecordingWriter:
         Args:
             path: file to write; the caller gives it its final name when the run is complete.
             header: constants of the run.
-            record: ``none`` leaves out all that scores do not need. ``all`` and ``used`` write
-                every reading they are given; images, which are large, only ``all`` does.
+            record: ``none`` leaves out all that scores do not need; ``used`` keeps what the
+                replay page shows, scans and cones as exact and as often as it does; ``all`` has
+                every reading and image, and the messages of ROS tools.
 
         Raises:
             InputError: the path cannot be written.
         """
         self._file = McapFile(path)
         self._header = header
-        self._ros = record != "none"
+        self._ros = record == "all"
         self._people = PeopleMessages(header.agents) if header.agents else None
         self.images = record == "all"
         cameras = {n: i for n, i in header.sensors.items() if i.camera is not None}
@@ -91,7 +102,11 @@ class RecordingWriter:
         self._sensors = sensor_topics({n: i for n, i in header.sensors.items() if n not in cameras})
         self._clock, self._twist = template.clock(), template.twist()
         self._truth, self._pose = template.transform("map", BASE), template.pose_stamped("map")
-        self._state_of, self._signal_of = cache(template.run_state), cache(template.signal)
+        seen = {n: i for n, i in header.sensors.items() if is_scan(i) or is_cone(i)}
+        self._thinning = {n: Thinning(REPLAY_RATE) for n in (seen if record == "used" else ())}
+        self._states = StatesWriter(0 if header.agents is None else len(header.agents.id))
+        self._samples: list[StateSample] = []
+        self._series = {topic: SeriesRows() for topic in (Topic.SIGNAL, Topic.PLANNER_TIME)}
         self._waiting: list[Callable[[], None]] = []
         self._image_bytes = 0
         self._now = 0
@@ -100,7 +115,6 @@ class RecordingWriter:
         if self._ros:
             self._scenery()
 
-    @_later
     def state(
         self,
         t: float,
@@ -119,31 +133,34 @@ class RecordingWriter:
             jump: (M,) who was teleported since the previous sample.
             signals: name -> value at this time.
         """
-        self._now = ns = ros.nanoseconds(t)
-        rows = [np.asarray(() if a is None else a, np.float64) for a in (robot, agents)]
-        jumped = np.asarray(() if jump is None else jump, np.bool_)
-        blank = self._state_of(rows[0].size, rows[1].size, None if jump is None else jumped.size)
-        parts = (rows[0].tobytes(), rows[1].tobytes(), jumped.tobytes())
-        self._put(Topic.STATE, ns, blank, template.one(t), *parts)
+        self._samples.append(StateSample(t, robot, agents, jump))
         for name, value in (signals or {}).items():
-            self._value(Topic.SIGNAL, t, name, value)
+            self.signal(t, name, value)
         if self._ros:
-            self._ros_state(ns, robot, agents)
+            ns = ros.nanoseconds(t)
+            self._waiting.append(partial(self._ros_state, ns, robot, agents))
+        if len(self._samples) >= _MOST_WAITING:
+            self._catch_up()
 
     def reading(self, sensor: str, reading: Reading) -> None:
-        """One reading of a sensor that the header lists and that is no camera."""
+        """One reading of a sensor that the header lists and that is not a camera."""
+        thinning = self._thinning.get(sensor)
         if self._ros:
             values = reading.values.copy()
-            topic = self._sensors[sensor]
-            self._waiting.append(partial(self._measured, topic, reading.stamp, values))
+        elif thinning is not None and thinning.keeps(ros.nanoseconds(reading.stamp)):
+            values = whole_centimetres(reading.values)
+        else:
+            return
+        topic = self._sensors[sensor]
+        self._waiting.append(partial(self._measured, topic, reading.stamp, values))
 
-    def photograph(self, camera: str, photograph: Photograph) -> None:
+    def frame(self, camera: str, frame: CameraFrame) -> None:
         """One image of a camera that the header lists."""
         if not self.images:
             return
-        self._waiting.append(partial(self._photographed, self._cameras[camera], photograph))
-        self._image_bytes += photograph.millimetres.nbytes
-        self._image_bytes += 0 if photograph.colour is None else photograph.colour.nbytes
+        self._waiting.append(partial(self._frame_messages, self._cameras[camera], frame))
+        self._image_bytes += frame.depth_mm.nbytes
+        self._image_bytes += 0 if frame.colour is None else frame.colour.nbytes
         if self._image_bytes >= _MOST_IMAGE_BYTES:
             self._catch_up()
 
@@ -154,15 +171,13 @@ class RecordingWriter:
             parts = template.two(command.v, command.vy), template.one(command.w)
             self._put(Topic.COMMAND, ros.nanoseconds(t), self._twist, *parts)
 
-    @_later
     def planner_time(self, t: float, seconds: float) -> None:
         """Wall time of one planner step; the only number here that two equal runs disagree on."""
-        self._value(Topic.PLANNER_TIME, t, "planner_step_time", seconds)
+        self._series[Topic.PLANNER_TIME].add("planner_step_time", t, seconds)
 
-    @_later
     def signal(self, t: float, name: str, value: float) -> None:
         """One value of a named signal."""
-        self._value(Topic.SIGNAL, t, name, value)
+        self._series[Topic.SIGNAL].add(name, t, value)
 
     @_later
     def trip(self, agent: int, t0: float, t1: float, reached: bool) -> None:
@@ -229,7 +244,14 @@ class RecordingWriter:
         self._file.close()
 
     def _catch_up(self) -> None:
-        """Write all that waits."""
+        """Write all that waits, samples first."""
+        if self._samples:
+            samples, self._samples = self._samples, []
+            self._now = ros.nanoseconds(samples[-1].t)
+            self._file.put(Topic.STATE, self._now, self._states.message(samples))
+        for topic, rows in self._series.items():
+            for t, message in rows.messages():
+                self._file.put(topic, ros.nanoseconds(t), message)
         waiting, self._waiting, self._image_bytes = self._waiting, [], 0
         for write in waiting:
             write()
@@ -238,14 +260,10 @@ class RecordingWriter:
         ns = ros.nanoseconds(stamp)
         self._file.put_bytes(topic.name, ns, topic.msgtype, topic.message(ns, values))
 
-    def _photographed(self, camera: CameraMessages, photograph: Photograph) -> None:
-        ns = ros.nanoseconds(photograph.stamp)
-        for image in camera(photograph):
+    def _frame_messages(self, camera: CameraMessages, frame: CameraFrame) -> None:
+        ns = ros.nanoseconds(frame.stamp)
+        for image in camera(frame):
             self._file.put_bytes(image.topic, ns, image.msgtype, *image.pieces)
-
-    def _value(self, topic: Topic, t: float, name: str, value: float) -> None:
-        blank = self._signal_of(name)
-        self._put(topic, ros.nanoseconds(t), blank, template.one(t), template.one(value))
 
     def _put(self, topic: Topic, ns: int, blank: Template, *parts: bytes) -> None:
         self._file.put_bytes(topic, ns, blank.msgtype, blank.fill(*parts))

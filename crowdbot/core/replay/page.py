@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from crowdbot.core.aside import write_aside
-from crowdbot.core.offline_page import render_page
+from crowdbot.core.recording.scans import ReplayScan
 from crowdbot.core.replay.encode import encode, summary
-from crowdbot.core.replay.scan import ReplayScan
 from crowdbot.core.replay.scores import grouped
-from crowdbot.core.score import Score
-from crowdbot.core.trajectory import Trajectories
+from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.support.html_page import render_page
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.score import Score
 
 _SCRIPTS = ("decode.js", "motion.js", "draw.js", "timeline.js", "app.js")
 
@@ -38,7 +38,7 @@ def write_replay(
         InputError: the path cannot be written.
     """
     text = _render(run, scans, scores, title, facts)
-    write_aside(path, text)
+    atomic_write(path, text)
 
 
 def _render(

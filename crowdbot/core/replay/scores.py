@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from crowdbot.core.score import Score
-from crowdbot.core.scores_table import headlines
+from crowdbot.core.scoring.scores_csv import headlines
+from crowdbot.core.types.score import Score
 
 _ARROWS = {
     "higher": ("↑", "higher is better"),

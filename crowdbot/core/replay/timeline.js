@@ -28,8 +28,8 @@ function curveOf(run) {
 
 function drawTimeline(run, canvas, curve, time) {
   const { g, width, height } = prepareCanvas(canvas);
-  const [start, end] = [run.t[0], run.t[run.n - 1]];
-  const at = (t) => ((t - start) / (end - start || 1)) * width;
+  const [first, last] = [run.t[0], run.t[run.n - 1]];
+  const at = (t) => ((t - first) / (last - first || 1)) * width;
   g.clearRect(0, 0, width, height);
   const fill = (alpha) => {
     g.globalAlpha = alpha;

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from crowdbot.core.registry import Registry
+from crowdbot.core.registry.registry import Registry
 from crowdbot.errors import PluginError
 
 #: Rows of a card's first table that the page shows.

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from crowdbot.core.registry import Registry
+from crowdbot.core.registry.registry import Registry
 from crowdbot.core.report.cards import cards
 from crowdbot.core.report.encode import Attempt, attempts, axes_of, status_of
 from crowdbot.core.report.figures import Figures, figures

@@ -23,7 +23,7 @@ async function decode() {
   report.codes = new Uint16Array(await inflate("codes"));
   const count = report.runs.count;
   report.byPlanner = report.planners.map((_, p) =>
-    Array.from({ length: count }, (_, r) => r).filter((r) => report.runs.planner[r] === p));
+    Array.from({ length: count }, (__, r) => r).filter((r) => report.runs.planner[r] === p));
 }
 
 const at = (series, run) => series * report.runs.count + run;

@@ -1,6 +1,6 @@
 // How one score is distributed over the runs: dots with a box, or cumulative curves.
 
-let left = 150; // room for the names of planners
+let namesWidth = 150; // room for the names of planners
 const RIGHT = 118;
 const ROW = 74;
 
@@ -11,11 +11,11 @@ function drawDistribution() {
     const runs = selectedRuns(p);
     return { planner: p, runs, about: describe(state.series, runs) };
   });
-  left = Math.min(230, 70 + 7 * Math.max(0, ...rows.map((row) => shortened(row.planner).length)));
+  namesWidth = Math.min(230, 70 + 7 * Math.max(0, ...rows.map((row) => shortened(row.planner).length)));
   const width = Math.max(480, box.clientWidth || 900);
   const values = rows.flatMap(({ runs, about }) => [...about.sorted, ...runs.flatMap(boundsOf)]);
   const marks = series.reference ? [series.reference.value] : [];
-  const x = scale(spanOf(values, marks), [left, width - RIGHT], 7);
+  const x = scale(spanOf(values, marks), [namesWidth, width - RIGHT], 7);
   const picture = state.chart === "ecdf" ? drawCurves(rows, x, width) : drawStrips(rows, x, width);
   picture.setAttribute("aria-label", distributionText(series, rows));
   box.replaceChildren(picture);
@@ -118,8 +118,8 @@ function drawCurves(rows, x, width) {
   const reference = report.series[state.series].reference;
   const picture = canvas(width, height + 18, bottomAxis(x, 12, height - 8, reference));
   for (const tick of y.ticks) {
-    picture.append(svg("line", { class: "grid", x1: left, x2: width - RIGHT, y1: round(y.place(tick)), y2: round(y.place(tick)) }),
-      label(`${Math.round(100 * tick)} %`, left - 8, y.place(tick) + 4, "tick", "end"));
+    picture.append(svg("line", { class: "grid", x1: namesWidth, x2: width - RIGHT, y1: round(y.place(tick)), y2: round(y.place(tick)) }),
+      label(`${Math.round(100 * tick)} %`, namesWidth - 8, y.place(tick) + 4, "tick", "end"));
   }
   rows.forEach(({ planner, runs, about }, i) => {
     let path = `M${round(x.place(x.low))} ${round(y.place(0))}`;

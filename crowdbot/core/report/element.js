@@ -56,7 +56,7 @@ const round = (x) => Math.round(10 * x) / 10;
 /** Decimals that show three digits of the largest number, and two of what the numbers differ by. */
 function decimalsFor(numbers) {
   const known = numbers.filter(Number.isFinite);
-  const places = (size, digits) => (size > 0 ? digits - 1 - Math.floor(Math.log10(size)) : 0);
+  const places = (size, shown) => (size > 0 ? shown - 1 - Math.floor(Math.log10(size)) : 0);
   const largest = Math.max(0, ...known.map(Math.abs));
   const spread = known.length ? Math.max(...known) - Math.min(...known) : 0;
   const seen = spread > 1e-6 * largest ? places(spread, 2) : 0;

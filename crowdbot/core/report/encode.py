@@ -15,13 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.report.series import Series
-from crowdbot.core.results.rows import (
-    PLANNER_FAILED,
-    WITHOUT_RUN,
-    FailureRow,
-    Results,
-    RunRow,
-)
+from crowdbot.core.results.rows import PLANNER_FAILED, WITHOUT_RUN, FailureRow, Results, RunRow
 
 #: Code of a score that a run does not have.
 ABSENT = 65535

@@ -7,30 +7,30 @@ const state = {
 const HEADLINE = "headline";
 
 /** Builds the controls from what the suite has. */
-function buildFilters(changed) {
+function buildFilters(onchange) {
   const box = byId("filters");
   for (const axis of report.axes) {
     const options = [["", "all"], ...axis.labels.map((l) => [l, l])];
     box.append(choice(`axis-${axis.name}`, axis.name, options, (v) => {
       state.axes[axis.name] = v;
-      changed();
+      onchange();
     }));
   }
   const seeds = report.seeds.map((s) => [String(s), String(s)]);
   const simple = (name, options) => choice(name, name, options, (v) => {
     state[name] = v;
-    changed();
+    onchange();
   });
   if (seeds.length > 1) box.append(simple("seed", [["", "all"], ...seeds]));
   const categories = [...new Set(report.series.map((s) => s.category))];
   box.append(simple("category", [["", "all"], ...categories.map((c) => [c, c])]));
   const variants = [HEADLINE, "corrected", "literal", "all"].map((v) => [v, v]);
   box.append(simple("variant", variants));
-  box.append(plannerChips(changed));
+  box.append(plannerChips(onchange));
   byId("clear").onclick = () => {
     Object.assign(state, { axes: {}, seed: "", category: "", variant: HEADLINE });
     state.hidden.clear();
-    changed();
+    onchange();
   };
 }
 
@@ -40,12 +40,12 @@ function choice(id, name, options, onpick) {
   return el("label", { class: "field" }, el("span", { text: words(name) }), select);
 }
 
-function plannerChips(changed) {
+function plannerChips(onchange) {
   const chips = report.planners.map((planner, p) => el("button", {
     type: "button", class: "chip", id: `planner-${p}`, "aria-pressed": "true",
     onclick: () => {
       if (!state.hidden.delete(p)) state.hidden.add(p);
-      changed();
+      onchange();
     },
   }, badge(p), el("span", { text: planner.label })));
   return el("div", { class: "field chips", role: "group", "aria-label": "Planners" },
@@ -110,7 +110,7 @@ function shownSeries() {
 
 function writeAddress() {
   const query = new URLSearchParams();
-  for (const [name, label] of Object.entries(state.axes)) if (label) query.set(`axis.${name}`, label);
+  for (const [name, value] of Object.entries(state.axes)) if (value) query.set(`axis.${name}`, value);
   for (const name of ["seed", "category", "theme"]) if (state[name]) query.set(name, state[name]);
   if (state.variant !== HEADLINE) query.set("variant", state.variant);
   if (state.chart !== "strip") query.set("chart", state.chart);
@@ -131,8 +131,8 @@ function readAddress() {
   const has = (id, value) => [...(byId(id)?.options ?? [])].some((o) => o.value === value);
   state.axes = {};
   for (const { name } of report.axes) {
-    const label = query.get(`axis.${name}`);
-    if (label && has(`axis-${name}`, label)) state.axes[name] = label;
+    const value = query.get(`axis.${name}`);
+    if (value && has(`axis-${name}`, value)) state.axes[name] = value;
   }
   for (const name of ["seed", "category", "variant"]) {
     const wanted = query.get(name) ?? "";

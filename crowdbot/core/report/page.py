@@ -6,15 +6,15 @@ from itertools import combinations
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.aside import write_aside
-from crowdbot.core.offline_page import render_page
 from crowdbot.core.report import provenance, tables
 from crowdbot.core.report.cards import reference
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import encode_runs, encode_scores, pack
 from crowdbot.core.report.figures import FIELDS, VERDICTS
 from crowdbot.core.results.rows import RunRow
-from crowdbot.core.scores_table import write_table
+from crowdbot.core.scoring.scores_csv import write_table
+from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.support.html_page import render_page
 
 _SCRIPTS = (
     "element", "data", "filters", "scale", "table", "cards", "distribution", "scores",
@@ -38,8 +38,8 @@ def write_report(path: Path, contents: Contents) -> dict[str, Path]:
     paths = {"html": path, "csv": path.with_suffix(".csv"), "md": path.with_suffix(".md")}
     page = render(contents)
     write_table(paths["csv"], tables.csv_rows(contents))
-    write_aside(paths["md"], tables.markdown(contents))
-    write_aside(path, page)
+    atomic_write(paths["md"], tables.markdown(contents))
+    atomic_write(path, page)
     return paths
 
 

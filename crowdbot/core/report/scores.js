@@ -21,8 +21,8 @@ function drawScores(choose) {
   const sorted = { metric: { column: 0, up: true }, evidence: compared ? { column: columns.length - 1, up: true } : null };
   const table = byId("scores-table");
   table.classList.toggle("many", planners.length > 4);
-  const draw = (row) => drawScoreRow(row, planners, choose);
-  sortable(table, columns, rows, draw, sorted[state.order] ?? { column: -1, up: true });
+  const drawRow = (row) => drawScoreRow(row, planners, choose);
+  sortable(table, columns, rows, drawRow, sorted[state.order] ?? { column: -1, up: true });
   if (state.order === "category") groupByCategory(table, rows);
   const silent = all.filter((row) => !rows.includes(row));
   byId("scores-silent").replaceChildren(...silentText(silent));
@@ -116,7 +116,7 @@ function silentText(rows) {
   const reasons = new Map();
   for (const { series } of rows) {
     const found = new Set();
-    for (const p of shownPlanners()) for (const run of selectedRuns(p)) {
+    for (const run of shownPlanners().flatMap((p) => selectedRuns(p))) {
       const { status, reason } = scoreOf(series, run);
       if (status === "undefined") found.add(reason);
     }

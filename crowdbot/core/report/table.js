@@ -4,13 +4,13 @@
  * Makes the headers of a table sort it.
  *
  * `columns`: {text, key, numeric}; `key(row)` is what a row is sorted by, and a column without it
- * does not sort. `draw(row)` gives the row's element.
+ * does not sort. `drawRow(row)` gives the row's element.
  */
-function sortable(table, columns, rows, draw, sorted = { column: -1, up: true }) {
+function sortable(table, columns, rows, drawRow, sorted = { column: -1, up: true }) {
   const show = () => {
     const { column, up } = sorted;
     const order = column < 0 ? rows : [...rows].sort(comparing(columns[column].key, up));
-    table.tBodies[0].replaceChildren(...order.map(draw));
+    table.tBodies[0].replaceChildren(...order.map(drawRow));
     [...table.tHead.rows[0].cells].forEach((cell, c) => {
       if (!columns[c].key) return;
       cell.setAttribute("aria-sort", c !== column ? "none" : up ? "ascending" : "descending");

@@ -259,7 +259,7 @@ def _counted(runs: Sequence[str]) -> str:
 
 
 def _apart(values: Sequence[str]) -> str:
-    """By how much two values differ, where both are numbers with the same words around."""
+    """By how much two values differ, where both are numbers with equal text around."""
     if len(values) != 2 or len({_NUMBER.sub("#", v) for v in values}) != 1:
         return ""
     found = [_NUMBER.findall(v) for v in values]

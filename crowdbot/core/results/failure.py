@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
-from crowdbot.core.run_directory import write_json
+from crowdbot.core.runs.run_directory import write_json
 
 SUFFIX = ".failure.json"
 

@@ -15,10 +15,10 @@ from contextlib import ExitStack, closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import run_directory as files
 from crowdbot.core.results.failure import SUFFIX, read_failure
 from crowdbot.core.results.rows import FailureRow, Results, RunRow, ScoreRow
-from crowdbot.core.scores_table import read_scores_csv
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.errors import InputError
 
 INDEX, LOCK = "results.sqlite", "results.lock"
@@ -221,7 +221,7 @@ _FAILURE = ("suite", "scenario", "position", "planner", "seed", "axes", "error",
 
 
 def _scan(root: Path) -> Iterator[tuple[str, str]]:
-    """Runs and failures below a root with their stamps; calibration runs are no results."""
+    """Runs and failures below a root with their stamps; calibration runs are not results."""
     for folder, below, names in os.walk(root):
         here = Path(folder)
         if files.RECORD in names:

@@ -18,7 +18,7 @@ from crowdbot.core.results.rows import (
     RunRow,
     ScoreRow,
 )
-from crowdbot.core.scores_table import write_table
+from crowdbot.core.scoring.scores_csv import write_table
 from crowdbot.errors import InputError, MissingLibraryError, UnknownNameError
 
 Line = dict[str, Any]
@@ -109,12 +109,12 @@ def write_parquet(path: Path, lines: Sequence[Line]) -> None:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Summary:
+class GroupSummary:
     """Scores of one metric and variant in one group of runs.
 
     ``mean`` and ``median`` are those of the ``count`` scores that have a value; ``undefined`` and
     ``censored`` are how many have none. ``failed`` counts the runs whose planner failed, which are
-    among the others, and the attempts that left no run, which are no success.
+    among the others, and the attempts that left no run, which are not successes.
     """
 
     group: Mapping[str, str]
@@ -132,7 +132,7 @@ class Summary:
 
 def summarise(
     results: Results, metric: str, by: Sequence[str], variant: str | None = None
-) -> list[Summary]:
+) -> list[GroupSummary]:
     """Scores by groups of runs.
 
     Args:
@@ -174,10 +174,10 @@ def _usual_variants(results: Results) -> dict[str, str]:
     return usual
 
 
-def _summary(group: Mapping[str, str], scores: Sequence[ScoreRow], failed: int) -> Summary:
+def _summary(group: Mapping[str, str], scores: Sequence[ScoreRow], failed: int) -> GroupSummary:
     values = [s.value for s in scores if s.value is not None]
     first = scores[0]
-    return Summary(
+    return GroupSummary(
         group=group,
         metric=first.metric,
         variant=first.variant,

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from crowdbot.core.fault import described
-from crowdbot.core.interfaces import DifferentialDrive, HolonomicDrive, RobotModel
-from crowdbot.core.registry import Registry
+from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots.check import check_model
-from crowdbot.dsl.base import RobotSpec
+from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive, RobotModel
+from crowdbot.dsl.component_specs import RobotSpec
 from crowdbot.dsl.scenario import Robot
-from crowdbot.errors import CrowdbotError, InputError, PluginError
+from crowdbot.errors import InputError
 
 #: Drive -> control modes that fit it.
 MODES: Mapping[type, tuple[str, ...]] = {
@@ -25,14 +24,7 @@ def build_model(registry: Registry, spec: RobotSpec) -> RobotModel:
     Raises:
         PluginError: it cannot be built, or its parts do not fit each other.
     """
-    try:
-        return check_model(registry.build(spec))
-    except CrowdbotError as error:
-        text = str(error)
-        named = text if spec.kind in text else f"{spec.kind}: {text}"
-        raise PluginError(named) from error
-    except (Exception, SystemExit) as error:
-        raise PluginError(f"{spec.kind}: {described(error)}") from error
+    return registry.build(spec, check_model)
 
 
 def build_robot(registry: Registry, robot: Robot) -> RobotModel:

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crowdbot.core.footprint import footprint_of_model
-from crowdbot.core.interfaces import DifferentialDrive, HolonomicDrive, RobotModel
+from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.robots.description import Description, read_description
-from crowdbot.core.robots.xml import Array
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive, RobotModel
 from crowdbot.errors import PluginError
 
 _LENGTH = 1e-3  # m; what two statements about one length may differ by

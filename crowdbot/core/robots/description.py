@@ -15,9 +15,10 @@ from xml.etree import ElementTree as Xml
 
 import numpy as np
 
-from crowdbot.core.interfaces import DifferentialDrive
 from crowdbot.core.robots.joint import KNOWN, Joint, child_of, sdf_joint, urdf_joint
-from crowdbot.core.robots.xml import Array, matrix, name_of, number, pose_of
+from crowdbot.core.robots.xml import matrix, name_of, number, pose_of
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.robot import DifferentialDrive
 from crowdbot.errors import PluginError, did_you_mean, nearest
 
 Format = Literal["sdf", "urdf"]
@@ -93,7 +94,7 @@ class Description:
         """Pose of a link in the frame of another, all joints at zero, 4 x 4.
 
         Raises:
-            PluginError: there is no such link, or its pose is relative to what is no link.
+            PluginError: there is no such link, or its pose is relative to what is not a link.
         """
         of = self._from_root if self.format == "urdf" else self._in_model
         pose: Array = np.linalg.inv(of(seen_from, ())) @ of(link, ())

@@ -7,7 +7,8 @@ from xml.etree import ElementTree as Xml
 
 import numpy as np
 
-from crowdbot.core.robots.xml import Array, matrix, name_of, number, numbers, pose_of
+from crowdbot.core.robots.xml import matrix, name_of, number, numbers, pose_of
+from crowdbot.core.types.arrays import Array
 from crowdbot.errors import PluginError
 
 #: Joints that a mobile base may have.
@@ -46,7 +47,7 @@ def _axis(text: str, name: str) -> Array:
     axis = np.array(numbers(text, f"the axis of joint '{name}'"))
     length = float(np.linalg.norm(axis))
     if axis.shape != (3,) or length == 0.0:
-        raise PluginError(f"the axis of joint '{name}' is no direction: '{text}'")
+        raise PluginError(f"the axis of joint '{name}' is not a direction: '{text}'")
     return axis / length
 
 

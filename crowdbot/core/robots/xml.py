@@ -9,11 +9,9 @@ import math
 from xml.etree import ElementTree as Xml
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crowdbot.core.types.arrays import Array
 from crowdbot.errors import PluginError
-
-Array = NDArray[np.float64]
 
 
 def name_of(element: Xml.Element) -> str:
@@ -42,7 +40,7 @@ def numbers(text: str, what: str) -> list[float]:
     """The numbers in a text.
 
     Raises:
-        PluginError: a word is no number, or not finite.
+        PluginError: a word is not a number, or not finite.
     """
     try:
         found = [float(word) for word in text.split()]
@@ -57,7 +55,7 @@ def number(text: str, what: str) -> float:
     """The one number in a text.
 
     Raises:
-        PluginError: it is none, or not finite.
+        PluginError: it is not a number, or not finite.
     """
     found = numbers(text, what)
     if len(found) != 1:

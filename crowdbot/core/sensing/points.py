@@ -6,11 +6,9 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Reading, SensorInfo
-
-Array = NDArray[np.float64]
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.sensor import Reading, SensorInfo
 
 
 class LidarPoints:

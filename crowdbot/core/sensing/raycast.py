@@ -14,9 +14,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.sensing.bodies import BOTTOM, RADIUS, TOP, X, Y
-
-Array = NDArray[np.float64]
+from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
+from crowdbot.core.types.arrays import Array
 
 #: Ends of a wall are longer by this fraction, so that no ray slips through a corner.
 _OVERLAP = 1e-9

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core.interfaces import RobotState
-from crowdbot.core.sensing.bodies import DISC_COLUMNS, PARTS, place_people
-from crowdbot.core.sensing.columns import Grid, cast_columns
-from crowdbot.core.sensing.pixels import Pixels
+from crowdbot.core.sensing.body_model import DISC_COLUMNS, PARTS, place_people
+from crowdbot.core.sensing.depth_renderer import DepthRenderer
 from crowdbot.core.sensing.raycast import cast_rays
+from crowdbot.core.sensing.raycast_columns import Obstacles, RayGrid, cast_columns
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.robot import RobotState
 
-Array = NDArray[np.float64]
 #: In place of details that are not wanted.
 _NO_ANGLES, _NOBODY = np.empty((0, 0)), np.empty((0, 0), dtype=np.int64)
 
@@ -60,7 +60,7 @@ class Scene:
         self._direction, self._walked = _constant((1.0, 0.0), (count, 2)), _constant(0.0, (count,))
         self.pillars = _constant(np.reshape(pillars, (-1, 3)), (np.size(pillars) // 3, 3))
         self.pillar_heights = _constant(pillar_heights, (len(self.pillars), 2))
-        self._discs, self._owner = self._lay_out()
+        self._obstacles = Obstacles(self.walls, self.wall_heights, *self._lay_out())
         self._placed = False
 
     def _lay_out(self) -> tuple[Array, NDArray[np.int64]]:
@@ -109,8 +109,8 @@ class Scene:
     @property
     def headings(self) -> Array:
         """Way that people face (M,), world frame, rad."""
-        ways: Array = np.arctan2(self._direction[:, 1], self._direction[:, 0])
-        return ways
+        yaw: Array = np.arctan2(self._direction[:, 1], self._direction[:, 0])
+        return yaw
 
     @property
     def cylinders(self) -> Array:
@@ -118,25 +118,22 @@ class Scene:
 
         Columns are x, y, radius, bottom and top, m; the absent are at infinity.
         """
-        return self.bodies[0]
+        return self.obstacles.discs
 
     def move_robot(self, robot_state: RobotState | None) -> None:
         """Show another instant to those who do not look at people, who stay as they were."""
         self.robot = robot_state
 
     @property
-    def bodies(self) -> tuple[Array, NDArray[np.int64]]:
-        """The `cylinders` and (D,) whose they are, as in `cast`; not to be changed.
-
-        People are placed when somebody looks.
-        """
+    def obstacles(self) -> Obstacles:
+        """All that rays can hit; not to be changed. People are placed when somebody looks."""
         if not self._placed:
             place_people(
                 self.people, self.present, self._direction, self._walked,
-                self.people_radius, self.people_height, self._discs,
+                self.people_radius, self.people_height, self._obstacles.discs,
             )  # fmt: skip
             self._placed = True
-        return self._discs, self._owner
+        return self._obstacles
 
     def cast(
         self, origins: Array, directions: Array, max_range: float
@@ -156,14 +153,11 @@ class Scene:
             without a hit; body (R,) int64, a person's index, -(2 + index) of a wall, and on from
             there of a pillar, -1 for none.
         """
-        discs, owner = self.bodies
-        return cast_rays(
-            origins, directions, max_range, self.walls, self.wall_heights, discs, owner
-        )
+        return cast_rays(origins, directions, max_range, *self.obstacles)
 
     def cast_grid(
         self,
-        grid: Grid,
+        grid: RayGrid,
         at: tuple[float, float, float],
         yaw: float,
         max_range: float,
@@ -188,38 +182,37 @@ class Scene:
         if details:
             incidence, body = np.empty(grid.shape), np.empty(grid.shape, dtype=np.int64)
         if distance.size:
-            discs, owner = self.bodies
+            x, y, z = at
             cast_columns(
-                *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, max_range,
-                floor, self.walls, self.wall_heights, discs, owner, grid.work,
-                grid.count, grid.ways, grid.runs, distance, incidence, body,
+                x, y, z, yaw, max_range, floor, *grid.arrays, *self.obstacles,
+                distance, incidence, body,
             )  # fmt: skip
         return distance, incidence, body
 
-    def photograph(
-        self, pixels: Pixels, at: tuple[float, float, float], yaw: float
+    def render_depth(
+        self, renderer: DepthRenderer, at: tuple[float, float, float], yaw: float
     ) -> NDArray[np.float32]:
         """What a level camera sees; the floor is seen.
 
         Args:
-            pixels: of the camera.
+            renderer: of the camera.
             at: where it is, world frame, m.
             yaw: where it looks, world frame, rad.
 
         Returns:
             (H, W) depth along the axis, m: 0 for too near, inf for nothing in reach.
         """
-        image = np.empty(pixels.shape, np.float32)
-        pixels.paint(image, at, yaw, self.walls, self.wall_heights, self.cylinders)
+        image = np.empty(renderer.shape, np.float32)
+        renderer.render_depth(image, at, yaw, self.walls, self.wall_heights, self.cylinders)
         return image
 
-    def photograph_millimetres(
-        self, pixels: Pixels, at: tuple[float, float, float], yaw: float
+    def render_depth_mm(
+        self, renderer: DepthRenderer, at: tuple[float, float, float], yaw: float
     ) -> NDArray[np.uint16]:
-        """As `photograph`, in whole millimetres; 0 also for nothing in reach.
+        """As `render_depth`, in whole millimetres; 0 also for nothing in reach.
 
-        The camera measures less than `crowdbot.core.sensing.pixels.MOST_MILLIMETRES`.
+        The camera measures less than `crowdbot.core.sensing.depth_renderer.MOST_MILLIMETRES`.
         """
-        image = np.empty(pixels.shape, np.uint16)
-        pixels.paint(image, at, yaw, self.walls, self.wall_heights, self.cylinders)
+        image = np.empty(renderer.shape, np.uint16)
+        renderer.render_depth(image, at, yaw, self.walls, self.wall_heights, self.cylinders)
         return image

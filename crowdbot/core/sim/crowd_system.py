@@ -8,15 +8,24 @@ and the reaction on people come from one computation on one state, and balance e
 from __future__ import annotations
 
 import numpy as np
-from pydrake.systems.framework import Context, DiscreteStateIndex, LeafSystem, State
+from pydrake.systems.framework import (
+    Context,
+    DiagramBuilder,
+    DiscreteStateIndex,
+    LeafSystem,
+    OutputPort,
+    State,
+)
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
-from crowdbot.core.footprint import footprint_of_model
-from crowdbot.core.interfaces import RobotModel
+from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.control.controlled import Push
-from crowdbot.core.ticks import TICK
+from crowdbot.core.support.ticks import TICK
+from crowdbot.core.types.robot import RobotModel
 
 #: Columns of a robot's row for the first six entries of its state: x, y, yaw, vx, vy, w.
 _SEEN = np.array([0, 1, 6, 2, 3, 7])
@@ -26,7 +35,11 @@ _NEWS = slice(s.ROBOT_FX, s.ROBOT_TORQUE + 1)
 
 
 class CrowdSystem(LeafSystem):
-    """Input: robot state. Outputs: crowd state, events, force on the robot."""
+    """Input: robot state. Outputs: crowd state, events, force on the robot.
+
+    Attributes:
+        engine: the people.
+    """
 
     def __init__(
         self,
@@ -39,7 +52,7 @@ class CrowdSystem(LeafSystem):
         """``margin``: how much larger than its body people take the robot for, m."""
         super().__init__()
         self._tick = tick
-        self._engine, self._push = engine, push
+        self.engine, self._push = engine, push
         body = footprint_of_model(robot)
         self._outline = body.corners
         self._robot = np.zeros((1, 8))
@@ -61,10 +74,35 @@ class CrowdSystem(LeafSystem):
         values = state.get_mutable_discrete_state()
         crowd = values.get_mutable_value(self._crowd)
         before = crowd[_NEWS].tolist()
-        self._engine.advance(crowd, self._robot, self._outline, self._tick)
+        self.engine.advance(crowd, self._robot, self._outline, self._tick)
         news = crowd[_NEWS].tolist()
         if news == before:  # at most ticks: nobody touches the robot and nothing ends
             return
         fx, fy, contacts, trips, torque = news
         self._push.write(values.get_mutable_value(self._force), fx, fy, torque)
         values.get_mutable_value(self._events)[0] = contacts + trips
+
+    @property
+    def state(self) -> OutputPort:
+        """The crowd's flat state."""
+        return self.GetOutputPort(ports.CROWD_STATE)
+
+
+def add_crowd(
+    builder: DiagramBuilder,
+    built: BuiltRun,
+    robot: ControlledRobot,
+    engine: CrowdEngine | None,
+    tick: float,
+) -> CrowdSystem | None:
+    """Add the people, if there are any, to a diagram; they and the robot push each other."""
+    if engine is None:
+        return None
+    spec = built.scenario.crowd
+    margin = spec.robot_response.margin if spec else 0.0
+    crowd = CrowdSystem(engine, robot.push, built.model, margin, tick)
+    builder.AddNamedSystem("crowd", crowd)
+    builder.Connect(robot.port, crowd.GetInputPort(ports.ROBOT_STATE))
+    if robot.push_port is not None:
+        builder.Connect(crowd.GetOutputPort(ports.ROBOT_FORCE), robot.push_port)
+    return crowd

@@ -13,23 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.interfaces import (
-    MillimetreCamera,
-    Photograph,
-    Pose,
-    Reading,
-    RobotState,
-    Sensor,
-)
-from crowdbot.core.kernel import kernel
-from crowdbot.core.sensing.millimetres import millimetres
+from crowdbot.core.sensing.depth_mm import depth_mm
 from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.sensing.sensor import DepthCamera, Sensor
 from crowdbot.core.sim import ports
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.robot import RobotState
+from crowdbot.core.types.sensor import CameraFrame, Reading
 
-Array = NDArray[np.float64]
 _COLUMNS = (s.X, s.Y, s.VX, s.VY, s.DIR_X, s.DIR_Y, s.WALKED, s.WAITING)
 #: Draws what a camera shows: the scene and the robot's pose to (H, W, 3).
-Painter = Callable[[Scene, Pose], NDArray[np.uint8]]
+ColourRenderer = Callable[[Scene, Pose], NDArray[np.uint8]]
 
 
 def view_size(people: int) -> int:
@@ -65,22 +61,25 @@ class Images:
     """The latest image of one camera, kept outside the state for as long as it fits it."""
 
     def __init__(
-        self, sensor: Sensor, rng: Callable[[float], np.random.Generator], painter: Painter | None
+        self,
+        sensor: Sensor,
+        rng: Callable[[float], np.random.Generator],
+        renderer: ColourRenderer | None,
     ) -> None:
         """Prepare.
 
         Args:
             sensor: the camera.
             rng: makes the random numbers of the reading at a time (s).
-            painter: draws the colour image of a camera that takes some.
+            renderer: draws the colour image of a camera that takes some.
         """
-        self._sensor, self._rng, self._painter = sensor, rng, painter
-        self._quick = sensor if isinstance(sensor, MillimetreCamera) else None
+        self._sensor, self._rng, self._painter = sensor, rng, renderer
+        self._quick = sensor if isinstance(sensor, DepthCamera) else None
         self._stamp, self._view = -1.0, np.zeros(0)
         self._depth: Array | None = None
         self._colour: NDArray[np.uint8] | None = None
 
-    def photograph(self, scene: Scene, pose: Pose, stamp: float, view: Array) -> Photograph:
+    def frame(self, scene: Scene, pose: Pose, stamp: float, view: Array) -> CameraFrame:
         """What is recorded of the scene as it is shown now, which is how ``view`` has it.
 
         Depth in m is made only if somebody asks for a reading.
@@ -88,10 +87,10 @@ class Images:
         self._begin(stamp, view)
         self._paint(scene, pose)
         if self._quick is None:
-            depth = millimetres(self._read(scene, pose))
+            depth = depth_mm(self._read(scene, pose))
         else:
-            depth = self._quick.millimetres(scene, pose, stamp, self._rng(stamp))
-        return Photograph(stamp, depth, self._colour)
+            depth = self._quick.depth_mm(scene, pose, stamp, self._rng(stamp))
+        return CameraFrame(stamp, depth, self._colour)
 
     def reading(self, scene: Scene, stamp: float, view: Array) -> Reading:
         """The reading of ``view``, made unless it is there; the scene may show it afterwards."""

@@ -9,21 +9,31 @@ import math
 
 from pydrake.common.value import Value
 from pydrake.multibody.plant import ContactResults
-from pydrake.systems.framework import Context, EventStatus, LeafSystem
+from pydrake.systems.framework import Context, DiagramBuilder, EventStatus, LeafSystem
 
-from crowdbot.core.arrival import distance_to, entry_fraction, inside
-from crowdbot.core.interfaces import Array, RobotState, Task
-from crowdbot.core.run_log import RunLog
+from crowdbot.core.geometry.polygon import distance_to, entry_fraction, inside
+from crowdbot.core.planning.planner import Task
+from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.leash import Leash
+from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.clearance_cache import ClearanceCache
+from crowdbot.core.sim.control import ControlledRobot
+from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.wall_contact import WallContacts, wall_force
-from crowdbot.core.ticks import TICK, TICKS_PER_SECOND, ticks
+from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.robot import RobotState
 
 _ROUNDING = 1e-9  # m; of the distance to the goal zone
 
 
 class MetricLogger(LeafSystem):
-    """Inputs: robot state, crowd state, forces. Ends the run on arrival and at the time limit."""
+    """Inputs: robot state, crowd state, forces. Ends the run on arrival and at the time limit.
+
+    Attributes:
+        walls: contacts of the robot with walls.
+        goal_time: when the robot arrived, s, or None.
+    """
 
     def __init__(
         self,
@@ -37,11 +47,11 @@ class MetricLogger(LeafSystem):
     ) -> None:
         """``felt``: whether the robot's base is one that forces act on."""
         super().__init__()
-        self._log, self._task, self._walls = log, task, walls
+        self._log, self._task, self.walls = log, task, walls
         self._ticks_per_sample = ticks(rate)
         self._last_tick = -1
         self._before: Array | None = None  # the robot one tick ago
-        self._leash = Leash()
+        self._clearance = ClearanceCache()
         self.goal_time: float | None = None
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         self._crowd = self._events = None
@@ -65,9 +75,9 @@ class MetricLogger(LeafSystem):
         sampled = tick % self._ticks_per_sample == 0
         crowd = self._crowd_state(context, always=sampled)
         if crowd is not None:
-            self._log.book(crowd)
+            self._log.record_events(crowd)
         arrived = False
-        if not self._leash.holds(now.item(0), now.item(1)):
+        if not self._clearance.is_clear(now.item(0), now.item(1)):
             arrived = self._look(context, t, RobotState(*now.tolist()), before)
         if sampled:
             self._log.sample(t, RobotState(*now.tolist()), crowd)
@@ -92,12 +102,39 @@ class MetricLogger(LeafSystem):
         forces = self._forces
         felt = None if forces is None else lambda: wall_force(forces.Eval(context))
         speed = 0.0 if before is None else math.hypot(was.vx, was.vy)
-        free = self._walls.watch(t, robot, speed, felt)
+        free = self.walls.watch(t, robot, speed, felt)
         zone = self._task.goal_zone
         distance = distance_to(zone, robot.x, robot.y)
-        self._leash.tie(robot.x, robot.y, min(free, distance - _ROUNDING))
+        self._clearance.reset(robot.x, robot.y, min(free, distance - _ROUNDING))
         if distance > 0.0 or not inside(zone, robot.x, robot.y):
             return False
         fraction = entry_fraction(zone, was.x, was.y, robot.x, robot.y) if t > 0.0 else 1.0
         self.goal_time = t - (1.0 - fraction) * TICK
         return True
+
+
+def add_metric_logger(
+    builder: DiagramBuilder,
+    built: BuiltRun,
+    robot: ControlledRobot,
+    crowd: CrowdSystem | None,
+    log: RunLog,
+) -> MetricLogger:
+    """Add what watches the task and takes samples to a diagram."""
+    logger = MetricLogger(
+        log,
+        built.task,
+        WallContacts(built.parts, built.model, log),
+        0 if crowd is None else crowd.state.size(),
+        built.scenario.rates.log,
+        felt=robot.rig is not None,
+    )
+    builder.AddNamedSystem("metric_logger", logger)
+    builder.Connect(robot.port, logger.GetInputPort(ports.ROBOT_STATE))
+    if robot.rig is not None:
+        forces = robot.rig.plant.get_contact_results_output_port()
+        builder.Connect(forces, logger.GetInputPort(ports.FORCES))
+    if crowd is not None:
+        builder.Connect(crowd.state, logger.GetInputPort(ports.CROWD_STATE))
+        builder.Connect(crowd.GetOutputPort(ports.EVENTS), logger.GetInputPort(ports.EVENTS))
+    return logger

@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 
 import numba
-import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.crowd.contact import from_outline
-from crowdbot.core.crowd.geometry import nearest_on_segment
+from crowdbot.core.crowd.contact.geometry import nearest_on_segment
+from crowdbot.core.crowd.contact.robot_contact import from_outline
+from crowdbot.core.types.arrays import Array
 
-Array = NDArray[np.float64]
 #: Points that touch at once belong to one contact: the side of a box flush with a wall, m.
 _AT_ONCE = 1e-3
 

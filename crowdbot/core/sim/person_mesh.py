@@ -1,6 +1,6 @@
 """A low-poly person for pictures, in parts: a prism for each leg, one for the trunk, and a head.
 
-The proportions are those that sensors see (`crowdbot.core.sensing.bodies`); the head is added.
+The proportions are those that sensors see (`crowdbot.core.sensing.body_model`); the head is added.
 """
 
 from __future__ import annotations
@@ -9,11 +9,10 @@ import math
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.sensing.bodies import BOTTOM, PARTS, RADIUS, TOP, X, Y, place_people
+from crowdbot.core.sensing.body_model import BOTTOM, PARTS, RADIUS, TOP, X, Y, place_people
+from crowdbot.core.types.arrays import Array
 
-Array = NDArray[np.float64]
 _SIDES = 8
 _SHOULDER = 0.82  # of the height: where the trunk ends that is drawn
 _HEAD = 0.055  # of the height: radius of the head

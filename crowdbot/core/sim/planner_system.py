@@ -11,18 +11,29 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pydrake.systems.framework import Context, DiscreteStateIndex, DiscreteValues, LeafSystem
+from pydrake.systems.framework import (
+    Context,
+    DiagramBuilder,
+    DiscreteStateIndex,
+    DiscreteValues,
+    LeafSystem,
+)
 
+from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as crowd_state
-from crowdbot.core.interfaces import Observation, Pose, RobotLimits, RobotState, Task, Truth
-from crowdbot.core.planner_host import HostedCommand, PlannerHost, named_signal
+from crowdbot.core.planning.host import HostedCommand, PlannerHost, named_signal
+from crowdbot.core.planning.planner import Observation, Task, Truth
+from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.topics import is_odometry
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
+from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.sensor_bank import SensorBank
-from crowdbot.core.ticks import TICK, TICKS_PER_SECOND, ticks
-
-Array = NDArray[np.float64]
+from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.robot import RobotLimits, RobotState
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,3 +181,38 @@ def _slew_planar(
 
 def _slew(now: float, wanted: float, step: float) -> float:
     return now + min(step, max(-step, wanted - now))
+
+
+def add_planner(
+    builder: DiagramBuilder,
+    built: BuiltRun,
+    robot: ControlledRobot,
+    crowd: CrowdSystem | None,
+    bank: SensorBank,
+    host: PlannerHost,
+    log: RunLog,
+    *,
+    privileged: bool,
+) -> PlannerSystem:
+    """Add the planner to a diagram, between the readings and the robot's desired state."""
+    planner = PlannerSystem(
+        host, bank, robot, built.model.limits, built.task,
+        rate=built.scenario.rates.planner, visible=dict.fromkeys(built.visible),
+        on_step=lambda t, step: log.command(t, step.command, step.seconds, step.clamped),
+        on_signal=log.writer.signal,
+        people=_people(None if crowd is None else crowd.engine) if privileged else None,
+    )  # fmt: skip
+    builder.AddNamedSystem("planner", planner)
+    builder.Connect(bank.GetOutputPort(ports.READINGS), planner.GetInputPort(ports.READINGS))
+    builder.Connect(planner.GetOutputPort(ports.DESIRED_STATE), robot.desired)
+    if privileged:
+        builder.Connect(robot.port, planner.GetInputPort(ports.ROBOT_STATE))
+        if crowd is not None and len(crowd.engine.agents):
+            builder.Connect(crowd.state, planner.GetInputPort(ports.CROWD_STATE))
+    return planner
+
+
+def _people(engine: CrowdEngine | None) -> People:
+    if engine is None:
+        return People(np.zeros(0, np.int64), np.zeros(0))
+    return People(engine.agents.id, engine.agents.radius)

@@ -24,10 +24,12 @@ from pydrake.multibody.tree import (
 )
 from pydrake.systems.framework import DiagramBuilder
 
-from crowdbot.core.interfaces import DifferentialDrive, EnvironmentParts, Pose, RobotModel
 from crowdbot.core.robots import Description, read_description
 from crowdbot.core.robots.simplify import simplified
-from crowdbot.core.ticks import TICK
+from crowdbot.core.support.ticks import TICK
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.robot import DifferentialDrive, RobotModel
 from crowdbot.errors import PluginError
 
 _FLOOR = CoulombFriction(1.0, 1.0)

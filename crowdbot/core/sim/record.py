@@ -2,61 +2,63 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from typing import cast
 
-from crowdbot.core.crowd_setup import build_crowd
-from crowdbot.core.environments import build_environment
-from crowdbot.core.interfaces import (
-    HolonomicDrive,
-    Observation,
-    Planner,
-    RobotLimits,
-    RobotModel,
-    SensorInfo,
-    Task,
-)
-from crowdbot.core.planner_host import RESET_LIMIT, HostedCommand, PlannerHost
-from crowdbot.core.planner_source import PlannerChoice, select_sensors
+from crowdbot.core.crowd import CrowdEngine
+from crowdbot.core.planning.host import RESET_LIMIT, HostedCommand, PlannerHost
+from crowdbot.core.planning.planner import Observation, Planner
+from crowdbot.core.planning.resolve import PlannerChoice
+from crowdbot.core.planning.watchdog import Watchdog
 from crowdbot.core.recording import RecordingHeader, RobotHeader
-from crowdbot.core.robots import build_robot
-from crowdbot.core.run_log import RunLog
-from crowdbot.core.sensing.guard import build_sensor
-from crowdbot.core.sim.diagram import build_diagram, robot_task
-from crowdbot.core.sim.outcome import Outcome
+from crowdbot.core.recording.run_log import RunLog
+from crowdbot.core.runs.outcome import Outcome
+from crowdbot.core.sim.build_crowd import build_crowd
+from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.diagram import build_diagram
 from crowdbot.core.sim.record_crowd import RunSetup, agents, ids, recording
 from crowdbot.core.sim.runner import run
-from crowdbot.core.sim.start_check import check_start
-from crowdbot.core.urdf import check_frames
-from crowdbot.core.watchdog import Watchdog
+from crowdbot.core.sim.start_pose_check import check_start
+from crowdbot.core.types.robot import HolonomicDrive, RobotLimits
 from crowdbot.dsl.seeds import stream_seed
 from crowdbot.errors import PlannerError, PlannerHungError
 
 
-def record_robot(setup: RunSetup) -> Outcome:
+def record_robot(setup: RunSetup, built: BuiltRun) -> Outcome:
     """Simulate the scenario's robot with the planner; people too if the scenario has any.
 
+    Args:
+        setup: what to record, and where.
+        built: from `build_run`, of the same scenario; used up by this.
+
     Raises:
-        InputError: the robot would start in a wall, an obstacle or a person, or a sensor has the
-            name of a frame that is not its own.
+        InputError: the robot would start in a wall, an obstacle or a person.
         PlannerHungError: a planner step never returned; the recording is closed all the same.
     """
-    scenario, registry = setup.scenario, setup.registry
-    ((name, robot),) = scenario.robots.items()
-    parts = build_environment(registry, scenario.environment)
-    model = build_robot(registry, robot)
-    engine = build_crowd(scenario, setup.agents, parts, registry)
-    infos = {n: _framed(n, build_sensor(registry, x).info()) for n, x in robot.sensors.items()}
-    check_frames(model, infos)
-    choice = setup.choice
-    visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
-    sensors = set(infos) if setup.record == "all" else {*visible, *_odometry(infos)}
-    task = robot_task(robot, parts)
-    check_start(parts, model, task.start, engine, name)
-    header = RecordingHeader(
-        scenario=scenario.id,
+    engine = build_crowd(built.scenario, setup.agents, built.parts, setup.registry)
+    check_start(built.parts, built.model, built.task.start, engine, built.name)
+    header = _header(built, engine)
+    with recording(setup, header) as (writer, ending), _watchdog(setup) as watchdog:
+        sideways = isinstance(built.model.drive, HolonomicDrive)
+        log = RunLog(writer, ids(engine), sideways=sideways)
+        host = _host(setup, built, watchdog)
+        if engine is not None:
+            engine.advance(engine.initial_state())  # compiles kernels before the clock starts
+        blocks = build_diagram(
+            built, engine, host, log, seed=setup.seed, privileged=setup.choice.privileged
+        )
+        outcome = run(
+            blocks, built.task, log, stage=setup.stage, progress=setup.progress, stop=setup.stop
+        )
+        ending.append(outcome)
+    return outcome
+
+
+def _header(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
+    model, task = built.model, built.task
+    return RecordingHeader(
+        scenario=built.scenario.id,
         robot=RobotHeader(
             radius=model.footprint_radius,
             mass=model.mass,
@@ -66,27 +68,10 @@ def record_robot(setup: RunSetup) -> Outcome:
             footprint=model.footprint,
         ),
         agents=agents(engine),
-        sensors={n: i for n, i in infos.items() if n in sensors},
-        walls=parts.walls,
+        sensors=built.infos,
+        walls=built.parts.walls,
         goal_zone=task.goal_zone,
     )
-    with recording(setup, header) as (writer, ending), _watchdog(setup) as watchdog:
-        sideways = isinstance(model.drive, HolonomicDrive)
-        log = RunLog(writer, ids(engine), sideways=sideways)
-        seen = {n: infos[n] for n in visible}
-        host = _host(setup, model, task, seen, watchdog, name)
-        if engine is not None:
-            engine.advance(engine.initial_state())  # compiles kernels before the clock starts
-        blocks = build_diagram(
-            scenario, name, parts, model, engine, host, log, registry,
-            run_seed=setup.seed, sensors=sensors, visible=visible,
-            privileged=choice.privileged,
-        )  # fmt: skip
-        outcome = run(
-            blocks, task, log, stage=setup.stage, progress=setup.progress, stop=setup.stop
-        )
-        ending.append(outcome)
-    return outcome
 
 
 @contextmanager
@@ -98,26 +83,20 @@ def _watchdog(setup: RunSetup) -> Iterator[Watchdog]:
         watchdog.close()
 
 
-def _host(
-    setup: RunSetup,
-    model: RobotModel,
-    task: Task,
-    sensors: Mapping[str, SensorInfo],
-    watchdog: Watchdog,
-    robot: str,
-) -> PlannerHost:
+def _host(setup: RunSetup, built: BuiltRun, watchdog: Watchdog) -> PlannerHost:
     """The planner, built and reset; one that fails in this fails again in its first step."""
-    choice = setup.choice
+    choice, limits = setup.choice, built.model.limits
+    sensors = {n: built.infos[n] for n in built.visible}
     try:
         planner = _build(choice, watchdog)
         host = PlannerHost(
-            planner, choice.name, model.limits,
+            planner, choice.name, limits,
             budget=setup.step_budget, watchdog=watchdog, origin=choice.origin,
         )  # fmt: skip
         # Halved, so that planners may hand the seed to generators of signed integers.
-        host.reset(task, sensors, stream_seed(setup.seed, robot, "planner") >> 1)
+        host.reset(built.task, sensors, stream_seed(setup.seed, built.name, "planner") >> 1)
     except PlannerError as error:
-        return _FailedHost(error, choice.name, model.limits)
+        return _FailedHost(error, choice.name, limits)
     return host
 
 
@@ -142,12 +121,3 @@ class _FailedHost(PlannerHost):
         """Raise what the planner raised."""
         del obs
         raise self._error
-
-
-def _framed(name: str, info: SensorInfo) -> SensorInfo:
-    """A sensor does not know its own name; its frame is called by it."""
-    return info if info.category == "odometry" else replace(info, frame=name)
-
-
-def _odometry(infos: Mapping[str, SensorInfo]) -> set[str]:
-    return {n for n, i in infos.items() if i.category == "odometry"}

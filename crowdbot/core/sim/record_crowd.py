@@ -13,15 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import CrowdEngine
-from crowdbot.core.crowd_run import run_crowd
-from crowdbot.core.crowd_setup import build_crowd
-from crowdbot.core.environments import build_environment
-from crowdbot.core.planner_source import PlannerChoice
-from crowdbot.core.realisation import Realisation
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.planning.resolve import PlannerChoice
+from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter
-from crowdbot.core.registry import Registry
-from crowdbot.core.run_log import RunLog
-from crowdbot.core.sim.outcome import INTERRUPTED, TIMEOUT, Outcome, Progress
+from crowdbot.core.recording.run_log import RunLog
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs.outcome import INTERRUPTED, TIMEOUT, Outcome, Progress
+from crowdbot.core.sim.build_crowd import build_crowd
+from crowdbot.core.sim.crowd_only import run_crowd
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
 

@@ -5,7 +5,7 @@ The blocks hand their rows to the writer themselves, at the tick to which they b
 
 from __future__ import annotations
 
-from pydrake.systems.framework import Context, LeafSystem
+from pydrake.systems.framework import Context, DiagramBuilder, LeafSystem
 
 from crowdbot.core.recording import RecordingWriter
 
@@ -23,3 +23,8 @@ class Recorder(LeafSystem):
     def _publish(self, context: Context) -> None:
         del context
         self._writer.flush()
+
+
+def add_recorder(builder: DiagramBuilder, writer: RecordingWriter) -> None:
+    """Add the recorder to a diagram; nothing is connected to it."""
+    builder.AddNamedSystem("recorder", Recorder(writer))

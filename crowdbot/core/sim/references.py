@@ -7,12 +7,13 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from crowdbot.core import run_directory as files
-from crowdbot.core.sim.identity import CROWD_ALONE, Reference
-from crowdbot.core.sim.outcome import INTERRUPTED, PLANNER_FAILED, Outcome
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.identity import CROWD_ALONE, Reference
+from crowdbot.core.runs.outcome import INTERRUPTED, PLANNER_FAILED, Outcome
+from crowdbot.core.runs.request import Request
+from crowdbot.core.runs.run_record import ending, write_scenario
+from crowdbot.core.sim.built_run import build_run
 from crowdbot.core.sim.record_crowd import RunSetup, record_crowd
-from crowdbot.core.sim.request import Request
-from crowdbot.core.sim.run_record import ending, write_scenario
 from crowdbot.errors import Interrupted, PluginError
 
 _LOG = logging.getLogger("crowdbot")
@@ -21,8 +22,8 @@ _LOG = logging.getLogger("crowdbot")
 def make_references(request: Request, references: Sequence[Reference]) -> dict[str, Path]:
     """Recordings of the calibration runs by name, simulated where they are missing."""
     for reference in references:
-        there = reference.settled if request.settled else reference.complete
-        if not there:
+        present = reference.finished if request.references_finished else reference.complete
+        if not present:
             make_reference(request, reference)
     return {r.name: r.directory / files.RECORDING for r in references}
 
@@ -39,9 +40,7 @@ def make_reference(request: Request, reference: Reference) -> Outcome:
         if reference.name == CROWD_ALONE:
             outcome = record_crowd(setup, reference.key["duration"])
         else:
-            from crowdbot.core.sim.record import record_robot  # imports Drake
-
-            outcome = record_robot(setup)
+            outcome = _record_alone(setup)
         check_interrupted(outcome, folder)
         if outcome.status == PLANNER_FAILED:
             _LOG.warning("%s: the planner failed: %s", reference.name, outcome.reason)
@@ -50,6 +49,14 @@ def make_reference(request: Request, reference: Reference) -> Outcome:
         files.write_json(folder / files.RECORD, {**names, **reference.key, **ending(outcome)})
         files.publish(folder, reference.directory)
     return outcome
+
+
+def _record_alone(setup: RunSetup) -> Outcome:
+    """A run of its own: what sensors and planner remember is not that of the run with people."""
+    from crowdbot.core.sim.record import record_robot  # imports Drake
+
+    built = build_run(setup.scenario, setup.registry, setup.choice, setup.record)
+    return record_robot(setup, built)
 
 
 def setup_of(request: Request, reference: Reference, folder: Path) -> RunSetup:

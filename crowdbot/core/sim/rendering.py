@@ -36,16 +36,16 @@ from pydrake.geometry import (
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 from pydrake.systems.sensors import CameraInfo
 
-from crowdbot.core.interfaces import Pinhole, Pose
-from crowdbot.core.optical import OPTICAL_RPY
-from crowdbot.core.sensing.bodies import PARTS, TRUNK
-from crowdbot.core.sensing.place import placed
+from crowdbot.core.geometry.optical_frame import OPTICAL_RPY
+from crowdbot.core.sensing.body_model import PARTS, TRUNK
+from crowdbot.core.sensing.mount import sensor_pose_in_world
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.person_mesh import leg_obj, trunk_obj
-from crowdbot.dsl.base import Mount
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.sensor import Pinhole
+from crowdbot.dsl.spec import Mount
 from crowdbot.errors import MissingLibraryError
 
-Array = NDArray[np.float64]
 _NAME = "vtk"
 _FLOOR, _WALL, _PILLAR = (0.55, 0.53, 0.5), (0.8, 0.79, 0.75), (0.6, 0.6, 0.65)
 _SKY = np.array([0.75, 0.85, 0.95])
@@ -90,7 +90,7 @@ class Renderer:
         for frame, place in zip(self._people, _places(scene), strict=True):
             poses.set_value(frame, place)
         self._graph.get_source_pose_port(self._source).FixValue(self._context, poses)
-        at, yaw = placed(self._mount, scene, pose)
+        at, yaw = sensor_pose_in_world(self._mount, scene, pose)
         eye = RigidTransform(
             RotationMatrix.MakeZRotation(yaw) @ RollPitchYaw(*OPTICAL_RPY).ToRotationMatrix(),
             list(at),

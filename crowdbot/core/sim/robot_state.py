@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from pydrake.systems.framework import (
     BasicVector,
     Context,
@@ -16,12 +15,12 @@ from pydrake.systems.framework import (
     LeafSystem,
 )
 
-from crowdbot.core.interfaces import HolonomicDrive, Pose, RobotState
-from crowdbot.core.kernel import kernel
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.plant import RobotPlant
-
-Array = NDArray[np.float64]
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.robot import HolonomicDrive, RobotState
 
 
 class RobotStateSystem(LeafSystem):

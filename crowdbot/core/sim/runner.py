@@ -7,13 +7,10 @@ from collections.abc import Callable
 
 from pydrake.systems.analysis import Simulator, SimulatorStatus
 
-from crowdbot.core.arrival import distance_to
-from crowdbot.core.crowd import state as crowd_state
-from crowdbot.core.interfaces import RobotState, Task
-from crowdbot.core.run_log import RunLog
-from crowdbot.core.sim import ports
-from crowdbot.core.sim.diagram import Blocks
-from crowdbot.core.sim.outcome import (
+from crowdbot.core.geometry.polygon import distance_to
+from crowdbot.core.planning.planner import Task
+from crowdbot.core.recording.run_log import RunLog
+from crowdbot.core.runs.outcome import (
     ARRIVED,
     INTERRUPTED,
     PLANNER_FAILED,
@@ -21,6 +18,10 @@ from crowdbot.core.sim.outcome import (
     Outcome,
     Progress,
 )
+from crowdbot.core.sim import ports
+from crowdbot.core.sim.diagram import Blocks
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.robot import RobotState
 from crowdbot.errors import PlannerError
 
 #: Simulated time between looks at progress and interruption, s.
@@ -78,16 +79,16 @@ def _has_ended(status: SimulatorStatus) -> bool:
     return bool(status.reason() == SimulatorStatus.ReturnReason.kReachedTerminationCondition)
 
 
-def _crowd(blocks: Blocks, context: object) -> crowd_state.Array | None:
+def _crowd(blocks: Blocks, context: object) -> Array | None:
     if blocks.crowd is None:
         return None
     mine = blocks.crowd.GetMyContextFromRoot(context)
-    flat: crowd_state.Array = blocks.crowd.GetOutputPort(ports.CROWD_STATE).Eval(mine)
+    flat: Array = blocks.crowd.GetOutputPort(ports.CROWD_STATE).Eval(mine)
     return flat
 
 
 def _finish(blocks: Blocks, log: RunLog, context: object) -> None:
-    blocks.walls.finish()
+    blocks.logger.walls.finish()
     log.finish(float(context.get_time()), _crowd(blocks, context))  # type: ignore[attr-defined]
 
 

@@ -13,26 +13,30 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from pydrake.systems.framework import Context, DiscreteStateIndex, LeafSystem, State
-
-from crowdbot.core.crowd import state as s
-from crowdbot.core.interfaces import (
-    Photograph,
-    Pose,
-    Reading,
-    RobotState,
-    Sensor,
-    SensorInfo,
-    SensorWithMemory,
+from pydrake.systems.framework import (
+    Context,
+    DiagramBuilder,
+    DiscreteStateIndex,
+    LeafSystem,
+    State,
 )
+
+from crowdbot.core.crowd import CrowdEngine
+from crowdbot.core.crowd import state as s
+from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.sensing.noise import SensorStream
 from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.sensing.sensor import Sensor, SensorWithMemory
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.images import Images, Painter, capture, view_size
-from crowdbot.core.ticks import TICK, TICKS_PER_SECOND, is_due
-
-Array = NDArray[np.float64]
+from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.control import ControlledRobot
+from crowdbot.core.sim.crowd_system import CrowdSystem
+from crowdbot.core.sim.images import ColourRenderer, Images, capture, view_size
+from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, is_due
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.robot import RobotState
+from crowdbot.core.types.sensor import CameraFrame, Reading, SensorInfo
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,20 +123,20 @@ class SensorBank(LeafSystem):
         seed: int,
         robot: str,
         on_reading: Callable[[str, Reading], None],
-        on_photograph: Callable[[str, Photograph], None] | None = None,
-        painters: Mapping[str, Painter] = MappingProxyType({}),
+        on_frame: Callable[[str, CameraFrame], None] | None = None,
+        renderers: Mapping[str, ColourRenderer] = MappingProxyType({}),
     ) -> None:
         """Take the sensors.
 
         Args:
             crowd_size: length of the crowd's state, 0 without people.
             on_reading: gets each reading of sensors other than cameras.
-            on_photograph: gets each image of cameras; None where images are not recorded.
-            painters: what draws the colour images of cameras, by the camera's name.
+            on_frame: gets each image of cameras; None where images are not recorded.
+            renderers: what draws the colour images of cameras, by the camera's name.
         """
         super().__init__()
         self._scene = scene
-        self._on_reading, self._on_photograph = on_reading, on_photograph
+        self._on_reading, self._on_take_frame = on_reading, on_frame
         self._idle = SensorStream(seed, robot, "").at(0)
         people = len(s.view(np.zeros(crowd_size))[1]) if crowd_size else 0
         self.slots, size = lay_out({n: x.info() for n, x in sensors.items()}, people)
@@ -141,7 +145,7 @@ class SensorBank(LeafSystem):
             for n, x in self.slots.items()
         }
         self._images = {
-            n: Images(sensors[n], partial(self._rng, n), painters.get(n))  # type: ignore[arg-type]
+            n: Images(sensors[n], partial(self._rng, n), renderers.get(n))  # type: ignore[arg-type]
             for n, slot in self.slots.items()
             if slot.info.camera
         }
@@ -188,20 +192,20 @@ class SensorBank(LeafSystem):
         pose, t = Pose(robot.x, robot.y, robot.yaw), tick * TICK
         for name in due:
             if name in self._images:
-                self._photograph(name, people, bank, robot, pose, t)
+                self._take_frame(name, people, bank, robot, pose, t)
             else:
                 self._read(name, bank, pose, t, tick)
 
-    def _photograph(
+    def _take_frame(
         self, name: str, people: Array | None, bank: Array, robot: RobotState, pose: Pose, t: float
     ) -> None:
         slot = self.slots[name]
         bank[slot.stamp] = t
         view = bank[slot.values]
         capture(robot, people, view)
-        if self._on_photograph is not None:
-            image = self._images[name].photograph(self._scene, pose, t, view)
-            self._on_photograph(name, image)
+        if self._on_take_frame is not None:
+            image = self._images[name].frame(self._scene, pose, t, view)
+            self._on_take_frame(name, image)
 
     def _see(self, context: Context, robot: RobotState) -> Array | None:
         """Show the scene as it is now; returns the crowd's rows, if any."""
@@ -228,3 +232,50 @@ class SensorBank(LeafSystem):
         bank[slot.stamp] = t
         bank[slot.values] = values if values.ndim == 1 else values.ravel()
         self._on_reading(name, Reading(t, values))
+
+
+def add_sensors(
+    builder: DiagramBuilder,
+    built: BuiltRun,
+    robot: ControlledRobot,
+    crowd: CrowdSystem | None,
+    writer: RecordingWriter,
+    *,
+    seed: int,
+) -> SensorBank:
+    """Add the sensors of a run to a diagram; they see the robot and the people of the same tick."""
+    scene = _scene(built, None if crowd is None else crowd.engine)
+    bank = SensorBank(
+        built.sensors,
+        scene,
+        0 if crowd is None else crowd.state.size(),
+        seed=seed,
+        robot=built.name,
+        on_reading=writer.reading,
+        on_frame=writer.frame if writer.images else None,
+        renderers=_renderers(built.infos, scene),
+    )
+    builder.AddNamedSystem("sensors", bank)
+    builder.Connect(robot.port, bank.GetInputPort(ports.ROBOT_STATE))
+    if crowd is not None:
+        builder.Connect(crowd.state, bank.GetInputPort(ports.CROWD_STATE))
+    return bank
+
+
+def _scene(built: BuiltRun, engine: CrowdEngine | None) -> Scene:
+    crowd, parts = built.scenario.crowd, built.parts
+    radius = np.zeros(0) if engine is None else engine.agents.radius
+    height = np.full(len(radius), crowd.body.height if crowd else 0.0)
+    return Scene(
+        parts.walls, parts.wall_heights, radius, height, parts.pillars, parts.pillar_heights
+    )
+
+
+def _renderers(infos: Mapping[str, SensorInfo], scene: Scene) -> dict[str, ColourRenderer]:
+    """What draws the pictures of cameras with colour; VTK is loaded for these only."""
+    cameras = {n: i for n, i in infos.items() if i.camera is not None and i.camera.colour}
+    if not cameras:
+        return {}
+    from crowdbot.core.sim.rendering import Renderer
+
+    return {n: Renderer(scene, i.camera, i.mount) for n, i in cameras.items() if i.camera}

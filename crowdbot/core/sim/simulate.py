@@ -3,38 +3,39 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
-from crowdbot.core import provenance
-from crowdbot.core import run_directory as files
-from crowdbot.core.evaluate import Scores, score
-from crowdbot.core.planner_source import resolve_planner
-from crowdbot.core.recording import read_cones, read_scans, read_trajectories
-from crowdbot.core.registry import Registry
+from crowdbot.core.planning.resolve import resolve_planner
+from crowdbot.core.planning.watchdog import STEP_LIMIT
+from crowdbot.core.recording import read_run
+from crowdbot.core.recording.scans import REPLAY_RATE, ReplayScan
+from crowdbot.core.registry.registry import Registry
 from crowdbot.core.replay import write_replay
-from crowdbot.core.scores_table import write_scores_csv
-from crowdbot.core.sim.collector import settled_objects
-from crowdbot.core.sim.identity import (
+from crowdbot.core.runs import provenance
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.identity import (
     Prepared,
     prepare,
     references_of,
     reusable_record,
     run_identity,
 )
-from crowdbot.core.sim.needs import check_needs
+from crowdbot.core.runs.outcome import Progress
+from crowdbot.core.runs.request import Recorded, Request, Run, read_references
+from crowdbot.core.runs.run_record import run_record, write_scenario
+from crowdbot.core.scoring.evaluate import Scores, metric_specs, score
+from crowdbot.core.scoring.scores_csv import write_scores_csv
+from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.gc_freeze import gc_frozen
+from crowdbot.core.sim.preflight import preflight
 from crowdbot.core.sim.record import record_robot
 from crowdbot.core.sim.record_crowd import RunSetup
 from crowdbot.core.sim.references import check_interrupted, make_references, partial
-from crowdbot.core.sim.request import Request, Run, read_references
-from crowdbot.core.sim.run_record import run_record, write_scenario
-from crowdbot.core.trajectory import Trajectories
-from crowdbot.core.watchdog import STEP_LIMIT
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
-
-_REPLAY_RATE = 8.0  # scans per second that the replay page holds, Hz
 
 
 def simulate(
@@ -45,7 +46,18 @@ def simulate(
     planner_settings: Sequence[str] = (),
     seed: int = 0,
     out: Path | None = None,
-    **options: Any,
+    suite: str = "scenarios",
+    record: Recorded = "all",
+    references: bool = True,
+    force: bool = False,
+    metrics: Sequence[str] | None = None,
+    axes: Mapping[str, str] | None = None,
+    position: int = 0,
+    replay: bool = True,
+    progress: Callable[[Progress], None] | None = None,
+    stop: Callable[[], bool] = lambda: False,
+    on_hang: Callable[[], object] | None = None,
+    step_budget: float | None = None,
 ) -> Run:
     """Simulate and score one run; a complete run with the same hashes is reused.
 
@@ -57,36 +69,63 @@ def simulate(
         seed: run seed: sensor noise and planner.
         out: root of the run directories; None uses a temporary one that lives as long as the
             result.
-        options: further fields of `Request`.
+        suite, record, references, force, metrics, axes, position, replay: as in `Request`.
+        progress, stop, on_hang, step_budget: as in `Request`.
 
     Raises:
-        InputError: the scenario has no robot, the planner or the folder is wrong, or the lock
-            of the suite does not fit it any more.
+        InputError: the scenario has no robot, the planner, the folder or an option is wrong, or
+            the lock of the suite does not fit it any more.
+        UnknownNameError: no metric answers to a pattern.
         PlannerHungError: a planner step never returned; a ``.partial`` directory is left.
         Interrupted: ``stop`` said so; a ``.partial`` directory is left.
     """
     choice = resolve_planner(planner, registry, planner_settings)
-    check_budget(options.get("step_budget"))
+    _check_options(seed, suite, record, step_budget)
+    if metrics is not None:
+        metric_specs(registry, metrics, {})  # a wrong name ends the run before it begins
     keep = None
     if out is None:
         keep = tempfile.TemporaryDirectory(prefix="crowdbot-")
         out = Path(keep.name)
     request = Request(
-        scenario=scenario, choice=choice, registry=registry, seed=seed, out=out, **options
+        scenario=scenario,
+        choice=choice,
+        registry=registry,
+        seed=seed,
+        out=out,
+        suite=suite,
+        record=record,
+        references=references,
+        force=force,
+        metrics=metrics,
+        axes=axes or {},
+        position=position,
+        replay=replay,
+        progress=progress,
+        stop=stop,
+        on_hang=on_hang,
+        step_budget=step_budget,
     )
     return make_run(request, prepare(scenario, registry, references=request.references), keep)
 
 
-def check_budget(seconds: float | None) -> None:
-    """Refuse a budget of planner steps that can never be used up, or is no time at all.
+def _check_options(seed: int, suite: str, record: str, step_budget: float | None) -> None:
+    """Refuse values that types cannot exclude.
 
     Raises:
-        InputError: it is one.
+        InputError: one is wrong.
     """
-    if seconds is not None and not 0.0 < seconds < STEP_LIMIT:
+    if seed < 0:
+        raise InputError(f"the seed of a run must not be negative: {seed}")
+    if suite != Path(suite).name:
+        raise InputError(f"suite '{suite}' is not the name of a folder")
+    if record not in get_args(Recorded):
+        choices = " or ".join(map(repr, get_args(Recorded)))
+        raise InputError(f"record must be {choices}, not {record!r}")
+    if step_budget is not None and not 0.0 < step_budget < STEP_LIMIT:
         raise InputError(
             f"the budget of a step must be above 0 and below {STEP_LIMIT:g} s, "
-            f"after which it counts as hung; not {seconds:g}"
+            f"after which it counts as hung; not {step_budget:g}"
         )
 
 
@@ -98,7 +137,7 @@ def make_run(request: Request, prepared: Prepared, keep: object = None) -> Run:
         prepared: its scenario.
         keep: lives as long as the result.
     """
-    check_needs(request)
+    built = preflight(request)
     identity = run_identity(request, prepared.run)
     references = references_of(request, prepared)
     if not request.force:
@@ -106,9 +145,9 @@ def make_run(request: Request, prepared: Prepared, keep: object = None) -> Run:
         record = reusable_record(request, run_id, compared=bool(references))
         if record is not None:
             return Run(request.directory, record, reused=True, _keep=keep)
-    with settled_objects():
+    with gc_frozen():
         paths = make_references(request, references)
-        record = _record_run(request, prepared, identity, paths)
+        record = _record_run(request, prepared, built, identity, paths)
     return Run(request.directory, record, _keep=keep)
 
 
@@ -116,14 +155,15 @@ def make_run(request: Request, prepared: Prepared, keep: object = None) -> Run:
 def _record_run(
     request: Request,
     prepared: Prepared,
+    built: BuiltRun,
     identity: Mapping[str, Any],
     references: Mapping[str, Path],
 ) -> dict[str, Any]:
     final = request.directory
     with partial(final) as folder:
-        outcome = record_robot(_setup(request, prepared, folder))
+        outcome = record_robot(_setup(request, prepared, folder), built)
         check_interrupted(outcome, folder)
-        run = read_trajectories(folder / files.RECORDING)
+        run, scans = read_run(folder / files.RECORDING, REPLAY_RATE)
         calibration = read_references(references)
         scores = score(
             request.registry,
@@ -132,33 +172,42 @@ def _record_run(
             calibration.crowd_alone,
             metrics="*" if request.metrics is None else request.metrics,
         )
-        record = run_record(request, identity, references, outcome, run, scores)
+        record = run_record(request, identity, references, outcome, run, scores, parts=built.parts)
         record["agents"] = prepared.run.people.source
-        _write_files(request, folder, run, scores, record)
+        _write_files(request, folder, run, scans, scores, record)
         files.publish(folder, final)
     return record
 
 
 def _write_files(
-    request: Request, folder: Path, run: Trajectories, scores: Scores, record: Mapping[str, Any]
+    request: Request,
+    folder: Path,
+    run: Trajectories,
+    scans: Sequence[ReplayScan],
+    scores: Scores,
+    record: Mapping[str, Any],
 ) -> None:
     scenario = request.scenario
     write_scenario(folder, scenario, request.registry)
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
     if request.replay:
-        _write_replay(request, folder, run, scores, record)
+        _write_replay(request, folder / files.REPLAY, run, scans, scores, record)
     files.write_json(folder / files.RECORD, record)
 
 
 def _write_replay(
-    request: Request, folder: Path, run: Trajectories, scores: Scores, record: Mapping[str, Any]
+    request: Request,
+    file: Path,
+    run: Trajectories,
+    scans: Sequence[ReplayScan],
+    scores: Scores,
+    record: Mapping[str, Any],
 ) -> None:
     scenario, arrival = request.scenario, record["goal_time"]
-    recording = folder / files.RECORDING
     write_replay(
-        folder / files.REPLAY,
+        file,
         run,
-        [*read_scans(recording, max_rate=_REPLAY_RATE), *read_cones(recording, _REPLAY_RATE)],
+        scans,
         scores,
         title=f"{scenario.id} · {request.choice.label}",
         facts={

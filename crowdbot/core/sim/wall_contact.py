@@ -15,13 +15,14 @@ import numpy as np
 from pydrake.multibody.plant import ContactResults
 from pydrake.multibody.tree import world_index
 
-from crowdbot.core.crowd.contact import RELEASE_GAP
-from crowdbot.core.footprint import footprint_of_model
-from crowdbot.core.interfaces import EnvironmentParts, RobotModel, RobotState
-from crowdbot.core.run_log import RunLog
+from crowdbot.core.crowd.contact.robot_contact import RELEASE_GAP
+from crowdbot.core.geometry.footprint import footprint_of_model
+from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim.control.kinematic import obstacles
 from crowdbot.core.sim.outline_gap import outline_gap, touched_at
-from crowdbot.core.ticks import TICK
+from crowdbot.core.support.ticks import TICK
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.robot import RobotModel, RobotState
 
 #: Nearer than this the plant is asked for forces, m.
 _NEAR = 0.01

@@ -89,7 +89,7 @@ class Leaning(NamedTuple):
 def compare(
     table: Table, name: Name, a: str, b: str, *, level: float = 0.95
 ) -> tuple[Comparison, Leaning]:
-    """Compare two planners; the verdict is given by `judged`, when all p values are known."""
+    """Compare two planners; the verdict is given by `with_verdict`, when all p values are known."""
     label = table.label(name)
     sides = table.column(name, a), table.column(name, b)
     there = (sides[0].outcome != MISSING) & (sides[1].outcome != MISSING)
@@ -113,7 +113,9 @@ def compare(
     return found, Leaning(ranks, _sound_means(found, pair, groups, sign, level))
 
 
-def judged(found: Comparison, leaning: Leaning, p_holm: float | None, alpha: float) -> Comparison:
+def with_verdict(
+    found: Comparison, leaning: Leaning, p_holm: float | None, alpha: float
+) -> Comparison:
     """The comparison with its verdict.
 
     A verdict takes ranks that chance does not explain and a mean that does not contradict them.

@@ -12,7 +12,7 @@ from crowdbot.core.results.rows import Results
 from crowdbot.core.statistics import clusters as c
 from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, axis_effects, densities
 from crowdbot.core.statistics.clusters import Clusters
-from crowdbot.core.statistics.comparison import Comparison, compare, judged
+from crowdbot.core.statistics.comparison import Comparison, compare, with_verdict
 from crowdbot.core.statistics.estimate import Counts, Estimate
 from crowdbot.core.statistics.signed_rank import holm
 from crowdbot.core.statistics.table import Name, Table
@@ -131,7 +131,9 @@ def summarise(
     return Summary(
         planners=table.planners,
         scores=tuple(_planner_score(table, name, p, level) for name, p in everybody),
-        comparisons=tuple(judged(x, d, p_holm.get(i), alpha) for i, (x, d) in enumerate(found)),
+        comparisons=tuple(
+            with_verdict(x, d, p_holm.get(i), alpha) for i, (x, d) in enumerate(found)
+        ),
         axes=tuple(e for name, p in everybody for e in axis_effects(table, name, p)),
         densities=densities(table),
         level=level,

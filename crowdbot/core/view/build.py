@@ -1,4 +1,4 @@
-"""From a scenario's words to a scene.
+"""From a scenario to the content of its map.
 
 Sensors are drawn from their specs alone: building them would compile ray casting.
 """
@@ -8,19 +8,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from crowdbot.core.environments import build_environment
-from crowdbot.core.footprint import footprint_of_model
-from crowdbot.core.realisation import Realisation
-from crowdbot.core.registry import Registry
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.geometry.footprint import footprint_of_model
+from crowdbot.core.population.realisation import Realisation
+from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots import build_model
-from crowdbot.core.view.scene import RobotView, Scene, Sector
-from crowdbot.core.view.shapes import Point
+from crowdbot.core.types.arrays import Point
+from crowdbot.core.view.map_content import MapContent, RobotView, Sector
 from crowdbot.dsl.areas import Area
-from crowdbot.dsl.base import SensorSpec
+from crowdbot.dsl.component_specs import SensorSpec
 from crowdbot.dsl.scenario import Crowd, Robot, Scenario
 
 
-def build_scene(scenario: Scenario, people: Realisation, registry: Registry) -> Scene:
+def build_map_content(scenario: Scenario, people: Realisation, registry: Registry) -> MapContent:
     """Build the environment and look up everything else.
 
     Args:
@@ -29,7 +29,7 @@ def build_scene(scenario: Scenario, people: Realisation, registry: Registry) -> 
         registry: the installed components.
     """
     areas = {} if scenario.crowd is None else _areas(scenario.crowd)
-    return Scene(
+    return MapContent(
         parts=build_environment(registry, scenario.environment),
         people=people,
         robots=tuple(_robot(n, r, registry) for n, r in scenario.robots.items()),

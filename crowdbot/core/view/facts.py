@@ -1,10 +1,10 @@
-"""What is worth knowing of a scenario before it is run, in words."""
+"""What is worth knowing of a scenario before it is run, as text."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from crowdbot.core.realisation import Realisation
+from crowdbot.core.population.realisation import Realisation
 from crowdbot.dsl.scenario import Scenario
 
 

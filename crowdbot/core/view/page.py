@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from markupsafe import Markup
 
-from crowdbot.core.offline_page import render_page
+from crowdbot.core.support.html_page import render_page
 from crowdbot.core.view.shapes import Drawing
 from crowdbot.core.view.svg import element, stylesheet
 

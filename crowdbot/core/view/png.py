@@ -14,7 +14,7 @@ from matplotlib.text import Text as Label
 
 from crowdbot.core.view.shapes import LIGHT, LOOKS, Disc, Drawing, Look, Path, Text
 
-#: Pixels of the picture for each px of the drawing.
+#: DepthRenderer of the picture for each px of the drawing.
 SCALE = 2.0
 _INCH = 100.0  # px of the drawing; points are 1/72 inch
 _POINT = 72.0 / _INCH

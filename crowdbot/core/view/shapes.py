@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-Point = tuple[float, float]
+from crowdbot.core.types.arrays import Point
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,7 +52,7 @@ class Drawing:
     Attributes:
         width, height: px.
         map_box: x, y, width and height of the part that shows the world, px.
-        facts: name -> text, what the drawing says in words.
+        facts: name -> text, what the drawing says as text.
     """
 
     width: float

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from html import escape
 
+from crowdbot.core.types.arrays import Point
 from crowdbot.core.view.shapes import (
     DARK,
     LIGHT,
@@ -13,7 +14,6 @@ from crowdbot.core.view.shapes import (
     Drawing,
     Look,
     Path,
-    Point,
     Shape,
     Text,
 )

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from crowdbot.core.view.shapes import Path, Point, Shape, Text
+from crowdbot.core.types.arrays import Point
+from crowdbot.core.view.shapes import Path, Shape, Text
 
 #: px: the largest map, the largest metre, and the room around the map for the numbers.
 _WIDTH, _HEIGHT, _METRE = 1500.0, 860.0, 110.0

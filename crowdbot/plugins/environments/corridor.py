@@ -6,9 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import EnvironmentSpec
-from crowdbot.dsl.quantities import PositiveLength
+from crowdbot.dsl import Component, EnvironmentSpec, PositiveLength
 
 
 class CorridorSpec(EnvironmentSpec):

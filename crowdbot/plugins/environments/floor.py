@@ -8,9 +8,7 @@ from typing import Annotated, Literal
 from annotated_types import Len
 from pydantic import Field, field_validator, model_validator
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import EnvironmentSpec, Rectangle, Spec
-from crowdbot.dsl.quantities import Length, PositiveLength
+from crowdbot.dsl import Component, EnvironmentSpec, Length, PositiveLength, Rectangle, Spec
 
 Point = Annotated[tuple[Length, Length], Field(strict=False)]
 

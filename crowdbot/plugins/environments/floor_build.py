@@ -5,12 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import EnvironmentParts
+from crowdbot.core.interfaces import Array, EnvironmentParts
 from crowdbot.plugins.environments.floor import FloorSpec, WallSpec
-
-Array = NDArray[np.float64]
 
 
 def build(spec: FloorSpec) -> EnvironmentParts:
@@ -36,7 +33,7 @@ def build(spec: FloorSpec) -> EnvironmentParts:
         pillar_heights=np.tile(heights, (len(pillars), 1)),
         solids=tuple(solids),
         solid_heights=np.tile(heights, (len(solids), 1)),
-        torus=(x0, x1, y0, y1) if spec.border == "torus" else None,
+        periodic_boundary=(x0, x1, y0, y1) if spec.border == "torus" else None,
     )
 
 

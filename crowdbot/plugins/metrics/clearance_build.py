@@ -7,12 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.encounter import encounter
-from crowdbot.core.interfaces import References
-from crowdbot.core.preprocess import cropped, duration, time_weights
-from crowdbot.core.score import Score
-from crowdbot.core.score_label import ScoreLabel
-from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.core.interfaces import (
+    Array,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    duration,
+    time_weights,
+    truncate_at_arrival,
+)
+from crowdbot.core.trajectories.encounters import encounter
 from crowdbot.plugins.metrics.clearance import (
     AVG_CLEARANCE,
     INTIMATE_TIME_FRACTION,
@@ -41,8 +46,12 @@ class MinClearance:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Least gap at any sample."""
         del refs
-        gap = nearest_gap(MIN_CLEARANCE.label, run)
-        return gap if isinstance(gap, list) else [MIN_CLEARANCE.label.ok("corrected", gap.min())]
+        gap = nearest_gap(ScoreFactory(MIN_CLEARANCE), run)
+        return (
+            gap
+            if isinstance(gap, list)
+            else [ScoreFactory(MIN_CLEARANCE).ok("corrected", gap.min())]
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,17 +63,17 @@ class AvgClearance:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Mean over the time at which somebody is present."""
         del refs
-        label = AVG_CLEARANCE.label
-        gap = nearest_gap(label, run)
+        factory = ScoreFactory(AVG_CLEARANCE)
+        gap = nearest_gap(factory, run)
         if isinstance(gap, list):
             return gap
-        t, some = cropped(run).t, np.isfinite(gap)
+        t, some = truncate_at_arrival(run).t, np.isfinite(gap)
         weights = time_weights(t)[some]
         if weights.sum() <= 0:
-            return label.all_undefined("too_few_samples")
+            return factory.all_undefined("too_few_samples")
         coverage = float(weights.sum()) / duration(t)
         mean = float(weights @ gap[some] / weights.sum())
-        return [label.ok("corrected", mean, {"coverage": coverage})]
+        return [factory.ok("corrected", mean, {"coverage": coverage})]
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +85,7 @@ class IntimateTimeFraction:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Nearer than the intimate zone's edge."""
         del refs
-        return time_within(INTIMATE_TIME_FRACTION.label, run, -np.inf, self.spec.intimate)
+        return time_within(ScoreFactory(INTIMATE_TIME_FRACTION), run, -np.inf, self.spec.intimate)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +98,7 @@ class PersonalTimeFraction:
         """Between the edges of the intimate and of the personal zone."""
         del refs
         zone = self.spec.intimate, self.spec.personal
-        return time_within(PERSONAL_TIME_FRACTION.label, run, *zone)
+        return time_within(ScoreFactory(PERSONAL_TIME_FRACTION), run, *zone)
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +110,9 @@ class SocialTimeFraction:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Between the edges of the personal and of the social zone."""
         del refs
-        return time_within(SOCIAL_TIME_FRACTION.label, run, self.spec.personal, self.spec.social)
+        return time_within(
+            ScoreFactory(SOCIAL_TIME_FRACTION), run, self.spec.personal, self.spec.social
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,29 +125,31 @@ class SpaceCompliance:
         """Farther than the gap that complies; so is time with nobody present."""
         del refs
         # strictly more, so an edge plus its slack is the least that complies
-        return time_within(SPACE_COMPLIANCE.label, run, self.spec.compliance + 2.0 * EDGE, None)
+        return time_within(
+            ScoreFactory(SPACE_COMPLIANCE), run, self.spec.compliance + 2.0 * EDGE, None
+        )
 
 
-def nearest_gap(label: ScoreLabel, run: Trajectories) -> Array | list[Score]:
+def nearest_gap(factory: ScoreFactory, run: Trajectories) -> Array | list[Score]:
     """Gap to the nearest person (N,), m, inf with nobody present; or why there is none."""
     if run.robot is None:
-        return label.all_undefined("invalid_no_robot")
-    gap = encounter(cropped(run), np.inf).gap
+        return factory.all_undefined("invalid_no_robot")
+    gap = encounter(truncate_at_arrival(run), np.inf).gap
     nearest: Array = np.where(np.isfinite(gap), gap, np.inf).min(axis=1, initial=np.inf)
-    return nearest if np.isfinite(nearest).any() else label.all_undefined("no_agents")
+    return nearest if np.isfinite(nearest).any() else factory.all_undefined("no_agents")
 
 
 def time_within(
-    label: ScoreLabel, run: Trajectories, low: float, high: float | None
+    factory: ScoreFactory, run: Trajectories, low: float, high: float | None
 ) -> list[Score]:
     """Share of the time at which the nearest gap is in [low, high), m; no ``high``: any."""
-    gap = nearest_gap(label, run)
+    gap = nearest_gap(factory, run)
     if isinstance(gap, list):
         return gap
-    t = cropped(run).t
+    t = truncate_at_arrival(run).t
     if duration(t) <= 0:
-        return label.all_undefined("too_few_samples")
+        return factory.all_undefined("too_few_samples")
     inside = gap >= low - EDGE
     if high is not None:
         inside &= gap < high - EDGE
-    return [label.ok("corrected", time_weights(t) @ inside / duration(t))]
+    return [factory.ok("corrected", time_weights(t) @ inside / duration(t))]

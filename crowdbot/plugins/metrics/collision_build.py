@@ -7,7 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.encounter import (
+from crowdbot.core.interfaces import (
+    Array,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    duration,
+    path_length,
+    truncate_at_arrival,
+)
+from crowdbot.core.trajectories.encounters import (
     Contacts,
     contact_runs,
     encounter,
@@ -16,13 +26,9 @@ from crowdbot.core.encounter import (
     people_speeds,
     relative_velocity,
     robot_of,
-    robot_vector,
+    robot_velocities,
     touching,
 )
-from crowdbot.core.interfaces import References
-from crowdbot.core.preprocess import cropped, duration, path_length
-from crowdbot.core.score import Score
-from crowdbot.core.trajectory import Array, Trajectories
 from crowdbot.plugins.metrics.collision import (
     COLLISION_COUNT,
     COLLISION_RATE,
@@ -56,16 +62,16 @@ class CollisionCount:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal``: runs of samples in contact; ``corrected``: contacts of the motion."""
         del refs
-        label = COLLISION_COUNT.label
+        factory = ScoreFactory(COLLISION_COUNT)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         found = events(run, self.spec)
         first = {"first_time": float(found.time[0])} if len(found.time) else {}
         pair = encounter(run, self.spec.jump_speed)
         return [
-            label.ok("literal", contact_runs(pair, self.spec.contact_tol)),
-            label.ok("corrected", len(found.time), first),
+            factory.ok("literal", contact_runs(pair, self.spec.contact_tol)),
+            factory.ok("corrected", len(found.time), first),
         ]
 
 
@@ -78,10 +84,10 @@ class CollisionSeverity:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal``: each sample in contact; the others: each contact, just before it."""
         del refs
-        label = COLLISION_SEVERITY.label
+        factory = ScoreFactory(COLLISION_SEVERITY)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         vx, vy = relative_velocity(run, self.spec.jump_speed)
         square = vx**2 + vy**2
         square = np.where(np.isfinite(square), square, 0.0)
@@ -90,10 +96,10 @@ class CollisionSeverity:
         half_sum, reduced = self._masses(run)
         touch = touching(encounter(run, self.spec.jump_speed), self.spec.contact_tol)
         return [
-            label.ok("literal", (np.where(touch, square, 0.0) * half_sum).sum()),
-            label.ok("per_event", half_sum[who] @ at_onset),
-            label.ok("corrected", 0.5 * reduced[who] @ at_onset),
-            label.ok("impulse", reduced[who] @ np.sqrt(at_onset)),
+            factory.ok("literal", (np.where(touch, square, 0.0) * half_sum).sum()),
+            factory.ok("per_event", half_sum[who] @ at_onset),
+            factory.ok("corrected", 0.5 * reduced[who] @ at_onset),
+            factory.ok("impulse", reduced[who] @ np.sqrt(at_onset)),
         ]
 
     def _masses(self, run: Trajectories) -> tuple[Array, Array]:
@@ -113,15 +119,15 @@ class CollisionRate:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Contacts of the motion per second, and per metre that the robot drove."""
         del refs
-        label = COLLISION_RATE.label
+        factory = ScoreFactory(COLLISION_RATE)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         count = len(events(run, self.spec).time)
         length = path_length(run.t, robot_of(run), self.spec.jump_speed)
         return [
-            label.ratio("per_time", count, duration(run.t), self.spec.zero_tol),
-            label.ratio("per_length", count, length, self.spec.zero_tol),
+            factory.ratio("per_time", count, duration(run.t), self.spec.zero_tol),
+            factory.ratio("per_length", count, length, self.spec.zero_tol),
         ]
 
 
@@ -134,20 +140,20 @@ class CollisionsAtFault:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """The robot's fault: it is faster, and the person is before it; else the person's."""
         del refs
-        label = COLLISIONS_AT_FAULT.label
+        factory = ScoreFactory(COLLISIONS_AT_FAULT)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         found = events(run, self.spec)
         pair = encounter(run, self.spec.jump_speed)
-        rx, ry = robot_vector(run, self.spec.jump_speed)
+        rx, ry = robot_velocities(run, self.spec.jump_speed)
         k, i = found.sample, found.agent
         lead = np.hypot(rx, ry)[k] - people_speeds(run, self.spec.jump_speed)[k, i]
         before = pair.px[k, i] * rx[k] + pair.py[k, i] * ry[k] > TOLERANCE
         robot = int(((lead > TOLERANCE) & before).sum())
-        return [label.ok("robot", robot), label.ok("person", len(k) - robot)]
+        return [factory.ok("robot", robot), factory.ok("person", len(k) - robot)]
 
 
 def events(run: Trajectories, spec: _Spec) -> Contacts:
-    """Contacts of the motion of a cropped run."""
+    """Contacts of the motion of a run up to the arrival."""
     return onsets(run, spec.jump_speed, spec.contact_tol, spec.release_gap)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Literal
 
-from crowdbot.core.laws import Laws
-from crowdbot.core.score_label import MetricComponent, ScoreLabel
-from crowdbot.dsl.base import MetricSpec
+from crowdbot.dsl import MetricSpec, declare_metric
+
+declare = partial(declare_metric, category="contact")
 
 
 class MaxContactForceSpec(MetricSpec):
@@ -15,10 +16,32 @@ class MaxContactForceSpec(MetricSpec):
     kind: Literal["max_contact_force"] = "max_contact_force"
 
 
+MAX_CONTACT_FORCE = declare(
+    MaxContactForceSpec,
+    symbol="F_max",
+    unit="N",
+    better="lower",
+    minimum=0.0,
+    more_people="up",
+    mass_exponent=1,
+)
+
+
 class ContactImpulseSpec(MetricSpec):
     """Sum of the impulses between robot and people."""
 
     kind: Literal["contact_impulse"] = "contact_impulse"
+
+
+CONTACT_IMPULSE = declare(
+    ContactImpulseSpec,
+    symbol="I",
+    unit="N s",
+    better="lower",
+    minimum=0.0,
+    more_people="up",
+    mass_exponent=1,
+)
 
 
 class ContactTimeSpec(MetricSpec):
@@ -27,50 +50,8 @@ class ContactTimeSpec(MetricSpec):
     kind: Literal["contact_time"] = "contact_time"
 
 
-MAX_CONTACT_FORCE = MetricComponent(
-    spec=MaxContactForceSpec,
-    build="crowdbot.plugins.metrics.contact_build:MaxContactForce",
-    summary="F_max: largest force between robot and people",
-    label=ScoreLabel(
-        metric="max_contact_force",
-        symbol="F_max",
-        category="contact",
-        unit="N",
-        better="lower",
-    ),
-    laws={
-        "corrected": Laws(least=0.0, more_people="up", mass=1),
-    },
-)
-CONTACT_IMPULSE = MetricComponent(
-    spec=ContactImpulseSpec,
-    build="crowdbot.plugins.metrics.contact_build:ContactImpulse",
-    summary="I: sum of the impulses between robot and people",
-    label=ScoreLabel(
-        metric="contact_impulse",
-        symbol="I",
-        category="contact",
-        unit="N s",
-        better="lower",
-    ),
-    laws={
-        "corrected": Laws(least=0.0, more_people="up", mass=1),
-    },
-)
-CONTACT_TIME = MetricComponent(
-    spec=ContactTimeSpec,
-    build="crowdbot.plugins.metrics.contact_build:ContactTime",
-    summary="T_c: sum of the durations of contacts between robot and people",
-    label=ScoreLabel(
-        metric="contact_time",
-        symbol="T_c",
-        category="contact",
-        unit="s",
-        better="lower",
-    ),
-    laws={
-        "corrected": Laws(least=0.0, more_people="up"),
-    },
+CONTACT_TIME = declare(
+    ContactTimeSpec, symbol="T_c", unit="s", better="lower", minimum=0.0, more_people="up"
 )
 
 COMPONENTS = (

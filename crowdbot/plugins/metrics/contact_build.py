@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from crowdbot.core.interfaces import References
-from crowdbot.core.preprocess import Mask, cropped
-from crowdbot.core.score import Score
-from crowdbot.core.score_label import ScoreLabel
-from crowdbot.core.trajectory import ContactEvents, Trajectories
+from crowdbot.core.interfaces import (
+    ContactEvents,
+    Mask,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    truncate_at_arrival,
+)
 from crowdbot.plugins.metrics.contact import (
     CONTACT_IMPULSE,
     CONTACT_TIME,
@@ -29,12 +33,12 @@ class MaxContactForce:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Largest peak of all contacts with people."""
         del refs
-        label = MAX_CONTACT_FORCE.label
-        found = _with_people(label, run)
+        factory = ScoreFactory(MAX_CONTACT_FORCE)
+        found = _with_people(factory, run)
         if isinstance(found, list):
             return found
         contacts, rows = found
-        return [label.ok("corrected", contacts.peak_force[rows].max(initial=0.0))]
+        return [factory.ok("corrected", contacts.peak_force[rows].max(initial=0.0))]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,14 +50,14 @@ class ContactImpulse:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Sum over all contacts with people, and the ``largest`` of them."""
         del refs
-        label = CONTACT_IMPULSE.label
-        found = _with_people(label, run)
+        factory = ScoreFactory(CONTACT_IMPULSE)
+        found = _with_people(factory, run)
         if isinstance(found, list):
             return found
         contacts, rows = found
         impulses = contacts.impulse[rows]
         largest = {"largest": float(impulses.max(initial=0.0))}
-        return [label.ok("corrected", impulses.sum(), largest)]
+        return [factory.ok("corrected", impulses.sum(), largest)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,19 +69,21 @@ class ContactTime:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Sum over all contacts with people: two at once count twice."""
         del refs
-        label = CONTACT_TIME.label
-        found = _with_people(label, run)
+        factory = ScoreFactory(CONTACT_TIME)
+        found = _with_people(factory, run)
         if isinstance(found, list):
             return found
         contacts, rows = found
-        return [label.ok("corrected", (contacts.t1 - contacts.t0)[rows].sum())]
+        return [factory.ok("corrected", (contacts.t1 - contacts.t0)[rows].sum())]
 
 
-def _with_people(label: ScoreLabel, run: Trajectories) -> tuple[ContactEvents, Mask] | list[Score]:
+def _with_people(
+    factory: ScoreFactory, run: Trajectories
+) -> tuple[ContactEvents, Mask] | list[Score]:
     """Contacts up to the arrival, and which of them were with people; or why there are none."""
     if run.robot is None:
-        return label.all_undefined("invalid_no_robot")
-    contacts = cropped(run).contacts
+        return factory.all_undefined("invalid_no_robot")
+    contacts = truncate_at_arrival(run).contacts
     if contacts is None:
-        return label.all_undefined("invalid_no_contacts")
+        return factory.all_undefined("invalid_no_contacts")
     return contacts, contacts.agent >= 0

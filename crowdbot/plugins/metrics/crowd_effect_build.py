@@ -7,13 +7,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.encounter import encounter, people, people_speeds
-from crowdbot.core.interfaces import References
-from crowdbot.core.preprocess import common_window, cropped, duration, finite, time_weights
-from crowdbot.core.score import Score
-from crowdbot.core.score_label import ScoreLabel
-from crowdbot.core.trajectory import Array, Trajectories
-from crowdbot.core.trips import DISTANCE_TOLERANCE, Durations, durations, meets_robot
+from crowdbot.core.interfaces import (
+    Array,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    duration,
+    time_weights,
+    truncate_at_arrival,
+)
+from crowdbot.core.trajectories.encounters import encounter, people, people_speeds
+from crowdbot.core.trajectories.preprocess import inf_to_nan, truncate_to_shorter
+from crowdbot.core.trajectories.trips import DISTANCE_TOLERANCE, Durations, durations, meets_robot
 from crowdbot.plugins.metrics.crowd_effect import (
     CROWD_DEVIATION,
     EFFECT_ON_TIME,
@@ -37,23 +43,23 @@ class EffectOnTime:
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal``: completed trips; the others: all trips, in the common window."""
-        label = EFFECT_ON_TIME.label
+        factory = ScoreFactory(EFFECT_ON_TIME)
         if refs.crowd_alone is None:
-            return label.all_undefined("no_reference")
-        alone, run = cropped(refs.crowd_alone), cropped(run)
-        literal = completed_ratio(label, durations(alone), durations(run), self.spec.zero_tol)
-        alone, run = common_window(alone, run)
+            return factory.all_undefined("no_reference")
+        alone, run = truncate_at_arrival(refs.crowd_alone), truncate_at_arrival(run)
+        literal = completed_ratio(factory, durations(alone), durations(run), self.spec.zero_tol)
+        alone, run = truncate_to_shorter(alone, run)
         a, b = durations(alone), durations(run)
         if not len(a) or not len(b):
-            return [literal, *label.all_undefined("no_trips", label.variants[1:])]
-        return [literal, mean_ratio(label, a, b, self.spec.zero_tol), self._restricted(a, b)]
+            return [literal, *factory.all_undefined("no_trips", factory.variants[1:])]
+        return [literal, mean_ratio(factory, a, b, self.spec.zero_tol), self._restricted(a, b)]
 
     def _restricted(self, alone: Durations, crowded: Durations) -> Score:
         """Both means up to the same time, which no unfinished trip makes unknown."""
         tau = min(alone.longest, crowded.longest)
         means = alone.restricted_mean(tau), crowded.restricted_mean(tau)
         extras = {"tau": tau, **_both(alone, crowded, means)}
-        return EFFECT_ON_TIME.label.ratio("restricted", *means, self.spec.zero_tol, extras)
+        return ScoreFactory(EFFECT_ON_TIME).ratio("restricted", *means, self.spec.zero_tol, extras)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,20 +71,20 @@ class NeighboursTimeToGoal:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """People who meet the robot against everybody, they included."""
         del refs
-        label = NEIGHBOURS_TIME_TO_GOAL.label
+        factory = ScoreFactory(NEIGHBOURS_TIME_TO_GOAL)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         everybody = durations(run)
         if not len(everybody):
-            return label.all_undefined("no_trips")
+            return factory.all_undefined("no_trips")
         met = meets_robot(run, self.spec.neighbour_radius)
         if not met.any():
-            return label.all_undefined("no_neighbours")
-        both = everybody.pick(met), everybody
+            return factory.all_undefined("no_neighbours")
+        both = everybody.select(met), everybody
         return [
-            completed_ratio(label, *both, self.spec.zero_tol),
-            mean_ratio(label, *both, self.spec.zero_tol),
+            completed_ratio(factory, *both, self.spec.zero_tol),
+            mean_ratio(factory, *both, self.spec.zero_tol),
         ]
 
 
@@ -90,28 +96,28 @@ class EffectOnVelocity:
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal``: every sample of either record; ``corrected``: time, in the common window."""
-        label = EFFECT_ON_VELOCITY.label
+        factory = ScoreFactory(EFFECT_ON_VELOCITY)
         if refs.crowd_alone is None:
-            return label.all_undefined("no_reference")
-        alone, run = cropped(refs.crowd_alone), cropped(run)
+            return factory.all_undefined("no_reference")
+        alone, run = truncate_at_arrival(refs.crowd_alone), truncate_at_arrival(run)
         literal = self._ratio("literal", alone, run, np.ones(len(alone.t)), np.ones(len(run.t)))
-        alone, run = common_window(alone, run)
+        alone, run = truncate_to_shorter(alone, run)
         if min(duration(alone.t), duration(run.t)) <= 0:
-            return [literal, label.undefined("corrected", "too_few_samples")]
+            return [literal, factory.undefined("corrected", "too_few_samples")]
         weights = time_weights(alone.t), time_weights(run.t)
         return [literal, self._ratio("corrected", alone, run, *weights)]
 
     def _ratio(
         self, variant: str, alone: Trajectories, run: Trajectories, w_alone: Array, w_run: Array
     ) -> Score:
-        label = EFFECT_ON_VELOCITY.label
+        factory = ScoreFactory(EFFECT_ON_VELOCITY)
         jump = self.spec.jump_speed
         v_alone = pooled_mean(people_speeds(alone, jump), w_alone)
         v_run = pooled_mean(people_speeds(run, jump), w_run)
         if v_alone is None or v_run is None:
-            return label.undefined(variant, "no_agents")
+            return factory.undefined(variant, "no_agents")
         both = {"alone": v_alone, "crowded": v_run}
-        return label.ratio(variant, v_alone, v_run, self.spec.zero_tol, both)
+        return factory.ratio(variant, v_alone, v_run, self.spec.zero_tol, both)
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,28 +129,28 @@ class NeighboursVelocity:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Speeds near the robot against all speeds, they included."""
         del refs
-        label = NEIGHBOURS_VELOCITY.label
+        factory = ScoreFactory(NEIGHBOURS_VELOCITY)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         weights = {"literal": np.ones(len(run.t)), "corrected": time_weights(run.t)}
         return [self._ratio(v, run, w) for v, w in weights.items()]
 
     def _ratio(self, variant: str, run: Trajectories, weights: Array) -> Score:
-        label = NEIGHBOURS_VELOCITY.label
+        factory = ScoreFactory(NEIGHBOURS_VELOCITY)
         speed = people_speeds(run, self.spec.jump_speed)
         if not np.isfinite(speed).any():
-            return label.undefined(variant, "no_agents")
+            return factory.undefined(variant, "no_agents")
         if not weights.any():
-            return label.undefined(variant, "too_few_samples")
+            return factory.undefined(variant, "too_few_samples")
         distance = encounter(run, self.spec.jump_speed).distance
         near = distance <= self.spec.neighbour_radius + DISTANCE_TOLERANCE
         v_near = pooled_mean(np.where(near, speed, np.nan), weights)
         v_all = pooled_mean(speed, weights)
         if v_near is None or v_all is None:
-            return label.undefined(variant, "no_neighbours")
+            return factory.undefined(variant, "no_neighbours")
         both = {"neighbours": v_near, "crowd": v_all}
-        return label.ratio(variant, v_near, v_all, self.spec.zero_tol, both)
+        return factory.ratio(variant, v_near, v_all, self.spec.zero_tol, both)
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,47 +161,49 @@ class CrowdDeviation:
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Mean over all samples at which a person is present in both runs."""
-        label = CROWD_DEVIATION.label
+        factory = ScoreFactory(CROWD_DEVIATION)
         if refs.crowd_alone is None or refs.crowd_alone.agents is None:
-            return label.all_undefined("no_reference")
-        alone, run = cropped(refs.crowd_alone), cropped(run)
+            return factory.all_undefined("no_reference")
+        alone, run = truncate_at_arrival(refs.crowd_alone), truncate_at_arrival(run)
         samples = paired_samples(alone.t, run.t)
         if not len(samples[0]):
-            return label.all_undefined("sampling_mismatch")
+            return factory.all_undefined("sampling_mismatch")
         a, b = people(alone), people(run)
         columns = np.intersect1d(a.id, b.id, return_indices=True)[1:]
         at_alone, at_run = (np.ix_(r, c) for r, c in zip(samples, columns, strict=True))
-        rows = (finite(p)[at_alone] - finite(q)[at_run] for p, q in ((a.x, b.x), (a.y, b.y)))
+        rows = (
+            inf_to_nan(p)[at_alone] - inf_to_nan(q)[at_run] for p, q in ((a.x, b.x), (a.y, b.y))
+        )
         apart = np.hypot(*rows)
         known = np.isfinite(apart)
         if not known.any():
-            return label.all_undefined("no_agents")
-        return [label.ok("corrected", float(apart[known].mean()))]
+            return factory.all_undefined("no_agents")
+        return [factory.ok("corrected", float(apart[known].mean()))]
 
 
 # ---------------------------------------------------------------------- ratios
 def completed_ratio(
-    label: ScoreLabel, above: Durations, below: Durations, zero_tol: float
+    factory: ScoreFactory, above: Durations, below: Durations, zero_tol: float
 ) -> Score:
     """Means of completed trips, ``literal``."""
     if not len(above) or not len(below):
-        return label.undefined("literal", "no_trips")
+        return factory.undefined("literal", "no_trips")
     means = above.completed_mean(), below.completed_mean()
     if means[0] is None or means[1] is None:
-        return label.undefined("literal", "no_completed_trips")
+        return factory.undefined("literal", "no_completed_trips")
     extras = _both(above, below, (means[0], means[1]))
-    return label.ratio("literal", means[0], means[1], zero_tol, extras)
+    return factory.ratio("literal", means[0], means[1], zero_tol, extras)
 
 
-def mean_ratio(label: ScoreLabel, above: Durations, below: Durations, zero_tol: float) -> Score:
+def mean_ratio(factory: ScoreFactory, above: Durations, below: Durations, zero_tol: float) -> Score:
     """Kaplan-Meier means, ``corrected``; bounded where an unfinished trip is the longest."""
     means = above.restricted_mean(above.longest), below.restricted_mean(below.longest)
     extras = _both(above, below, means)
-    ratio = label.ratio("corrected", *means, zero_tol, extras)
+    ratio = factory.ratio("corrected", *means, zero_tol, extras)
     if not above.open_ended and not below.open_ended:
         return ratio
     bound = ratio.value
-    return label.censored(
+    return factory.censored(
         "corrected",
         "unfinished_trips",
         lower=bound if not below.open_ended else None,

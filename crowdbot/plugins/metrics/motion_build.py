@@ -7,21 +7,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.encounter import robot_of, robot_vector
-from crowdbot.core.interfaces import References
-from crowdbot.core.preprocess import (
-    cropped,
+from crowdbot.core.interfaces import (
+    Array,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
     duration,
     forward_speed,
     path_length,
     time_weights,
-    turns,
-    wrap,
+    truncate_at_arrival,
     yaw_rate,
 )
-from crowdbot.core.score import Score
-from crowdbot.core.score_label import ScoreLabel
-from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.core.trajectories.encounters import robot_of, robot_velocities
+from crowdbot.core.trajectories.preprocess import heading_changes, wrap
 from crowdbot.plugins.metrics.motion import (
     ACCELERATION,
     CUMULATIVE_HEADING_CHANGE,
@@ -51,14 +51,14 @@ class TimeNotMoving:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Neither driving nor turning."""
         del refs
-        label = TIME_NOT_MOVING.label
+        factory = ScoreFactory(TIME_NOT_MOVING)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
-        speed = np.hypot(*robot_vector(run, self.spec.jump_speed))
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
+        speed = np.hypot(*robot_velocities(run, self.spec.jump_speed))
         turning = np.abs(yaw_rate(run.t, robot_of(run), self.spec.jump_speed))
         still = (speed < self.spec.still_speed) & (turning < self.spec.still_turn)
-        return [label.ok("corrected", time_weights(run.t) @ still)]
+        return [factory.ok("corrected", time_weights(run.t) @ still)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,12 +70,12 @@ class StalledTime:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Hardly driving, turning or not."""
         del refs
-        label = STALLED_TIME.label
+        factory = ScoreFactory(STALLED_TIME)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
-        speed = np.hypot(*robot_vector(run, self.spec.jump_speed))
-        return [label.ok("corrected", time_weights(run.t) @ (speed < self.spec.stall_speed))]
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
+        speed = np.hypot(*robot_velocities(run, self.spec.jump_speed))
+        return [factory.ok("corrected", time_weights(run.t) @ (speed < self.spec.stall_speed))]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,10 +87,12 @@ class CumulativeHeadingChange:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Over the valid steps."""
         del refs
-        label = CUMULATIVE_HEADING_CHANGE.label
+        factory = ScoreFactory(CUMULATIVE_HEADING_CHANGE)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        return [label.ok("corrected", _all_turning(cropped(run), self.spec.jump_speed))]
+            return factory.all_undefined("invalid_no_robot")
+        return [
+            factory.ok("corrected", _all_turning(truncate_at_arrival(run), self.spec.jump_speed))
+        ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,16 +104,16 @@ class PathIrregularity:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Needed is the turn from the first heading to the last."""
         del refs
-        label, jump = PATH_IRREGULARITY.label, self.spec.jump_speed
+        factory, jump = ScoreFactory(PATH_IRREGULARITY), self.spec.jump_speed
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         robot = robot_of(run)
         theta = robot.theta[np.isfinite(robot.theta)]
         needed = float(np.abs(wrap(theta[-1:] - theta[:1])).sum())
         extra = max(0.0, _all_turning(run, jump) - needed)
         length = path_length(run.t, robot, jump)
-        return [label.ratio("corrected", extra, length, self.spec.zero_tol)]
+        return [factory.ratio("corrected", extra, length, self.spec.zero_tol)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,10 +126,10 @@ class Speed:
         """Of the velocity vector; ``avg`` is over time."""
         del refs
         if run.robot is None:
-            return SPEED.label.all_undefined("invalid_no_robot")
-        run = cropped(run)
-        speed = np.hypot(*robot_vector(run, self.spec.jump_speed))
-        return _spread(SPEED.label, speed, time_weights(run.t))
+            return ScoreFactory(SPEED).all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
+        speed = np.hypot(*robot_velocities(run, self.spec.jump_speed))
+        return _spread(ScoreFactory(SPEED), speed, time_weights(run.t))
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,11 +142,11 @@ class Acceleration:
         """Of the forward speed, step by step."""
         del refs
         if run.robot is None:
-            return ACCELERATION.label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return ScoreFactory(ACCELERATION).all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         dt = np.diff(run.t)
         v = forward_speed(run.t, robot_of(run), self.spec.jump_speed)
-        return _spread(ACCELERATION.label, np.abs(np.diff(v) / dt), dt)
+        return _spread(ScoreFactory(ACCELERATION), np.abs(np.diff(v) / dt), dt)
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,9 +159,9 @@ class Jerk:
         """Change of acceleration between neighbouring steps."""
         del refs
         if run.robot is None:
-            return JERK.label.all_undefined("invalid_no_robot")
-        run = cropped(run)
-        return _spread(JERK.label, *_jerk(run, self.spec.jump_speed))
+            return ScoreFactory(JERK).all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
+        return _spread(ScoreFactory(JERK), *_jerk(run, self.spec.jump_speed))
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,22 +173,22 @@ class DimensionlessJerk:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """T³/v_peak² times the integral of the squared jerk."""
         del refs
-        label = DIMENSIONLESS_JERK.label
+        factory = ScoreFactory(DIMENSIONLESS_JERK)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         jerk, dt = _jerk(run, self.spec.jump_speed)
         if not np.isfinite(jerk).any():
-            return label.all_undefined("too_few_samples")
+            return factory.all_undefined("too_few_samples")
         v = forward_speed(run.t, robot_of(run), self.spec.jump_speed)
         peak = float(np.nanmax(np.abs(v)))
         total = float(np.where(np.isfinite(jerk), jerk, 0.0) ** 2 @ dt)
         scale = duration(run.t) ** 3
-        return [label.ratio("corrected", total * scale, peak**2, self.spec.zero_tol**2)]
+        return [factory.ratio("corrected", total * scale, peak**2, self.spec.zero_tol**2)]
 
 
 def _all_turning(run: Trajectories, jump_speed: float) -> float:
-    turn = np.abs(turns(run.t, robot_of(run), jump_speed))
+    turn = np.abs(heading_changes(run.t, robot_of(run), jump_speed))
     return float(turn[np.isfinite(turn)].sum())
 
 
@@ -198,13 +200,13 @@ def _jerk(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
     return np.abs(np.diff(np.diff(v) / dt)) / middle, middle
 
 
-def _spread(label: ScoreLabel, values: Array, weights: Array) -> list[Score]:
+def _spread(factory: ScoreFactory, values: Array, weights: Array) -> list[Score]:
     """``min``, ``avg`` and ``max`` of what is known."""
     known = np.isfinite(values)
     values, weights = values[known], weights[known]
     if not len(values):
-        return label.all_undefined("too_few_samples")
-    least, most = label.ok("min", values.min()), label.ok("max", values.max())
+        return factory.all_undefined("too_few_samples")
+    least, most = factory.ok("min", values.min()), factory.ok("max", values.max())
     if weights.sum() <= 0:
-        return [least, label.undefined("avg", "too_few_samples"), most]
-    return [least, label.ok("avg", weights @ values / weights.sum()), most]
+        return [least, factory.undefined("avg", "too_few_samples"), most]
+    return [least, factory.ok("avg", weights @ values / weights.sum()), most]

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from typing import Literal
 
-from crowdbot.core.laws import Laws
-from crowdbot.core.score_label import MetricComponent, ScoreLabel
-from crowdbot.dsl.base import MetricSpec
+from crowdbot.dsl import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import (
     HeadingMinSpeed,
     JumpSpeed,
@@ -21,29 +18,23 @@ class OvertakingCountSpec(MetricSpec):
     """People whom the robot overtakes."""
 
     kind: Literal["overtaking_count"] = "overtaking_count"
-    heading_min_speed: HeadingMinSpeed = 0.1
-    overtake_lateral: OvertakeLateral = 3.0
-    overtake_angle: OvertakeAngle = math.pi / 4
-    overtake_eps: OvertakeEps = 1e-6
-    jump_speed: JumpSpeed = 10.0
+    heading_min_speed: HeadingMinSpeed
+    overtake_lateral: OvertakeLateral
+    overtake_angle: OvertakeAngle
+    overtake_eps: OvertakeEps
+    jump_speed: JumpSpeed
 
 
-OVERTAKING_COUNT = MetricComponent(
-    spec=OvertakingCountSpec,
-    build="crowdbot.plugins.metrics.overtaking_build:OvertakingCount",
-    summary="O: people whom the robot overtakes",
-    label=ScoreLabel(
-        metric="overtaking_count",
-        symbol="O",
-        category="similarity",
-        unit="1",
-        better="reference",
-        variants=("literal", "corrected"),
-    ),
-    laws={
-        "literal": Laws(whole=True, least=0.0, more_people="up"),
-        "corrected": Laws(whole=True, least=0.0, more_people="up"),
-    },
+OVERTAKING_COUNT = declare_metric(
+    OvertakingCountSpec,
+    symbol="O",
+    unit="1",
+    better="reference",
+    category="similarity",
+    minimum=0.0,
+    integer=True,
+    more_people="up",
+    variants=("literal", "corrected"),
 )
 
 COMPONENTS = (OVERTAKING_COUNT,)

@@ -11,17 +11,22 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.encounter import people, people_vectors, robot_of, robot_vector
-from crowdbot.core.interfaces import References
-from crowdbot.core.preprocess import (
+from crowdbot.core.interfaces import (
+    Array,
     Mask,
-    cropped,
-    finite,
-    valid_agent_steps,
-    valid_robot_steps,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    truncate_at_arrival,
 )
-from crowdbot.core.score import Score
-from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.core.trajectories.encounters import (
+    people,
+    people_velocities,
+    robot_of,
+    robot_velocities,
+)
+from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_agent_steps, valid_robot_steps
 from crowdbot.plugins.metrics.overtaking import OVERTAKING_COUNT, OvertakingCountSpec
 
 #: Slack of the rules on speed (m/s), angle (rad) and side (m), so that rounding decides nothing.
@@ -43,19 +48,19 @@ class OvertakingCount:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal``: all times the robot passed; ``corrected``: less those it was passed."""
         del refs
-        label = OVERTAKING_COUNT.label
+        factory = ScoreFactory(OVERTAKING_COUNT)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        counts = overtakes(Bodies.of(cropped(run), self.spec), self.spec)
+            return factory.all_undefined("invalid_no_robot")
+        counts = overtakes(OvertakingBodies.of(truncate_at_arrival(run), self.spec), self.spec)
         net = np.maximum(0, counts - counts.T)
         return [
-            label.ok(variant, n[0].sum(), _extras(n, counts))
+            factory.ok(variant, n[0].sum(), _extras(n, counts))
             for variant, n in (("literal", counts), ("corrected", net))
         ]
 
 
 @dataclass(frozen=True, slots=True)
-class Bodies:
+class OvertakingBodies:
     """Robot and people: x, y, ux, uy (direction), walks are (N, L); valid is (N-1, L)."""
 
     x: Array
@@ -66,10 +71,10 @@ class Bodies:
     valid: Mask
 
     @classmethod
-    def of(cls, run: Trajectories, spec: OvertakingCountSpec) -> Bodies:
+    def of(cls, run: Trajectories, spec: OvertakingCountSpec) -> OvertakingBodies:
         """All bodies of a run; who does not walk has no direction."""
         robot, agents = robot_of(run), people(run)
-        vectors = robot_vector(run, spec.jump_speed), people_vectors(run, spec.jump_speed)
+        vectors = robot_velocities(run, spec.jump_speed), people_velocities(run, spec.jump_speed)
         vx, vy = (np.column_stack(pair) for pair in zip(*vectors, strict=True))
         speed = np.hypot(vx, vy)
         walks = speed > spec.heading_min_speed + TOLERANCE
@@ -79,8 +84,8 @@ class Bodies:
             valid_agent_steps(run.t, agents, spec.jump_speed),
         )
         return cls(
-            x=finite(np.column_stack([robot.x, agents.x])),
-            y=finite(np.column_stack([robot.y, agents.y])),
+            x=inf_to_nan(np.column_stack([robot.x, agents.x])),
+            y=inf_to_nan(np.column_stack([robot.y, agents.y])),
             ux=np.where(walks, vx, 0.0) / length,
             uy=np.where(walks, vy, 0.0) / length,
             walks=walks,
@@ -97,7 +102,7 @@ class Bodies:
         return dx * ux + dy * uy, dx * uy - dy * ux
 
 
-def overtakes(bodies: Bodies, spec: OvertakingCountSpec) -> NDArray[np.int64]:
+def overtakes(bodies: OvertakingBodies, spec: OvertakingCountSpec) -> NDArray[np.int64]:
     """How often row overtook column (L, L)."""
     size = bodies.x.shape[1]
     counts = np.zeros((size, size), dtype=np.int64)
@@ -114,7 +119,9 @@ def overtakes(bodies: Bodies, spec: OvertakingCountSpec) -> NDArray[np.int64]:
     return counts
 
 
-def _crossings(bodies: Bodies, spec: OvertakingCountSpec) -> Iterator[tuple[Index, Index, Index]]:
+def _crossings(
+    bodies: OvertakingBodies, spec: OvertakingCountSpec
+) -> Iterator[tuple[Index, Index, Index]]:
     """Steps k on which b falls behind a, and was not behind before.
 
     Who falls behind during a step was no farther ahead than both may have moved: that leaves few
@@ -146,7 +153,7 @@ def _crossings(bodies: Bodies, spec: OvertakingCountSpec) -> Iterator[tuple[Inde
         yield k[falls], a[falls], b[falls]
 
 
-def _armed(bodies: Bodies, spec: OvertakingCountSpec, k: int, a: int, b: int) -> bool:
+def _armed(bodies: OvertakingBodies, spec: OvertakingCountSpec, k: int, a: int, b: int) -> bool:
     """Whether b was clearly ahead of a before it fell behind; looks back while they are level."""
     for before in range(k, -1, -1):
         if not (bodies.walks[before, a] and bodies.valid[before, a] and bodies.valid[before, b]):

@@ -1,13 +1,18 @@
-"""Parameters that several metrics share; each has one meaning everywhere."""
+"""Parameters of metrics: each has one meaning and one default, wherever it is used.
+
+The default is part of the type: ``jump_speed: JumpSpeed`` in a spec is 10 m/s if nobody says
+otherwise.
+"""
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 from annotated_types import Ge
 from pydantic import Field
 
-from crowdbot.dsl.quantities import (
+from crowdbot.dsl import (
     NonNegativeLength,
     NonNegativeSpeed,
     PositiveAngle,
@@ -19,60 +24,95 @@ from crowdbot.dsl.quantities import (
 
 _Number = Annotated[float, Ge(0)]
 
-ZeroTol = Annotated[_Number, Field(description="A denominator up to this counts as zero, SI.")]
-LengthTol = Annotated[
-    NonNegativeLength, Field(description="A distance up to this counts as zero, m.")
+ZeroTol = Annotated[
+    _Number, Field(default=1e-9, description="A denominator up to this counts as zero, SI.")
 ]
-JerkZeroTol = Annotated[_Number, Field(description="Jerk up to this counts as zero, SI.")]
-JerkWeight = Annotated[_Number, Field(description="Weight of turning against driving, m/(s rad).")]
+LengthTol = Annotated[
+    NonNegativeLength, Field(default=1e-6, description="A distance up to this counts as zero, m.")
+]
+JerkZeroTol = Annotated[
+    _Number, Field(default=1e-6, description="Jerk up to this counts as zero, SI.")
+]
+JerkWeight = Annotated[
+    _Number, Field(default=1.0, description="Weight of turning against driving, m/(s rad).")
+]
 SamplingTol = Annotated[
-    _Number, Field(description="Two runs whose time steps differ by more, relatively, mismatch.")
+    _Number,
+    Field(
+        default=0.01, description="Two runs whose time steps differ by more, relatively, mismatch."
+    ),
 ]
 JumpSpeed = Annotated[
     PositiveSpeed,
-    Field(description="A faster step is a teleport where none are recorded, m/s."),
+    Field(default=10.0, description="A faster step is a teleport where none are recorded, m/s."),
 ]
 NeighbourRadius = Annotated[
-    PositiveLength, Field(description="Neighbours are no farther, centre to centre, m.")
+    PositiveLength,
+    Field(default=3.0, description="Neighbours are no farther, centre to centre, m."),
 ]
 RiskHorizon = Annotated[
-    PositiveDuration, Field(description="Contacts farther ahead carry no risk, s.")
+    PositiveDuration, Field(default=5.0, description="Contacts farther ahead carry no risk, s.")
 ]
-ContactTol = Annotated[NonNegativeLength, Field(description="Surfaces this close touch, m.")]
+ContactTol = Annotated[
+    NonNegativeLength, Field(default=1e-9, description="Surfaces this close touch, m.")
+]
 RelSpeedTol = Annotated[
-    NonNegativeSpeed, Field(description="Slower relative motion counts as none, m/s.")
+    NonNegativeSpeed,
+    Field(default=1e-6, description="Slower relative motion counts as none, m/s."),
 ]
 ReleaseGap = Annotated[
     NonNegativeLength,
-    Field(description="A contact ends when the surfaces are farther apart, m."),
+    Field(default=0.05, description="A contact ends when the surfaces are farther apart, m."),
 ]
 ProximityFloor = Annotated[
-    PositiveLength, Field(description="Nearer counts as this near, centre to centre, m.")
+    PositiveLength,
+    Field(default=0.1, description="Nearer counts as this near, centre to centre, m."),
 ]
-HeadingMinSpeed = Annotated[NonNegativeSpeed, Field(description="Slower bodies have no heading.")]
+HeadingMinSpeed = Annotated[
+    NonNegativeSpeed, Field(default=0.1, description="Slower bodies have no heading.")
+]
 OvertakeLateral = Annotated[
-    PositiveLength, Field(description="Who passes farther to the side does not overtake, m.")
+    PositiveLength,
+    Field(default=3.0, description="Who passes farther to the side does not overtake, m."),
 ]
 OvertakeAngle = Annotated[
-    PositiveAngle, Field(description="Who walks another way by more is not overtaken, rad.")
+    PositiveAngle,
+    Field(default=math.pi / 4, description="Who walks another way by more is not overtaken, rad."),
 ]
 OvertakeEps = Annotated[
-    NonNegativeLength, Field(description="Less ahead or behind counts as side by side, m.")
+    NonNegativeLength,
+    Field(default=1e-6, description="Less ahead or behind counts as side by side, m."),
 ]
-Intimate = Annotated[NonNegativeLength, Field(description="Outer edge of the intimate zone, m.")]
-Personal = Annotated[NonNegativeLength, Field(description="Outer edge of the personal zone, m.")]
-Social = Annotated[NonNegativeLength, Field(description="Outer edge of the social zone, m.")]
-Compliance = Annotated[NonNegativeLength, Field(description="A larger gap complies, m.")]
-SamplePeriod = Annotated[PositiveDuration, Field(description="Commands are looked at so often, s.")]
-StillSpeed = Annotated[NonNegativeSpeed, Field(description="A slower robot does not drive, m/s.")]
+Intimate = Annotated[
+    NonNegativeLength, Field(default=0.45, description="Outer edge of the intimate zone, m.")
+]
+Personal = Annotated[
+    NonNegativeLength, Field(default=1.2, description="Outer edge of the personal zone, m.")
+]
+Social = Annotated[
+    NonNegativeLength, Field(default=3.6, description="Outer edge of the social zone, m.")
+]
+Compliance = Annotated[
+    NonNegativeLength, Field(default=0.5, description="A larger gap complies, m.")
+]
+SamplePeriod = Annotated[
+    PositiveDuration, Field(default=0.15, description="Commands are looked at so often, s.")
+]
+StillSpeed = Annotated[
+    NonNegativeSpeed, Field(default=1e-3, description="A slower robot does not drive, m/s.")
+]
 StillTurn = Annotated[
     float,
     Ge(0),
     Quantity("angular speed"),
-    Field(description="A slower robot does not turn, rad/s."),
+    Field(default=1e-2, description="A slower robot does not turn, rad/s."),
 ]
-StallSpeed = Annotated[NonNegativeSpeed, Field(description="A slower robot has stalled, m/s.")]
-ProgressWindow = Annotated[PositiveDuration, Field(description="Length of a window, s.")]
+StallSpeed = Annotated[
+    NonNegativeSpeed, Field(default=0.05, description="A slower robot has stalled, m/s.")
+]
+ProgressWindow = Annotated[
+    PositiveDuration, Field(default=5.0, description="Length of a window, s.")
+]
 ProgressDistance = Annotated[
-    PositiveLength, Field(description="Coming nearer by less is no progress, m.")
+    PositiveLength, Field(default=0.1, description="Coming nearer by less is not progress, m.")
 ]

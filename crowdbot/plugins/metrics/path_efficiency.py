@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Literal
 
-from crowdbot.core.laws import Laws
-from crowdbot.core.score_label import MetricComponent, ScoreLabel
-from crowdbot.dsl.base import MetricSpec
+from crowdbot.dsl import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import (
     JerkWeight,
     JerkZeroTol,
@@ -15,87 +14,69 @@ from crowdbot.plugins.metrics.parameters import (
     ZeroTol,
 )
 
+declare = partial(declare_metric, category="path efficiency")
+
 
 class RelativeTimeToGoalSpec(MetricSpec):
     """Time to goal alone, over time to goal in the crowd."""
 
     kind: Literal["relative_time_to_goal"] = "relative_time_to_goal"
-    zero_tol: ZeroTol = 1e-9
+    zero_tol: ZeroTol
+
+
+RELATIVE_TIME_TO_GOAL = declare(
+    RelativeTimeToGoalSpec,
+    symbol="T_rtg",
+    unit="1",
+    better="higher",
+    minimum=0.0,
+    self_value=1.0,
+    variants=("literal", "corrected"),
+)
 
 
 class RelativePathLengthSpec(MetricSpec):
     """Length of the path alone, over length of the path in the crowd."""
 
     kind: Literal["relative_path_length"] = "relative_path_length"
-    zero_tol: ZeroTol = 1e-9
-    jump_speed: JumpSpeed = 10.0
+    zero_tol: ZeroTol
+    jump_speed: JumpSpeed
+
+
+RELATIVE_PATH_LENGTH = declare(
+    RelativePathLengthSpec,
+    symbol="L_rp",
+    unit="1",
+    better="higher",
+    minimum=0.0,
+    self_value=1.0,
+    variants=("literal", "corrected"),
+)
 
 
 class RelativeJerkSpec(MetricSpec):
     """Jerk of the motion alone, over jerk of the motion in the crowd."""
 
     kind: Literal["relative_jerk"] = "relative_jerk"
-    jerk_weight: JerkWeight = 1.0
-    jerk_zero_tol: JerkZeroTol = 1e-6
-    sampling_tol: SamplingTol = 0.01
-    jump_speed: JumpSpeed = 10.0
+    jerk_weight: JerkWeight
+    jerk_zero_tol: JerkZeroTol
+    sampling_tol: SamplingTol
+    jump_speed: JumpSpeed
 
 
-RELATIVE_TIME_TO_GOAL = MetricComponent(
-    spec=RelativeTimeToGoalSpec,
-    build="crowdbot.plugins.metrics.path_efficiency_build:RelativeTimeToGoal",
-    summary="T_rtg: time to goal alone, over time to goal in the crowd",
-    label=ScoreLabel(
-        metric="relative_time_to_goal",
-        symbol="T_rtg",
-        category="path efficiency",
-        unit="1",
-        better="higher",
-        variants=("literal", "corrected"),
-    ),
-    laws={
-        "literal": Laws(least=0.0, itself=1.0),
-        "corrected": Laws(least=0.0, itself=1.0),
-    },
-)
-RELATIVE_PATH_LENGTH = MetricComponent(
-    spec=RelativePathLengthSpec,
-    build="crowdbot.plugins.metrics.path_efficiency_build:RelativePathLength",
-    summary="L_rp: length of the path alone, over length of the path in the crowd",
-    label=ScoreLabel(
-        metric="relative_path_length",
-        symbol="L_rp",
-        category="path efficiency",
-        unit="1",
-        better="higher",
-        variants=("literal", "corrected"),
-    ),
-    laws={
-        "literal": Laws(least=0.0, itself=1.0),
-        "corrected": Laws(least=0.0, itself=1.0),
-    },
-)
-RELATIVE_JERK = MetricComponent(
-    spec=RelativeJerkSpec,
-    build="crowdbot.plugins.metrics.path_efficiency_build:RelativeJerk",
-    summary="J_rp: jerk of the motion alone, over jerk of the motion in the crowd",
-    label=ScoreLabel(
-        metric="relative_jerk",
-        symbol="J_rp",
-        category="path efficiency",
-        unit="1",
-        better="higher",
-        variants=("literal", "corrected", "linear", "angular", "norm", "legacy"),
-    ),
-    laws={
-        "literal": Laws(itself=1.0, exceptions={"reflect": "the signed yaw rate changes its sign"}),
-        "corrected": Laws(least=0.0, itself=1.0),
-        "linear": Laws(least=0.0, itself=1.0),
-        "angular": Laws(least=0.0, itself=1.0),
-        "norm": Laws(least=0.0, itself=1.0),
-        "legacy": Laws(
-            least=0.0, itself=1.0, exceptions={"rotate": "|x| + |y| depends on the axes"}
-        ),
+RELATIVE_JERK = declare(
+    RelativeJerkSpec,
+    symbol="J_rp",
+    unit="1",
+    better="higher",
+    self_value=1.0,
+    variants={
+        "literal": {"changes_with": {"reflect": "the signed yaw rate changes its sign"}},
+        "corrected": {"minimum": 0.0},
+        "linear": {"minimum": 0.0},
+        "angular": {"minimum": 0.0},
+        "norm": {"minimum": 0.0},
+        "legacy": {"minimum": 0.0, "changes_with": {"rotate": "|x| + |y| depends on the axes"}},
     },
 )
 

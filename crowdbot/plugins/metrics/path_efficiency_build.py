@@ -7,21 +7,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.encounter import robot_of
-from crowdbot.core.interfaces import References
-from crowdbot.core.preprocess import (
-    cropped,
-    finite,
+from crowdbot.core.interfaces import (
+    Array,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
     forward_speed,
     path_length,
     travel_time,
-    turns,
-    valid_robot_steps,
+    truncate_at_arrival,
     yaw_rate,
 )
-from crowdbot.core.score import Score
-from crowdbot.core.score_label import ScoreLabel
-from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.core.trajectories.encounters import robot_of
+from crowdbot.core.trajectories.preprocess import heading_changes, inf_to_nan, valid_robot_steps
 from crowdbot.plugins.metrics.path_efficiency import (
     RELATIVE_JERK,
     RELATIVE_PATH_LENGTH,
@@ -43,7 +42,9 @@ class RelativeTimeToGoal:
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal`` and ``corrected``."""
-        return _alone_over_crowded(RELATIVE_TIME_TO_GOAL.label, self._time, run, refs, self.spec)
+        return _alone_over_crowded(
+            ScoreFactory(RELATIVE_TIME_TO_GOAL), self._time, run, refs, self.spec
+        )
 
     def _time(self, run: Trajectories) -> float:
         return travel_time(run, robot_of(run))
@@ -57,7 +58,9 @@ class RelativePathLength:
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal`` and ``corrected``."""
-        return _alone_over_crowded(RELATIVE_PATH_LENGTH.label, self._length, run, refs, self.spec)
+        return _alone_over_crowded(
+            ScoreFactory(RELATIVE_PATH_LENGTH), self._length, run, refs, self.spec
+        )
 
     def _length(self, run: Trajectories) -> float:
         return path_length(run.t, robot_of(run), self.spec.jump_speed)
@@ -71,29 +74,29 @@ class RelativeJerk:
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal`` telescopes and has a sign; the others are total variations."""
-        label = RELATIVE_JERK.label
+        factory = ScoreFactory(RELATIVE_JERK)
         if reason := obstacle(run, refs):
-            return label.all_undefined(reason)
+            return factory.all_undefined(reason)
         assert refs.robot_alone is not None
-        alone, run = cropped(refs.robot_alone), cropped(run)
+        alone, run = truncate_at_arrival(refs.robot_alone), truncate_at_arrival(run)
         if min(len(alone.t), len(run.t)) < 3:
-            return label.all_undefined("too_few_samples")
+            return factory.all_undefined("too_few_samples")
         j_alone, j_run = self._jerk(alone), self._jerk(run)
         scores = [self._literal(j_alone["literal"], j_run["literal"], run)]
-        others = label.variants[1:]
+        others = factory.variants[1:]
         if self._mismatch(alone.t, run.t):
-            return scores + label.all_undefined("sampling_mismatch", others)
+            return scores + factory.all_undefined("sampling_mismatch", others)
         return scores + [
-            _grows(label, v, j_alone[v], j_run[v], run, self.spec.jerk_zero_tol) for v in others
+            _grows(factory, v, j_alone[v], j_run[v], run, self.spec.jerk_zero_tol) for v in others
         ]
 
     def _literal(self, alone: float, crowded: float, run: Trajectories) -> Score:
-        label = RELATIVE_JERK.label
+        factory = ScoreFactory(RELATIVE_JERK)
         if robot_of(run).goal_time is None:
-            return label.undefined("literal", "goal_not_reached")
+            return factory.undefined("literal", "goal_not_reached")
         if abs(crowded) <= self.spec.jerk_zero_tol:
-            return label.undefined("literal", "zero_denominator")
-        return label.ok("literal", alone / crowded, {"alone": alone, "crowded": crowded})
+            return factory.undefined("literal", "zero_denominator")
+        return factory.ok("literal", alone / crowded, {"alone": alone, "crowded": crowded})
 
     def _mismatch(self, a: Array, b: Array) -> bool:
         """Whether the median time steps differ by more than the tolerance of the larger."""
@@ -120,8 +123,8 @@ class RelativeJerk:
         """Of x, y and heading, over pairs of valid steps; no dt."""
         robot = robot_of(run)
         valid = valid_robot_steps(run.t, robot, self.spec.jump_speed)
-        turn = turns(run.t, robot, self.spec.jump_speed)
-        steps = [np.where(valid, np.diff(finite(p)), np.nan) for p in (robot.x, robot.y)]
+        turn = heading_changes(run.t, robot, self.spec.jump_speed)
+        steps = [np.where(valid, np.diff(inf_to_nan(p)), np.nan) for p in (robot.x, robot.y)]
         return sum(_sum(np.abs(np.diff(s))) for s in (*steps, turn))
 
 
@@ -137,7 +140,7 @@ def obstacle(run: Trajectories, refs: References) -> str:
 
 
 def _alone_over_crowded(
-    label: ScoreLabel,
+    factory: ScoreFactory,
     measure: Callable[[Trajectories], float],
     run: Trajectories,
     refs: References,
@@ -145,19 +148,19 @@ def _alone_over_crowded(
 ) -> list[Score]:
     """Scores ``literal`` and ``corrected``; they differ in a run that never arrived."""
     if reason := obstacle(run, refs):
-        return label.all_undefined(reason)
+        return factory.all_undefined(reason)
     assert refs.robot_alone is not None
-    run = cropped(run)
-    alone, crowded = measure(cropped(refs.robot_alone)), measure(run)
-    corrected = _grows(label, "corrected", alone, crowded, run, spec.zero_tol)
+    run = truncate_at_arrival(run)
+    alone, crowded = measure(truncate_at_arrival(refs.robot_alone)), measure(run)
+    corrected = _grows(factory, "corrected", alone, crowded, run, spec.zero_tol)
     if robot_of(run).goal_time is None:
-        return [label.undefined("literal", "goal_not_reached"), corrected]
+        return [factory.undefined("literal", "goal_not_reached"), corrected]
     both = {"alone": alone, "crowded": crowded}
-    return [label.ratio("literal", alone, crowded, spec.zero_tol, both), corrected]
+    return [factory.ratio("literal", alone, crowded, spec.zero_tol, both), corrected]
 
 
 def _grows(
-    label: ScoreLabel,
+    factory: ScoreFactory,
     variant: str,
     alone: float,
     crowded: float,
@@ -167,9 +170,9 @@ def _grows(
     """Alone over crowded; known from above without arrival, as the quantity only grows."""
     both = {"alone": alone, "crowded": crowded}
     if robot_of(run).goal_time is not None:
-        return label.ratio(variant, alone, crowded, zero_tol, both)
+        return factory.ratio(variant, alone, crowded, zero_tol, both)
     upper = alone / crowded if crowded > zero_tol else None
-    return label.censored(variant, "goal_not_reached", upper=upper, extras=both)
+    return factory.censored(variant, "goal_not_reached", upper=upper, extras=both)
 
 
 def _sum(values: Array) -> float:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Literal
 
-from crowdbot.core.laws import Laws
-from crowdbot.core.score_label import MetricComponent, ScoreLabel
-from crowdbot.dsl.base import MetricSpec
+from crowdbot.dsl import MetricSpec, declare_metric
+
+declare = partial(declare_metric, category="planner")
 
 
 class MeanPlannerTimeSpec(MetricSpec):
@@ -15,41 +16,19 @@ class MeanPlannerTimeSpec(MetricSpec):
     kind: Literal["mean_planner_time"] = "mean_planner_time"
 
 
+MEAN_PLANNER_TIME = declare(
+    MeanPlannerTimeSpec, symbol="t_p", unit="s", better="lower", minimum=0.0
+)
+
+
 class MaxPlannerTimeSpec(MetricSpec):
     """Longest time of a planner step."""
 
     kind: Literal["max_planner_time"] = "max_planner_time"
 
 
-MEAN_PLANNER_TIME = MetricComponent(
-    spec=MeanPlannerTimeSpec,
-    build="crowdbot.plugins.metrics.planner_time_build:MeanPlannerTime",
-    summary="t_p: mean time of a planner step",
-    label=ScoreLabel(
-        metric="mean_planner_time",
-        symbol="t_p",
-        category="planner",
-        unit="s",
-        better="lower",
-    ),
-    laws={
-        "corrected": Laws(least=0.0),
-    },
-)
-MAX_PLANNER_TIME = MetricComponent(
-    spec=MaxPlannerTimeSpec,
-    build="crowdbot.plugins.metrics.planner_time_build:MaxPlannerTime",
-    summary="t_p,max: longest time of a planner step",
-    label=ScoreLabel(
-        metric="max_planner_time",
-        symbol="t_p,max",
-        category="planner",
-        unit="s",
-        better="lower",
-    ),
-    laws={
-        "corrected": Laws(least=0.0),
-    },
+MAX_PLANNER_TIME = declare(
+    MaxPlannerTimeSpec, symbol="t_p,max", unit="s", better="lower", minimum=0.0
 )
 
 COMPONENTS = (

@@ -7,10 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.interfaces import References
-from crowdbot.core.score import Score
-from crowdbot.core.score_label import ScoreLabel
-from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.core.interfaces import Array, References, Score, ScoreFactory, Trajectories
 from crowdbot.plugins.metrics.planner_time import (
     MAX_PLANNER_TIME,
     MEAN_PLANNER_TIME,
@@ -28,9 +25,9 @@ class MeanPlannerTime:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Over all steps of the record."""
         del refs
-        label = MEAN_PLANNER_TIME.label
-        steps = _steps(label, run)
-        return steps if isinstance(steps, list) else [label.ok("corrected", steps.mean())]
+        factory = ScoreFactory(MEAN_PLANNER_TIME)
+        steps = _steps(factory, run)
+        return steps if isinstance(steps, list) else [factory.ok("corrected", steps.mean())]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,15 +39,15 @@ class MaxPlannerTime:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Over all steps of the record."""
         del refs
-        label = MAX_PLANNER_TIME.label
-        steps = _steps(label, run)
-        return steps if isinstance(steps, list) else [label.ok("corrected", steps.max())]
+        factory = ScoreFactory(MAX_PLANNER_TIME)
+        steps = _steps(factory, run)
+        return steps if isinstance(steps, list) else [factory.ok("corrected", steps.max())]
 
 
-def _steps(label: ScoreLabel, run: Trajectories) -> Array | list[Score]:
+def _steps(factory: ScoreFactory, run: Trajectories) -> Array | list[Score]:
     """Known durations of steps, s; or why there are none."""
     if run.robot is None:
-        return label.all_undefined("invalid_no_robot")
+        return factory.all_undefined("invalid_no_robot")
     steps = run.planner_step_time
     known = np.empty(0) if steps is None else steps[np.isfinite(steps)]
-    return known if len(known) else label.all_undefined("invalid_no_planner_time")
+    return known if len(known) else factory.all_undefined("invalid_no_planner_time")

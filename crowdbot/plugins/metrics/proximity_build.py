@@ -8,13 +8,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.encounter import encounter
-from crowdbot.core.interfaces import References
-from crowdbot.core.preprocess import Mask, cropped, duration, time_weights
-from crowdbot.core.score import Score
-from crowdbot.core.score_label import ScoreLabel
-from crowdbot.core.trajectory import Array, Trajectories
-from crowdbot.core.trips import DISTANCE_TOLERANCE
+from crowdbot.core.interfaces import (
+    Array,
+    Mask,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    duration,
+    time_weights,
+    truncate_at_arrival,
+)
+from crowdbot.core.trajectories.encounters import encounter
+from crowdbot.core.trajectories.trips import DISTANCE_TOLERANCE
 from crowdbot.plugins.metrics.proximity import (
     LOCAL_DENSITY,
     NEIGHBOUR_COUNT,
@@ -36,33 +42,33 @@ class Proximity:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal``: sum over samples; ``corrected``: mean over time, with a floor."""
         del refs
-        label = PROXIMITY.label
+        factory = ScoreFactory(PROXIMITY)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         distance = encounter(run, np.inf).distance
         nearest = np.where(np.isfinite(distance), distance, np.inf).min(axis=1, initial=np.inf)
         shortest = float(nearest.min())
         if not np.isfinite(shortest):
-            return label.all_undefined("no_agents")
+            return factory.all_undefined("no_agents")
         return [self._literal(nearest), self._corrected(run.t, nearest, shortest)]
 
     def _literal(self, nearest: Array) -> Score:
         if nearest.min() <= self.spec.length_tol:
-            return PROXIMITY.label.undefined("literal", "zero_distance")
-        return PROXIMITY.label.ok("literal", (1.0 / nearest).sum())
+            return ScoreFactory(PROXIMITY).undefined("literal", "zero_distance")
+        return ScoreFactory(PROXIMITY).ok("literal", (1.0 / nearest).sum())
 
     def _corrected(self, t: Array, nearest: Array, shortest: float) -> Score:
-        label = PROXIMITY.label
+        factory = ScoreFactory(PROXIMITY)
         if (span := duration(t)) <= 0:
-            return label.undefined("corrected", "too_few_samples")
+            return factory.undefined("corrected", "too_few_samples")
         mean = (
             float(time_weights(t) @ (1.0 / np.maximum(nearest, self.spec.proximity_floor))) / span
         )
         extras = {"shortest_distance": shortest}
         if mean > 0:
             extras["harmonic_mean_distance"] = 1.0 / mean
-        return label.ok("corrected", mean, extras)
+        return factory.ok("corrected", mean, extras)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,15 +80,15 @@ class NormalizedProximity:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal``, ``corrected``: spread over mean; ``barycentre``: what the text says."""
         del refs
-        label = NORMALIZED_PROXIMITY.label
+        factory = ScoreFactory(NORMALIZED_PROXIMITY)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         pair = encounter(run, np.inf)
         near = pair.distance <= self.spec.neighbour_radius + DISTANCE_TOLERANCE
         count = near.sum(axis=1)
         if not count.any():
-            return label.all_undefined("no_neighbours")
+            return factory.all_undefined("no_neighbours")
         share = np.maximum(count, 1)
         mean = np.where(near, pair.distance, 0.0).sum(axis=1) / share
         off = np.where(near, pair.distance - mean[:, None], 0.0)
@@ -98,17 +104,17 @@ class NormalizedProximity:
 
     def _mean(self, variant: str, above: Array, below: Array, rows: Mask, weights: Array) -> Score:
         """Weighted mean of ratios over the samples that have one."""
-        label = NORMALIZED_PROXIMITY.label
+        factory = ScoreFactory(NORMALIZED_PROXIMITY)
         if not rows.any():
-            return label.undefined(variant, "fewer_than_two_neighbours")
+            return factory.undefined(variant, "fewer_than_two_neighbours")
         usable = rows & (below > self.spec.length_tol)
         if not usable.any():
-            return label.undefined(variant, "zero_distance")
+            return factory.undefined(variant, "zero_distance")
         total = float(weights[usable].sum())
         if total <= 0:
-            return label.undefined(variant, "too_few_samples")
+            return factory.undefined(variant, "too_few_samples")
         mean = float(weights[usable] @ (above[usable] / below[usable])) / total
-        return label.ok(variant, mean, {"coverage": total / float(weights.sum())})
+        return factory.ok(variant, mean, {"coverage": total / float(weights.sum())})
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +126,7 @@ class NeighbourCount:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Mean over time."""
         del refs
-        return [_crowding(NEIGHBOUR_COUNT.label, run, self.spec.neighbour_radius, 1.0)]
+        return [_crowding(ScoreFactory(NEIGHBOUR_COUNT), run, self.spec.neighbour_radius, 1.0)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,14 +139,14 @@ class LocalDensity:
         """Mean over time of the neighbours per area of their circle."""
         del refs
         radius = self.spec.neighbour_radius
-        return [_crowding(LOCAL_DENSITY.label, run, radius, math.pi * radius**2)]
+        return [_crowding(ScoreFactory(LOCAL_DENSITY), run, radius, math.pi * radius**2)]
 
 
-def _crowding(label: ScoreLabel, run: Trajectories, radius: float, area: float) -> Score:
+def _crowding(factory: ScoreFactory, run: Trajectories, radius: float, area: float) -> Score:
     if run.robot is None:
-        return label.undefined("corrected", "invalid_no_robot")
-    run = cropped(run)
+        return factory.undefined("corrected", "invalid_no_robot")
+    run = truncate_at_arrival(run)
     if (span := duration(run.t)) <= 0:
-        return label.undefined("corrected", "too_few_samples")
+        return factory.undefined("corrected", "too_few_samples")
     count = (encounter(run, np.inf).distance <= radius + DISTANCE_TOLERANCE).sum(axis=1)
-    return label.ok("corrected", time_weights(run.t) @ count / span / area)
+    return factory.ok("corrected", time_weights(run.t) @ count / span / area)

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from crowdbot.core.interfaces import References
-from crowdbot.core.questionnaires import TLX_SCALES, USE_ITEMS, Answer
-from crowdbot.core.score import Score
-from crowdbot.core.trajectory import Trajectories
+from crowdbot.core.interfaces import References, Score, ScoreFactory, Trajectories
+from crowdbot.core.trajectories.questionnaires import TLX_SCALES, USE_ITEMS, Answer
 from crowdbot.plugins.metrics.questionnaire import NASA_TLX, USE, NasaTlxSpec, UseSpec
 
 #: Number of pairs of scales that are compared.
@@ -24,20 +22,20 @@ class NasaTlx:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``raw``: mean rating; ``weighted``: by how often each scale was chosen."""
         del run
-        label, sheet = NASA_TLX.label, refs.questionnaires
+        factory, sheet = ScoreFactory(NASA_TLX), refs.questionnaires
         if sheet is None or not any(r is not None for r in sheet.tlx_ratings.values()):
-            return label.all_undefined("no_answers")
+            return factory.all_undefined("no_answers")
         ratings = _complete(sheet.tlx_ratings, 100.0)
         if ratings is None:
-            return label.all_undefined("invalid_ratings")
-        raw = label.ok("raw", sum(ratings) / len(ratings))
+            return factory.all_undefined("invalid_ratings")
+        raw = factory.ok("raw", sum(ratings) / len(ratings))
         if not any(w is not None for w in sheet.tlx_weights.values()):
-            return [raw, label.undefined("weighted", "no_weights")]
+            return [raw, factory.undefined("weighted", "no_weights")]
         weights = _complete(sheet.tlx_weights, 5.0)
         if weights is None or sum(weights) != PAIRS or any(w != int(w) for w in weights):
-            return [raw, label.undefined("weighted", "invalid_weights")]
+            return [raw, factory.undefined("weighted", "invalid_weights")]
         total = sum(w * r for w, r in zip(weights, ratings, strict=True))
-        return [raw, label.ok("weighted", total / PAIRS)]
+        return [raw, factory.ok("weighted", total / PAIRS)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,16 +48,16 @@ class Use:
         """Mean item of each dimension."""
         del run
         given = {} if refs.questionnaires is None else refs.questionnaires.use
-        return [self._dimension(name, given.get(name, ())) for name in USE.label.variants]
+        return [self._dimension(name, given.get(name, ())) for name in ScoreFactory(USE).variants]
 
     def _dimension(self, name: str, items: Sequence[Answer]) -> Score:
         answers = [a for a in items if a is not None]
         if not answers:
-            return USE.label.undefined(name, "no_answers")
+            return ScoreFactory(USE).undefined(name, "no_answers")
         if len(items) != USE_ITEMS[name] or not all(1 <= a <= 7 for a in answers):
-            return USE.label.undefined(name, "invalid_items")
+            return ScoreFactory(USE).undefined(name, "invalid_items")
         extras = {"answered": float(len(answers))}
-        return USE.label.ok(name, sum(answers) / len(answers), extras)
+        return ScoreFactory(USE).ok(name, sum(answers) / len(answers), extras)
 
 
 def _complete(given: Mapping[str, Answer], most: float) -> list[float] | None:

@@ -7,12 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.encounter import robot_of
-from crowdbot.core.interfaces import References
-from crowdbot.core.preprocess import cropped, finite
-from crowdbot.core.score import Score
-from crowdbot.core.score_label import ScoreLabel
-from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.core.interfaces import (
+    Array,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    truncate_at_arrival,
+)
+from crowdbot.core.trajectories.encounters import robot_of
+from crowdbot.core.trajectories.preprocess import inf_to_nan
 from crowdbot.plugins.metrics.pairing_build import paired_samples
 from crowdbot.plugins.metrics.reference_path import (
     ADE_TO_REFERENCE,
@@ -30,10 +34,10 @@ class AdeToReference:
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Unweighted mean over the common samples, up to the earlier arrival."""
-        apart = _apart(ADE_TO_REFERENCE.label, run, refs)
+        apart = _apart(ScoreFactory(ADE_TO_REFERENCE), run, refs)
         if isinstance(apart, list):
             return apart
-        return [ADE_TO_REFERENCE.label.ok("corrected", apart.mean())]
+        return [ScoreFactory(ADE_TO_REFERENCE).ok("corrected", apart.mean())]
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,21 +48,23 @@ class FdeToReference:
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """At the last common sample."""
-        apart = _apart(FDE_TO_REFERENCE.label, run, refs)
+        apart = _apart(ScoreFactory(FDE_TO_REFERENCE), run, refs)
         if isinstance(apart, list):
             return apart
-        return [FDE_TO_REFERENCE.label.ok("corrected", apart[-1])]
+        return [ScoreFactory(FDE_TO_REFERENCE).ok("corrected", apart[-1])]
 
 
-def _apart(label: ScoreLabel, run: Trajectories, refs: References) -> Array | list[Score]:
+def _apart(factory: ScoreFactory, run: Trajectories, refs: References) -> Array | list[Score]:
     """Distance between both positions at each common sample (K,), m; or why there is none."""
     if run.robot is None:
-        return label.all_undefined("invalid_no_robot")
+        return factory.all_undefined("invalid_no_robot")
     if refs.robot_alone is None or refs.robot_alone.robot is None:
-        return label.all_undefined("no_reference")
-    run, alone = cropped(run), cropped(refs.robot_alone)
+        return factory.all_undefined("no_reference")
+    run, alone = truncate_at_arrival(run), truncate_at_arrival(refs.robot_alone)
     i, j = paired_samples(run.t, alone.t)
     one, two = robot_of(run), robot_of(alone)
-    apart = np.hypot(*(finite(a)[i] - finite(b)[j] for a, b in ((one.x, two.x), (one.y, two.y))))
+    apart = np.hypot(
+        *(inf_to_nan(a)[i] - inf_to_nan(b)[j] for a, b in ((one.x, two.x), (one.y, two.y)))
+    )
     apart = apart[np.isfinite(apart)]
-    return apart if len(apart) else label.all_undefined("sampling_mismatch")
+    return apart if len(apart) else factory.all_undefined("sampling_mismatch")

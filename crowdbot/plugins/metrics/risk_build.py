@@ -7,12 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.encounter import approach
-from crowdbot.core.interfaces import References
-from crowdbot.core.preprocess import cropped, duration, time_weights
-from crowdbot.core.score import Score
-from crowdbot.core.score_label import ScoreLabel
-from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.core.interfaces import (
+    Array,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    duration,
+    time_weights,
+    truncate_at_arrival,
+)
+from crowdbot.core.trajectories.encounters import approach
 from crowdbot.plugins.metrics.risk import (
     EXPECTED_SEVERITY,
     INTEGRATED_TIME_TO_COLLISION,
@@ -39,20 +44,20 @@ class Risk:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal``, ``corrected`` (with its ``mean`` over time) and ``exposed_time``."""
         del refs
-        label = RISK.label
+        factory = ScoreFactory(RISK)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         tau = first_contact(run, self.spec)
-        literal = label.ok("literal", tau[np.isfinite(tau)].sum())
+        literal = factory.ok("literal", tau[np.isfinite(tau)].sum())
         if (span := duration(run.t)) <= 0:
-            return [literal, *label.all_undefined("too_few_samples", label.variants[1:])]
+            return [literal, *factory.all_undefined("too_few_samples", factory.variants[1:])]
         weights, horizon = time_weights(run.t), self.spec.risk_horizon
         imminence = float(weights @ np.maximum(0.0, 1.0 - tau / horizon))
         return [
             literal,
-            label.ok("corrected", imminence, {"mean": imminence / span}),
-            label.ok("exposed_time", weights @ (tau < horizon)),
+            factory.ok("corrected", imminence, {"mean": imminence / span}),
+            factory.ok("exposed_time", weights @ (tau < horizon)),
         ]
 
 
@@ -65,18 +70,18 @@ class ExpectedSeverity:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """The speed is the one of whom the robot would touch first; of several, the fastest."""
         del refs
-        label = EXPECTED_SEVERITY.label
+        factory = ScoreFactory(EXPECTED_SEVERITY)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         tau, square = self._first_and_speed(run)
         ahead = np.isfinite(tau)
-        literal = label.ok("literal", square[ahead] @ tau[ahead])
+        literal = factory.ok("literal", square[ahead] @ tau[ahead])
         if (span := duration(run.t)) <= 0:
-            return [literal, label.undefined("corrected", "too_few_samples")]
+            return [literal, factory.undefined("corrected", "too_few_samples")]
         imminence = np.maximum(0.0, 1.0 - tau / self.spec.risk_horizon)
         total = float(time_weights(run.t) @ (square * imminence))
-        return [literal, label.ok("corrected", total, {"mean": total / span})]
+        return [literal, factory.ok("corrected", total, {"mean": total / span})]
 
     def _first_and_speed(self, run: Trajectories) -> tuple[Array, Array]:
         """Least time to contact (N,), s, and the squared relative speed there, m²/s²."""
@@ -97,7 +102,7 @@ class TimeExposed:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Time with somebody nearer than the horizon."""
         del refs
-        return _over_time(TIME_EXPOSED.label, run, self.spec, exposed=True)
+        return _over_time(ScoreFactory(TIME_EXPOSED), run, self.spec, exposed=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +114,7 @@ class IntegratedTimeToCollision:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Integral of horizon minus time to contact, where positive."""
         del refs
-        return _over_time(INTEGRATED_TIME_TO_COLLISION.label, run, self.spec, exposed=False)
+        return _over_time(ScoreFactory(INTEGRATED_TIME_TO_COLLISION), run, self.spec, exposed=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,13 +126,13 @@ class MinTimeToCollision:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """0 once there was contact; undefined where no collision was ever ahead."""
         del refs
-        label = MIN_TIME_TO_COLLISION.label
+        factory = ScoreFactory(MIN_TIME_TO_COLLISION)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        least = float(first_contact(cropped(run), self.spec).min())
+            return factory.all_undefined("invalid_no_robot")
+        least = float(first_contact(truncate_at_arrival(run), self.spec).min())
         if not np.isfinite(least):
-            return label.all_undefined("no_neighbours")
-        return [label.ok("corrected", least)]
+            return factory.all_undefined("no_neighbours")
+        return [factory.ok("corrected", least)]
 
 
 _Spec = (
@@ -147,18 +152,18 @@ def first_contact(run: Trajectories, spec: _Spec) -> Array:
 
 
 def _over_time(
-    label: ScoreLabel,
+    factory: ScoreFactory,
     run: Trajectories,
     spec: TimeExposedSpec | IntegratedTimeToCollisionSpec,
     *,
     exposed: bool,
 ) -> list[Score]:
     if run.robot is None:
-        return label.all_undefined("invalid_no_robot")
-    run = cropped(run)
+        return factory.all_undefined("invalid_no_robot")
+    run = truncate_at_arrival(run)
     if duration(run.t) <= 0:
-        return label.all_undefined("too_few_samples")
+        return factory.all_undefined("too_few_samples")
     tau = first_contact(run, spec)
     short = np.maximum(0.0, spec.risk_horizon - tau)
     values = (tau < spec.risk_horizon) if exposed else short
-    return [label.ok("corrected", time_weights(run.t) @ values)]
+    return [factory.ok("corrected", time_weights(run.t) @ values)]

@@ -7,11 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.commands import Commands
-from crowdbot.core.interfaces import References
-from crowdbot.core.preprocess import wrap
-from crowdbot.core.score import Score
-from crowdbot.core.trajectory import Array, Trajectories
+from crowdbot.core.interfaces import Array, Commands, References, Score, ScoreFactory, Trajectories
+from crowdbot.core.trajectories.preprocess import wrap
 from crowdbot.plugins.metrics.shared_control import (
     AGREEMENT,
     FLUENCY,
@@ -40,21 +37,21 @@ class Agreement:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal``: angles of arctan(v/w); ``corrected``: full angles of scaled commands."""
         del run
-        label, c = AGREEMENT.label, refs.commands
+        factory, c = ScoreFactory(AGREEMENT), refs.commands
         if c is None:
-            return label.all_undefined("no_command")
+            return factory.all_undefined("no_command")
         moves = [
             (np.abs(v) > self.spec.zero_tol) | (np.abs(w) > self.spec.zero_tol)
             for v, w in ((c.v_user, c.w_user), (c.v_sc, c.w_sc))
         ]
         used = np.where(moves[0] & moves[1], c.durations, 0.0)
         if used.sum() <= 0:
-            return label.all_undefined("no_command")
+            return factory.all_undefined("no_command")
         extras = {"coverage": float(used.sum() / c.durations.sum())}
         literal = self._principal(c.v_user, c.w_user) - self._principal(c.v_sc, c.w_sc)
         corrected = wrap(direction(c, c.v_user, c.w_user) - direction(c, c.v_sc, c.w_sc))
         return [
-            label.ok(variant, used @ (1.0 - np.abs(off) / np.pi) / used.sum(), extras)
+            factory.ok(variant, used @ (1.0 - np.abs(off) / np.pi) / used.sum(), extras)
             for variant, off in (("literal", literal), ("corrected", corrected))
         ]
 
@@ -77,22 +74,22 @@ class UserInputEntropy:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """The seed gives no formula, so there is no ``literal`` value."""
         del run
-        label = USER_INPUT_ENTROPY.label
-        literal = label.undefined("literal", "no_formula_in_seed")
+        factory = ScoreFactory(USER_INPUT_ENTROPY)
+        literal = factory.undefined("literal", "no_formula_in_seed")
         if refs.commands is None:
-            return [literal, label.undefined("corrected", "no_command")]
+            return [literal, factory.undefined("corrected", "no_command")]
         baseline = refs.commands_baseline
         drives = (refs.commands, refs.commands if baseline is None else baseline)
         errors = [self._errors(c) for c in drives]
         if errors[0] is None or errors[1] is None:
-            return [literal, label.undefined("corrected", "too_few_samples")]
+            return [literal, factory.undefined("corrected", "too_few_samples")]
         alpha = float(np.percentile(np.abs(errors[1]), PERCENTILE))
         extras = {"alpha": alpha, "self_calibrated": float(baseline is None)}
         if alpha > self.spec.zero_tol:
-            return [literal, label.ok("corrected", entropy(errors[0], alpha), extras)]
+            return [literal, factory.ok("corrected", entropy(errors[0], alpha), extras)]
         if np.all(np.abs(errors[0]) <= self.spec.zero_tol):
-            return [literal, label.ok("corrected", 0.0, extras)]
-        return [literal, label.undefined("corrected", "zero_alpha")]
+            return [literal, factory.ok("corrected", 0.0, extras)]
+        return [literal, factory.undefined("corrected", "zero_alpha")]
 
     def _errors(self, c: Commands) -> Array | None:
         """What a Taylor series of second order fails to predict, rad; None of too few angles."""
@@ -130,11 +127,11 @@ class Fluency:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal``: raw differences; ``corrected``: the worse of both scaled channels."""
         del run
-        label, c = FLUENCY.label, refs.commands
+        factory, c = ScoreFactory(FLUENCY), refs.commands
         if c is None:
-            return label.all_undefined("no_command")
+            return factory.all_undefined("no_command")
         if len(c.t) < 2:
-            return label.all_undefined("too_few_samples")
+            return factory.all_undefined("too_few_samples")
         dv, dw = np.diff(c.v_user), np.diff(c.w_user)
         channels = {
             "linear": float((1.0 - np.abs(dv) / c.v_max).mean()),
@@ -142,9 +139,9 @@ class Fluency:
         }
         change = float(np.hypot(dv / c.v_max, dw / c.w_max).sum())
         return [
-            label.ok("literal", (1.0 - np.hypot(dv, dw)).mean()),
-            label.ok("corrected", min(channels.values()), channels),
-            label.ok("variation_rate", change / (c.t_end - float(c.t[0]))),
+            factory.ok("literal", (1.0 - np.hypot(dv, dw)).mean()),
+            factory.ok("corrected", min(channels.values()), channels),
+            factory.ok("variation_rate", change / (c.t_end - float(c.t[0]))),
         ]
 
 

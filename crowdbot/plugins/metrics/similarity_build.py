@@ -7,28 +7,32 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.encounter import (
-    encounter,
-    people,
-    people_speeds,
-    people_vectors,
-    robot_of,
-    robot_vector,
-)
-from crowdbot.core.interfaces import References
-from crowdbot.core.preprocess import (
-    cropped,
+from crowdbot.core.interfaces import (
+    Array,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
     path_length,
     time_weights,
     travel_time,
-    turns,
-    valid_agent_steps,
-    wrap,
+    truncate_at_arrival,
 )
-from crowdbot.core.score import Score
-from crowdbot.core.score_label import ScoreLabel
-from crowdbot.core.trajectory import Array, Trajectories
-from crowdbot.core.trips import DISTANCE_TOLERANCE, displacement, durations, walked
+from crowdbot.core.trajectories.encounters import (
+    encounter,
+    people,
+    people_speeds,
+    people_velocities,
+    robot_of,
+    robot_velocities,
+)
+from crowdbot.core.trajectories.preprocess import heading_changes, valid_agent_steps, wrap
+from crowdbot.core.trajectories.trips import (
+    DISTANCE_TOLERANCE,
+    displacement,
+    durations,
+    walked_distances,
+)
 from crowdbot.plugins.metrics.similarity import (
     HEADING_SIMILARITY,
     NEIGHBOUR_VELOCITY_SIMILARITY,
@@ -55,18 +59,18 @@ class TimeToGoalSimilarity:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal``: times; ``corrected``: times per straight distance."""
         del refs
-        label = TIME_TO_GOAL_SIMILARITY.label
+        factory = ScoreFactory(TIME_TO_GOAL_SIMILARITY)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         trips = durations(run)
         if not len(trips):
-            return label.all_undefined("no_trips")
+            return factory.all_undefined("no_trips")
         time, zero_tol = travel_time(run, robot_of(run)), self.spec.zero_tol
-        _, straight = walked(run, self.spec.jump_speed)
+        _, straight = walked_distances(run, self.spec.jump_speed)
         return [
-            _against_mean(label, run, time, trips.seconds, zero_tol),
-            _per_distance(label, run, (time, float(trips.seconds.sum())), straight, self.spec),
+            _against_mean(factory, run, time, trips.seconds, zero_tol),
+            _per_distance(factory, run, (time, float(trips.seconds.sum())), straight, self.spec),
         ]
 
 
@@ -79,17 +83,17 @@ class PathLengthSimilarity:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal``: lengths; ``corrected``: lengths per straight distance."""
         del refs
-        label, jump = PATH_LENGTH_SIMILARITY.label, self.spec.jump_speed
+        factory, jump = ScoreFactory(PATH_LENGTH_SIMILARITY), self.spec.jump_speed
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         if not len(durations(run)):
-            return label.all_undefined("no_trips")
+            return factory.all_undefined("no_trips")
         length, zero_tol = path_length(run.t, robot_of(run), jump), self.spec.zero_tol
-        lengths, straight = walked(run, jump)
+        lengths, straight = walked_distances(run, jump)
         return [
-            _against_mean(label, run, length, lengths, zero_tol),
-            _per_distance(label, run, (length, float(lengths.sum())), straight, self.spec),
+            _against_mean(factory, run, length, lengths, zero_tol),
+            _per_distance(factory, run, (length, float(lengths.sum())), straight, self.spec),
         ]
 
 
@@ -102,31 +106,31 @@ class HeadingSimilarity:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal``: mean ratio of signed rates; ``corrected``: ratio of mean absolute rates."""
         del refs
-        label = HEADING_SIMILARITY.label
+        factory = ScoreFactory(HEADING_SIMILARITY)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         if len(run.t) < 2:
-            return label.all_undefined("too_few_samples")
+            return factory.all_undefined("too_few_samples")
         dt = np.diff(run.t)
-        robot = turns(run.t, robot_of(run), self.spec.jump_speed) / dt
+        robot = heading_changes(run.t, robot_of(run), self.spec.jump_speed) / dt
         rates = self._rates(run)
         known = np.isfinite(rates)
         count = known.sum(axis=1)
         some = (count > 0) & np.isfinite(robot)
         if not some.any():
-            return label.all_undefined("no_heading" if people(run).x.size else "no_agents")
+            return factory.all_undefined("no_heading" if people(run).x.size else "no_agents")
         rates, count = np.where(known, rates, 0.0)[some], count[some]
         signed, absolute = rates.sum(axis=1) / count, np.abs(rates).sum(axis=1) / count
         robot, dt = robot[some], dt[some]
-        literal = mean_ratio(label, robot, signed, len(run.t) - 1, self.spec.zero_tol)
+        literal = mean_ratio(factory, robot, signed, len(run.t) - 1, self.spec.zero_tol)
         means = float(dt @ np.abs(robot)), float(dt @ absolute)
-        return [literal, label.ratio("corrected", *means, self.spec.zero_tol)]
+        return [literal, factory.ratio("corrected", *means, self.spec.zero_tol)]
 
     def _rates(self, run: Trajectories) -> Array:
         """Turning rates of people (N-1, M), rad/s; NaN for who does not walk at both ends."""
         jump = self.spec.jump_speed
-        vx, vy = people_vectors(run, jump)
+        vx, vy = people_velocities(run, jump)
         walks = people_speeds(run, jump) > self.spec.heading_min_speed + SPEED_TOLERANCE
         valid = valid_agent_steps(run.t, people(run), jump) & walks[1:] & walks[:-1]
         turn = wrap(np.diff(np.arctan2(vy, vx), axis=0))
@@ -142,12 +146,12 @@ class VelocitySimilarity:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Speed of the robot against the mean speed of all people."""
         del refs
-        label = VELOCITY_SIMILARITY.label
+        factory = ScoreFactory(VELOCITY_SIMILARITY)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         speeds = people_speeds(run, self.spec.jump_speed)
-        return _speed_scores(label, run, speeds, self.spec, "no_agents")
+        return _speed_scores(factory, run, speeds, self.spec, "no_agents")
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,37 +163,37 @@ class NeighbourVelocitySimilarity:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Speed of the robot against the mean speed of people near it."""
         del refs
-        label = NEIGHBOUR_VELOCITY_SIMILARITY.label
+        factory = ScoreFactory(NEIGHBOUR_VELOCITY_SIMILARITY)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         speeds, distance = (
             people_speeds(run, self.spec.jump_speed),
             encounter(run, self.spec.jump_speed).distance,
         )
         near = distance <= self.spec.neighbour_radius + DISTANCE_TOLERANCE
         nobody = "no_neighbours" if np.isfinite(speeds).any() else "no_agents"
-        return _speed_scores(label, run, np.where(near, speeds, np.nan), self.spec, nobody)
+        return _speed_scores(factory, run, np.where(near, speeds, np.nan), self.spec, nobody)
 
 
 # ------------------------------------------------------------------- trip ratios
 def _against_mean(
-    label: ScoreLabel, run: Trajectories, robot: float, each: Array, zero_tol: float
+    factory: ScoreFactory, run: Trajectories, robot: float, each: Array, zero_tol: float
 ) -> Score:
     """The robot against the mean of completed trips; known from below without arrival."""
     assert run.trips is not None
     if not run.trips.reached.any():
-        return label.undefined("literal", "no_completed_trips")
+        return factory.undefined("literal", "no_completed_trips")
     mean = float(each[run.trips.reached].mean())
     both = {"robot": robot, "agents": mean}
-    ratio = label.ratio("literal", robot, mean, zero_tol, both)
+    ratio = factory.ratio("literal", robot, mean, zero_tol, both)
     if robot_of(run).goal_time is not None or ratio.value is None:
         return ratio
-    return label.censored("literal", "goal_not_reached", lower=ratio.value, extras=both)
+    return factory.censored("literal", "goal_not_reached", lower=ratio.value, extras=both)
 
 
 def _per_distance(
-    label: ScoreLabel,
+    factory: ScoreFactory,
     run: Trajectories,
     amounts: tuple[float, float],
     straight: Array,
@@ -199,25 +203,25 @@ def _per_distance(
     robot = robot_of(run)
     own, others = displacement(robot.x, robot.y), float(straight.sum())
     if min(own, others) <= spec.zero_tol:
-        return label.undefined("corrected", "zero_denominator")
+        return factory.undefined("corrected", "zero_denominator")
     both = {"robot": amounts[0] / own, "agents": amounts[1] / others}
-    return label.ratio("corrected", both["robot"], both["agents"], spec.zero_tol, both)
+    return factory.ratio("corrected", both["robot"], both["agents"], spec.zero_tol, both)
 
 
 # ------------------------------------------------------------------ rates, speeds
 def mean_ratio(
-    label: ScoreLabel, above: Array, below: Array, samples: int, zero_tol: float
+    factory: ScoreFactory, above: Array, below: Array, samples: int, zero_tol: float
 ) -> Score:
     """``literal``: unweighted mean of the ratios that exist, and the share of those."""
     usable = np.abs(below) > zero_tol
     if not usable.any():
-        return label.undefined("literal", "zero_denominator")
+        return factory.undefined("literal", "zero_denominator")
     mean = float((above[usable] / below[usable]).mean())
-    return label.ok("literal", mean, {"coverage": float(usable.sum()) / samples})
+    return factory.ok("literal", mean, {"coverage": float(usable.sum()) / samples})
 
 
 def _speed_scores(
-    label: ScoreLabel,
+    factory: ScoreFactory,
     run: Trajectories,
     speeds: Array,
     spec: VelocitySimilaritySpec | NeighbourVelocitySimilaritySpec,
@@ -226,17 +230,17 @@ def _speed_scores(
     """Mean of ratios, and ratio of means, over the samples at which somebody moves."""
     known = np.isfinite(speeds)
     count = known.sum(axis=1)
-    robot = np.hypot(*robot_vector(run, spec.jump_speed))
+    robot = np.hypot(*robot_velocities(run, spec.jump_speed))
     some = (count > 0) & np.isfinite(robot)
     if not some.any():
-        return label.all_undefined(nobody)
+        return factory.all_undefined(nobody)
     mean = np.where(known, speeds, 0.0)[some].sum(axis=1) / count[some]
     robot, weights = robot[some], time_weights(run.t)[some]
-    literal = mean_ratio(label, robot, mean, len(run.t), spec.zero_tol)
+    literal = mean_ratio(factory, robot, mean, len(run.t), spec.zero_tol)
     moving = mean > spec.zero_tol
     span = float(weights[moving].sum())
     if moving.any() and span <= 0:
-        return [literal, label.undefined("corrected", "too_few_samples")]
+        return [literal, factory.undefined("corrected", "too_few_samples")]
     means = float(weights[moving] @ robot[moving]), float(weights[moving] @ mean[moving])
     extras = {"coverage": float(moving.sum()) / len(run.t)}
-    return [literal, label.ratio("corrected", *means, 0.0, extras)]
+    return [literal, factory.ratio("corrected", *means, 0.0, extras)]

@@ -7,14 +7,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.encounter import robot_of
-from crowdbot.core.footprint import Footprint
-from crowdbot.core.interfaces import References
-from crowdbot.core.preprocess import cropped, duration, path_length, present, travel_time
-from crowdbot.core.score import Score
-from crowdbot.core.score_label import ScoreLabel
-from crowdbot.core.trajectory import Array, Trajectories
-from crowdbot.core.trips import durations
+from crowdbot.core.interfaces import (
+    Array,
+    Footprint,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    duration,
+    path_length,
+    travel_time,
+    truncate_at_arrival,
+)
+from crowdbot.core.trajectories.encounters import robot_of
+from crowdbot.core.trajectories.preprocess import present
+from crowdbot.core.trajectories.trips import durations
 from crowdbot.plugins.metrics.collision_build import events
 from crowdbot.plugins.metrics.path_efficiency_build import obstacle
 from crowdbot.plugins.metrics.task import (
@@ -54,8 +61,8 @@ class Success:
         """Whether there is a time of arrival."""
         del refs
         if run.robot is None:
-            return SUCCESS.label.all_undefined("invalid_no_robot")
-        return [SUCCESS.label.ok("corrected", run.robot.goal_time is not None)]
+            return ScoreFactory(SUCCESS).all_undefined("invalid_no_robot")
+        return [ScoreFactory(SUCCESS).ok("corrected", run.robot.goal_time is not None)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,11 +74,11 @@ class SuccessNoCollision:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Arrival without a contact of the motion with anybody."""
         del refs
-        label = SUCCESS_NO_COLLISION.label
+        factory = ScoreFactory(SUCCESS_NO_COLLISION)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        free = not len(events(cropped(run), self.spec).time)
-        return [label.ok("corrected", run.robot.goal_time is not None and free)]
+            return factory.all_undefined("invalid_no_robot")
+        free = not len(events(truncate_at_arrival(run), self.spec).time)
+        return [factory.ok("corrected", run.robot.goal_time is not None and free)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,8 +91,8 @@ class Timeout:
         """The opposite of ``success``."""
         del refs
         if run.robot is None:
-            return TIMEOUT.label.all_undefined("invalid_no_robot")
-        return [TIMEOUT.label.ok("corrected", run.robot.goal_time is None)]
+            return ScoreFactory(TIMEOUT).all_undefined("invalid_no_robot")
+        return [ScoreFactory(TIMEOUT).ok("corrected", run.robot.goal_time is None)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,14 +104,14 @@ class Spl:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """0 without arrival; else the shortest path over the longer of it and the driven one."""
         del refs
-        label = SPL.label
-        lengths = _shortest_and_driven(label, run, self.spec)
+        factory = ScoreFactory(SPL)
+        lengths = _shortest_and_driven(factory, run, self.spec)
         if isinstance(lengths, list):
             return lengths
         shortest, driven = lengths
         if robot_of(run).goal_time is None:
-            return [label.ok("corrected", 0.0)]
-        return [label.ratio("corrected", shortest, max(driven, shortest), self.spec.zero_tol)]
+            return [factory.ok("corrected", 0.0)]
+        return [factory.ratio("corrected", shortest, max(driven, shortest), self.spec.zero_tol)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,14 +123,14 @@ class PathEfficiency:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Shortest path over driven path; known from above without arrival."""
         del refs
-        label = PATH_EFFICIENCY.label
-        lengths = _shortest_and_driven(label, run, self.spec)
+        factory = ScoreFactory(PATH_EFFICIENCY)
+        lengths = _shortest_and_driven(factory, run, self.spec)
         if isinstance(lengths, list):
             return lengths
-        ratio = label.ratio("corrected", *lengths, self.spec.zero_tol)
+        ratio = factory.ratio("corrected", *lengths, self.spec.zero_tol)
         if robot_of(run).goal_time is not None:
             return [ratio]
-        return [label.censored("corrected", "goal_not_reached", upper=ratio.value)]
+        return [factory.censored("corrected", "goal_not_reached", upper=ratio.value)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,14 +141,14 @@ class Stl:
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """0 without arrival; else the time alone over the longer of it and the time taken."""
-        label = STL.label
+        factory = ScoreFactory(STL)
         if reason := obstacle(run, refs):
-            return label.all_undefined(reason)
+            return factory.all_undefined(reason)
         assert refs.robot_alone is not None
         if robot_of(run).goal_time is None:
-            return [label.ok("corrected", 0.0)]
+            return [factory.ok("corrected", 0.0)]
         alone, taken = (travel_time(r, robot_of(r)) for r in (refs.robot_alone, run))
-        return [label.ratio("corrected", alone, max(alone, taken), self.spec.zero_tol)]
+        return [factory.ratio("corrected", alone, max(alone, taken), self.spec.zero_tol)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,9 +160,9 @@ class FinalDistanceToGoal:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """At the last known position up to the arrival."""
         del refs
-        label = FINAL_DISTANCE_TO_GOAL.label
-        found = goal_distance(label, run)
-        return found if isinstance(found, list) else [label.ok("corrected", found[1][-1])]
+        factory = ScoreFactory(FINAL_DISTANCE_TO_GOAL)
+        found = goal_distance(factory, run)
+        return found if isinstance(found, list) else [factory.ok("corrected", found[1][-1])]
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,9 +174,9 @@ class MinDistanceToGoal:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """At any sample up to the arrival."""
         del refs
-        label = MIN_DISTANCE_TO_GOAL.label
-        found = goal_distance(label, run)
-        return found if isinstance(found, list) else [label.ok("corrected", found[1].min())]
+        factory = ScoreFactory(MIN_DISTANCE_TO_GOAL)
+        found = goal_distance(factory, run)
+        return found if isinstance(found, list) else [factory.ok("corrected", found[1].min())]
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,8 +188,8 @@ class FailureToProgress:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Whole windows, one after the other from the start, in which the goal came no nearer."""
         del refs
-        label = FAILURE_TO_PROGRESS.label
-        found = goal_distance(label, run)
+        factory = ScoreFactory(FAILURE_TO_PROGRESS)
+        found = goal_distance(factory, run)
         if isinstance(found, list):
             return found
         t, distance = found
@@ -190,7 +197,7 @@ class FailureToProgress:
         edges = t[0] + self.spec.progress_window * np.arange(windows + 1)
         nearer = -np.diff(np.interp(edges, t, distance))
         stuck = nearer < self.spec.progress_distance - TOLERANCE
-        return [label.ok("corrected", stuck.sum(), {"windows": float(windows)})]
+        return [factory.ok("corrected", stuck.sum(), {"windows": float(windows)})]
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,47 +209,47 @@ class AggregatedTime:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Known from below where the robot, or somebody, had not arrived."""
         del refs
-        label = AGGREGATED_TIME.label
+        factory = ScoreFactory(AGGREGATED_TIME)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         trips = durations(run)
         total = travel_time(run, robot_of(run)) + float(trips.seconds.sum())
         if robot_of(run).goal_time is None:
-            return [label.censored("corrected", "goal_not_reached", lower=total)]
+            return [factory.censored("corrected", "goal_not_reached", lower=total)]
         if not trips.reached.all():
-            return [label.censored("corrected", "unfinished_trips", lower=total)]
-        return [label.ok("corrected", total)]
+            return [factory.censored("corrected", "unfinished_trips", lower=total)]
+        return [factory.ok("corrected", total)]
 
 
-def goal_distance(label: ScoreLabel, run: Trajectories) -> tuple[Array, Array] | list[Score]:
+def goal_distance(factory: ScoreFactory, run: Trajectories) -> tuple[Array, Array] | list[Score]:
     """Times and distances (K,), (K,) of the robot's centre from its goal, s and m; or why not.
 
     From the goal point; from the zone where only that is known.
     """
     if run.robot is None:
-        return label.all_undefined("invalid_no_robot")
-    run = cropped(run)
+        return factory.all_undefined("invalid_no_robot")
+    run = truncate_at_arrival(run)
     robot = robot_of(run)
     known = present(robot.x, robot.y)
     if not known.any():
-        return label.all_undefined("too_few_samples")
+        return factory.all_undefined("too_few_samples")
     x, y = robot.x[known], robot.y[known]
     if robot.goal is not None:
         return run.t[known], np.hypot(x - robot.goal[0], y - robot.goal[1])
     if run.goal_zone is not None:
         return run.t[known], np.maximum(Footprint(run.goal_zone, 0.0).gap(x, y), 0.0)
-    return label.all_undefined("invalid_no_goal")
+    return factory.all_undefined("invalid_no_goal")
 
 
 def _shortest_and_driven(
-    label: ScoreLabel, run: Trajectories, spec: SplSpec | PathEfficiencySpec
+    factory: ScoreFactory, run: Trajectories, spec: SplSpec | PathEfficiencySpec
 ) -> tuple[float, float] | list[Score]:
     """Straight from the start to the goal zone, or to the disc of the goal; and what was driven."""
-    found = goal_distance(label, run)
+    found = goal_distance(factory, run)
     if isinstance(found, list):
         return found
-    run = cropped(run)
+    run = truncate_at_arrival(run)
     robot = robot_of(run)
     if run.goal_zone is not None:
         known = present(robot.x, robot.y)

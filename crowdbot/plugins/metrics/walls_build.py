@@ -7,13 +7,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from crowdbot.core.encounter import contact_events, robot_of
-from crowdbot.core.footprint import Footprint, footprint_of
-from crowdbot.core.interfaces import References
-from crowdbot.core.preprocess import cropped, finite, time_weights, valid_robot_steps
-from crowdbot.core.score import Score
-from crowdbot.core.score_label import ScoreLabel
-from crowdbot.core.trajectory import Array, RobotTrack, Trajectories
+from crowdbot.core.interfaces import (
+    Array,
+    Footprint,
+    References,
+    RobotTrack,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    time_weights,
+    truncate_at_arrival,
+)
+from crowdbot.core.trajectories.encounters import contact_events, robot_of
+from crowdbot.core.trajectories.footprint_of_run import footprint_of
+from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_robot_steps
 from crowdbot.plugins.metrics.walls import (
     AVG_WALL_CLEARANCE,
     MIN_WALL_CLEARANCE,
@@ -34,21 +41,21 @@ class WallContactCount:
         """All walls together are one body; ``geometric`` has the rules of ``collision_count``."""
         del refs
         if run.robot is None:
-            return WALL_CONTACT_COUNT.label.all_undefined("invalid_no_robot")
-        run = cropped(run)
+            return ScoreFactory(WALL_CONTACT_COUNT).all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
         return [self._recorded(run), self._geometric(run)]
 
     def _recorded(self, run: Trajectories) -> Score:
-        label = WALL_CONTACT_COUNT.label
+        factory = ScoreFactory(WALL_CONTACT_COUNT)
         if run.contacts is None:
-            return label.undefined("recorded", "invalid_no_contacts")
-        return label.ok("recorded", (run.contacts.agent < 0).sum())
+            return factory.undefined("recorded", "invalid_no_contacts")
+        return factory.ok("recorded", (run.contacts.agent < 0).sum())
 
     def _geometric(self, run: Trajectories) -> Score:
-        label, tol = WALL_CONTACT_COUNT.label, self.spec.contact_tol
-        gap = wall_gap(label, run)
+        factory, tol = ScoreFactory(WALL_CONTACT_COUNT), self.spec.contact_tol
+        gap = wall_gap(factory, run)
         if isinstance(gap, list):
-            return label.undefined("geometric", "invalid_no_walls")
+            return factory.undefined("geometric", "invalid_no_walls")
         valid = valid_robot_steps(run.t, robot_of(run), self.spec.jump_speed)[:, None]
         found = contact_events(
             run.t,
@@ -58,7 +65,7 @@ class WallContactCount:
             contact_tol=tol,
             release_gap=self.spec.release_gap,
         )
-        return label.ok("geometric", len(found.time))
+        return factory.ok("geometric", len(found.time))
 
     def _first_touch(self, run: Trajectories, gap: Array) -> Array:
         """Fraction of each step (N-1,) at which a wall is touched; NaN if none is.
@@ -69,7 +76,7 @@ class WallContactCount:
         first = np.where(gap[1:] <= tol, 1.0, np.inf)
         if footprint_of(run) is None:
             reach = np.array(robot.radius + tol)
-            x, y = finite(robot.x), finite(robot.y)
+            x, y = inf_to_nan(robot.x), inf_to_nan(robot.y)
             for wall in _segments(run):
                 swept = wall.first_touch(x[:-1], y[:-1], np.diff(x), np.diff(y), reach)
                 first = np.minimum(first, swept)
@@ -86,9 +93,9 @@ class MinWallClearance:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Least gap at any sample."""
         del refs
-        label = MIN_WALL_CLEARANCE.label
-        gap = wall_gap(label, cropped(run))
-        return gap if isinstance(gap, list) else [label.ok("corrected", np.nanmin(gap))]
+        factory = ScoreFactory(MIN_WALL_CLEARANCE)
+        gap = wall_gap(factory, truncate_at_arrival(run))
+        return gap if isinstance(gap, list) else [factory.ok("corrected", np.nanmin(gap))]
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,34 +107,39 @@ class AvgWallClearance:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Mean over time."""
         del refs
-        label = AVG_WALL_CLEARANCE.label
-        run = cropped(run)
-        gap = wall_gap(label, run)
+        factory = ScoreFactory(AVG_WALL_CLEARANCE)
+        run = truncate_at_arrival(run)
+        gap = wall_gap(factory, run)
         if isinstance(gap, list):
             return gap
         known = np.isfinite(gap)
         weights = time_weights(run.t)[known]
         if weights.sum() <= 0:
-            return label.all_undefined("too_few_samples")
-        return [label.ok("corrected", weights @ gap[known] / weights.sum())]
+            return factory.all_undefined("too_few_samples")
+        return [factory.ok("corrected", weights @ gap[known] / weights.sum())]
 
 
-def wall_gap(label: ScoreLabel, run: Trajectories) -> Array | list[Score]:
+def wall_gap(factory: ScoreFactory, run: Trajectories) -> Array | list[Score]:
     """Gap between the robot and the nearest wall (N,), m; or why there is none.
 
     At most 0 in contact; how deep, it says for discs only.
     """
     if run.robot is None:
-        return label.all_undefined("invalid_no_robot")
+        return factory.all_undefined("invalid_no_robot")
     if run.walls is None or not run.walls.size:
-        return label.all_undefined("invalid_no_walls")
-    gap = run.derived("wall_gap", lambda: _gap(run))
-    return gap if np.isfinite(gap).any() else label.all_undefined("too_few_samples")
+        return factory.all_undefined("invalid_no_walls")
+    gap = run.cached("wall_gap", lambda: _gap(run))
+    return gap if np.isfinite(gap).any() else factory.all_undefined("too_few_samples")
 
 
 def _gap(run: Trajectories) -> Array:
     robot, outline = robot_of(run), footprint_of(run)
-    robot = replace(robot, x=finite(robot.x), y=finite(robot.y), theta=finite(robot.theta))
+    robot = replace(
+        robot,
+        x=inf_to_nan(robot.x),
+        y=inf_to_nan(robot.y),
+        theta=inf_to_nan(robot.theta),
+    )
     if outline is None:
         gaps = [wall.gap(robot.x, robot.y) - robot.radius for wall in _segments(run)]
     else:

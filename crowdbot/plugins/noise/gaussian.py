@@ -6,9 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import NoiseSpec
-from crowdbot.dsl.quantities import Length, NonNegativeLength
+from crowdbot.dsl import Component, Length, NoiseSpec, NonNegativeLength
 
 
 class GaussianSpec(NoiseSpec):

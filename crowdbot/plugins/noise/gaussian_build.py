@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crowdbot.core.interfaces import Array
 from crowdbot.plugins.noise.gaussian import GaussianSpec
-
-Array = NDArray[np.float64]
 
 
 class Gaussian:

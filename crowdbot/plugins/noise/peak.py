@@ -7,9 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import NoiseSpec
-from crowdbot.dsl.quantities import Length, NonNegativeLength
+from crowdbot.dsl import Component, Length, NoiseSpec, NonNegativeLength
 
 
 class PeakSpec(NoiseSpec):

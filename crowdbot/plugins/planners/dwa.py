@@ -13,12 +13,12 @@ from typing import Annotated, ClassVar, Literal
 from annotated_types import Ge, Gt, Le
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import PlannerSpec
-from crowdbot.dsl.quantities import (
+from crowdbot.dsl import (
+    Component,
     NonNegativeDuration,
     NonNegativeLength,
     NonNegativeSpeed,
+    PlannerSpec,
     PositiveDuration,
     PositiveLength,
     PositiveSpeed,

@@ -7,10 +7,11 @@ from collections import deque
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import (
+    Array,
     Command,
+    LidarPoints,
     Observation,
     Pose,
     Reading,
@@ -18,7 +19,6 @@ from crowdbot.core.interfaces import (
     SensorInfo,
     Task,
 )
-from crowdbot.core.sensing.points import LidarPoints
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
 from crowdbot.plugins.planners.dwa import DwaSpec
 from crowdbot.plugins.planners.dwa_map_build import AIM, remembered, way_out
@@ -29,8 +29,6 @@ from crowdbot.plugins.planners.dwa_points_build import (
 )
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.people_build import carry, people_in, with_discs
-
-Array = NDArray[np.float64]
 
 _SECTORS = 240
 #: Points farther away play no part, m.

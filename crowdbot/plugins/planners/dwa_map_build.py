@@ -8,7 +8,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from crowdbot.core.interfaces import Array
 
 #: Side of a cell (m) and cells from the centre of the map to its border.
 CELL, HALF = 0.1, 60

@@ -6,9 +6,8 @@ import math
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from crowdbot.core.interfaces import Array
 
 
 @numba.njit(cache=True, error_model="numpy")

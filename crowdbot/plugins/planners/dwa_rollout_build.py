@@ -8,9 +8,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.interfaces import Array
 from crowdbot.plugins.planners.dwa_points_build import minimum, unsigned
-
-Array = NDArray[np.float64]
 
 #: Steps of a rollout, s.
 STEP = 0.125

@@ -7,9 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from annotated_types import Gt, Le
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import PlannerSpec
-from crowdbot.dsl.quantities import PositiveAngle, PositiveFrequency, PositiveLength
+from crowdbot.dsl import Component, PlannerSpec, PositiveAngle, PositiveFrequency, PositiveLength
 
 
 class GoalSeekSpec(PlannerSpec):

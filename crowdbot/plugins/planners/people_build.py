@@ -14,7 +14,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from crowdbot.core.interfaces import Array
 
 #: Points farther apart than this, and a share of their distance, belong to two bodies, m.
 _GAP, _GAP_SHARE = 0.1, 0.015
@@ -116,7 +116,7 @@ def people_in(points: Array, reach: float) -> tuple[Array, Array]:
         reach: legs farther than this are left alone, m.
 
     Returns:
-        (K, 2) middles of people; (Q, 2) points that are no legs, or legs very near.
+        (K, 2) middles of people; (Q, 2) points that are not legs, or legs very near.
     """
     legs = _legs(points, reach)
     kept = np.ones(points.shape[0], dtype=np.bool_)

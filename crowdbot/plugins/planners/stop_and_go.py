@@ -7,11 +7,11 @@ from typing import Annotated, ClassVar, Literal
 from annotated_types import Gt, Le
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import PlannerSpec
-from crowdbot.dsl.quantities import (
+from crowdbot.dsl import (
+    Component,
     NonNegativeDuration,
     NonNegativeLength,
+    PlannerSpec,
     PositiveAngle,
     PositiveFrequency,
     PositiveLength,

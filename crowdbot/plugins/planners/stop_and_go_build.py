@@ -10,16 +10,20 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Command, Observation, RobotLimits, SensorInfo, Task
-from crowdbot.core.sensing.points import LidarPoints
+from crowdbot.core.interfaces import (
+    Array,
+    Command,
+    LidarPoints,
+    Observation,
+    RobotLimits,
+    SensorInfo,
+    Task,
+)
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import GoalSeek
 from crowdbot.plugins.planners.people_build import people_in, with_discs
 from crowdbot.plugins.planners.stop_and_go import StopAndGoSpec
-
-Array = NDArray[np.float64]
 
 #: People farther away do not matter yet, m.
 _REACH = 4.0
@@ -43,24 +47,30 @@ class StopAndGo:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Remember what the robot can do and where its lidars are."""
+        """Remember what the robot can do and where its lidars are; compile what is not yet."""
         self._seek.reset(task, limits, sensors, seed)
         self._limits = limits
         self._points = LidarPoints(sensors)
+        self._room_ahead(np.ones((1, 2)))  # so that no step of the run waits for the compiler
 
     def step(self, obs: Observation) -> Command:
         """Goal seek's command, slowed down or stopped."""
         assert self._limits is not None
         v, w, _ = self._seek.step(obs)
         points = self._points(obs.readings, obs.t, obs.twist)
-        people, rest = people_in(points, _REACH if self._spec.person_radius else 0.0)
-        room = self._room(with_discs(rest, people, self._spec.person_radius))
+        room = self._room_ahead(points)
         obs.log("stop_and_go/room", min(room, 100.0))
         return Command(min(v, safe_speed(room, self._limits.a_max, self._spec.reaction_time)), w)
 
-    def _room(self, points: Array) -> float:
-        """How far the robot may go before something is ``front_margin`` before it, m."""
+    def _room_ahead(self, points: Array) -> float:
+        """How far the robot may go before something is ``front_margin`` before it, m.
+
+        Args:
+            points: (P, 2) what the lidars hit, base frame, m; legs stand for whole people.
+        """
         spec = self._spec
+        people, rest = people_in(points, _REACH if spec.person_radius else 0.0)
+        points = with_discs(rest, people, spec.person_radius)
         beside = np.abs(points[:, 1]) <= spec.robot_radius + spec.side_margin
         ahead = points[beside & (points[:, 0] > 0.0), 0]
         nearest = float(ahead.min()) if len(ahead) else math.inf

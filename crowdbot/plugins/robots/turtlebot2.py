@@ -6,15 +6,15 @@ from typing import Literal
 
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import RobotSpec
-from crowdbot.dsl.quantities import (
+from crowdbot.dsl import (
+    Component,
     PositiveAcceleration,
     PositiveAngularAcceleration,
     PositiveAngularSpeed,
     PositiveDuration,
     PositiveMass,
     PositiveSpeed,
+    RobotSpec,
 )
 
 

@@ -8,9 +8,15 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le
 from pydantic import Field, model_validator
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import Mount, SensorSpec
-from crowdbot.dsl.quantities import Angle, NonNegativeLength, PositiveFrequency, PositiveLength
+from crowdbot.dsl import (
+    Angle,
+    Component,
+    Mount,
+    NonNegativeLength,
+    PositiveFrequency,
+    PositiveLength,
+    SensorSpec,
+)
 
 
 class BumperSpec(SensorSpec):

@@ -12,13 +12,17 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd.geometry import nearest_on_segment
-from crowdbot.core.interfaces import Pose, SensorInfo
-from crowdbot.core.sensing.place import mount_of, placed
-from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.interfaces import (
+    Array,
+    Pose,
+    Scene,
+    SensorInfo,
+    mount_pose,
+    nearest_on_segment,
+    sensor_pose_in_world,
+)
 from crowdbot.plugins.sensors.bumper import BumperSpec
 
-Array = NDArray[np.float64]
 _EDGE = 1e-9  # rad; what presses the very edge of the outer sectors is felt
 
 
@@ -32,7 +36,7 @@ class Bumper:
         self._info = SensorInfo(
             category="bumper",
             frame="bumper",
-            mount=mount_of(spec.mount),
+            mount=mount_pose(spec.mount),
             rate=spec.rate,
             shape=(spec.sectors,),
             ros_type="std_msgs/msg/Float64MultiArray",
@@ -49,7 +53,7 @@ class Bumper:
         """1.0 for each sector that touches."""
         del t, rng
         spec = self._spec
-        (x, y, _), yaw = placed(spec.mount, scene, pose)
+        (x, y, _), yaw = sensor_pose_in_world(spec.mount, scene, pose)
         pressed = np.zeros(spec.sectors)
         _press(
             x, y, yaw + spec.angle_min, spec.angle_max - spec.angle_min,

@@ -7,9 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import Mount, SensorSpec
-from crowdbot.dsl.quantities import PositiveFrequency
+from crowdbot.dsl import Component, Mount, PositiveFrequency, SensorSpec
 
 NotNegative = Annotated[float, Ge(0)]
 

@@ -15,16 +15,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Pose, SensorInfo
-from crowdbot.core.kernel import kernel
-from crowdbot.core.sensing.place import mount_of
-from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.interfaces import Array, Pose, Scene, SensorInfo, kernel, mount_pose
 from crowdbot.errors import SimulationError
 from crowdbot.plugins.sensors.imu import ImuSpec
-
-Array = NDArray[np.float64]
 
 GRAVITY = 9.81  # m/s^2, the plant's
 #: Layout of the memory: six biases and a reading of six numbers begin where it says.
@@ -48,7 +42,7 @@ class Imu:
         self._info = SensorInfo(
             category="imu",
             frame="imu",
-            mount=mount_of(spec.mount),
+            mount=mount_pose(spec.mount),
             rate=spec.rate,
             shape=(6,),
             ros_type="sensor_msgs/msg/Imu",

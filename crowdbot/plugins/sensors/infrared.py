@@ -8,12 +8,10 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Gt, Le
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.proximity import Incidence, ProximitySpec
-from crowdbot.dsl.quantities import Quantity
+from crowdbot.dsl import Component, Incidence, Quantity, RangeSensorSpec
 
 
-class InfraredSpec(ProximitySpec):
+class InfraredSpec(RangeSensorSpec):
     """The nearest surface that faces a narrow beam."""
 
     kind: Literal["infrared"] = "infrared"

@@ -10,25 +10,20 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import NoiseGenerator, Pose, SensorInfo
-from crowdbot.core.sensing.proximity import Proximity
-from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.interfaces import Array, NoiseGenerator, Pose, RangeModel, Scene, SensorInfo
 from crowdbot.plugins.sensors.infrared import InfraredSpec
-
-Array = NDArray[np.float64]
 
 
 class Infrared:
     """New rays for every reading, from the sensor's own stream, before any noise is drawn."""
 
     def __init__(self, spec: InfraredSpec, noise: Sequence[NoiseGenerator] = ()) -> None:
-        self._spec, self._proximity = spec, Proximity(spec, noise)
+        self._spec, self._range_model = spec, RangeModel(spec, noise)
         self._info = SensorInfo(
             category="infrared",
             frame="infrared",
-            mount=self._proximity.mount,
+            mount=self._range_model.mount,
             rate=spec.rate,
             shape=(1,),
             ros_type="sensor_msgs/msg/Range",
@@ -44,14 +39,14 @@ class Infrared:
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Distance (1,) to the nearest surface that faces the beam, m; inf if there is none."""
         del t
-        at, yaw = self._proximity.place(scene, pose)
+        at, yaw = self._range_model.pose_in_world(scene, pose)
         rays = self._rays(yaw, rng)
         origins = np.broadcast_to(np.array(at), rays.shape)
         distance, incidence, _ = scene.cast(
             np.ascontiguousarray(origins), rays, self._spec.range_max
         )
-        self._proximity.returned(distance, incidence)
-        return self._proximity.measured(distance.min(keepdims=True), rng)
+        self._range_model.drop_slanted(distance, incidence)
+        return self._range_model.measure(distance.min(keepdims=True), rng)
 
     def _rays(self, yaw: float, rng: np.random.Generator) -> Array:
         """Directions (N, 3), world frame."""

@@ -6,19 +6,20 @@ import math
 
 from pydantic import Field, model_validator
 
-from crowdbot.dsl.proximity import MOST_RAYS, ProximitySpec
-from crowdbot.dsl.quantities import (
+from crowdbot.dsl import (
+    MOST_RAYS,
     Angle,
     NonNegativeLength,
     PositiveAngle,
     PositiveFrequency,
     PositiveLength,
+    RangeSensorSpec,
 )
 
 _SLACK = 1e-9  # rad; 360 deg in any unit is one turn
 
 
-class LidarSpec(ProximitySpec):
+class LidarSpec(RangeSensorSpec):
     """Beams from ``angle_min`` (included) to ``angle_max`` (excluded), counter-clockwise."""
 
     rate: PositiveFrequency = Field(default=16.0, le=128, description="Scans per second, Hz.")

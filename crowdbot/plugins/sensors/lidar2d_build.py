@@ -5,37 +5,32 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import NoiseGenerator, Pose, SensorInfo
-from crowdbot.core.sensing.columns import Grid
-from crowdbot.core.sensing.proximity import Proximity
-from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.interfaces import Array, NoiseGenerator, Pose, RangeModel, Scene, SensorInfo
+from crowdbot.core.sensing.raycast_columns import RayGrid
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
-
-Array = NDArray[np.float64]
 
 
 class Lidar2d:
     """All beams are taken at one instant, level whatever the robot's tilt."""
 
     def __init__(self, spec: Lidar2dSpec, noise: Sequence[NoiseGenerator] = ()) -> None:
-        self._range_max, self._proximity = spec.range_max, Proximity(spec, noise)
+        self._range_max, self._range_model = spec.range_max, RangeModel(spec, noise)
         angles: Array = spec.angle_min + spec.angle_step * np.arange(spec.beams, dtype=np.float64)
         angles.setflags(write=False)
         self._info = SensorInfo(
             category="lidar",
             frame="lidar",
-            mount=self._proximity.mount,
+            mount=self._range_model.mount,
             rate=spec.rate,
             shape=(spec.beams,),
             ros_type="sensor_msgs/msg/LaserScan",
             angles=angles,
             range_min=spec.range_min,
             range_max=spec.range_max,
-            random=self._proximity.random,
+            random=self._range_model.random,
         )
-        self._grid = Grid(angles, [0.0])
+        self._grid = RayGrid(angles, [0.0])
 
     def info(self) -> SensorInfo:
         """Constant description; ``angles`` are in the sensor frame."""
@@ -44,12 +39,12 @@ class Lidar2d:
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Ranges (R,) in m, inf for no return."""
         del t
-        own = self._proximity
+        own = self._range_model
         distance, incidence, _ = scene.cast_grid(
-            self._grid, *own.place(scene, pose), self._range_max, details=own.limited
+            self._grid, *own.pose_in_world(scene, pose), self._range_max, details=own.drops_slanted
         )
-        own.returned(distance, incidence)
-        return own.measured(distance[0], rng)
+        own.drop_slanted(distance, incidence)
+        return own.measure(distance[0], rng)
 
 
 def build(spec: Lidar2dSpec, noise: Sequence[NoiseGenerator] = ()) -> Lidar2d:

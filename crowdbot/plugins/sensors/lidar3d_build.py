@@ -5,22 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import NoiseGenerator, Pose, SensorInfo
-from crowdbot.core.sensing.columns import Grid
-from crowdbot.core.sensing.proximity import Proximity
-from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.interfaces import Array, NoiseGenerator, Pose, RangeModel, Scene, SensorInfo
+from crowdbot.core.sensing.raycast_columns import RayGrid
 from crowdbot.plugins.sensors.lidar3d import Lidar3dSpec
-
-Array = NDArray[np.float64]
 
 
 class Lidar3d:
     """All beams are taken at one instant; the floor is hit, the robot is not."""
 
     def __init__(self, spec: Lidar3dSpec, noise: Sequence[NoiseGenerator] = ()) -> None:
-        self._range_max, self._proximity = spec.range_max, Proximity(spec, noise)
+        self._range_max, self._range_model = spec.range_max, RangeModel(spec, noise)
         azimuth: Array = spec.angle_min + spec.angle_step * np.arange(spec.beams, dtype=np.float64)
         elevation = np.array(spec.elevation)
         angles = np.stack(np.meshgrid(azimuth, elevation), axis=-1)
@@ -28,16 +23,16 @@ class Lidar3d:
         self._info = SensorInfo(
             category="lidar3d",
             frame="lidar",
-            mount=self._proximity.mount,
+            mount=self._range_model.mount,
             rate=spec.rate,
             shape=(len(elevation), len(azimuth)),
             ros_type="sensor_msgs/msg/PointCloud2",
             angles=angles,
             range_min=spec.range_min,
             range_max=spec.range_max,
-            random=self._proximity.random,
+            random=self._range_model.random,
         )
-        self._grid = Grid(azimuth, np.tan(elevation))
+        self._grid = RayGrid(azimuth, np.tan(elevation))
 
     def info(self) -> SensorInfo:
         """Constant description; ``angles`` (L, C, 2) are azimuth and elevation of each beam."""
@@ -46,12 +41,16 @@ class Lidar3d:
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Ranges (L, C) in m, lowest layer first, inf for no return."""
         del t
-        own = self._proximity
+        own = self._range_model
         distance, incidence, _ = scene.cast_grid(
-            self._grid, *own.place(scene, pose), self._range_max, floor=True, details=own.limited
+            self._grid,
+            *own.pose_in_world(scene, pose),
+            self._range_max,
+            floor=True,
+            details=own.drops_slanted,
         )
-        own.returned(distance, incidence)
-        return own.measured(distance.ravel(), rng).reshape(self._info.shape)
+        own.drop_slanted(distance, incidence)
+        return own.measure(distance.ravel(), rng).reshape(self._info.shape)
 
 
 def build(spec: Lidar3dSpec, noise: Sequence[NoiseGenerator] = ()) -> Lidar3d:

@@ -8,14 +8,15 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Gt, Le, Lt
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import Mount, SensorSpec
-from crowdbot.dsl.quantities import (
+from crowdbot.dsl import (
+    Component,
+    Mount,
     NonNegativeLength,
     NonNegativeSpeed,
     PositiveFrequency,
     PositiveLength,
     Quantity,
+    SensorSpec,
 )
 
 

@@ -12,14 +12,17 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Pose, SensorInfo
-from crowdbot.core.sensing.bodies import trunk_radius
-from crowdbot.core.sensing.place import mount_of, placed
-from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.interfaces import (
+    Array,
+    Indices,
+    Pose,
+    Scene,
+    SensorInfo,
+    mount_pose,
+    sensor_pose_in_world,
+)
+from crowdbot.core.sensing.body_model import trunk_radius
 from crowdbot.plugins.sensors.people_tracker import PeopleTrackerSpec
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 NOBODY = (-1.0, 0.0, 0.0, 0.0, 0.0)
 _AIM_HEIGHT = 0.75  # of a person's height
@@ -34,7 +37,7 @@ class PeopleTracker:
         self._info = SensorInfo(
             category="people",
             frame="people_tracker",
-            mount=mount_of(spec.mount),
+            mount=mount_pose(spec.mount),
             rate=spec.rate,
             shape=(spec.max_people, 5),
             ros_type="std_msgs/msg/Float64MultiArray",
@@ -72,7 +75,7 @@ class PeopleTracker:
     def _candidates(self, scene: Scene, pose: Pose) -> Indices:
         """People present, in range and in the field of view; nearest first."""
         spec = self._spec
-        (x, y, _), yaw = placed(spec.mount, scene, pose)
+        (x, y, _), yaw = sensor_pose_in_world(spec.mount, scene, pose)
         away = np.where(scene.present[:, None], scene.people[:, :2] - (x, y), math.inf)
         distance = np.hypot(away[:, 0], away[:, 1])
         near = np.flatnonzero(scene.present & (distance <= spec.range_max))
@@ -84,7 +87,7 @@ class PeopleTracker:
 
     def _in_sight(self, scene: Scene, pose: Pose, people: Indices) -> NDArray[np.bool_]:
         """Which of some people a line of sight reaches (K,)."""
-        at, _ = placed(self._spec.mount, scene, pose)
+        at, _ = sensor_pose_in_world(self._spec.mount, scene, pose)
         away = scene.people[people, :2] - at[:2]
         distance = np.hypot(away[:, 0], away[:, 1])
         # Somebody who stands on the mount is aimed at along x: every ray begins inside.

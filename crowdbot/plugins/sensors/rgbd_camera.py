@@ -8,19 +8,20 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Gt, Le, Lt
 from pydantic import Field, model_validator
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import Mount, SensorSpec
-from crowdbot.dsl.proximity import Incidence
-from crowdbot.dsl.quantities import (
+from crowdbot.dsl import (
+    Component,
+    Incidence,
+    Mount,
     NonNegativeLength,
     PositiveFrequency,
     PositiveLength,
     Quantity,
+    SensorSpec,
 )
 
-Pixels = Annotated[int, Ge(2), Le(4096)]
+DepthRenderer = Annotated[int, Ge(2), Le(4096)]
 FieldOfView = Annotated[float, Gt(0), Lt(math.pi), Quantity("angle")]
-#: Pixels of one image; more is a slip of the pen.
+#: DepthRenderer of one image; more is a slip of the pen.
 MOST_PIXELS = 4_000_000
 
 
@@ -34,8 +35,8 @@ class RgbdCameraSpec(SensorSpec):
     kind: Literal["rgbd_camera"] = "rgbd_camera"
     mount: Mount = Field(default=Mount(), description="Pose on the robot; it looks along x.")
     rate: PositiveFrequency = Field(default=8.0, le=128, description="Images per second, Hz.")
-    width: Pixels = Field(default=320, description="Columns of an image.")
-    height: Pixels = Field(default=240, description="Rows of an image.")
+    width: DepthRenderer = Field(default=320, description="Columns of an image.")
+    height: DepthRenderer = Field(default=240, description="Rows of an image.")
     horizontal_view: FieldOfView = Field(
         default=math.pi / 3, description="Horizontal field of view, rad; pixels are square."
     )

@@ -13,16 +13,21 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Pinhole, Pose, SensorInfo
-from crowdbot.core.kernel import kernel
-from crowdbot.core.sensing.columns import Grid
-from crowdbot.core.sensing.millimetres import millimetres
-from crowdbot.core.sensing.pixels import MOST_MILLIMETRES, Pixels
-from crowdbot.core.sensing.place import mount_of, placed
-from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.interfaces import (
+    Array,
+    Pinhole,
+    Pose,
+    Scene,
+    SensorInfo,
+    kernel,
+    mount_pose,
+    sensor_pose_in_world,
+)
+from crowdbot.core.sensing.depth_mm import depth_mm
+from crowdbot.core.sensing.depth_renderer import MOST_MILLIMETRES, DepthRenderer
+from crowdbot.core.sensing.raycast_columns import RayGrid
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 
-Array = NDArray[np.float64]
 Image = NDArray[np.float32]
 
 
@@ -36,7 +41,7 @@ class RgbdCamera:
         self._info = SensorInfo(
             category="camera",
             frame="camera",
-            mount=mount_of(spec.mount),
+            mount=mount_pose(spec.mount),
             rate=spec.rate,
             shape=(spec.height, spec.width),
             ros_type="sensor_msgs/msg/Image",
@@ -45,12 +50,12 @@ class RgbdCamera:
             random=spec.noise > 0.0 or spec.dropout > 0.0,
             camera=pinhole,
         )
-        self._pixels = Pixels(pinhole, spec.depth_min, spec.depth_max)
+        self._renderer = DepthRenderer(pinhole, spec.depth_min, spec.depth_max)
         self._step = (spec.depth_max - spec.depth_min) / 2.0**spec.bits if spec.bits else 0.0
         self._limited = spec.max_incidence < math.pi / 2
         # Azimuths of a grid rise: its columns run from right to left.
-        azimuth, lean = np.arctan(self._pixels.left[::-1]), self._pixels.lean[::-1]
-        self._grid = Grid(azimuth, self._pixels.up, lean)
+        camera = self._renderer
+        self._grid = RayGrid(np.arctan(camera.left[::-1]), camera.slope, camera.cos_azimuth[::-1])
         errors = spec.noise, spec.resolution, spec.bits, spec.dropout
         self._exact = not any(errors) and not self._limited and spec.depth_max < MOST_MILLIMETRES
 
@@ -62,11 +67,11 @@ class RgbdCamera:
         """Depth (H, W) float32 in m, first row on top: inf for nothing in reach, 0 for too near."""
         del t
         spec = self._spec
-        at, yaw = placed(spec.mount, scene, pose)
+        at, yaw = sensor_pose_in_world(spec.mount, scene, pose)
         if self._limited:
             depth = self._facing(scene, at, yaw)
         else:
-            depth = scene.photograph(self._pixels, at, yaw)
+            depth = scene.render_depth(self._renderer, at, yaw)
         if spec.noise > 0.0:
             # Drawn for every pixel, so that one's noise does not depend on what others see.
             noise = rng.standard_normal(self._info.shape, dtype=np.float32)
@@ -82,7 +87,8 @@ class RgbdCamera:
     def _facing(self, scene: Scene, at: tuple[float, float, float], yaw: float) -> Image:
         """Depth (H, W) of what is not struck at too large an angle; ray by ray."""
         spec, grid = self._spec, self._grid
-        stretch = np.sqrt(1.0 + (grid.rise[:, np.newaxis] * grid.lean) ** 2) / grid.lean
+        scale = grid.slope_scale
+        stretch = np.sqrt(1.0 + (grid.slope[:, np.newaxis] * scale) ** 2) / scale
         reach = spec.depth_max * float(stretch.max())
         length, incidence, _ = scene.cast_grid(grid, at, yaw, reach, floor=True)
         depth = length / stretch
@@ -90,14 +96,14 @@ class RgbdCamera:
         depth[(incidence > spec.max_incidence) | (depth > spec.depth_max)] = np.inf
         return np.ascontiguousarray(depth[:, ::-1], np.float32)
 
-    def millimetres(
+    def depth_mm(
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator
     ) -> NDArray[np.uint16]:
         """Depth (H, W) in whole millimetres, 0 for too near and for nothing in reach."""
         if self._exact:
-            at, yaw = placed(self._spec.mount, scene, pose)
-            return scene.photograph_millimetres(self._pixels, at, yaw)
-        return millimetres(self.read(scene, pose, t, rng))
+            at, yaw = sensor_pose_in_world(self._spec.mount, scene, pose)
+            return scene.render_depth_mm(self._renderer, at, yaw)
+        return depth_mm(self.read(scene, pose, t, rng))
 
 
 @kernel

@@ -8,14 +8,12 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.proximity import ProximitySpec
-from crowdbot.dsl.quantities import PositiveLength, Quantity
+from crowdbot.dsl import Component, PositiveLength, Quantity, RangeSensorSpec
 
 _DEGREE = math.pi / 180.0
 
 
-class UltrasoundSpec(ProximitySpec):
+class UltrasoundSpec(RangeSensorSpec):
     """The nearest thing in a drop-shaped zone, whatever its direction. The floor is not seen."""
 
     kind: Literal["ultrasound"] = "ultrasound"

@@ -12,26 +12,32 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import NoiseGenerator, Pose, SensorInfo
-from crowdbot.core.kernel import kernel
-from crowdbot.core.sensing.bodies import BOTTOM, RADIUS, TOP, X, Y
-from crowdbot.core.sensing.columns import (
+from crowdbot.core.interfaces import (
+    Array,
+    Indices,
+    NoiseGenerator,
+    Pose,
+    RangeModel,
+    Scene,
+    SensorInfo,
+    kernel,
+)
+from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
+from crowdbot.core.sensing.raycast_columns import (
     FAR,
     HIGH,
     LOW,
     NEAR,
-    Grid,
+    GridArrays,
+    Obstacles,
+    RayGrid,
     fill_columns,
     heights_of,
     meet,
 )
-from crowdbot.core.sensing.proximity import Proximity
-from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugins.sensors.ultrasound import UltrasoundSpec
 
-Array = NDArray[np.float64]
 _HALVINGS = 40
 _ROUNDING = 1e-12  # the tangent of the zone's own edge is within it
 
@@ -51,25 +57,25 @@ class Ultrasound:
     """
 
     def __init__(self, spec: UltrasoundSpec, noise: Sequence[NoiseGenerator] = ()) -> None:
-        self._spec, self._proximity = spec, Proximity(spec, noise)
+        self._spec, self._range_model = spec, RangeModel(spec, noise)
         half = spec.half_angle
         steps = math.ceil(half / spec.resolution - 1e-9)
         angles = half * np.arange(-steps, steps + 1) / steps
-        self._grid = Grid(angles, np.tan(angles))
+        self._grid = RayGrid(angles, np.tan(angles))
         to_axis = np.arccos(np.cos(angles)[:, np.newaxis] * np.cos(angles))
         self._narrow = 1.0 / math.tan(half)
         self._reach = zone_length(to_axis, spec.range_max, spec.radius)
         self._info = SensorInfo(
             category="ultrasound",
             frame="ultrasound",
-            mount=self._proximity.mount,
+            mount=self._range_model.mount,
             rate=spec.rate,
             shape=(1,),
             ros_type="sensor_msgs/msg/Range",
             angles=np.array([-half, half]),
             range_min=spec.range_min,
             range_max=spec.range_max,
-            random=self._proximity.random,
+            random=self._range_model.random,
         )
 
     def info(self) -> SensorInfo:
@@ -79,20 +85,19 @@ class Ultrasound:
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Distance (1,) to the nearest thing in the zone, m; inf if there is none."""
         del t
-        own, grid, longest = self._proximity, self._grid, self._spec.range_max
-        at, yaw = own.place(scene, pose)
+        own, grid, longest = self._range_model, self._grid, self._spec.range_max
+        at, yaw = own.pose_in_world(scene, pose)
+        x, y, z = at
         nearest = np.empty(1)
-        if own.limited:  # a slanted surface may hide what is behind it
+        if own.drops_slanted:  # a slanted surface may hide what is behind it
             distance, incidence, _ = scene.cast_grid(grid, at, yaw, longest)
-            own.returned(distance, incidence)
+            own.drop_slanted(distance, incidence)
             nearest[0] = _nearest(distance, self._reach)
         else:
             nearest[0] = _nearest_at_all(
-                *at, yaw, grid.azimuth, grid.cos, grid.sin, grid.rise, grid.lean, self._reach,
-                longest, self._narrow, scene.walls, scene.wall_heights, *scene.bodies,
-                grid.work, grid.count, grid.ways, grid.runs,
-            )  # fmt: skip
-        return own.measured(nearest, rng)
+                x, y, z, yaw, self._reach, longest, self._narrow, *grid.arrays, *scene.obstacles
+            )
+        return own.measure(nearest, rng)
 
 
 @kernel
@@ -108,20 +113,20 @@ def _nearest(distance: Array, reach: Array) -> float:
 
 @kernel
 def _nearest_by_rays(
-    z: float, rise: Array, reach: Array, length: float, work: Array, count: NDArray[np.int64]
+    z: float, slope: Array, reach: Array, length: float, work: Array, filled: Indices
 ) -> float:
     """As `_nearest`, of rays from a height ``z`` and what `fill_columns` found in their columns."""
     best = math.inf
     for c in range(reach.shape[1]):
-        if count[c] == 0 or work[c, 0, NEAR] >= best:
+        if filled[c] == 0 or work[c, 0, NEAR] >= best:
             continue
         for r in range(reach.shape[0]):
-            stretch, hit = math.sqrt(1.0 + rise[r] * rise[r]), math.inf
-            for k in range(count[c]):
+            stretch, hit = math.sqrt(1.0 + slope[r] * slope[r]), math.inf
+            for k in range(filled[c]):
                 here = work[c, k]
                 if here[NEAR] >= min(hit, best):
                     break
-                t = meet(rise[r], z, here[NEAR], here[FAR], here[LOW], here[HIGH])
+                t = meet(slope[r], z, here[NEAR], here[FAR], here[LOW], here[HIGH])
                 hit = min(hit, t)
             away = hit * stretch
             if away <= length and away <= reach[r, c]:
@@ -189,28 +194,28 @@ def _to_wall(
 
 @kernel
 def _nearest_at_all(
-    x: float, y: float, z: float, yaw: float, azimuth: Array, cos: Array, sin: Array, rise: Array,
-    lean: Array, reach: Array, length: float, narrow: float, walls: Array, wall_heights: Array,
-    discs: Array, owner: NDArray[np.int64], work: Array, count: NDArray[np.int64], ways: Array,
-    runs: NDArray[np.int64],
+    x: float, y: float, z: float, yaw: float, reach: Array, length: float, narrow: float,
+    azimuth: Array, cos: Array, sin: Array, slope: Array, slope_scale: Array, work: Array,
+    filled: Indices, directions: Array, runs: Indices,
+    walls: Array, wall_heights: Array, discs: Array, owner: Indices,
 ) -> float:  # fmt: skip
     """The nearest hit of any ray, or what is nearer at the height of the sensor, exactly, m.
 
-    Walls count wherever the zone cuts them, cylinders where they face the sensor; what is between
+    Walls filled wherever the zone cuts them, cylinders where they face the sensor; what is between
     them and the sensor is in the zone itself, and nearer.
 
     Args:
+        x, y, z, yaw: origin and direction in the world frame, m and rad.
         reach: (R, C) how far the zone reaches along each ray, m.
         length, narrow: of the zone, see `_depth`.
-
-    Everything else is as in `crowdbot.core.sensing.columns.cast_columns`.
+        azimuth to runs: fields of `GridArrays`.
+        walls to owner: fields of `Obstacles`.
     """
-    lowest, highest = heights_of(z, rise, lean, length)
-    fill_columns(
-        x, y, yaw, lowest, highest, azimuth, cos, sin, length,
-        walls, wall_heights, discs, owner, work, count, ways, runs,
-    )  # fmt: skip
-    nearest = _nearest_by_rays(z, rise, reach, length, work, count)
+    grid = GridArrays(azimuth, cos, sin, slope, slope_scale, work, filled, directions, runs)
+    lowest, highest = heights_of(z, grid, length)
+    obstacles = Obstacles(walls, wall_heights, discs, owner)
+    fill_columns(x, y, yaw, lowest, highest, length, grid, obstacles)
+    nearest = _nearest_by_rays(z, slope, reach, length, work, filled)
     c, s = math.cos(yaw), math.sin(yaw)
     for i in range(walls.shape[0]):
         if wall_heights[i, 0] <= z <= wall_heights[i, 1]:
@@ -226,11 +231,11 @@ def _nearest_at_all(
         if not (abs(px) - r < most and abs(py) - r < most):
             continue
         away = math.hypot(px, py)
-        ahead, aside = c * px + s * py, c * py - s * px
+        forward, left = c * px + s * py, c * py - s * px
         level = discs[i, BOTTOM] <= z <= discs[i, TOP]
-        if level and r < away < most + r and narrow * abs(aside) <= ahead:
+        if level and r < away < most + r and narrow * abs(left) <= forward:
             share = 1.0 - r / away
-            if _depth(share * ahead, share * aside, length, narrow) <= 1.0:
+            if _depth(share * forward, share * left, length, narrow) <= 1.0:
                 nearest = away - r
     return nearest
 

@@ -7,9 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Gt
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import SensorSpec
-from crowdbot.dsl.quantities import PositiveFrequency, PositiveLength
+from crowdbot.dsl import Component, PositiveFrequency, PositiveLength, SensorSpec
 
 
 class OdometrySpec(SensorSpec):

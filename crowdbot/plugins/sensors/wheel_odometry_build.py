@@ -15,18 +15,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Pose, SensorInfo
-from crowdbot.core.kernel import kernel
-from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.interfaces import Array, Pose, Scene, SensorInfo, kernel
 from crowdbot.errors import SimulationError
-from crowdbot.plugins.sensors.wheel_odometry import (
-    HolonomicOdometrySpec,
-    WheelOdometrySpec,
-)
-
-Array = NDArray[np.float64]
+from crowdbot.plugins.sensors.wheel_odometry import HolonomicOdometrySpec, WheelOdometrySpec
 
 #: Layout of the memory: three errors (rad) and a reading of six numbers begin where it says.
 STARTED, TIME, LEFT, RIGHT, SIDE, YAW, ERRORS, READING = 0, 1, 2, 3, 4, 5, 6, 9

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from pydrake.systems.framework import DiagramBuilder
 
-from crowdbot.core.interfaces import EnvironmentParts, RobotModel
 from crowdbot.core.sim.control.controlled import ControlledRobot
 from crowdbot.core.sim.control.differential_drive import add_differential_drive
 from crowdbot.core.sim.control.force import add_force
 from crowdbot.core.sim.control.kinematic import add_kinematic
-from crowdbot.core.ticks import TICK
+from crowdbot.core.support.ticks import TICK
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.robot import RobotModel
 
 _MODES = {
     "differential_drive": add_differential_drive,

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-from pydrake.systems.framework import InputPort, LeafSystem
+from pydrake.systems.framework import InputPort, LeafSystem, OutputPort
 
-from crowdbot.core.interfaces import Pose
+from crowdbot.core.sim import ports
 from crowdbot.core.sim.plant import RobotPlant
-
-Array = NDArray[np.float64]
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Pose
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +59,11 @@ class ControlledRobot:
     push_port: InputPort | None
     place: Callable[[object, Pose], None]
     rig: RobotPlant | None
+
+    @property
+    def port(self) -> OutputPort:
+        """The robot's state as everything downstream reads it."""
+        return self.state.GetOutputPort(ports.ROBOT_STATE)
 
 
 def push_on(rig: RobotPlant) -> Push:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from pydrake.multibody.tree import PdControllerGains
 from pydrake.systems.framework import DiagramBuilder
 
-from crowdbot.core.interfaces import DifferentialDrive, EnvironmentParts, RobotModel
 from crowdbot.core.sim.control.controlled import ControlledRobot, push_on
 from crowdbot.core.sim.plant import add_plant, motor_of, place_robot
 from crowdbot.core.sim.robot_state import add_robot_state
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.robot import DifferentialDrive, RobotModel
 
 # Implicit velocity gain of a TurtleBot2's wheels, N m s; stable from 0.1 to 50 there
 # (docs/decisions/0004). To be as quick, heavier robots on larger wheels need more: d ~ m r^2.

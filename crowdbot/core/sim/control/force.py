@@ -12,17 +12,13 @@ import math
 import numpy as np
 from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, LeafSystem
 
-from crowdbot.core.interfaces import (
-    DifferentialDrive,
-    EnvironmentParts,
-    HolonomicDrive,
-    Pose,
-    RobotModel,
-)
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control.controlled import ControlledRobot, push_on
 from crowdbot.core.sim.plant import RobotPlant, add_plant, motor_of, place_robot
 from crowdbot.core.sim.robot_state import MeasuredRobotState, add_robot_state
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive, RobotModel
 
 
 class ForceDrive(LeafSystem):

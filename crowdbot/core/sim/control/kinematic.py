@@ -11,7 +11,6 @@ import math
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 from pydrake.systems.framework import (
     Context,
     DiagramBuilder,
@@ -20,19 +19,15 @@ from pydrake.systems.framework import (
     LeafSystem,
 )
 
-from crowdbot.core.footprint import footprint_of_model
-from crowdbot.core.interfaces import (
-    DifferentialDrive,
-    EnvironmentParts,
-    Pose,
-    RobotModel,
-    RobotState,
-)
+from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control.controlled import ControlledRobot, Push
 from crowdbot.core.sim.outline_gap import outline_gap
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.robot import DifferentialDrive, RobotModel, RobotState
 
-Array = NDArray[np.float64]
 _HALVINGS = 40  # an arc of 5 mm is cut at a wall to less than a picometre
 _TOUCHING = 1e-9  # m; how deep a robot that touches a wall stands in it
 _SKIN = 1e-6  # m; corners keep this far off: a wall inside a polygon is no farther than 0 m

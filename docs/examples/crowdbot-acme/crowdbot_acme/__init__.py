@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import (
+from crowdbot.dsl import (
+    Component,
     CostFunctionSpec,
     CrowdPolicySpec,
     EnvironmentSpec,

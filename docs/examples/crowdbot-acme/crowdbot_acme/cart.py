@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from typing import Literal
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import RobotSpec
-from crowdbot.dsl.quantities import PositiveAcceleration, PositiveAngularSpeed, PositiveSpeed
+from crowdbot.dsl import (
+    Component,
+    PositiveAcceleration,
+    PositiveAngularSpeed,
+    PositiveSpeed,
+    RobotSpec,
+)
 from pydantic import Field
 
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import CrowdPolicySpec
-from crowdbot.dsl.quantities import NonNegativeSpeed, PositiveLength
+from crowdbot.dsl import Component, CrowdPolicySpec, NonNegativeSpeed, PositiveLength
 from pydantic import Field
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from crowdbot.core.crowd import Agents, CrowdView
+from crowdbot.core.interfaces import Agents, CrowdView
 from crowdbot.errors import InputError
 from numpy.typing import NDArray
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import RobotSpec
-from crowdbot.dsl.quantities import (
+from crowdbot.dsl import (
+    Component,
     PositiveAcceleration,
     PositiveAngularSpeed,
     PositiveLength,
     PositiveMass,
     PositiveSpeed,
+    RobotSpec,
 )
 from pydantic import Field
 

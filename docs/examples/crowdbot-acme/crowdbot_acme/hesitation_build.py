@@ -6,9 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from crowdbot.core.interfaces import References
-from crowdbot.core.score import Score
-from crowdbot.core.trajectory import Trajectories
+from crowdbot.core.interfaces import References, Score, ScoreFactory, Trajectories
 
 from crowdbot_acme.hesitation import HESITATION, SIGNAL, HesitationSpec
 
@@ -22,16 +20,16 @@ class Hesitation:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Seconds, and share of the time, with the brake at or above the threshold."""
         del refs
-        label = HESITATION.label
+        factory = ScoreFactory(HESITATION)
         if run.robot is None:
-            return label.all_undefined("invalid_no_robot")
+            return factory.all_undefined("invalid_no_robot")
         signal = run.signals.get(SIGNAL)
         if signal is None or len(signal) < 2:
-            return label.all_undefined("no_signal")
+            return factory.all_undefined("no_signal")
         t, brake = signal.T
         steps = np.diff(t)
         braked = float(steps[brake[:-1] >= self.spec.threshold].sum())
         return [
-            label.ok("corrected", braked),
-            label.ok("share", braked / float(steps.sum())),
+            factory.ok("corrected", braked),
+            factory.ok("share", braked / float(steps.sum())),
         ]

@@ -44,7 +44,7 @@ class JsonProcess:
         """Send a message and wait for the answer, at most ``patience`` s.
 
         Raises:
-            ProcessError: there is none, or it is no JSON object.
+            ProcessError: there is none, or it is not a JSON object.
         """
         until = time.monotonic() + patience
         assert self._child.stdin is not None
@@ -61,7 +61,7 @@ class JsonProcess:
         except ValueError:
             answer = None
         if not isinstance(answer, dict):
-            raise ProcessError(f"the process answered {line[:80]!r}, which is no JSON object")
+            raise ProcessError(f"the process answered {line[:80]!r}, which is not a JSON object")
         return answer
 
     def close(self) -> None:

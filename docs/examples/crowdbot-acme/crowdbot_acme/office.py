@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import EnvironmentSpec
-from crowdbot.dsl.quantities import PositiveLength
+from crowdbot.dsl import Component, EnvironmentSpec, PositiveLength
 from pydantic import Field, model_validator
 
 

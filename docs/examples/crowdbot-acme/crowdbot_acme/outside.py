@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import MaxLen
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import PlannerSpec
-from crowdbot.dsl.quantities import PositiveDuration
+from crowdbot.dsl import Component, PlannerSpec, PositiveDuration
 from pydantic import Field
 
 

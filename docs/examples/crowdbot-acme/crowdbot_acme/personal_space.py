@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import CostFunctionSpec, Range
-from crowdbot.dsl.quantities import PositiveDuration, PositiveLength
+from crowdbot.dsl import Component, CostFunctionSpec, PositiveDuration, PositiveLength, Range
 from pydantic import Field
 
 

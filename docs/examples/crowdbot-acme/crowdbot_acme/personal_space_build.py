@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
-from crowdbot.core.crowd.cost import (
+from crowdbot.core.interfaces import (
     BASE,
     D2,
     EXCESS,

@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Gt, Le
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import Mount, SensorSpec
-from crowdbot.dsl.quantities import PositiveFrequency, PositiveLength, Quantity
+from crowdbot.dsl import Component, Mount, PositiveFrequency, PositiveLength, Quantity, SensorSpec
 from pydantic import Field
 
 

@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from crowdbot.core.interfaces import Pose, SensorInfo
-from crowdbot.core.sensing.place import mount_of, placed
-from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.interfaces import Pose, Scene, SensorInfo, mount_pose, sensor_pose_in_world
 from numpy.typing import NDArray
 
 from crowdbot_acme.radar import RadarSpec
@@ -23,7 +21,7 @@ class Radar:
         self._info = SensorInfo(
             category="radar",
             frame="radar",
-            mount=mount_of(spec.mount),
+            mount=mount_pose(spec.mount),
             rate=spec.rate,
             shape=(3,),
             ros_type="std_msgs/msg/Float64MultiArray",
@@ -38,7 +36,7 @@ class Radar:
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Distance to the surface (m), closing speed (m/s), bearing (rad); inf, 0, 0: nobody."""
         del t, rng
-        (x, y, _), yaw = placed(self._spec.mount, scene, pose)
+        (x, y, _), yaw = sensor_pose_in_world(self._spec.mount, scene, pose)
         offset = scene.people[:, :2] - [x, y]
         distance = np.hypot(offset[:, 0], offset[:, 1]) - scene.people_radius
         bearing = _wrapped(np.arctan2(offset[:, 1], offset[:, 0]) - yaw)

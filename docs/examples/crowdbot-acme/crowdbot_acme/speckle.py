@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import NoiseSpec
+from crowdbot.dsl import Component, NoiseSpec
 from pydantic import Field
 
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import PlannerSpec
-from crowdbot.dsl.quantities import PositiveFrequency, PositiveLength
+from crowdbot.dsl import Component, PlannerSpec, PositiveFrequency, PositiveLength
 from pydantic import Field
 
 

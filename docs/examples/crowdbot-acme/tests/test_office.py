@@ -6,7 +6,7 @@ from pathlib import Path
 
 import crowdbot
 import pytest
-from crowdbot.core.registry import discover
+from crowdbot.testing import installed
 
 SUITE = "acme:office"
 
@@ -50,5 +50,5 @@ def test_a_short_run(cell: str, planner: str, tmp_path: Path) -> None:
 
 
 def test_the_plugin_is_healthy() -> None:
-    (acme,) = (p for p in discover().plugins if p.name == "acme")
+    (acme,) = (p for p in installed().plugins if p.name == "acme")
     assert acme.error == ""

@@ -80,7 +80,7 @@ def test_a_process_that_is_late(tmp_path: Path) -> None:
 
 def test_a_process_that_talks_nonsense(tmp_path: Path) -> None:
     made = planner(tmp_path, READY, 'print("forward!", flush=True)')
-    with pytest.raises(ProcessError, match="no JSON object"):
+    with pytest.raises(ProcessError, match="is not a JSON object"):
         made.step(SEEN)
 
 

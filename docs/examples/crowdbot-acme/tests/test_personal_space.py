@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from crowdbot.core.crowd.evaluate import Evaluator
-from crowdbot.core.crowd.mix import Mix
-from crowdbot.testing.crowd_views import random_view
+from crowdbot.testing import costs_at, random_view
 
 from crowdbot_acme import personal_space_build, personal_space_numpy_build
 from crowdbot_acme.personal_space import PersonalSpaceNumpySpec, PersonalSpaceSpec
@@ -17,9 +15,6 @@ def test_both_cost_the_same() -> None:
     for seed in range(10):
         view = random_view(seed)
         velocities = np.random.default_rng(seed).uniform(-1.5, 1.5, (len(view.agents), 20, 2))
-        one, two = (
-            Evaluator(Mix([cost], view.agents)).total(view, velocities)
-            for cost in (compiled, vectorised)
-        )
+        one, two = (costs_at(cost, view, velocities) for cost in (compiled, vectorised))
         np.testing.assert_allclose(one, two, rtol=1e-9)
         assert one.max() > 1.0

@@ -7,9 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import CostFunctionSpec
-from crowdbot.dsl.quantities import PositiveLength
+from crowdbot.dsl import Component, CostFunctionSpec, PositiveLength
 from crowdbot.hookspecs import hookimpl
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
-from crowdbot.core.crowd.cost import (
+from crowdbot.core.interfaces import (
     BASE,
     D2,
     EXCESS,

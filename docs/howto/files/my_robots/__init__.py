@@ -6,9 +6,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import RobotSpec
-from crowdbot.dsl.quantities import PositiveMass, PositiveSpeed
+from crowdbot.dsl import Component, PositiveMass, PositiveSpeed, RobotSpec
 from crowdbot.hookspecs import hookimpl
 
 

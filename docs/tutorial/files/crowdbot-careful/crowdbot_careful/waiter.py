@@ -2,9 +2,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from crowdbot.core.component import Component
-from crowdbot.dsl.base import PlannerSpec
-from crowdbot.dsl.quantities import PositiveLength
+from crowdbot.dsl import Component, PlannerSpec, PositiveLength
 
 
 class WaiterSpec(PlannerSpec):

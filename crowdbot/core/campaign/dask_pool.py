@@ -1,0 +1,207 @@
+"""A worker pool on many machines: workers of a Dask scheduler that somebody else started.
+
+Every Dask worker keeps one process of ours for each of its threads, so that a planner that hangs
+or crashes ends that process and not the worker. A lost worker's jobs are done by others; what was
+published before is found again by its hash, so that nothing is made twice.
+"""
+
+from __future__ import annotations
+
+import queue
+import re
+import socket
+import threading
+import time
+import uuid
+from dataclasses import replace
+from multiprocessing.connection import wait
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.campaign.job import Done, Job
+from crowdbot.core.campaign.worker_pool import Busy
+from crowdbot.core.campaign.worker_process import WorkerProcess
+from crowdbot.core.runs import provenance
+from crowdbot.errors import InputError, MissingLibraryError, SimulationError
+
+#: How long the scheduler and a first worker may take to answer, s.
+_PATIENCE = 30.0
+#: How long anybody may take to listen at its address, s.
+_LISTENING = 5.0
+_ADDRESS = re.compile(
+    r"(?:(?:tcp|tls)://)?(?P<host>\[[0-9a-fA-F:]+\]|[^:/\s\[\]]+):(?P<port>\d{1,5})"
+)
+_own = threading.local()
+
+
+def execute_job(job: Job, versions: dict[str, str]) -> Done:
+    """Execute a job; runs in a Dask worker."""
+    if (found := provenance.versions()) != versions:
+        return _refused(job, _difference(versions, found))
+    if not hasattr(_own, "worker"):
+        _own.worker = WorkerProcess()
+    worker: WorkerProcess = _own.worker
+    worker.submit(job)
+    while True:
+        wait([worker.connection], 0.25)
+        if (done := worker.poll()) is not None:
+            return done
+
+
+def probe(token: str) -> tuple[dict[str, str], bool]:
+    """Versions of a worker, and whether it sees a file; runs in a Dask worker."""
+    return provenance.versions(), Path(token).exists()
+
+
+def _await_listener(address: str) -> None:
+    """See that somebody listens; Dask's client would go on trying for minutes.
+
+    Raises:
+        InputError: nobody does, or it is not an address.
+    """
+    found = _ADDRESS.fullmatch(address)
+    if found is None:
+        raise InputError(f"--cluster {address}: write tcp://HOST:PORT")
+    place = found["host"].strip("[]"), min(int(found["port"]), 65535)
+    end = time.monotonic() + _LISTENING
+    while True:
+        try:
+            socket.create_connection(place, timeout=_LISTENING).close()
+            return
+        except OSError as error:
+            if time.monotonic() >= end or isinstance(error, socket.gaierror):
+                text = f"--cluster {address}: no Dask scheduler answers: {error.strerror or error}"
+                raise InputError(text) from error
+            time.sleep(0.2)
+
+
+class DaskWorkerPool:
+    """The workers of one scheduler.
+
+    Args:
+        address: ``tcp://HOST:PORT`` of the scheduler.
+        out: root of the results; every worker must see it under this name.
+
+    Attributes:
+        size: threads of all workers when it began.
+
+    Raises:
+        MissingLibraryError: ``distributed`` is not installed.
+        InputError: it is not an address, no scheduler or no worker answers, versions differ, or a
+            worker does not see the folder.
+    """
+
+    def __init__(self, address: str, out: Path) -> None:
+        try:
+            import distributed
+        except ImportError as error:
+            text = "--cluster needs Dask; install it with 'pip install crowdbot[cluster]'"
+            raise MissingLibraryError(text) from error
+        _await_listener(address)
+        try:
+            connect: Any = distributed.Client  # has no types
+            self._client: Any = connect(address, timeout=_PATIENCE, set_as_default=False)
+        except (OSError, ValueError, TypeError) as error:
+            raise InputError(f"--cluster {address}: no Dask scheduler answers") from error
+        self._address, self._versions = address, provenance.versions()
+        self._futures: dict[str, tuple[Job, Any]] = {}
+        self._ended: queue.Queue[tuple[str, Any]] = queue.Queue()
+        try:
+            self._check(out)
+        except BaseException:
+            self._client.close()
+            raise
+        self.size = self._threads()
+
+    def free_slots(self) -> int:
+        """One job is kept waiting for each thread, so that no worker waits for us."""
+        return max(0, 2 * max(1, self._threads()) - len(self._futures))
+
+    def submit(self, job: Job) -> None:
+        """Submit a job; a second one of the same key would be another task."""
+        key = f"crowdbot-{job.key}-{uuid.uuid4().hex[:8]}"
+        future = self._client.submit(execute_job, job, self._versions, key=key, pure=False)
+        self._futures[job.key] = (job, future)
+        future.add_done_callback(lambda f, k=job.key: self._ended.put((k, f)))
+
+    def finished(self, timeout: float) -> list[Done]:
+        """Jobs that ended.
+
+        Raises:
+            SimulationError: the scheduler is gone.
+        """
+        if self._client.status not in ("running", "connecting"):
+            self._lost()
+        ended = []
+        try:
+            ended.append(self._ended.get(timeout=timeout))
+            while True:
+                ended.append(self._ended.get_nowait())
+        except queue.Empty:
+            pass
+        return [self._done(key, future) for key, future in ended if key in self._futures]
+
+    def busy(self) -> list[Busy]:
+        """Jobs that were handed out; the scheduler does not tell how far they are."""
+        return [Busy(job, None) for job, _ in self._futures.values()]
+
+    def close(self) -> None:
+        """Take back what was handed out, and leave the scheduler to others."""
+        self._client.cancel([future for _, future in self._futures.values()], force=True)
+        self._client.close()
+
+    def _done(self, key: str, future: Any) -> Done:
+        job, _ = self._futures.pop(key)
+        if future.status in ("cancelled", "lost"):
+            self._lost()
+        if future.status == "error":
+            error = future.exception()
+            text = f"{type(error).__name__}: {error}"
+            return Done(key=key, error=text, exit_code=SimulationError.exit_code, traceback=text)
+        done: Done = future.result()
+        return replace(done, key=job.key)
+
+    def _lost(self) -> None:
+        raise SimulationError(
+            f"--cluster {self._address}: the scheduler is gone; what is finished stays, and the "
+            "same command goes on"
+        )
+
+    def _threads(self) -> int:
+        workers = self._client.scheduler_info(n_workers=-1)["workers"]
+        return sum(int(w["nthreads"]) for w in workers.values())
+
+    def _check(self, out: Path) -> None:
+        self._wait()
+        out.mkdir(parents=True, exist_ok=True)
+        token = out / f".campaign-{uuid.uuid4().hex}"
+        token.touch()
+        try:
+            answers = self._client.run(probe, str(token))
+        finally:
+            token.unlink(missing_ok=True)
+        for worker, (versions, sees) in answers.items():
+            if versions != self._versions:
+                raise InputError(f"{worker}: {_difference(self._versions, versions)}")
+            if not sees:
+                raise InputError(f"{worker} does not see {out}: the file system must be shared")
+
+    def _wait(self) -> None:
+        end = time.monotonic() + _PATIENCE
+        while not self._threads():
+            if time.monotonic() > end:
+                raise InputError(
+                    f"--cluster {self._address}: the scheduler has no workers; start some with "
+                    f"'dask worker {self._address} --nthreads 1 --nworkers 2'"
+                )
+            time.sleep(0.2)
+
+
+def _difference(ours: dict[str, str], theirs: dict[str, str]) -> str:
+    found = [f"{n} {theirs.get(n, 'none')} instead of {v}" for n, v in ours.items()
+             if theirs.get(n) != v]  # fmt: skip
+    return f"the worker has {', '.join(found)}; runs would not be comparable"
+
+
+def _refused(job: Job, why: str) -> Done:
+    return Done(key=job.key, error=f"InputError: {why}", exit_code=1, traceback=why)

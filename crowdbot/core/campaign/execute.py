@@ -1,0 +1,130 @@
+"""Executes jobs one after the other in one process; what the next job needs stays loaded."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+from crowdbot.core.campaign.job import Done, Job, SuiteSource
+from crowdbot.core.campaign.population_cache import cached_population
+from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
+from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.identity import Populate, prepare, references_of
+from crowdbot.core.runs.outcome import Progress
+from crowdbot.core.runs.request import Request
+from crowdbot.core.scenarios.library import open_spec
+from crowdbot.core.sim.references import make_reference
+from crowdbot.dsl.expand import Expansion
+from crowdbot.errors import CrowdbotError, InputError, SimulationError
+
+
+def execute(
+    job: Job,
+    progress: Callable[[Progress], None] | None = None,
+    on_hang: Callable[[], object] | None = None,
+) -> Done:
+    """Execute one job; whatever goes wrong is part of the answer.
+
+    Args:
+        job: what to do.
+        progress: called several times a simulated second.
+        on_hang: called when a planner cannot be interrupted; should end the process.
+    """
+    begin = time.perf_counter()
+    try:
+        status = _execute(job, progress, on_hang)
+    except Exception as error:
+        return failed_job(job, error, time.perf_counter() - begin)
+    return Done(key=job.key, status=status, wall_time=time.perf_counter() - begin)
+
+
+def failed_job(job: Job, error: Exception, wall_time: float = 0.0) -> Done:
+    """A job that ended with an exception."""
+    known = isinstance(error, CrowdbotError)
+    return Done(
+        key=job.key,
+        error=f"{type(error).__name__}: {error}",
+        exit_code=error.exit_code if known else SimulationError.exit_code,  # type: ignore[attr-defined]
+        traceback="".join(traceback.format_exception(error)),
+        wall_time=wall_time,
+    )
+
+
+def _execute(
+    job: Job,
+    progress: Callable[[Progress], None] | None,
+    on_hang: Callable[[], object] | None,
+) -> str:
+    request = replace(_request(job), progress=progress, on_hang=on_hang)
+    registry, populate = _registry(job.source), _populate(job.source)
+    prepared = prepare(request.scenario, registry, populate=populate)
+    if job.kind == "run":
+        if prepared.run.spec != job.spec_hash:
+            raise InputError(f"{job.source.spec} changed since the campaign began")
+        from crowdbot.core.sim.simulate import make_run  # imports Drake
+
+        return make_run(request, prepared).status
+    for reference in references_of(request, prepared):
+        if reference.run_id == job.key:
+            there = files.read_record(reference.directory) if reference.complete else None
+            return str(there["status"]) if there else make_reference(request, reference).status
+    raise InputError(f"{job.source.spec} changed since the campaign began")
+
+
+def _request(job: Job) -> Request:
+    registry = _registry(job.source)
+    expansion = _open(job.source)
+    scenario = expansion.scenarios[job.index] if job.index < len(expansion.scenarios) else None
+    if scenario is None or scenario.id != job.scenario:
+        raise InputError(f"{job.source.spec} changed since the campaign began")
+    out = Path(job.out)
+    request = Request(
+        scenario=scenario,
+        choice=_choice(job.planner, job.settings, job.source),
+        registry=registry,
+        seed=job.seed,
+        out=out,
+        suite=job.suite,
+        record=job.record,
+        replay=job.replay,
+        references_finished=True,
+        metrics=expansion.metrics,
+        axes=expansion.axes.get(scenario.id, {}),
+        position=job.index,
+    )
+    if job.retry_failed and job.kind == "run":
+        with suppress(KeyError, TypeError):
+            status = (files.read_record(request.directory) or {})["status"]
+            return replace(request, force=status == "planner_failed")
+    return request
+
+
+def _registry(source: SuiteSource) -> Registry:
+    return _discovered(source.plugins, source.allowed)
+
+
+@cache
+def _discovered(plugins: tuple[str, ...], allowed: tuple[str, ...] | None) -> Registry:
+    return discover(extra=[Path(p) for p in plugins], allow=allowed)
+
+
+@cache
+def _open(source: SuiteSource) -> Expansion:
+    return open_spec(source.spec, _registry(source), source.overrides)
+
+
+@cache
+def _populate(source: SuiteSource) -> Populate:
+    del source  # each has a memory of its own
+    return cached_population()
+
+
+@cache
+def _choice(planner: str, settings: tuple[str, ...], source: SuiteSource) -> PlannerChoice:
+    return resolve_planner(planner, _registry(source), settings)

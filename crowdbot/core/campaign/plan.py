@@ -1,0 +1,238 @@
+"""The plan of a campaign: which runs there are to be, which are there, what is to be done."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.campaign.estimate import CostEstimate, expected_seconds
+from crowdbot.core.campaign.job import Job, Kind
+from crowdbot.core.campaign.population_cache import cached_population
+from crowdbot.core.campaign.request import (
+    CampaignRequest,
+    PlannerEntry,
+    SelectedSuite,
+    open_planners,
+    open_suites,
+)
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs import provenance
+from crowdbot.core.runs.identity import (
+    Prepared,
+    Reference,
+    prepare,
+    references_of,
+    reusable_record,
+    run_identity,
+)
+from crowdbot.core.runs.outcome import PLANNER_FAILED
+from crowdbot.core.runs.request import Request
+from crowdbot.core.sim.preflight import preflight
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlannedRun:
+    """One run of the campaign.
+
+    Attributes:
+        key: its id.
+        status: of the run where it is there and stays, else empty.
+        directory: absolute.
+        axes, position: what its record ought to say.
+        record: what it says.
+    """
+
+    key: str
+    label: str
+    status: str
+    directory: Path
+    axes: dict[str, str]
+    position: int
+    record: dict[str, Any] = field(repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plan:
+    """What is to be done.
+
+    Attributes:
+        out: absolute root of the results.
+        runs: every run of the campaign, there or not.
+        jobs: what is missing: calibration runs, then runs, the longest first.
+        references: calibration runs of all runs, there or not.
+        estimate: knows the runs that are there.
+        size: what the jobs are going to leave, bytes.
+    """
+
+    out: Path
+    runs: tuple[PlannedRun, ...]
+    jobs: tuple[Job, ...]
+    references: int
+    estimate: CostEstimate
+    size: float
+
+    @property
+    def seconds(self) -> float:
+        """Expected time of all jobs on one core."""
+        return sum(self.estimate.seconds(job) for job in self.jobs)
+
+    def count(self, kind: Kind) -> int:
+        """How many jobs of a kind are to be done."""
+        return sum(job.kind == kind for job in self.jobs)
+
+    @property
+    def labels(self) -> list[str]:
+        """The planners."""
+        return list(dict.fromkeys(r.label for r in self.runs))
+
+
+def make_plan(campaign: CampaignRequest, registry: Registry) -> Plan:
+    """Open and check everything, and see what is missing. Nothing is written.
+
+    Raises:
+        CrowdbotError: a suite, a scenario, a planner or a setting is wrong.
+    """
+    planners = open_planners(campaign, registry)
+    builder = _PlanBuilder(campaign, registry, planners)
+    for suite in open_suites(campaign, registry):
+        builder.add(suite)
+    return builder.plan()
+
+
+class _PlanBuilder:
+    """Goes through all runs and collects what is missing."""
+
+    def __init__(
+        self, campaign: CampaignRequest, registry: Registry, planners: Sequence[PlannerEntry]
+    ) -> None:
+        self._campaign, self._registry, self._planners = campaign, registry, planners
+        self._out = campaign.out.resolve()
+        self._estimate, self._size = CostEstimate(), 0.0
+        self._runs: list[PlannedRun] = []
+        self._jobs: dict[str, Job] = {}
+        self._references: dict[str, bool] = {}
+        self._populate = cached_population()
+
+    def plan(self) -> Plan:
+        jobs = sorted(self._jobs.values(), key=lambda j: (j.kind == "run", -j.cost))
+        return Plan(
+            out=self._out,
+            runs=tuple(self._runs),
+            jobs=tuple(jobs),
+            references=len(self._references),
+            estimate=self._estimate,
+            size=self._size,
+        )
+
+    def add(self, suite: SelectedSuite) -> None:
+        position = {s.id: i for i, s in enumerate(suite.expansion.scenarios)}
+        for scenario in suite.scenarios:
+            prepared = prepare(scenario, self._registry, populate=self._populate)
+            for entry, request in self._requests(suite, prepared, position[scenario.id]):
+                self._add(suite, prepared, entry, request)
+
+    def _requests(
+        self, suite: SelectedSuite, prepared: Prepared, position: int
+    ) -> Iterator[tuple[PlannerEntry, Request]]:
+        scenario = prepared.run.scenario
+        for entry in self._planners:
+            for seed in dict.fromkeys(self._campaign.seeds):
+                request = Request(
+                    scenario=scenario,
+                    choice=entry.choice,
+                    registry=self._registry,
+                    seed=seed,
+                    out=self._out,
+                    suite=suite.name,
+                    record=self._campaign.record,
+                    replay=self._campaign.replay,
+                    axes=suite.expansion.axes.get(scenario.id, {}),
+                    position=position,
+                )
+                yield entry, request
+
+    def _add(
+        self, suite: SelectedSuite, prepared: Prepared, entry: PlannerEntry, request: Request
+    ) -> None:
+        key = provenance.digest(run_identity(request, prepared.run))
+        references = references_of(request, prepared)
+        record = reusable_record(request, key, compared=bool(references))
+        if record is not None:
+            self._learn(request, record, prepared)
+            if self._campaign.retry_failed and record["status"] == PLANNER_FAILED:
+                record = None
+        self._runs.append(
+            PlannedRun(
+                key=key,
+                label=entry.choice.label,
+                status="" if record is None else record["status"],
+                directory=request.directory,
+                axes=dict(request.axes),
+                position=request.position,
+                record=record or {},
+            )
+        )
+        for reference in references:
+            self._references.setdefault(reference.run_id, False)
+        if record is None:
+            preflight(request)
+            missing = [r for r in references if self._is_missing(suite, entry, request, r)]
+            self._job("run", key, suite, entry, request, prepared, missing)
+
+    def _is_missing(
+        self, suite: SelectedSuite, entry: PlannerEntry, request: Request, reference: Reference
+    ) -> bool:
+        """Whether a calibration run has to be made first; then there is a job for it."""
+        if reference.run_id not in self._jobs:
+            if self._references[reference.run_id] or reference.complete:
+                self._references[reference.run_id] = True
+                return False
+            kind: Kind = "crowd_alone" if reference.name == "crowd_alone" else "robot_alone"
+            self._job(kind, reference.run_id, suite, entry, request, reference, ())
+        return True
+
+    def _learn(self, request: Request, record: dict[str, Any], prepared: Prepared) -> None:
+        people = len(prepared.run.people.agents)
+        self._estimate.learn_run(request.directory, record, people, _limit(request))
+
+    def _job(
+        self,
+        kind: Kind,
+        key: str,
+        suite: SelectedSuite,
+        entry: PlannerEntry,
+        request: Request,
+        what: Prepared | Reference,
+        depends_on: Sequence[Reference],
+    ) -> None:
+        trial = what.run if isinstance(what, Prepared) else what.trial
+        directory = request.directory if isinstance(what, Prepared) else what.directory
+        people = len(trial.people.agents)
+        self._size += self._estimate.size(kind, people, _limit(request))
+        self._jobs[key] = Job(
+            key=key,
+            kind=kind,
+            source=suite.source,
+            suite=request.suite,
+            scenario=request.scenario.id,
+            index=request.position,
+            spec_hash=trial.spec,
+            planner=entry.text,
+            settings=tuple(self._campaign.planner_settings),
+            label=entry.choice.label,
+            seed=request.seed,
+            out=str(self._out),
+            directory=directory.relative_to(self._out).as_posix(),
+            record=request.record,
+            replay=request.replay,
+            retry_failed=self._campaign.retry_failed,
+            depends_on=tuple(r.run_id for r in depends_on),
+            cost=expected_seconds(kind, people, _limit(request)),
+        )
+
+
+def _limit(request: Request) -> float:
+    (robot,) = request.scenario.robots.values()
+    return robot.task.time_limit

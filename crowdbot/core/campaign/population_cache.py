@@ -1,0 +1,30 @@
+"""Remembers who walks in a suite: many scenarios share one drawn crowd."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.scenarios.lock import Population, population
+from crowdbot.core.scenarios.lock_check import check_fits
+from crowdbot.dsl.lock_inputs import population_inputs
+from crowdbot.dsl.scenario import Scenario
+
+
+def cached_population() -> Callable[[Scenario, Registry], Population]:
+    """A `population` that draws or reads each table once; every scenario is still checked."""
+    known: dict[tuple[str, str], Population] = {}
+
+    def populate(scenario: Scenario, registry: Registry) -> Population:
+        if scenario.crowd is None:
+            return population(scenario, registry)
+        lock = ""
+        if scenario.locked is not None:
+            check_fits(scenario.locked.files, scenario.locked.origin(), registry)
+            lock = str(scenario.locked.files.lock_path)
+        key = (lock, population_inputs(scenario))
+        if key not in known:
+            known[key] = population(scenario, registry)
+        return known[key]
+
+    return populate

@@ -1,0 +1,140 @@
+"""What a campaign is asked for, with every suite and planner opened and checked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from crowdbot.core.campaign.job import SuiteSource
+from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs.request import Recorded
+from crowdbot.core.scenarios.library import open_spec, select
+from crowdbot.dsl.expand import Expansion
+from crowdbot.dsl.scenario import Scenario
+from crowdbot.errors import InputError, UnknownNameError, UsageError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CampaignRequest:
+    """What a campaign is to run, as the user wrote it.
+
+    Attributes:
+        suites: paths or names of packaged suites.
+        only: pattern of scenario ids; must fit something in some suite.
+        planner_settings: ``key=value`` texts, for all planners.
+        retry_failed: run again what ended with a planner that failed.
+    """
+
+    suites: Sequence[str]
+    planners: Sequence[str]
+    seeds: Sequence[int] = (0,)
+    only: str | None = None
+    out: Path = Path("runs")
+    record: Recorded = "used"
+    replay: bool = True
+    overrides: Sequence[str] = ()
+    planner_settings: Sequence[str] = ()
+    plugins: Sequence[Path] = ()
+    retry_failed: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SelectedSuite:
+    """An opened suite, and those of its scenarios that are to be run."""
+
+    source: SuiteSource
+    expansion: Expansion
+    scenarios: Sequence[Scenario]
+
+    @property
+    def name(self) -> str:
+        """The folder of its runs."""
+        return "scenarios" if self.expansion.single else self.expansion.suite_id
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlannerEntry:
+    """A planner of the campaign: the text by which a worker finds it, and what it is."""
+
+    text: str
+    choice: PlannerChoice
+
+
+def open_suites(request: CampaignRequest, registry: Registry) -> list[SelectedSuite]:
+    """All suites of a campaign.
+
+    Raises:
+        SpecError: a document is wrong.
+        UnknownNameError: no such suite, or the pattern fits no scenario.
+        InputError: two suites have the same id.
+    """
+    suites = []
+    plugins = tuple(str(p.resolve()) for p in request.plugins)
+    for spec in dict.fromkeys(request.suites):
+        expansion = open_spec(spec, registry, request.overrides)
+        source = SuiteSource(
+            spec=_absolute(spec),
+            overrides=tuple(request.overrides),
+            plugins=plugins,
+            allowed=registry.allowed,
+        )
+        chosen = expansion.scenarios if request.only is None else select(expansion, request.only)
+        suites.append(SelectedSuite(source=source, expansion=expansion, scenarios=chosen))
+    _check_folders(suites)
+    if request.only is not None and not any(s.scenarios for s in suites):
+        known = [s.id for suite in suites for s in suite.expansion.scenarios]
+        raise UnknownNameError("scenario", request.only, known)
+    return suites
+
+
+def open_planners(request: CampaignRequest, registry: Registry) -> list[PlannerEntry]:
+    """All planners of a campaign.
+
+    Raises:
+        UsageError: none is named.
+        InputError: one is wrong, or two would write into the same folders.
+        PlannerError: a Python file cannot be imported.
+    """
+    if not request.planners:
+        raise UsageError("which planner? Give --planner NAME, once for each")
+    entries = [
+        PlannerEntry(
+            text=_planner(p), choice=resolve_planner(p, registry, request.planner_settings)
+        )
+        for p in dict.fromkeys(request.planners)
+    ]
+    labels: dict[str, PlannerEntry] = {}
+    for entry in entries:
+        other = labels.setdefault(entry.choice.label, entry)
+        if other is not entry:
+            raise InputError(
+                f"'{other.text}' and '{entry.text}' are both called {entry.choice.label}: "
+                "their runs would replace each other; give each a folder with --out"
+            )
+    return entries
+
+
+def _check_folders(suites: Sequence[SelectedSuite]) -> None:
+    taken: dict[tuple[str, str], SelectedSuite] = {}
+    for suite in suites:
+        for scenario in suite.scenarios:
+            other = taken.setdefault((suite.name, scenario.id), suite)
+            if other is not suite:
+                raise InputError(
+                    f"{other.source.spec} and {suite.source.spec} both have "
+                    f"{suite.name}/{scenario.id}: their runs would replace each other"
+                )
+
+
+def _absolute(spec: str) -> str:
+    """A file may be opened from another working directory; a packaged suite has no path."""
+    return str(Path(spec).resolve()) if Path(spec).is_file() else spec
+
+
+def _planner(text: str) -> str:
+    path, colon, name = text.rpartition(":")
+    if colon and path.endswith(".py"):
+        return f"{Path(path).resolve()}:{name}"
+    return str(Path(text).resolve()) if text.endswith((".yaml", ".yml")) or "/" in text else text

@@ -1,0 +1,191 @@
+"""Runs a campaign: jobs in order, what fails put on record, the store kept up to date."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+
+from crowdbot.core.campaign.estimate import CostEstimate
+from crowdbot.core.campaign.job import Done, Job
+from crowdbot.core.campaign.plan import Plan
+from crowdbot.core.campaign.worker_pool import Busy, WorkerPool
+from crowdbot.core.results.failure import Failure, forget_failure, write_failure
+from crowdbot.core.results.store import Store, index
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.outcome import PLANNER_FAILED
+from crowdbot.errors import PluginError, SimulationError
+
+_LOOK = 0.25
+
+
+@dataclass(slots=True)
+class State:
+    """How far a campaign is.
+
+    Attributes:
+        statuses: of the runs that are there, by key; those of failures are ``failed``.
+        labels: planner of each run, by key.
+        left: jobs that did not end yet.
+        busy: who does what.
+        failures: jobs that failed, with how.
+        began: monotonic time, s.
+        made: runs that were made in this campaign.
+    """
+
+    plan: Plan
+    estimate: CostEstimate
+    statuses: dict[str, str]
+    labels: dict[str, str]
+    left: dict[str, Job]
+    size: int
+    busy: Sequence[Busy] = ()
+    failures: dict[str, Done] = field(default_factory=dict)
+    began: float = field(default_factory=time.monotonic)
+    made: int = 0
+
+    @property
+    def remaining(self) -> float:
+        """Seconds until the end, as far as one can tell."""
+        seconds = sum(self.estimate.seconds(job) for job in self.left.values())
+        for at_work in self.busy:
+            progress = at_work.progress
+            if at_work.job.key in self.left and progress is not None:
+                share = min(1.0, progress.t / progress.limit)
+                seconds -= share * self.estimate.seconds(at_work.job)
+        return max(0.0, seconds) / max(1, min(self.size, len(self.left)))
+
+    @property
+    def exit_code(self) -> int:
+        """0 when every run is there; 3 when planners or plugins failed, 4 when anything else."""
+        codes = {d.exit_code for d in self.failures.values()}
+        if codes - {PluginError.exit_code}:
+            return SimulationError.exit_code
+        failed = codes or PLANNER_FAILED in self.statuses.values()
+        return PluginError.exit_code if failed else 0
+
+
+Listener = Callable[[State, Job | None, Done | None], None]
+
+
+def run_campaign(plan: Plan, pool: WorkerPool, size: int, listener: Listener) -> State:
+    """Do everything that is missing.
+
+    What is finished stays, whatever interrupts this function.
+
+    Args:
+        plan: from `make_plan`.
+        pool: executes the jobs; closed at the end.
+        size: how many work at a time, for the estimate.
+        listener: called at the beginning, with each job that ended, and several times a second
+            without one.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    with ExitStack() as stack:
+        stack.callback(pool.close)
+        store = stack.enter_context(index(plan.out))
+        _relabel(plan)
+        store.synchronise()
+        campaign = _Campaign(plan, pool, size, store)
+        listener(campaign.state, None, None)
+        while campaign.state.left:
+            campaign.submit()
+            listener(campaign.state, None, None)
+            for job, done in campaign.take():
+                listener(campaign.state, job, done)
+        return campaign.state
+
+
+class _Campaign:
+    """Which jobs are ready, at work and ended."""
+
+    def __init__(self, plan: Plan, pool: WorkerPool, size: int, store: Store) -> None:
+        self._pool, self._store, self._out = pool, store, plan.out
+        jobs = {job.key: job for job in plan.jobs}
+        self.state = State(
+            plan=plan,
+            estimate=plan.estimate,
+            statuses={r.key: r.status for r in plan.runs if r.status},
+            labels={r.key: r.label for r in plan.runs},
+            left=jobs,
+            size=size,
+        )
+        # A run may begin as soon as its calibration runs are there; others go on meanwhile.
+        self._queue = deque(j for j in jobs.values())
+        self._ended: set[str] = set()
+        self._axes = {r.key: r.axes for r in plan.runs}
+
+    def submit(self) -> None:
+        """Hand out as many jobs as there are free slots for."""
+        for _ in range(self._pool.free_slots()):
+            job = next((j for j in self._queue if self._ended.issuperset(j.depends_on)), None)
+            if job is None:
+                return
+            self._queue.remove(job)
+            self._pool.submit(job)
+
+    def take(self) -> list[tuple[Job, Done]]:
+        """Jobs that ended, with those that can no longer be done."""
+        ended = []
+        for done in self._pool.finished(_LOOK):
+            job = self.state.left.get(done.key)
+            if job is not None:
+                ended += self._end(job, done)
+        self.state.busy = self._pool.busy()
+        return ended
+
+    def _end(self, job: Job, done: Done) -> list[tuple[Job, Done]]:
+        del self.state.left[job.key]
+        self._ended.add(job.key)
+        if done.error:
+            return self._fail(job, done)
+        self.state.estimate.learn(
+            "" if job.kind == "crowd_alone" else job.label, job.cost, done.wall_time
+        )
+        if job.kind == "run":
+            self.state.statuses[job.key] = done.status
+            self.state.made += 1
+            forget_failure(self._out / job.directory)
+            self._store.add(job.directory)
+        return [(job, done)]
+
+    def _fail(self, job: Job, done: Done) -> list[tuple[Job, Done]]:
+        self.state.failures[job.key] = done
+        if job.kind == "run":
+            self.state.statuses[job.key] = "failed"
+            write_failure(self._out / job.directory, _failure(job, done, self._axes[job.key]))
+            self._store.add_failure(job.directory)
+        ended = [(job, done)]
+        for other in [j for j in self.state.left.values() if job.key in j.depends_on]:
+            self._queue.remove(other)
+            because = replace(done, key=other.key, error=f"{job.title}: {done.error}")
+            ended += self._end(other, because)
+        return ended
+
+
+def _failure(job: Job, done: Done, axes: dict[str, str]) -> Failure:
+    return Failure(
+        run_id=job.key,
+        suite=job.suite,
+        scenario=job.scenario,
+        planner=job.label,
+        seed=job.seed,
+        position=job.index,
+        error=done.error,
+        traceback=done.traceback,
+        exit_code=done.exit_code,
+        axes=axes,
+    )
+
+
+def _relabel(plan: Plan) -> None:
+    """A suite may call its axes otherwise without changing what happens in a run."""
+    for run in plan.runs:
+        recorded = (run.record.get("axes"), run.record.get("position"))
+        if run.record and recorded != (run.axes, run.position):
+            record = {**run.record, "axes": run.axes, "position": run.position}
+            files.write_json(run.directory / files.RECORD, record)

@@ -1,0 +1,113 @@
+"""A worker process: receives jobs through a socket, reports progress, ends when nobody listens.
+
+A thread sends a beat every second. Code that keeps the interpreter lock stops it, and so its
+silence tells the parent of a planner that hangs where no watchdog of this process can act.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import faulthandler
+import os
+import signal
+import sys
+import threading
+import time
+from multiprocessing.connection import Connection
+from typing import Any, NamedTuple
+
+from crowdbot.core.campaign.job import Done, Job
+from crowdbot.core.runs.outcome import Progress
+
+#: Seconds between beats.
+BEAT = 1.0
+_SEND_PROGRESS = 0.25
+_PR_SET_PDEATHSIG = 1
+
+
+class Beat(NamedTuple):
+    """The process lives; ``progress`` of the job, None before it moves.
+
+    ``patient``: the planner may be loading a model, or scores are computed.
+    """
+
+    progress: Progress | None
+    patient: bool
+
+
+class Hung(NamedTuple):
+    """The planner swallows every interruption; the process ends now."""
+
+
+def main(handle: int, parent: int) -> None:
+    """Do jobs until the other end of the socket is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent
+    _die_with(parent)
+    faulthandler.enable()
+    line = _Line(Connection(handle))
+    threading.Thread(target=line.beat, daemon=True).start()
+    from crowdbot.core.campaign.execute import execute
+
+    while True:
+        try:
+            job = line.connection.recv()
+        except EOFError:
+            return
+        line.progress = None
+        done = execute(job, line.report, line.hung)
+        line.progress = None
+        line.send(done)
+
+
+class _Line:
+    """The socket; several threads send through it."""
+
+    def __init__(self, connection: Connection) -> None:
+        self.connection = connection
+        self.progress: Progress | None = None
+        self._lock = threading.Lock()
+        self._sent = 0.0
+
+    def send(self, message: Beat | Hung | Done) -> None:
+        """Send; without a listener the process ends at once."""
+        with self._lock:
+            try:
+                self.connection.send(message)
+            except OSError:
+                os._exit(1)
+
+    def beat(self) -> None:
+        """For ever; the thread's work."""
+        while True:
+            self._beat()
+            time.sleep(BEAT)
+
+    def report(self, progress: Progress) -> None:
+        """Called by the simulation."""
+        self.progress = progress
+        now = time.monotonic()
+        if now >= self._sent + _SEND_PROGRESS or progress.t >= progress.limit:
+            self._sent = now
+            self._beat()
+
+    def hung(self) -> None:
+        """Called by the watchdog's thread when a planner cannot be interrupted."""
+        self.send(Hung())
+        os._exit(3)
+
+    def _beat(self) -> None:
+        progress = self.progress
+        ended = progress is not None and progress.t >= progress.limit
+        self.send(Beat(progress, patient=progress is None or ended))
+
+
+def _die_with(parent: int) -> None:
+    """Be killed when the parent is: at once on Linux, elsewhere at the next beat."""
+    if sys.platform == "linux":
+        libc: Any = ctypes.CDLL(None)
+        libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:  # it was killed before this line
+        os._exit(1)
+
+
+__all__ = ["BEAT", "Beat", "Done", "Hung", "Job", "main"]

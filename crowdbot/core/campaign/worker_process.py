@@ -1,0 +1,189 @@
+"""One worker process as its parent sees it: sent jobs, watched, replaced when it dies."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from typing import Any
+
+from crowdbot.core.campaign.job import Done, Job
+from crowdbot.core.campaign.worker_main import Beat, Hung
+from crowdbot.core.planning.host import RESET_LIMIT
+from crowdbot.core.planning.watchdog import Watchdog
+from crowdbot.core.runs.outcome import Progress
+from crowdbot.errors import PlannerHungError, SimulationError
+
+#: Jobs after which a process is replaced: diagrams with parts in Python leak a little.
+RECYCLE = 50
+#: How often a job is tried when its process dies.
+TRIES = 3
+#: Beyond the watchdog's own limits, for a machine that is busy, s.
+_SLACK = 5.0
+_TAIL = 20_000
+_ONE_THREAD = (
+    "NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS",
+)  # fmt: skip
+#: A step of Drake's contact solver makes and frees some hundreds of small objects, and glibc keeps
+#: seven freed ones of a size at hand; with more the plant's step is a quarter faster. The C
+#: library reads this when a process starts; others than glibc do not.
+_ALLOCATOR = {"GLIBC_TUNABLES": "glibc.malloc.tcache_count=400"}
+_START = (
+    "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
+    "from crowdbot.core.campaign.worker_main import main; "
+    "main(int(sys.argv[2]), int(sys.argv[3]))"
+)
+
+
+def worker_environment() -> dict[str, str]:
+    """Environment of a worker: this process's, one thread, and a roomy allocator."""
+    return {**_ALLOCATOR, **os.environ, **dict.fromkeys(_ONE_THREAD, "1")}
+
+
+class WorkerProcess:
+    """A warm process that does one job at a time, and is started when it is needed.
+
+    Attributes:
+        job: what it is doing.
+        progress: how far it is with that.
+    """
+
+    def __init__(self) -> None:
+        self.job: Job | None = None
+        self.progress: Progress | None = None
+        self._process: subprocess.Popen[bytes] | None = None
+        self._connection: Connection | None = None
+        self._said: Any = None
+        self._jobs = self._deaths = 0
+        self._began = self._heard = 0.0
+        self._patient = True
+
+    @property
+    def connection(self) -> Connection:
+        """What becomes readable when there is a message; of a process that does a job."""
+        assert self._connection is not None
+        return self._connection
+
+    @property
+    def pid(self) -> int | None:
+        """Of the process, if there is one."""
+        return self._process.pid if self._process else None
+
+    def submit(self, job: Job) -> None:
+        """Start a job; the process must have none."""
+        assert self.job is None
+        self.job, self.progress, self._deaths = job, None, 0
+        self._began = time.monotonic()
+        self._send()
+
+    def poll(self) -> Done | None:
+        """Look at what was sent; the end of the job, if it is that.
+
+        A process that died is replaced, and does the same job again, `TRIES` times in all.
+        """
+        try:
+            while self.connection.poll():
+                message = self.connection.recv()
+                if isinstance(message, Done):
+                    return self._finish(message)
+                if isinstance(message, Hung):
+                    return self._give_up(PlannerHungError("the planner swallowed interruptions"))
+                assert isinstance(message, Beat)
+                self._heard, self._patient = time.monotonic(), message.patient
+                self.progress = message.progress
+        except (EOFError, OSError):
+            return self._died()
+        return self._give_up(self._silence()) if self._is_silent() else None
+
+    def stop(self) -> None:
+        """End the process, whatever it does."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+        if self._connection is not None:
+            self._connection.close()
+        if self._said is not None:
+            self._said.close()
+        self._process = self._connection = self._said = None
+        self._jobs = 0
+
+    def _send(self) -> None:
+        if self._process is None or self._process.poll() is not None or self._jobs >= RECYCLE:
+            self.stop()
+            self._start()
+        self._jobs += 1
+        self._heard, self._patient = time.monotonic(), True
+        self._said.truncate(0)
+        try:
+            self.connection.send(self.job)
+        except OSError:
+            return  # it died; the next look at it tells
+
+    def _start(self) -> None:
+        """A fresh interpreter: threads do not survive a fork, and no script is run again."""
+        ours, theirs = Pipe()
+        # What it prints must not get into tables; the end of it tells why it died.
+        self._said = tempfile.TemporaryFile(mode="ab+")  # noqa: SIM115
+        command = [sys.executable, "-c", _START, json.dumps(sys.path)]
+        with theirs:
+            self._process = subprocess.Popen(
+                [*command, str(theirs.fileno()), str(os.getpid())],
+                pass_fds=[theirs.fileno()],
+                stdin=subprocess.DEVNULL,
+                stdout=self._said,
+                stderr=self._said,
+                env=worker_environment(),
+            )
+        self._connection = ours
+
+    def _finish(self, done: Done) -> Done:
+        self.job = self.progress = None
+        return done
+
+    def _died(self) -> Done | None:
+        """Try again with a new process, or give up."""
+        assert self._process is not None
+        self._deaths += 1
+        code = self._process.wait()
+        if self._deaths < TRIES:
+            self.stop()
+            self._send()
+            return None
+        how = f"signal {-code}" if code < 0 else f"exit code {code}"
+        error = SimulationError(f"the process died {TRIES} times ({how})")
+        return self._give_up(error)
+
+    def _is_silent(self) -> bool:
+        limit = RESET_LIMIT if self._patient else Watchdog().limit
+        return time.monotonic() > self._heard + limit + Watchdog().grace + _SLACK
+
+    def _silence(self) -> PlannerHungError:
+        silent = time.monotonic() - self._heard
+        return PlannerHungError(
+            f"the planner did not return for {silent:.0f} s and could not be interrupted; "
+            "the process was ended"
+        )
+
+    def _give_up(self, error: PlannerHungError | SimulationError) -> Done:
+        assert self.job is not None
+        key, said = self.job.key, self._tail()
+        self.stop()
+        return self._finish(
+            Done(
+                key=key,
+                error=f"{type(error).__name__}: {error}",
+                exit_code=error.exit_code,
+                traceback=said,
+                wall_time=time.monotonic() - self._began,
+            )
+        )
+
+    def _tail(self) -> str:
+        size = self._said.seek(0, os.SEEK_END)
+        self._said.seek(max(0, size - _TAIL))
+        return str(self._said.read().decode(errors="replace"))

@@ -1,0 +1,128 @@
+"""Policies and cost functions as plugins return them, checked before they are used."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.crowd.agents import Agents
+from crowdbot.core.crowd.desired_acceleration import CheckedPolicy
+from crowdbot.core.crowd.velocity_search.cost import (
+    BASE,
+    EXCESS,
+    GRADIENT,
+    LOWER_BOUND,
+    OPTIMUM,
+    PREPARE,
+    AgentView,
+    CompiledCost,
+    Neighbours,
+    NumpyCost,
+)
+from crowdbot.core.registry.plugin_boundary import PluginCall
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.types.arrays import Array
+from crowdbot.dsl.component_specs import CostFunctionSpec, CrowdPolicySpec
+from crowdbot.errors import PluginError
+
+_SIGNATURES = {
+    "base": BASE, "prepare": PREPARE, "excess": EXCESS, "gradient": GRADIENT, "optimum": OPTIMUM,
+    "lower_bound": LOWER_BOUND,
+}  # fmt: skip
+_OPTIONAL = ("gradient", "optimum", "lower_bound")
+
+
+def build_policy(
+    registry: Registry,
+    spec: CrowdPolicySpec,
+    costs: Sequence[CompiledCost | NumpyCost],
+    agents: Agents,
+) -> CheckedPolicy:
+    """The policy that a spec describes, for some agents; each of its answers is checked.
+
+    Args:
+        costs: what it minimises, built.
+        agents: everybody of the crowd.
+
+    Raises:
+        PluginError: it cannot be built, or is not a policy.
+    """
+    call = registry.plugin_call(spec)
+    return registry.build(
+        spec, lambda policy: CheckedPolicy(policy, call), costs, agents, call=call
+    )
+
+
+def build_cost(registry: Registry, spec: CostFunctionSpec) -> CompiledCost | NumpyCost:
+    """The cost function that a spec describes.
+
+    Raises:
+        PluginError: it cannot be built, or does not fit its contract.
+    """
+    call = registry.plugin_call(spec)
+    return registry.build(spec, lambda cost: checked_cost(cost, call), call=call)
+
+
+def checked_cost(cost: object, call: PluginCall) -> CompiledCost | NumpyCost:
+    """A cost function that fits its contract, as far as that can be seen before it is called.
+
+    Args:
+        cost: what a build function returned.
+        call: the boundary to its plugin.
+
+    Raises:
+        PluginError: it does not.
+    """
+    if not isinstance(cost, CompiledCost | NumpyCost):
+        raise PluginError(
+            f"build returned a {type(cost).__name__}, not a CompiledCost or a NumpyCost"
+        )
+    if not (math.isfinite(cost.weight) and cost.weight >= 0.0):
+        raise PluginError(f"weight is {cost.weight}")
+    if isinstance(cost, NumpyCost):
+        if not cost.range > 0.0:
+            raise PluginError(f"range is {cost.range}")
+        return replace(cost, evaluate=_checked_costs(cost.evaluate, call))
+    params = cost.params
+    if not (isinstance(params, np.ndarray) and params.dtype == np.float64 and params.ndim == 1):
+        raise PluginError("params must be a float64 array (P,)")
+    if len(params) < 2 or np.any(np.isnan(params)) or not params[0] > 0.0:
+        raise PluginError(
+            f"params begins with the range (m) and 1.0 or 0.0 for whether "
+            f"it is measured between surfaces, and is {params.tolist()}"
+        )
+    for name, signature in _SIGNATURES.items():
+        _check_compiled(name, signature, getattr(cost, name))
+    return cost
+
+
+def _check_compiled(name: str, signature: Any, function: Any) -> None:
+    if function is None and name in _OPTIONAL:
+        return
+    found = getattr(function, "nopython_signatures", ())
+    if signature not in found:
+        what = f"is compiled for {found[0]}" if found else "is not compiled"
+        raise PluginError(
+            f"{name} {what}; decorate it with "
+            f'@njit({name.upper()}, cache=True, error_model="numpy"), which is {signature}'
+        )
+
+
+def _checked_costs(
+    evaluate: Callable[[Array, AgentView, Neighbours], Array], call: PluginCall
+) -> Callable[[Array, AgentView, Neighbours], Array]:
+    def checked(candidates: Array, agent: AgentView, neighbours: Neighbours) -> Array:
+        with call("evaluate"):
+            found = np.asarray(evaluate(candidates, agent, neighbours), np.float64)
+        if found.shape != (len(candidates),):
+            call.fail(f"evaluate returned shape {found.shape} for {len(candidates)} candidates")
+        if np.isnan(found).any():
+            wrong = candidates[np.isnan(found)][0].tolist()
+            call.fail(f"evaluate returned NaN for {wrong}")
+        return found
+
+    return checked

@@ -1,0 +1,76 @@
+"""What people want: a policy's answer, checked and as accelerations."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.crowd.policy import CrowdPolicy, CrowdView
+from crowdbot.core.registry.plugin_boundary import PluginCall
+from crowdbot.core.types.arrays import Array
+from crowdbot.errors import PluginError
+
+
+class CheckedPolicy:
+    """A policy with the boundary to its plugin; for everything else the policy itself.
+
+    Args:
+        policy: what a build function returned.
+        call: the boundary; by default one that names the policy's class.
+
+    Raises:
+        PluginError: it is not a policy.
+    """
+
+    def __init__(self, policy: Any, call: PluginCall | None = None) -> None:
+        if not (hasattr(policy, "velocities") or hasattr(policy, "accelerations")):
+            raise PluginError(
+                f"build returned a {type(policy).__name__}, which has neither 'velocities' nor "
+                "'accelerations'"
+            )
+        push = getattr(policy, "contact_stiffness", 0.0)
+        if not (isinstance(push, int | float) and math.isfinite(push) and push >= 0.0):
+            raise PluginError(f"contact_stiffness is {push!r}")
+        self.call = call or PluginCall(f"crowd policy '{type(policy).__name__}'")
+        self._policy = policy
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._policy, name)
+
+
+def desired_acceleration(policy: CrowdPolicy, view: CrowdView) -> Array:
+    """Accelerations (N, 2) of those who decide, m/s^2; others' rows mean nothing.
+
+    Raises:
+        PluginError: the policy raised, its answer has a wrong shape, or is not finite for one who
+            decides.
+    """
+    call = policy.call if isinstance(policy, CheckedPolicy) else CheckedPolicy(policy).call
+    with call("decision", view.t):
+        if hasattr(policy, "accelerations"):
+            return _checked(policy.accelerations(view), view, call)
+        answer = _checked(policy.velocities(view, view.dt), view, call)
+    acceleration = (answer - view.velocity) / view.dt
+    norm = np.hypot(acceleration[:, 0], acceleration[:, 1])
+    limit = view.agents.max_acceleration
+    scale = np.minimum(1.0, limit / np.maximum(norm, limit))
+    return np.asarray(acceleration * scale[:, np.newaxis])
+
+
+def _checked(asked: object, view: CrowdView, call: PluginCall) -> Array:
+    answer = np.asarray(asked, np.float64)
+    if answer.shape != view.position.shape:
+        call.fail(f"returned shape {answer.shape} instead of {view.position.shape}")
+    finite = np.isfinite(answer)
+    if finite.all():
+        return answer
+    finite = np.all(finite, axis=1)
+    decides = view.present if view.decides is None else view.decides
+    if not np.all(finite[decides]):
+        row = int(np.flatnonzero(decides & ~finite)[0])
+        call.fail(
+            f"returned {answer[row].tolist()} for agent {view.agents.id[row]} at t = {view.t:g} s"
+        )
+    return answer

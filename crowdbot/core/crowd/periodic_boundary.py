@@ -1,0 +1,73 @@
+"""A floor whose opposite borders are one: people who leave on one side come in on the other.
+
+A side may be infinite: then the floor goes on there and nothing wraps.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crowdbot.core.crowd.state import GOAL_X, GOAL_Y, JUMPS, LAP_X, LAP_Y, X, Y
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array
+
+#: x0, x1, y0, y1, m.
+Box = tuple[float, float, float, float]
+
+#: A floor that nobody can leave.
+ENDLESS = np.array([-math.inf, math.inf, -math.inf, math.inf])
+
+
+def images(discs: Array, box: Box, reach: float, *, diagonal: bool = True) -> Array:
+    """Discs as they appear across the periodic boundary.
+
+    Args:
+        discs: (M, 5) x, y, vx, vy, radius.
+        box: x0, x1, y0, y1, m.
+        reach: only images closer than this to the floor, m.
+        diagonal: also those that are seen across a corner.
+
+    Returns:
+        (K, 5); those across the left border first, then right, below, above, corners.
+    """
+    width, height = box[1] - box[0], box[3] - box[2]
+    sides = [(-width, 0.0), (width, 0.0), (0.0, -height), (0.0, height)]
+    if diagonal:
+        sides += [(dx, dy) for dx in (-width, width) for dy in (-height, height)]
+    found = [np.zeros((0, 5))]
+    for dx, dy in sides:
+        if not math.isfinite(dx + dy):
+            continue
+        x, y = discs[:, 0] + dx, discs[:, 1] + dy
+        away = np.hypot(
+            np.maximum(0.0, np.maximum(box[0] - x, x - box[1])),
+            np.maximum(0.0, np.maximum(box[2] - y, y - box[3])),
+        )
+        shown = discs[away < reach].copy()
+        shown[:, 0] += dx
+        shown[:, 1] += dy
+        found.append(shown)
+    return np.concatenate(found)
+
+
+@kernel
+def wrap(agents: Array, i: int, box: Array, goals_wrap: bool) -> None:
+    """Put agent i back on the floor, one wrap per axis.
+
+    Its goal moves along, so that it walks on as it would on the endless plane that the floor
+    repeats. In the original engine goals stay.
+    """
+    for at, goal, lap, low, high in (
+        (X, GOAL_X, LAP_X, box[0], box[1]),
+        (Y, GOAL_Y, LAP_Y, box[2], box[3]),
+    ):
+        if low <= agents[i, at] <= high:
+            continue
+        shift = low - high if agents[i, at] > high else high - low
+        agents[i, at] += shift
+        agents[i, JUMPS] += 1.0
+        if goals_wrap:
+            agents[i, lap] += shift
+            agents[i, goal] += shift

@@ -1,0 +1,121 @@
+"""The weighted cost functions of one agent, called from compiled loops."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd.velocity_search.cost import MAX_SPEED, PREFERRED, PVX, PVY, PX, PY
+from crowdbot.core.crowd.velocity_search.cost_calls import call_base, call_excess, call_prepare
+from crowdbot.core.crowd.velocity_search.neighbours import gather, gather_walls
+from crowdbot.core.crowd.velocity_search.surroundings import Surroundings
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array, Indices
+
+#: Table (K, 8) of addresses: a row for each cost function, columns as below.
+Functions = NDArray[np.intp]
+# Columns of `Functions`: the parts of a function, 0 for one that it lacks; its parameters; its
+# scratch table.
+BASES, PREPARES, EXCESSES, LOWER_BOUNDS, GRADIENTS, OPTIMA, PARAMS, WORK = range(8)
+FUNCTION_COLUMNS = 8
+
+
+class AgentCosts(NamedTuple):
+    """The cost functions of one agent, prepared for its decision.
+
+    Attributes:
+        agent: (`AGENT_SIZE`,) the agent; see `crowdbot.core.crowd.velocity_search.cost`.
+        functions: (K, `FUNCTION_COLUMNS`) addresses.
+        weights: (K,) of the functions.
+        active: (T,) numbers of the functions that have an excess here.
+    """
+
+    agent: Array
+    functions: Functions
+    weights: Array
+    active: Indices
+
+
+@kernel
+def prepare(
+    around: Surroundings, b: int, functions: Functions, weights: Array, active: Indices
+) -> int:
+    """Prepare all functions for the agent in row b of the table, whom `describe` has described.
+
+    Returns:
+        how many have an excess; their numbers are in ``active`` (K,).
+    """
+    agent, near, found = around.agent, around.near, around.found
+    near_count = gather(
+        around.table, around.starts, around.low, around.height, b, around.reach, near
+    )
+    wall_count = gather_walls(around.walls, agent[PX], agent[PY], around.reach, found)
+    terms = 0
+    for k in range(weights.shape[0]):
+        items = call_prepare(
+            functions[k, PREPARES], agent.ctypes.data, near.ctypes.data, near_count,
+            found.ctypes.data, wall_count, functions[k, PARAMS], functions[k, WORK],
+        )  # fmt: skip
+        if items > 0 and weights[k] != 0.0:
+            active[terms] = k
+            terms += 1
+    return terms
+
+
+@kernel
+def in_preferred_frame(ux: float, uy: float, agent: Array) -> tuple[float, float]:
+    """A velocity in the world frame as seen along the preferred velocity, m/s."""
+    preferred = agent[PREFERRED]
+    return (
+        (ux * agent[PVX] + uy * agent[PVY]) / preferred,
+        (uy * agent[PVX] - ux * agent[PVY]) / preferred,
+    )
+
+
+@kernel
+def base_cost(
+    along: float,
+    across: float,
+    preferred: float,
+    max_speed: float,
+    functions: Functions,
+    weights: Array,
+) -> float:
+    """Weighted sum of the bases for a candidate in the preferred frame."""
+    total = 0.0
+    for k in range(weights.shape[0]):
+        if weights[k] != 0.0:
+            total += weights[k] * call_base(
+                functions[k, BASES], along, across, preferred, max_speed, functions[k, PARAMS]
+            )
+    return total
+
+
+@kernel
+def excess_of(costs: AgentCosts, k: int, ux: float, uy: float, budget: float) -> float:
+    """Excess of function k at a velocity in the world frame, or anything above ``budget``."""
+    functions = costs.functions
+    return float(
+        call_excess(
+            functions[k, EXCESSES], ux, uy, budget, costs.agent.ctypes.data, functions[k, WORK],
+            functions[k, PARAMS],
+        )
+    )  # fmt: skip
+
+
+@kernel
+def cost_of(costs: AgentCosts, k: int, ux: float, uy: float) -> float:
+    """Cost of a velocity in the world frame by function k alone, without its weight."""
+    agent, functions = costs.agent, costs.functions
+    along, across = in_preferred_frame(ux, uy, agent)
+    cost = call_base(
+        functions[k, BASES], along, across, agent[PREFERRED], agent[MAX_SPEED],
+        functions[k, PARAMS],
+    )  # fmt: skip
+    for term in range(costs.active.shape[0]):
+        if costs.active[term] == k:
+            cost += excess_of(costs, k, ux, uy, math.inf)
+    return float(cost)

@@ -1,0 +1,214 @@
+"""The contract of cost functions, compiled or vectorised.
+
+A cost is split into a *base*, which depends on the candidate alone as seen in the frame of the
+preferred velocity, and an *excess* >= 0 caused by everything else:
+``C(u) = base(u) + excess(u)``. The base is a lower bound of the cost, so that candidates which
+cannot win are never looked at. Either part may be zero; either may be ``inf``, which forbids the
+candidate (never a huge number). Neither may be NaN.
+
+`CompiledCost`: module-level functions, compiled with ``@njit(SIGNATURE, cache=True,
+error_model="numpy")``; float64 everywhere, SI units, world frame unless said otherwise:
+
+- ``base(ux, uy, preferred, max_speed, params) -> cost``: candidate in the preferred frame, in
+  which the preferred velocity is ``(preferred, 0)``, preferred > 0.
+- ``prepare(agent, near, near_count, walls, wall_count, params, work) -> items``: once per agent
+  and decision; writes what the functions below need into ``work``, whose row 0 is for counts and
+  is not cleared between agents: write it always. Where it returns 0 the excess is zero and is
+  not called.
+- ``excess(ux, uy, budget, agent, work, params) -> cost``: may stop and return anything above
+  ``budget`` as soon as the cost exceeds it. Called for many candidates, in any order.
+- ``lower_bound(count, ux, uy, agent, work, params, out) -> 1``: optional; into ``out`` a lower
+  bound >= 0 of the excess for each of ``count`` candidates, right but for rounding. Worth it where
+  a few operations on all candidates at once, without branches, spare most of them the excess.
+- ``gradient(ux, uy, agent, work, params, out) -> 1``: optional; derivatives of the whole cost
+  along x and y into ``out[0]`` and ``out[1]``; 0 if there is none to write. Without the function:
+  central differences over 0.1 m/s of base plus excess. Called after ``prepare``, also where that
+  returned 0.
+- ``optimum(agent, work, params, out) -> 1``: optional; the velocity of least cost, where it is
+  known in closed form, for the method ``global``; 0 if it is not known for this agent. Called
+  after ``prepare``, also where that returned 0.
+
+Everything but numbers is a pointer to float64: ten thousands of calls per decision would
+otherwise spend most of their time on handing arrays over. Vectors are indexed as they are;
+``near_table``, ``wall_table`` and ``work_table`` give the others rows and columns, free of charge.
+Functions that ask for the first collision share `crowdbot.core.crowd.velocity_search.collision`.
+
+`NumpyCost`: one function over all candidates of an agent, for those who need no speed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numba import carray, njit, types  # type: ignore[attr-defined]
+from numpy.typing import NDArray
+
+from crowdbot.core.types.arrays import Array
+
+#: What compiled code is handed instead of an array; indexed like one.
+Pointer = Any
+
+_F, _I = types.float64, types.int64
+_P = types.CPointer(_F)  # type: ignore[no-untyped-call]
+BASE = types.float64(_F, _F, _F, _F, _P)
+PREPARE = types.int64(_P, _P, _I, _P, _I, _P, _P)
+EXCESS = types.float64(_F, _F, _F, _P, _P, _P)
+GRADIENT = types.int64(_F, _F, _P, _P, _P, _P)
+OPTIMUM = types.int64(_P, _P, _P, _P)
+LOWER_BOUND = types.int64(_I, _P, _P, _P, _P, _P, _P)
+
+# Entries of the ``agent`` vector: position, velocity, radius, preferred speed, the greatest speed
+# that the search asks for, time between decisions; goal, preferred velocity, largest speed and
+# acceleration; the policy's relaxation time; the weight (1 unless a case of the original says
+# otherwise, without unit) that divides forces; 1 if the original's defects are wanted; state of
+# the agent's random numbers (see `crowdbot.core.crowd.velocity_search.minstd`), which functions
+# may advance.
+(
+    PX, PY, VX, VY, RADIUS, PREFERRED, FASTEST, TIME_STEP,
+    GX, GY, PVX, PVY, MAX_SPEED, MAX_ACCELERATION, RELAXATION, WEIGHT, PARITY, RANDOM,
+    DESCENDS,
+) = range(19)  # fmt: skip
+AGENT_SIZE = 19
+# Columns of ``near``, in no particular order: squared centre distance, relative position,
+# velocity, sum of radii; preferred velocity; 1 for a pillar (a disc that never moves).
+D2, RX, RY, NVX, NVY, REACH, NPX, NPY, STATIC = range(9)
+NEAR_COLUMNS = 9
+# Columns of ``walls``: both ends of a segment and its nearest point relative to the agent's
+# position; squared distance of the nearest point. Outlines run counter-clockwise around solids.
+AX, AY, BX, BY, NX, NY, WALL_D2 = range(7)
+WALL_COLUMNS = 7
+# First two entries of every ``params`` vector.
+RANGE, FROM_SURFACE = range(2)
+#: Columns of ``work``; it has one row for each neighbour and wall, and the header.
+WORK_COLUMNS = 8
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CompiledCost:
+    """One cost function, compiled.
+
+    Attributes:
+        base, prepare, excess: numba functions of the signatures above.
+        params: (P,), begins with the range (m) and 1.0 if it is measured between surfaces.
+        weight: factor of the cost, >= 0.
+        gradient, optimum, lower_bound: numba functions of the signatures above, or None.
+        ordered: excess has to be called for every candidate and in their order, because it draws
+            random numbers.
+    """
+
+    base: Callable[..., Any]
+    prepare: Callable[..., Any]
+    excess: Callable[..., Any]
+    params: Array
+    weight: float
+    gradient: Callable[..., Any] | None = None
+    optimum: Callable[..., Any] | None = None
+    lower_bound: Callable[..., Any] | None = None
+    ordered: bool = False
+
+    def reach(self, radius: float, largest_radius: float) -> float:
+        """Centre distance beyond which no neighbour counts, m."""
+        return _reach(self.params[RANGE], bool(self.params[FROM_SURFACE]), radius, largest_radius)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AgentView:
+    """What a vectorised cost function sees of its agent; SI units.
+
+    Attributes:
+        position, velocity, preferred_velocity, goal: (2,).
+        radius, preferred_speed, max_speed, max_acceleration, time_step, relaxation_time: numbers.
+    """
+
+    position: Array
+    velocity: Array
+    preferred_velocity: Array
+    goal: Array
+    radius: float
+    preferred_speed: float
+    max_speed: float
+    max_acceleration: float
+    time_step: float
+    relaxation_time: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Neighbours:
+    """What a vectorised cost function sees of the others within its range; SI units.
+
+    Attributes:
+        offset, velocity, preferred_velocity: (M, 2), positions relative to the agent.
+        radius: (M,).
+        fixed: (M,) True for pillars.
+        walls: (W, 4) both ends of wall segments relative to the agent.
+    """
+
+    offset: Array
+    velocity: Array
+    preferred_velocity: Array
+    radius: Array
+    fixed: NDArray[np.bool_]
+    walls: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NumpyCost:
+    """One cost function without compiled code; slower.
+
+    Attributes:
+        evaluate: candidates (S, 2), agent, neighbours -> costs (S,); ``inf`` forbids.
+        range: which neighbours and walls it is given, m.
+        from_surface: whether the range is measured between surfaces.
+        weight: factor of the cost, >= 0.
+    """
+
+    evaluate: Callable[[Array, AgentView, Neighbours], Array]
+    range: float
+    weight: float
+    from_surface: bool = False
+
+    def reach(self, radius: float, largest_radius: float) -> float:
+        """Centre distance beyond which no neighbour counts, m."""
+        return _reach(self.range, self.from_surface, radius, largest_radius)
+
+
+def _reach(distance: float, from_surface: bool, radius: float, largest_radius: float) -> float:
+    return float(distance) + (radius + largest_radius if from_surface else 0.0)
+
+
+# Numba wants a length; it is not checked.
+_ANY = 1
+
+
+@njit(cache=True)
+def near_table(near: Pointer) -> Any:
+    """Neighbours as rows of `NEAR_COLUMNS`."""
+    return carray(near, (_ANY, NEAR_COLUMNS))
+
+
+@njit(cache=True)
+def wall_table(walls: Pointer) -> Any:
+    """Walls as rows of `WALL_COLUMNS`."""
+    return carray(walls, (_ANY, WALL_COLUMNS))
+
+
+@njit(cache=True)
+def work_table(work: Pointer) -> Any:
+    """The scratch table as rows of `WORK_COLUMNS`."""
+    return carray(work, (_ANY, WORK_COLUMNS))
+
+
+@njit(cache=True, inline="always")
+def in_range(d2: float, radii: float, params: Pointer) -> bool:
+    """Whether a squared distance is within a function's range, strictly.
+
+    Args:
+        d2: squared centre distance to a neighbour, or squared distance to a wall, m^2.
+        radii: what is deducted where the range is measured between surfaces: the sum of the
+            radii, or the agent's radius for a wall, m.
+    """
+    reach = params[RANGE] + params[FROM_SURFACE] * radii
+    return bool(d2 < reach * reach)

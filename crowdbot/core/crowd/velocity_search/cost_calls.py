@@ -1,0 +1,100 @@
+"""Calls from compiled code into cost functions, by address.
+
+Numba can also pass functions as arguments, but types them anew in each call from Python, and
+compiles the caller anew for each number of them. An address is a number: one compiled search
+serves all combinations of costs.
+"""
+# Numba reads the arguments of intrinsics from their definitions.
+# ruff: noqa: ARG001
+
+from __future__ import annotations
+
+from typing import Any
+
+from llvmlite import ir  # type: ignore[import-untyped]
+from numba import types
+from numba.extending import intrinsic
+
+from crowdbot.core.crowd.velocity_search.cost import (
+    BASE,
+    EXCESS,
+    GRADIENT,
+    LOWER_BOUND,
+    OPTIMUM,
+    PREPARE,
+)
+
+
+def address_of(function: Any, signature: Any) -> int:
+    """Address of the C function that numba compiles; valid while ``function`` lives."""
+    result = function.get_compile_result(signature)
+    return int(result.library.get_pointer_to_function(result.fndesc.llvm_cfunc_wrapper_name))
+
+
+def _call(signature: Any) -> tuple[Any, Any]:
+    """Typing and code of a call: address of the function, then its arguments.
+
+    Pointers are given as integers and become pointers here.
+    """
+    given = [types.intp if isinstance(a, types.CPointer) else a for a in signature.args]
+
+    def generate(context: Any, builder: Any, _: Any, values: Any) -> Any:
+        wanted = [context.get_value_type(a) for a in signature.args]
+        kind = ir.FunctionType(context.get_value_type(signature.return_type), wanted)
+        arguments = [
+            builder.inttoptr(value, want) if isinstance(want, ir.PointerType) else value
+            for value, want in zip(values[1:], wanted, strict=True)
+        ]
+        return builder.call(builder.inttoptr(values[0], kind.as_pointer()), arguments)
+
+    return signature.return_type(types.intp, *given), generate
+
+
+def _base(
+    _: Any, at: Any, ux: Any, uy: Any, preferred: Any, max_speed: Any, params: Any
+) -> tuple[Any, Any]:
+    return _call(BASE)
+
+
+def _prepare(
+    _: Any,
+    at: Any,
+    agent: Any,
+    near: Any,
+    near_count: Any,
+    walls: Any,
+    wall_count: Any,
+    params: Any,
+    work: Any,
+) -> tuple[Any, Any]:
+    return _call(PREPARE)
+
+
+def _excess(
+    _: Any, at: Any, ux: Any, uy: Any, budget: Any, agent: Any, work: Any, params: Any
+) -> tuple[Any, Any]:
+    return _call(EXCESS)
+
+
+def _gradient(
+    _: Any, at: Any, ux: Any, uy: Any, agent: Any, work: Any, params: Any, out: Any
+) -> tuple[Any, Any]:
+    return _call(GRADIENT)
+
+
+def _optimum(_: Any, at: Any, agent: Any, work: Any, params: Any, out: Any) -> tuple[Any, Any]:
+    return _call(OPTIMUM)
+
+
+def _lower_bound(
+    _: Any, at: Any, count: Any, ux: Any, uy: Any, agent: Any, work: Any, params: Any, out: Any
+) -> tuple[Any, Any]:
+    return _call(LOWER_BOUND)
+
+
+call_base: Any = intrinsic(_base)
+call_prepare: Any = intrinsic(_prepare)
+call_excess: Any = intrinsic(_excess)
+call_gradient: Any = intrinsic(_gradient)
+call_optimum: Any = intrinsic(_optimum)
+call_lower_bound: Any = intrinsic(_lower_bound)

@@ -1,0 +1,114 @@
+"""Gradient descent in velocity space: the acceleration is minus the gradient of the total cost."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crowdbot.core.crowd.policy import CrowdView
+from crowdbot.core.crowd.velocity_search.agent_costs import (
+    GRADIENTS,
+    PARAMS,
+    WORK,
+    AgentCosts,
+    Functions,
+    cost_of,
+    prepare,
+)
+from crowdbot.core.crowd.velocity_search.cost import DESCENDS, FASTEST, RANDOM, VX, VY
+from crowdbot.core.crowd.velocity_search.cost_calls import call_gradient
+from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
+from crowdbot.core.crowd.velocity_search.neighbours import Starts
+from crowdbot.core.crowd.velocity_search.surroundings import Surroundings, describe
+from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array, Indices, Mask
+
+#: Half the span of central differences, m/s.
+STEP = 0.1
+_AROUND = STEP * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
+
+
+class Descent:
+    """Weighted costs whose gradient is followed."""
+
+    def __init__(self, costs: WeightedCosts) -> None:
+        self.costs = costs
+
+    def accelerations(self, view: CrowdView) -> Array:
+        """Minus the gradient (N, 2) at the current velocity, m/s^2.
+
+        Infinite away from a forbidden velocity within `STEP`; zero for agents that are absent or
+        have arrived. Never NaN.
+        """
+        costs, around = self.costs, self.costs.surroundings(view)
+        found = np.zeros_like(view.position)
+        _descend(*around, costs.functions, costs.weights, costs.active, np.zeros(2), found)
+        if costs.vectorised:
+            points = view.velocity[:, np.newaxis] + _AROUND
+            total = Evaluator(costs).total(view, points, compiled=False)
+            for axis in (0, 1):
+                low, high = total[:, 2 * axis], total[:, 2 * axis + 1]
+                both = np.isinf(low) & np.isinf(high)
+                with np.errstate(invalid="ignore"):
+                    slope = np.where(both, 0.0, (high - low) / (2.0 * STEP))
+                    summed = found[:, axis] - slope
+                found[:, axis] = np.where(np.isnan(summed), 0.0, summed)
+        return found
+
+
+@kernel
+def _descend(
+    table: Array, starts: Starts, low: float, height: float, who: Mask, goal: Array, walls: Array,
+    reach: float, traits: Array, settings: Array, random: Array, near: Array, found: Array,
+    agent: Array, functions: Functions, weights: Array, active: Indices, out: Array,
+    result: Array,
+) -> None:  # fmt: skip
+    """Write minus the gradient (N, 2) of the compiled costs to ``result``.
+
+    Args:
+        table to agent: fields of `Surroundings`.
+        functions, weights: see `AgentCosts`.
+        active, out: (K,), (2,) scratch.
+    """
+    around = Surroundings(
+        table, starts, low, height, who, goal, walls, reach, traits, settings, random, near,
+        found, agent,
+    )  # fmt: skip
+    for b in range(table.shape[0]):
+        i = describe(around, b)
+        if i < 0:
+            continue
+        vx, vy, agent[DESCENDS] = agent[VX], agent[VY], 1.0
+        agent[FASTEST] = (1.0 + 1e-9) * math.hypot(vx, vy) + 1.5 * STEP
+        terms = prepare(around, b, functions, weights, active)
+        costs = AgentCosts(agent, functions, weights, active[:terms])
+        gx = gy = 0.0
+        for k in range(weights.shape[0]):
+            if weights[k] == 0.0:
+                continue
+            out[0] = out[1] = 0.0
+            if functions[k, GRADIENTS] != 0:
+                call_gradient(
+                    functions[k, GRADIENTS], vx, vy, agent.ctypes.data, functions[k, WORK],
+                    functions[k, PARAMS], out.ctypes.data,
+                )  # fmt: skip
+            else:
+                _differences(costs, k, vx, vy, out)
+            gx += weights[k] * out[0]
+            gy += weights[k] * out[1]
+        result[i, 0] = 0.0 if math.isnan(gx) else -gx  # two functions may forbid opposite sides
+        result[i, 1] = 0.0 if math.isnan(gy) else -gy
+        random[i] = agent[RANDOM]
+
+
+@kernel
+def _differences(costs: AgentCosts, k: int, vx: float, vy: float, out: Array) -> None:
+    """Central differences of one function; infinite where one side is forbidden."""
+    for axis in range(2):
+        dx, dy = (STEP, 0.0) if axis == 0 else (0.0, STEP)
+        low = cost_of(costs, k, vx - dx, vy - dy)
+        high = cost_of(costs, k, vx + dx, vy + dy)
+        both = low == math.inf and high == math.inf
+        out[axis] = 0.0 if both else (high - low) / (2.0 * STEP)

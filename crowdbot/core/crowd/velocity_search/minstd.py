@@ -1,0 +1,45 @@
+"""The original engine's random numbers: the minimal standard generator, one per agent.
+
+Source: Park, Miller, "Random number generators: good ones are hard to find", CACM 1988:
+x <- 16807 x mod (2^31 - 1). The original scales in single precision, and so does this.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd.velocity_search.cost import RANDOM, Pointer
+
+_MODULUS = 2147483647
+
+
+def seeds(ids: NDArray[np.int64]) -> NDArray[np.float64]:
+    """First states of agents with these numbers; 0 counts as 1: the generator never leaves it."""
+    state = np.asarray(ids, np.int64) % _MODULUS
+    return np.where(state == 0, 1, state).astype(np.float64)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def following(state: int) -> int:
+    """The next state."""
+    product = np.int64(state) * np.int64(16807)
+    folded = (product & np.int64(_MODULUS)) + (product >> np.int64(31))
+    return int(folded - np.int64(_MODULUS) if folded >= np.int64(_MODULUS) else folded)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def between(state: int, low: float, high: float) -> float:
+    """The number in [low, high) that belongs to a state."""
+    unit = np.float32(state - 1) * np.float32(1.0 / 2147483648.0)  # a power of two: exact
+    unit = min(unit, np.float32(1.0 - 2.0**-24))
+    return float(np.float32(unit * (np.float32(high) - np.float32(low))) + np.float32(low))
+
+
+@njit(cache=True, error_model="numpy")
+def draw(agent: Pointer, low: float, high: float) -> float:
+    """Advance the generator of an ``agent`` vector and return a number in [low, high)."""
+    state = following(int(agent[RANDOM]))
+    agent[RANDOM] = float(state)
+    return between(state, low, high)

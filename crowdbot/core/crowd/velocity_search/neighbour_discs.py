@@ -1,0 +1,115 @@
+"""Everything that people see as a disc, in one table: people, robots, pillars, images."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd.velocity_search.neighbours import (
+    DISC_COLUMNS,
+    DISC_RADIUS,
+    INDEX,
+    PILLAR,
+    VX,
+    VY,
+    WANTED_X,
+    WANTED_Y,
+    X,
+    Y,
+)
+from crowdbot.core.types.arrays import Array
+
+
+def most_discs(people: int, others: int, periodic: bool) -> int:
+    """How many rows `write_discs` may write."""
+    return people * (9 if periodic else 1) + others
+
+
+@njit(cache=True, error_model="numpy")
+def write_discs(
+    position: Array,
+    velocity: Array,
+    goal: Array,
+    radius: Array,
+    preferred: Array,
+    present: NDArray[np.bool_],
+    robots: Array,
+    pillars: Array,
+    box: Array,
+    diagonal: bool,
+    reach: float,
+    discs: Array,
+) -> int:
+    """Write all discs; return how many they are.
+
+    Preferred velocities are zero at the goal; robots are taken to prefer the one they have.
+
+    Args:
+        position, velocity, goal: (N, 2); radius, preferred (speed), present: (N,).
+        robots: (K, 5) x, y, vx, vy, radius.
+        pillars: (P, 3) x, y, radius.
+        box: x0, x1, y0, y1 of the periodic boundary, m; none if x0 = x1.
+        diagonal: see `crowdbot.core.crowd.policy.CrowdView`.
+        reach: only images closer than this to the floor, m.
+        discs: (>= `most_discs`, `DISC_COLUMNS`) output.
+    """
+    count = 0
+    for i in range(position.shape[0]):
+        if not present[i]:
+            continue
+        row = discs[count]
+        row[X], row[Y] = position[i, 0], position[i, 1]
+        row[VX], row[VY] = velocity[i, 0], velocity[i, 1]
+        row[DISC_RADIUS], row[PILLAR], row[INDEX] = radius[i], 0.0, i
+        gx, gy = goal[i, 0] - position[i, 0], goal[i, 1] - position[i, 1]
+        away = math.hypot(gx, gy)
+        factor = preferred[i] / away if away > radius[i] else 0.0
+        row[WANTED_X], row[WANTED_Y] = factor * gx, factor * gy
+        count += 1
+    people = count
+    for r in range(robots.shape[0]):
+        discs[count, X : DISC_RADIUS + 1] = robots[r]
+        discs[count, WANTED_X], discs[count, WANTED_Y] = robots[r, 2], robots[r, 3]
+        discs[count, PILLAR], discs[count, INDEX] = 0.0, -1.0
+        count += 1
+    for p in range(pillars.shape[0]):
+        discs[count, :] = 0.0
+        discs[count, X], discs[count, Y] = pillars[p, 0], pillars[p, 1]
+        discs[count, DISC_RADIUS] = pillars[p, 2]
+        discs[count, PILLAR], discs[count, INDEX] = 1.0, -1.0
+        count += 1
+    if box[0] < box[1]:
+        count = _write_images(discs, people, count, box, diagonal, reach)
+    return count
+
+
+@njit(cache=True, error_model="numpy")
+def _write_images(
+    discs: Array, people: int, count: int, box: Array, diagonal: bool, reach: float
+) -> int:
+    """Append people as they appear across a periodic boundary."""
+    width, height = box[1] - box[0], box[3] - box[2]
+    for sx in (-1.0, 0.0, 1.0):
+        for sy in (-1.0, 0.0, 1.0):
+            if (sx == 0.0 and sy == 0.0) or (sx != 0.0 and sy != 0.0 and not diagonal):
+                continue
+            dx = sx * width if sx != 0.0 else 0.0  # a side may be infinite
+            dy = sy * height if sy != 0.0 else 0.0
+            if not math.isfinite(dx + dy):
+                continue
+            for i in range(people):
+                x, y = discs[i, X] + dx, discs[i, Y] + dy
+                ox = max(0.0, box[0] - x, x - box[1])
+                oy = max(0.0, box[2] - y, y - box[3])
+                if ox * ox + oy * oy >= reach * reach:
+                    continue
+                discs[count, :] = discs[i]
+                discs[count, X], discs[count, Y], discs[count, INDEX] = x, y, -1.0
+                count += 1
+    return count
+
+
+__all__ = ["DISC_COLUMNS", "most_discs", "write_discs"]

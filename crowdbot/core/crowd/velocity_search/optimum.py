@@ -1,0 +1,81 @@
+"""The method ``global``: the velocity of least cost, in closed form or by a fine search."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from crowdbot.core.crowd.policy import CrowdView
+from crowdbot.core.crowd.velocity_search.agent_costs import (
+    OPTIMA,
+    PARAMS,
+    WORK,
+    Functions,
+    prepare,
+)
+from crowdbot.core.crowd.velocity_search.candidates import EVERYWHERE
+from crowdbot.core.crowd.velocity_search.cost import RANDOM
+from crowdbot.core.crowd.velocity_search.cost_calls import call_optimum
+from crowdbot.core.crowd.velocity_search.neighbours import Starts
+from crowdbot.core.crowd.velocity_search.sampling import Sampler
+from crowdbot.core.crowd.velocity_search.surroundings import Surroundings, describe
+from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array, Indices, Mask
+
+
+class Optimum:
+    """Closed form where the costs are one function that has one; otherwise `EVERYWHERE`."""
+
+    def __init__(self, costs: WeightedCosts) -> None:
+        self.costs = costs
+        self.is_closed = (
+            len(costs.compiled) == 1 and not costs.vectorised and costs.functions[0, OPTIMA] != 0
+        )
+        self.search = Sampler(EVERYWHERE, costs)
+
+    def choose(self, view: CrowdView) -> Array:
+        """Chosen velocities (N, 2), m/s; zero for agents that are absent or have arrived."""
+        if not self.is_closed:
+            return self.search.choose(view)
+        costs, around = self.costs, self.costs.surroundings(view)
+        chosen, unknown = np.zeros_like(view.position), np.zeros(len(view.position), np.bool_)
+        _solve(*around, costs.functions, costs.weights, costs.active, np.zeros(2), unknown, chosen)
+        if np.any(unknown):
+            chosen[unknown] = self.search.choose(replace(view, decides=unknown))[unknown]
+        return chosen
+
+
+@kernel
+def _solve(
+    table: Array, starts: Starts, low: float, height: float, who: Mask, goal: Array, walls: Array,
+    reach: float, traits: Array, settings: Array, random: Array, near: Array, found: Array,
+    agent: Array, functions: Functions, weights: Array,
+    active: Indices, out: Array, unknown: Mask, chosen: Array,
+) -> None:  # fmt: skip
+    """Write velocities (N, 2) of least cost to ``chosen``, or say that one is ``unknown`` (N,).
+
+    Args:
+        table to agent: fields of `Surroundings`.
+        functions, weights: see `AgentCosts`; of one function.
+        active, out: (1,), (2,) scratch.
+    """
+    around = Surroundings(
+        table, starts, low, height, who, goal, walls, reach, traits, settings, random, near,
+        found, agent,
+    )  # fmt: skip
+    for b in range(table.shape[0]):
+        i = describe(around, b)
+        if i < 0:
+            continue
+        prepare(around, b, functions, weights, active)
+        known = call_optimum(
+            functions[0, OPTIMA], agent.ctypes.data, functions[0, WORK], functions[0, PARAMS],
+            out.ctypes.data,
+        )  # fmt: skip
+        random[i] = agent[RANDOM]
+        if known == 0:
+            unknown[i] = True
+        else:
+            chosen[i, 0], chosen[i, 1] = out[0], out[1]

@@ -1,0 +1,258 @@
+"""Sampling in velocity space: each agent takes the candidate of least total cost.
+
+Candidates are fixed in some frame. Where that is the frame of the preferred velocity, their base
+costs are tabulated and sorted once per agent, so that the search stops at the first candidate
+whose lower bound exceeds the best cost so far: exact branch and bound. In other frames the bounds
+are computed at each decision, and candidates above the best cost are passed over.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crowdbot.core.crowd.policy import CrowdView
+from crowdbot.core.crowd.velocity_search.agent_costs import (
+    AgentCosts,
+    Functions,
+    base_cost,
+    in_preferred_frame,
+    prepare,
+)
+from crowdbot.core.crowd.velocity_search.candidates import (
+    ALONG_PREFERRED,
+    ZERO,
+    FanOptions,
+    Sampling,
+    draw_candidates,
+    frame_of,
+    radius_of,
+)
+from crowdbot.core.crowd.velocity_search.cost import (
+    AGENT_SIZE,
+    MAX_ACCELERATION,
+    MAX_SPEED,
+    PARITY,
+    PREFERRED,
+    PVX,
+    RANDOM,
+    TIME_STEP,
+)
+from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
+from crowdbot.core.crowd.velocity_search.neighbours import Starts
+from crowdbot.core.crowd.velocity_search.search import (
+    in_world,
+    least_forbidden,
+    search,
+    set_bounds,
+    try_in_order,
+)
+from crowdbot.core.crowd.velocity_search.single import polar, single_candidates
+from crowdbot.core.crowd.velocity_search.surroundings import (
+    S_DT,
+    S_PARITY,
+    T_MAX_ACCELERATION,
+    T_MAX_SPEED,
+    T_PREFERRED,
+    Surroundings,
+    describe,
+)
+from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array, Indices, Mask
+
+
+class Sampler:
+    """Weighted costs over candidates, ready to decide for one set of agents."""
+
+    def __init__(self, sampling: Sampling, costs: WeightedCosts) -> None:
+        self.costs = costs
+        s = sampling
+        self._candidates = np.zeros((s.random, 2)) if s.random else s.fan()
+        self._polar = np.zeros((1, 2)) if s.random else polar(s)
+        self._options = FanOptions(s.base, s.direction, s.radius, 0.5 * s.opening, s.random > 0)
+        # Whether bounds are the same at each decision.
+        self._tabulated = not s.random and s.base == ZERO and s.direction == ALONG_PREFERRED
+        self._table_dt = math.nan
+        # Bounds and their candidates: a row for each agent, or one that each fills anew.
+        self._bound = np.zeros((1, len(self._candidates)))
+        self._index = np.arange(len(self._candidates))[np.newaxis]
+        # Where each search begins: the previous choice is a good bound, and changes no choice.
+        self._first = np.zeros(len(costs.agents), np.int64)
+        # Scratch: the frame (base, then direction times radius), candidates in the world frame,
+        # what `search` knows about candidates.
+        self._frame = np.zeros(4)
+        self._world = np.zeros_like(self._candidates)
+        self._tried = np.zeros((5, len(self._candidates)))
+
+    def choose(self, view: CrowdView) -> Array:
+        """Chosen velocities (N, 2), m/s; zero for agents that are absent or have arrived."""
+        costs = self.costs
+        if costs.vectorised:
+            return self._choose_slowly(view)
+        around = costs.surroundings(view)
+        self._tabulate(around.settings[S_DT])
+        chosen = np.zeros_like(view.position)
+        _choose(
+            *around, costs.functions, costs.weights, *self._options, costs.ordered,
+            self._candidates, self._polar, self._tabulated, self._bound, self._index, self._first,
+            self._frame, self._world, costs.active, self._tried, chosen,
+        )  # fmt: skip
+        return chosen
+
+    def candidates(self, view: CrowdView) -> Array:
+        """The regular candidates (N, S, 2) of everybody, or new random ones, world frame, m/s."""
+        found = np.zeros((len(view.position), *self._candidates.shape))
+        _candidates_of(
+            *self.costs.surroundings(view), *self._options, self._candidates, self._polar,
+            self._frame, found,
+        )  # fmt: skip
+        return found
+
+    def _choose_slowly(self, view: CrowdView) -> Array:
+        """Every candidate by every function, where some of these are vectorised."""
+        found = self.candidates(view)
+        total = Evaluator(self.costs).total(view, found)
+        best = np.argmin(total, axis=1)
+        rows = np.arange(len(found))
+        chosen = found[rows, best]
+        chosen[~np.isfinite(total[rows, best])] = 0.0
+        return np.asarray(chosen)
+
+    def _tabulate(self, dt: float) -> None:
+        """Sum the base costs and sort each agent's candidates by them."""
+        if not self._tabulated or self._table_dt == dt:
+            return
+        costs = self.costs
+        total = np.zeros((len(costs.agents), len(self._candidates)))
+        _tabulate(
+            self._candidates, costs.traits, self._options.radius, dt, costs.functions,
+            costs.weights, np.zeros(AGENT_SIZE), total,
+        )  # fmt: skip
+        self._index = np.argsort(total, axis=1, kind="stable")
+        self._bound = np.take_along_axis(total, self._index, axis=1)
+        self._table_dt = dt
+
+
+@kernel
+def _tabulate(
+    candidates: Array,
+    traits: Array,
+    radius: int,
+    dt: float,
+    functions: Functions,
+    weights: Array,
+    agent: Array,
+    total: Array,
+) -> None:
+    for i in range(total.shape[0]):
+        agent[PREFERRED], agent[MAX_SPEED] = traits[i, T_PREFERRED], traits[i, T_MAX_SPEED]
+        agent[PVX], agent[TIME_STEP] = agent[PREFERRED], dt
+        agent[MAX_ACCELERATION] = traits[i, T_MAX_ACCELERATION]
+        if agent[PREFERRED] <= 0.0:
+            continue  # never asked for
+        scale = radius_of(agent, radius)
+        for c in range(candidates.shape[0]):
+            along, across = in_preferred_frame(
+                scale * candidates[c, 0], scale * candidates[c, 1], agent
+            )
+            total[i, c] = base_cost(
+                along, across, agent[PREFERRED], agent[MAX_SPEED], functions, weights
+            )
+
+
+@kernel
+def _choose(
+    table: Array, starts: Starts, low: float, height: float, who: Mask, goal: Array, walls: Array,
+    reach: float, traits: Array, settings: Array, random: Array, near: Array, found: Array,
+    agent: Array,
+    functions: Functions, weights: Array,
+    base: int, direction: int, radius: int, half: float, drawn: bool,
+    ordered: bool, candidates: Array, regular: Array, tabulated: bool, bounds: Array,
+    indices: Indices, first: Indices, frame: Array, world: Array, active: Indices, tried: Array,
+    chosen: Array,
+) -> None:  # fmt: skip
+    """Everybody's choice.
+
+    Args:
+        table to agent: fields of `Surroundings`.
+        functions, weights: see `AgentCosts`.
+        base to drawn: fields of `FanOptions`.
+        ordered: whether each function is called for all candidates, in their order.
+        candidates, regular: (S, 2) of the unit fan; in single precision, see `single`.
+        tabulated: whether ``bounds`` are sorted, a row for each agent; else they are scratch.
+        bounds, indices: (N or 1, S) what candidates cost at least, and their numbers.
+        first: (N,) place in ``indices`` where each agent's search begins.
+        frame, world, active, tried: (4,), (S, 2), (K,), (5, S) scratch.
+        chosen: (N, 2) result, m/s.
+    """
+    around = Surroundings(
+        table, starts, low, height, who, goal, walls, reach, traits, settings, random, near,
+        found, agent,
+    )  # fmt: skip
+    options = FanOptions(base, direction, radius, half, drawn)
+    unit = candidates
+    for b in range(table.shape[0]):
+        i = describe(around, b)
+        if i < 0:
+            continue
+        scale = frame_of(agent, options, frame)
+        terms = prepare(around, b, functions, weights, active)
+        costs = AgentCosts(agent, functions, weights, active[:terms])
+        to_draw = drawn
+        if settings[S_PARITY] != 0.0 and not (ordered and drawn):
+            single_candidates(agent, options, regular, world)
+            frame[0], frame[1], frame[2], frame[3] = 0.0, 0.0, 1.0, 0.0  # as they are
+            unit, to_draw = world, False
+        if ordered:
+            best, place = try_in_order(frame, unit, to_draw, half, scale, costs)
+        elif tabulated:
+            best, place = search(frame, unit, bounds[i], indices[i], True, first[i], costs, tried)
+        else:
+            if to_draw:
+                draw_candidates(agent, half, scale, unit)
+            start = set_bounds(frame, unit, agent, functions, weights, bounds[0])
+            best, place = search(frame, unit, bounds[0], indices[0], False, start, costs, tried)
+        random[i] = agent[RANDOM]
+        if best == math.inf:
+            if agent[PARITY] == 0.0:
+                continue
+            place = least_forbidden(frame, unit, costs)
+            if place < 0:
+                continue
+            c = place
+        else:
+            c = indices[i, place] if tabulated and not ordered else place
+            first[i] = place
+        chosen[i, 0], chosen[i, 1] = in_world(frame, unit, c)
+
+
+@kernel
+def _candidates_of(
+    table: Array, starts: Starts, low: float, height: float, who: Mask, goal: Array, walls: Array,
+    reach: float, traits: Array, settings: Array, random: Array, near: Array, found: Array,
+    agent: Array,
+    base: int, direction: int, radius: int, half: float, drawn: bool,
+    candidates: Array, regular: Array, frame: Array, result: Array,
+) -> None:  # fmt: skip
+    """Everybody's candidates (N, S, 2), m/s; arguments as of `_choose`."""
+    around = Surroundings(
+        table, starts, low, height, who, goal, walls, reach, traits, settings, random, near,
+        found, agent,
+    )  # fmt: skip
+    options = FanOptions(base, direction, radius, half, drawn)
+    for b in range(table.shape[0]):
+        i = describe(around, b)
+        if i < 0:
+            continue
+        scale = frame_of(agent, options, frame)
+        if settings[S_PARITY] != 0.0:
+            single_candidates(agent, options, regular, result[i])
+            random[i] = agent[RANDOM]
+            continue
+        if drawn:
+            draw_candidates(agent, half, scale, candidates)
+            random[i] = agent[RANDOM]
+        for c in range(candidates.shape[0]):
+            result[i, c, 0], result[i, c, 1] = in_world(frame, candidates, c)

@@ -1,0 +1,180 @@
+"""Branch and bound over one agent's candidates, and the plain loops beside it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from crowdbot.core.crowd.velocity_search.agent_costs import (
+    LOWER_BOUNDS,
+    PARAMS,
+    WORK,
+    AgentCosts,
+    Functions,
+    base_cost,
+    cost_of,
+    excess_of,
+    in_preferred_frame,
+)
+from crowdbot.core.crowd.velocity_search.candidates import draw_candidates
+from crowdbot.core.crowd.velocity_search.cost import MAX_SPEED, PREFERRED, PVX, PVY
+from crowdbot.core.crowd.velocity_search.cost_calls import call_lower_bound
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array, Indices
+
+#: What rounding may make of a cost, as a fraction of it.
+_ROUNDING = 1e-9
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def in_world(frame: Array, candidates: Array, c: int) -> tuple[float, float]:
+    """A candidate of the unit fan in the world frame (or in that of the given frame), m/s."""
+    return (
+        frame[0] + candidates[c, 0] * frame[2] - candidates[c, 1] * frame[3],
+        frame[1] + candidates[c, 0] * frame[3] + candidates[c, 1] * frame[2],
+    )
+
+
+@kernel
+def set_bounds(
+    frame: Array,
+    candidates: Array,
+    agent: Array,
+    functions: Functions,
+    weights: Array,
+    bound: Array,
+) -> int:
+    """Write base costs of all candidates to ``bound`` (S,); return the candidate of the least."""
+    least, preferred, fastest = 0, agent[PREFERRED], agent[MAX_SPEED]
+    cosine, sine = agent[PVX] / preferred, agent[PVY] / preferred
+    # The frame as seen from the preferred velocity.
+    x, y = frame[0] * cosine + frame[1] * sine, frame[1] * cosine - frame[0] * sine
+    along, across = frame[2] * cosine + frame[3] * sine, frame[3] * cosine - frame[2] * sine
+    for c in range(candidates.shape[0]):
+        ux = x + candidates[c, 0] * along - candidates[c, 1] * across
+        uy = y + candidates[c, 0] * across + candidates[c, 1] * along
+        bound[c] = base_cost(ux, uy, preferred, fastest, functions, weights)
+        if bound[c] < bound[least]:
+            least = c
+    return least
+
+
+@kernel
+def search(
+    frame: Array,
+    candidates: Array,
+    bound: Array,
+    index: Indices,
+    is_sorted: bool,
+    start: int,
+    costs: AgentCosts,
+    tried: Array,
+) -> tuple[float, int]:
+    """Least cost, and the place of its candidate among the bounds; the first one of equals.
+
+    Args:
+        frame, candidates: (4,), (S, 2) see `in_world`.
+        bound, index: (S,) what each candidate costs at least, and its number.
+        is_sorted: whether bounds rise.
+        start: place of the candidate that is tried first.
+        tried: (5, S) scratch.
+    """
+    x, y = in_world(frame, candidates, index[start])
+    best = cost_within(x, y, bound[start], math.inf, costs)
+    best_index, best_place = index[start], start
+    count = candidates.shape[0]
+    if is_sorted:
+        count = np.searchsorted(bound, best, side="right")
+    ux, uy, least, place = tried[0], tried[1], tried[2], tried[4]
+    left = 0
+    for c in range(count):
+        if bound[c] <= best and c != start:
+            ux[left], uy[left] = in_world(frame, candidates, index[c])
+            least[left], place[left] = bound[c], c
+            left += 1
+    raise_bounds(left, tried, costs)
+    for at in range(left):
+        c = int(place[at])
+        if bound[c] > best or least[at] > best + _ROUNDING * abs(best):
+            continue
+        cost = cost_within(ux[at], uy[at], bound[c], best, costs)
+        if cost < best or (cost == best and index[c] < best_index):
+            best, best_index, best_place = cost, index[c], c
+    return best, best_place
+
+
+@kernel
+def cost_within(ux: float, uy: float, base: float, best: float, costs: AgentCosts) -> float:
+    """Cost of a candidate in the world frame, or anything above ``best`` if it exceeds it."""
+    # A function that stops just above its budget must not be rounded to a tie with the best.
+    cost, most = base, best + _ROUNDING * abs(best)
+    for term in range(costs.active.shape[0]):
+        k = costs.active[term]
+        weight = costs.weights[k]
+        cost += weight * excess_of(costs, k, ux, uy, (most - cost) / weight)
+        if cost > best:
+            break
+    return cost
+
+
+@kernel
+def raise_bounds(count: int, tried: Array, costs: AgentCosts) -> None:
+    """Add to row 2 of ``tried`` what the functions know about the candidates in rows 0 and 1."""
+    ux, uy, least, out = tried[0], tried[1], tried[2], tried[3]
+    functions = costs.functions
+    for term in range(costs.active.shape[0]):
+        k = costs.active[term]
+        if functions[k, LOWER_BOUNDS] != 0:
+            call_lower_bound(
+                functions[k, LOWER_BOUNDS], count, ux.ctypes.data, uy.ctypes.data,
+                costs.agent.ctypes.data, functions[k, WORK], functions[k, PARAMS],
+                out.ctypes.data,
+            )  # fmt: skip
+            for c in range(count):
+                least[c] += costs.weights[k] * out[c]
+
+
+@kernel
+def try_in_order(
+    frame: Array, candidates: Array, drawn: bool, half: float, scale: float, costs: AgentCosts
+) -> tuple[float, int]:
+    """As `search`, but everything is evaluated in the order of the candidates.
+
+    For functions that draw random numbers; candidates are drawn one by one, too.
+    """
+    best, place, agent = math.inf, 0, costs.agent
+    for c in range(candidates.shape[0]):
+        if drawn:
+            draw_candidates(agent, half, scale, candidates[c : c + 1])
+        ux, uy = in_world(frame, candidates, c)
+        along, across = in_preferred_frame(ux, uy, agent)
+        cost = base_cost(
+            along, across, agent[PREFERRED], agent[MAX_SPEED], costs.functions, costs.weights
+        )
+        for term in range(costs.active.shape[0]):
+            k = costs.active[term]
+            cost += costs.weights[k] * excess_of(costs, k, ux, uy, math.inf)
+        if cost < best:
+            best, place = cost, c
+    return best, place
+
+
+@kernel
+def least_forbidden(frame: Array, candidates: Array, costs: AgentCosts) -> int:
+    """The original's choice where every candidate is forbidden; -1 if it finds none.
+
+    There a forbidden candidate costs the largest single-precision number times the function's
+    weight, which is less than the worst cost for a weight below 1.
+    """
+    best, place = 1.0, -1
+    for c in range(candidates.shape[0]):
+        ux, uy = in_world(frame, candidates, c)
+        total = 0.0
+        for k in range(costs.weights.shape[0]):
+            if costs.weights[k] != 0.0 and cost_of(costs, k, ux, uy) == math.inf:
+                total += costs.weights[k]
+        if total < best:
+            best, place = total, c
+    return place

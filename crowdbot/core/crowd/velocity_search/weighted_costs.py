@@ -1,0 +1,157 @@
+"""Weighted cost functions, made ready for the decisions of one set of agents."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd.agents import Agents
+from crowdbot.core.crowd.policy import CrowdView
+from crowdbot.core.crowd.velocity_search.agent_costs import (
+    BASES,
+    EXCESSES,
+    FUNCTION_COLUMNS,
+    GRADIENTS,
+    LOWER_BOUNDS,
+    OPTIMA,
+    PARAMS,
+    PREPARES,
+    WORK,
+)
+from crowdbot.core.crowd.velocity_search.cost import (
+    AGENT_SIZE,
+    BASE,
+    EXCESS,
+    GRADIENT,
+    LOWER_BOUND,
+    NEAR_COLUMNS,
+    OPTIMUM,
+    PREPARE,
+    WALL_COLUMNS,
+    WORK_COLUMNS,
+    CompiledCost,
+    NumpyCost,
+)
+from crowdbot.core.crowd.velocity_search.cost_calls import address_of
+from crowdbot.core.crowd.velocity_search.minstd import seeds
+from crowdbot.core.crowd.velocity_search.neighbour_discs import most_discs, write_discs
+from crowdbot.core.crowd.velocity_search.neighbours import (
+    DISC_COLUMNS,
+    sort_discs,
+    strip_height,
+)
+from crowdbot.core.crowd.velocity_search.surroundings import Surroundings
+from crowdbot.core.types.arrays import Array
+
+_Addresses = NDArray[np.intp]
+
+
+# Columns of the table of addresses: part of a cost function and its signature.
+_PARTS = (
+    (BASES, "base", BASE),
+    (PREPARES, "prepare", PREPARE),
+    (EXCESSES, "excess", EXCESS),
+    (LOWER_BOUNDS, "lower_bound", LOWER_BOUND),
+    (GRADIENTS, "gradient", GRADIENT),
+    (OPTIMA, "optimum", OPTIMUM),
+)
+
+
+class WeightedCosts:
+    """Weighted cost functions for one set of agents.
+
+    Args:
+        relaxation_time: the policy's, s.
+        parity: do as the original engine does, defects included; for comparisons only.
+        weight: (N,) see ``WEIGHT`` in `crowdbot.core.crowd.velocity_search.cost`; 1 by default.
+    """
+
+    def __init__(
+        self,
+        costs: Sequence[CompiledCost | NumpyCost],
+        agents: Agents,
+        *,
+        relaxation_time: float = 0.0,
+        parity: bool = False,
+        weight: Array | None = None,
+    ) -> None:
+        self.agents, self.parity, self.relaxation_time = agents, parity, relaxation_time
+        self._all = tuple(costs)
+        self.largest = float(np.max(agents.radius, initial=0.0))
+        # Few neighbours first: their excess is the cheaper one.
+        self.compiled = sorted(
+            (c for c in costs if isinstance(c, CompiledCost)),
+            key=lambda c: c.reach(self.largest, self.largest),
+        )
+        self.vectorised = [c for c in costs if isinstance(c, NumpyCost)]
+        self.ordered = any(c.ordered for c in self.compiled)
+        self.functions = np.zeros((len(self.compiled), FUNCTION_COLUMNS), np.intp)
+        for part, name, signature in _PARTS:
+            found = [getattr(c, name) for c in self.compiled]
+            self.functions[:, part] = _addresses(found, signature)
+        width = max((len(c.params) for c in self.compiled), default=2)
+        self.params = np.zeros((len(self.compiled), width))
+        for row, cost in zip(self.params, self.compiled, strict=True):
+            row[: len(cost.params)] = cost.params
+        self.functions[:, PARAMS] = _layers(self.params)
+        self.weights = np.array([c.weight for c in self.compiled], np.float64)
+        # Scratch of compiled loops: the functions whose excess may differ from zero.
+        self.active = np.zeros(len(self.compiled), np.int64)
+        ones = np.ones(len(agents)) if weight is None else weight
+        self.traits = np.column_stack(
+            [agents.preferred_speed, agents.max_speed, agents.max_acceleration, ones]
+        )
+        self.random = seeds(agents.id)
+        self._make_work(1)
+        self._discs = self._table = np.zeros((0, DISC_COLUMNS))
+
+    def _make_work(self, rows: int) -> None:
+        self.work = np.zeros((len(self.compiled), rows, WORK_COLUMNS))
+        self.functions[:, WORK] = _layers(self.work)
+
+    def reach(self, view: CrowdView) -> float:
+        """Centre distance beyond which nobody matters to anybody, m."""
+        largest = self.largest
+        for discs in (view.robot, view.pillars):
+            if len(discs):
+                largest = max(largest, float(discs[:, -1].max()))
+        return max((c.reach(self.largest, largest) for c in self._all), default=0.0)
+
+    def surroundings(self, view: CrowdView) -> Surroundings:
+        """Sort all discs of a view, and hand out what compiled loops take."""
+        reach, boundary = self.reach(view), view.periodic_boundary
+        room = most_discs(
+            len(view.position), len(view.robot) + len(view.pillars), boundary is not None
+        )
+        if len(self._discs) < room:
+            self._discs = np.zeros((room, DISC_COLUMNS))
+            self._table = np.zeros((room, DISC_COLUMNS))
+        box = np.array(boundary if boundary is not None else (0.0, 0.0, 0.0, 0.0))
+        count = write_discs(
+            view.position, view.velocity, view.goal, view.agents.radius,
+            view.agents.preferred_speed, view.present, view.robot, view.pillars, box,
+            view.diagonal, reach, self._discs,
+        )  # fmt: skip
+        if self.work.shape[1] < 1 + count + len(view.walls):
+            self._make_work(1 + room + len(view.walls))
+        height = strip_height(self._discs, count, reach)
+        low, starts = sort_discs(self._discs, count, height, self._table)
+        return Surroundings(
+            table=self._table[:count], starts=starts, low=low, height=height,
+            who=view.present if view.decides is None else view.present & view.decides,
+            goal=view.goal, walls=view.walls, reach=reach, traits=self.traits,
+            settings=np.array([view.dt, self.relaxation_time, float(self.parity)]),
+            random=self.random, near=np.empty((count, NEAR_COLUMNS)),
+            found=np.empty((len(view.walls), WALL_COLUMNS)), agent=np.zeros(AGENT_SIZE),
+        )  # fmt: skip
+
+
+def _addresses(functions: Sequence[object], signature: object) -> _Addresses:
+    return np.array([0 if f is None else address_of(f, signature) for f in functions], np.intp)
+
+
+def _layers(array: Array) -> _Addresses:
+    """Addresses of the parts of an array along its first axis; valid while it lives."""
+    return np.asarray(array.ctypes.data + array.strides[0] * np.arange(len(array)), np.intp)

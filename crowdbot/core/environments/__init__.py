@@ -1,0 +1,1 @@
+"""Environments: plain geometry, built from specs and checked."""

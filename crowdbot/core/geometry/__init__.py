@@ -1,0 +1,1 @@
+"""Plane geometry: polygons, footprints, the optical frame of cameras."""

@@ -1,0 +1,217 @@
+"""Planner host: calls a planner and trusts nothing that comes back."""
+
+from __future__ import annotations
+
+import contextlib
+import inspect
+import math
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from numbers import Real
+from types import MappingProxyType
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Task
+from crowdbot.core.planning.watchdog import Watchdog
+from crowdbot.core.registry.plugin_boundary import PluginCall
+from crowdbot.core.types.motion import Command
+from crowdbot.core.types.robot import RobotLimits
+from crowdbot.core.types.sensor import Reading, SensorInfo
+from crowdbot.errors import PlannerError, PlannerHungError
+
+T = TypeVar("T", bound=np.generic)
+
+STOP = Command(0.0, 0.0)
+#: Seconds that ``reset`` may take under a watchdog: models are loaded and compiled there.
+RESET_LIMIT = 120.0
+#: Rounding beyond a limit that is not counted as clamping.
+_ROUNDING = 1e-9
+
+
+class HostedCommand(NamedTuple):
+    """A command within the limits, whether it had to be clamped, and the planner's wall time."""
+
+    command: Command
+    clamped: bool
+    seconds: float
+
+
+class PlannerHost:
+    """One planner in one run.
+
+    Args:
+        planner: anything with ``reset`` and ``step``.
+        name: how messages call it.
+        limits: box into which commands are clamped.
+        budget: seconds of wall time that a step may take; None sets no limit.
+        watchdog: ends a step that never returns; None waits for ever.
+        origin: the distribution, or the file, that the planner comes from, for messages.
+
+    Attributes:
+        steps: steps so far.
+        clamped: how many commands had to be clamped.
+        stops: how often the planner knew no command.
+    """
+
+    def __init__(
+        self,
+        planner: Planner,
+        name: str,
+        limits: RobotLimits,
+        *,
+        budget: float | None = None,
+        watchdog: Watchdog | None = None,
+        origin: str = "",
+    ) -> None:
+        self._planner, self._limits = planner, limits
+        who = f"planner '{name}'" + (f" ({origin})" if origin else "")
+        self._reset_call = PluginCall(
+            who, sources=self._sources, error=PlannerError, passes=PlannerError
+        )
+        self._step_call = PluginCall(
+            who,
+            sources=self._sources,
+            error=PlannerError,
+            passes=(PlannerError, NoValidCommand),
+        )
+        self._budget, self._watchdog = budget, watchdog
+        self.steps = self.clamped = self.stops = 0
+
+    def reset(self, task: Task, sensors: Mapping[str, SensorInfo], seed: int) -> None:
+        """Reset the planner and the counters.
+
+        Raises:
+            PlannerError: the planner raised.
+            PlannerHungError: it did not return.
+        """
+        self.steps = self.clamped = self.stops = 0
+        task = replace(task, goal_zone=_read_only(task.goal_zone))
+        sensors = MappingProxyType({n: _constant(i) for n, i in sensors.items()})
+        patience = self._watchdog.patience(RESET_LIMIT) if self._watchdog else None
+        with patience or contextlib.nullcontext(), self._guarded(self._reset_call, "reset"):
+            self._planner.reset(task, self._limits, sensors, seed)
+
+    def step(self, obs: Observation) -> HostedCommand:
+        """Ask for the next command.
+
+        Args:
+            obs: handed on with read-only copies of its arrays.
+
+        Raises:
+            PlannerError: the planner raised, returned something that is not a command, or
+                exceeded the budget.
+            PlannerHungError: it did not return.
+        """
+        seen = _protected(obs)
+        begin = time.perf_counter()
+        try:
+            with self._guarded(self._step_call, "step"):
+                answer = self._planner.step(seen)
+        except NoValidCommand:
+            answer = STOP
+            self.stops += 1
+        seconds = time.perf_counter() - begin
+        self.steps += 1
+        if self._budget is not None and seconds > self._budget:
+            self._step_call.fail(f"step took {seconds:.3g} s; the budget is {self._budget:g} s")
+        command, clamped = self._clamp(self._checked(answer))
+        self.clamped += clamped
+        return HostedCommand(command, clamped, seconds)
+
+    @contextmanager
+    def _guarded(self, call: PluginCall, method: str) -> Iterator[None]:
+        """A call into the planner, under the watchdog."""
+        try:
+            with self._watchdog or contextlib.nullcontext(), call(method):
+                yield
+        except PlannerHungError:
+            limit = self._watchdog.limit if self._watchdog else math.nan
+            raise PlannerHungError(
+                f"{call.who} did not return from {method} within {limit:g} s"
+            ) from None
+
+    def _sources(self) -> frozenset[str]:
+        """Files in which the planner's class and its bases are written."""
+        found = set()
+        for base in type(self._planner).__mro__[:-1]:
+            with contextlib.suppress(TypeError, OSError):
+                found.add(inspect.getfile(base))
+        return frozenset(found)
+
+    def _checked(self, answer: Any) -> Command:
+        """The answer as a command of finite floats."""
+        shaped = isinstance(answer, tuple) and len(answer) in (2, 3)
+        if not shaped or not all(isinstance(x, Real) and not isinstance(x, bool) for x in answer):
+            self._step_call.fail(
+                f"step returned {_shown(answer)}; a Command(v, w) or a tuple of 2 or 3 numbers "
+                "is wanted"
+            )
+        command = Command(*(float(x) for x in answer))
+        if not all(math.isfinite(x) for x in command):
+            self._step_call.fail(f"step returned {_shown(answer)}; a command must be finite")
+        return command
+
+    def _clamp(self, command: Command) -> tuple[Command, bool]:
+        """Into the limits; that of vy is 0 for a robot without sideways drive."""
+        limits = self._limits
+        v = min(max(command.v, limits.v_min), limits.v_max)
+        w = min(max(command.w, -limits.w_max), limits.w_max)
+        inside = Command(v, w, min(max(command.vy, -limits.vy_max), limits.vy_max))
+        excess = max(abs(a - b) for a, b in zip(command, inside, strict=True))
+        return inside, excess > _ROUNDING
+
+
+def _read_only(array: NDArray[T]) -> NDArray[T]:
+    copy = np.array(array)
+    copy.setflags(write=False)
+    return copy
+
+
+def _constant(info: SensorInfo) -> SensorInfo:
+    return info if info.angles is None else replace(info, angles=_read_only(info.angles))
+
+
+def _private(reading: Reading) -> Reading:
+    colour = None if reading.colour is None else _read_only(reading.colour)
+    return Reading(reading.stamp, _read_only(reading.values), colour)
+
+
+def _protected(obs: Observation) -> Observation:
+    """Copies, since the simulation may go on changing the arrays that a planner keeps."""
+    readings = {n: _private(r) for n, r in obs.readings.items()}
+    return Observation(
+        t=obs.t,
+        pose=obs.pose,
+        twist=obs.twist,
+        vy=obs.vy,
+        goal=obs.goal,
+        goal_zone=_read_only(obs.goal_zone),
+        readings=MappingProxyType(readings),
+        log=obs.log,
+        truth=obs.truth and obs.truth.copy(),
+    )
+
+
+def _shown(value: Any) -> str:
+    try:
+        text = repr(value)
+    except Exception as error:
+        text = f"something whose repr raises {type(error).__name__}"
+    text = text if len(text) <= 80 else text[:77] + "..."
+    return f"{text} ({type(value).__name__})"
+
+
+def named_signal(name: str, value: float) -> tuple[str, float]:
+    """A signal that can be recorded.
+
+    Raises:
+        TypeError, ValueError: what the planner wants to log is not a named number.
+    """
+    if not isinstance(name, str) or not name:
+        raise TypeError(f"log: the name of a signal is text, not {name!r}")
+    return name, float(value)

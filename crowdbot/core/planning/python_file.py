@@ -1,0 +1,98 @@
+"""Planners in Python files: the class that ``file.py:Class`` means."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import importlib.util
+import inspect
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from crowdbot.core.registry.plugin_boundary import PluginCall
+from crowdbot.errors import InputError, PlannerError, did_you_mean, nearest
+
+_METHODS = ("reset", "step")
+
+
+def planner_class(path: Path, name: str) -> type[Any]:
+    """The class of a file, which is run for it.
+
+    Raises:
+        InputError: there is no such file, or no such planner in it.
+        PlannerError: the file cannot be imported.
+    """
+    if not path.is_file():
+        raise InputError(f"{path}: no such file")
+    module = _import(path)
+    found = getattr(module, name, None)
+    if not inspect.isclass(found):
+        classes = [n for n, v in vars(module).items() if inspect.isclass(v)]
+        raise InputError(f"{path}: no class '{name}'{did_you_mean(nearest(name, classes))}")
+    if missing := missing_methods(found):
+        raise InputError(f"{path}: class '{name}' is not a planner: no {' and no '.join(missing)}")
+    return found
+
+
+def _import(path: Path) -> ModuleType:
+    """Run a file under a name of its own, its folder importable after everything else."""
+    file = path.resolve()
+    unique = f"crowdbot_planner_{hashlib.sha256(str(file).encode()).hexdigest()[:12]}"
+    spec = importlib.util.spec_from_file_location(unique, file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[unique] = module
+    if str(file.parent) not in sys.path:
+        sys.path.append(str(file.parent))
+    call = PluginCall(
+        str(path), sources=lambda: {str(file)}, error=PlannerError, passes=PlannerError
+    )
+    try:
+        with call("cannot be imported"):
+            spec.loader.exec_module(module)
+    except BaseException as error:
+        del sys.modules[unique]
+        if "no known parent package" in str(error):
+            raise PlannerError(
+                f"{error}; a file is not a package: write 'import helper' for helper.py beside it"
+            ) from error.__cause__
+        raise
+    return module
+
+
+def missing_methods(planner: object) -> list[str]:
+    """What a planner, or its class, lacks to be one."""
+    return [m for m in _METHODS if not callable(getattr(planner, m, None))]
+
+
+def check_parameters(kind: type[Any], parameters: Mapping[str, Any], where: str) -> None:
+    """Whether a class can be made with some parameters.
+
+    Raises:
+        InputError: it has no such parameter, or lacks one.
+    """
+    try:
+        inspect.signature(kind).bind(**parameters)
+    except ValueError:  # a class without a signature tells only when it is called
+        return
+    except TypeError as error:
+        known = ", ".join(inspect.signature(kind).parameters) or "none"
+        raise InputError(f"{where}: {error}; its parameters: {known}") from None
+
+
+def guess_class(path: Path) -> str:
+    """Name of the first class in a file that has both methods, or ``Class``."""
+    try:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, SyntaxError):
+        return "Class"
+    for node in tree.body:
+        if isinstance(node, ast.ClassDef):
+            methods = {n.name for n in node.body if isinstance(n, ast.FunctionDef)}
+            if methods >= set(_METHODS):
+                return node.name
+    return "Class"

@@ -1,0 +1,1 @@
+"""People: from spawns and flows to a frozen table of agents."""

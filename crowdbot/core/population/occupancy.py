@@ -1,0 +1,45 @@
+"""Which ground is taken while a crowd is drawn: the discs of all who stand there so far."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from crowdbot.dsl.spawning import CLEAR_OF_ROBOT
+
+
+class Occupancy:
+    """Discs that never overlap; the last ones can be taken back."""
+
+    def __init__(self, robots: Sequence[tuple[float, float]]) -> None:
+        self._robots = np.array(robots, dtype=np.float64).reshape(-1, 2)
+        self._discs = np.empty((64, 3))
+        self.count = 0
+
+    def add(self, x: float, y: float, radius: float) -> None:
+        """Put a disc down, whether its place is free or not."""
+        if self.count == len(self._discs):
+            self._discs = np.concatenate([self._discs, np.empty_like(self._discs)])
+        self._discs[self.count] = x, y, radius
+        self.count += 1
+
+    def is_free(
+        self, x: float, y: float, radius: float, spacing: float = 0.0, since: int = 0
+    ) -> bool:
+        """Whether a disc fits.
+
+        Args:
+            x, y, radius: the disc, m.
+            spacing: least distance from the centres of those put down last, m.
+            since: the first one that counts as one of those.
+        """
+        robots = (self._robots[:, 0] - x) ** 2 + (self._robots[:, 1] - y) ** 2
+        if np.any(robots < CLEAR_OF_ROBOT**2):
+            return False
+        discs = self._discs[: self.count]
+        away = (discs[:, 0] - x) ** 2 + (discs[:, 1] - y) ** 2
+        reach = radius + discs[:, 2]
+        if np.any(away < reach * reach):
+            return False
+        return not np.any(away[since:] < spacing * spacing)

@@ -1,0 +1,154 @@
+"""Realisation: the table of agents that a scenario's crowd was drawn to. Frozen by a lock."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.types.arrays import Array
+from crowdbot.dsl.scenario import AtGoal
+from crowdbot.errors import InputError
+
+Route = tuple[tuple[float, float], ...]
+
+_NUMBERS = (
+    "x", "y", "heading", "speed", "radius", "mass", "max_speed", "max_acceleration", "start_time",
+)  # fmt: skip
+COLUMNS = ("id", *_NUMBERS, "group", "policy", "at_goal", "portals", "goals", "goal_key")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Realisation:
+    """One row an agent; world frame, SI.
+
+    Attributes:
+        id: (N,).
+        x, y, heading: (N,) start, m and rad.
+        speed: (N,) preferred speed, m/s.
+        radius, mass: (N,) disc, m and kg.
+        max_speed, max_acceleration: (N,) m/s and m/s^2.
+        start_time: (N,) when the agent enters, s.
+        group: (N,) agents with equal numbers belong together; -1: alone.
+        policy: (N,) name in ``crowd.policies``; empty: the crowd's own policy.
+        at_goal: (N,) what happens at the end of the route: ``portal``, ``stop``, ``remove``,
+            ``loop``.
+        portals: (N,) names of entrance and exit for ``portal``, else two empty texts.
+        goals: (N,) points of the route, m; empty for ``portal``, whose goals are drawn on the way.
+        goal_key: key of the counter-based draws on the way.
+    """
+
+    id: NDArray[np.int64]
+    x: Array
+    y: Array
+    heading: Array
+    speed: Array
+    radius: Array
+    mass: Array
+    max_speed: Array
+    max_acceleration: Array
+    start_time: Array
+    group: NDArray[np.int64]
+    policy: tuple[str, ...]
+    at_goal: tuple[AtGoal, ...]
+    portals: tuple[tuple[str, str], ...]
+    goals: tuple[Route, ...]
+    goal_key: int
+
+    def __len__(self) -> int:
+        """How many agents."""
+        return len(self.id)
+
+    def to_csv(self) -> str:
+        """The table as text, decimals that read back exactly."""
+        text = io.StringIO()
+        rows = csv.writer(text, lineterminator="\n")
+        rows.writerow(COLUMNS)
+        rows.writerows(self._rows())
+        return text.getvalue()
+
+    def _rows(self) -> Iterator[list[str]]:
+        for i in range(len(self)):
+            yield [
+                str(int(self.id[i])),
+                *(repr(float(getattr(self, name)[i])) for name in _NUMBERS),
+                str(int(self.group[i])),
+                self.policy[i],
+                self.at_goal[i],
+                ">".join(self.portals[i]) if any(self.portals[i]) else "",
+                ";".join(f"{x!r} {y!r}" for x, y in self.goals[i]),
+                str(self.goal_key),
+            ]
+
+    @property
+    def hash(self) -> str:
+        """Content hash of the table."""
+        return f"cb1-sha256:{hashlib.sha256(self.to_csv().encode()).hexdigest()}"
+
+    @classmethod
+    def nobody(cls) -> Realisation:
+        """The table of a scenario without a crowd."""
+        return cls.from_rows([])
+
+    @classmethod
+    def from_csv(cls, text: str) -> Realisation:
+        """The table that `to_csv` wrote.
+
+        Raises:
+            InputError: the text is not a table of agents; with its line.
+        """
+        rows = csv.reader(io.StringIO(text))
+        header = next(rows, [])
+        if tuple(header) != COLUMNS:
+            raise InputError(f"line 1: an agents table has the columns {','.join(COLUMNS)}")
+        return cls.from_rows([_checked(row, line) for line, row in enumerate(rows, start=2)])
+
+    @classmethod
+    def from_rows(cls, rows: Sequence[dict[str, Any]]) -> Realisation:
+        """The table of rows whose keys are `COLUMNS`."""
+        keys = {row["goal_key"] for row in rows}
+        if len(keys) > 1:
+            raise InputError("an agents table has one goal_key")
+
+        columns: dict[str, Any] = {
+            name: np.array([row[name] for row in rows], dtype=np.float64) for name in _NUMBERS
+        }
+        for name in ("id", "group"):
+            columns[name] = np.array([row[name] for row in rows], dtype=np.int64)
+        for name in ("policy", "at_goal", "portals", "goals"):
+            columns[name] = tuple(row[name] for row in rows)
+        return cls(**columns, goal_key=keys.pop() if keys else 0)
+
+
+def _checked(row: Sequence[str], line: int) -> dict[str, Any]:
+    """One row as values.
+
+    Raises:
+        InputError: it is not one; with its line.
+    """
+    try:
+        cells = dict(zip(COLUMNS, row, strict=True))
+        values: dict[str, Any] = {name: float(cells[name]) for name in _NUMBERS}
+        if not all(np.isfinite(v) for v in values.values()):
+            raise ValueError("numbers must be finite")
+        if cells["at_goal"] not in get_args(AtGoal):
+            raise ValueError(f"unknown at_goal '{cells['at_goal']}'")
+        entrance, _, out = cells["portals"].partition(">")
+        points = [p.split(" ") for p in cells["goals"].split(";") if p]
+        return values | {
+            "id": int(cells["id"]),
+            "group": int(cells["group"]),
+            "policy": cells["policy"],
+            "at_goal": cells["at_goal"],
+            "portals": (entrance, out),
+            "goals": tuple((float(x), float(y)) for x, y in points),
+            "goal_key": int(cells["goal_key"]),
+        }
+    except ValueError as error:
+        raise InputError(f"line {line}: {error}") from error

@@ -1,0 +1,151 @@
+"""Draws a scenario's crowd: who starts where, how fast, with which goals.
+
+First explicit agents, then the flow, then the spawns by name: each keeps clear of those before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import count
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.population.occupancy import Occupancy
+from crowdbot.core.population.placement import ATTEMPTS
+from crowdbot.core.population.realisation import Realisation
+from crowdbot.core.population.spawns import (
+    SpawnSampler,
+    Streams,
+    draw_speeds,
+    heading_to,
+    stream_heading,
+)
+from crowdbot.dsl.assets import Asset
+from crowdbot.dsl.scenario import Crowd, Flow, Scenario
+from crowdbot.dsl.spawning import Agent
+from crowdbot.errors import InputError
+
+Row = dict[str, Any]
+
+
+def realise(scenario: Scenario) -> Realisation:
+    """Draw the crowd from its named streams; an empty table when there is no crowd.
+
+    Raises:
+        InputError: the people do not fit into their zone.
+    """
+    crowd = scenario.crowd
+    if crowd is None:
+        return Realisation.nobody()
+    streams = Streams(crowd.seed.root, crowd.seed.key)
+    occupancy = Occupancy([robot.task.start[:2] for robot in scenario.robots.values()])
+    if crowd.names_nobody and crowd.policy.record is not None:
+        return Realisation.from_rows(list(_recorded(crowd, crowd.policy.record, streams)))
+    explicit = [_agent_row(a, scenario, crowd, streams) for a in crowd.agents]
+    for row in explicit:
+        occupancy.add(row["x"], row["y"], row["radius"])
+    drawn = (
+        [] if crowd.flow is None else _flow_rows(crowd.flow, scenario, crowd, streams, occupancy)
+    )
+    group = max((agent.group for agent in crowd.agents), default=-1) + 1
+    for name, spawn in sorted(crowd.spawns.items()):
+        rows = SpawnSampler(name, spawn, scenario, crowd, streams).rows(occupancy, group)
+        group = max(group, *(row["group"] + 1 for row in rows))
+        drawn += rows
+    key = {"goal_key": streams.seed("crowd.goal")}
+    numbered = [*explicit, *_numbered(drawn, {agent.id for agent in crowd.agents})]
+    return Realisation.from_rows(sorted((row | key for row in numbered), key=lambda r: r["id"]))
+
+
+def _recorded(crowd: Crowd, record: Asset, streams: Streams) -> Iterator[Row]:
+    """The people of a record: each enters where and when it begins and goes where it ends."""
+    from crowdbot.core.crowd.recorded import read_record  # with the engine, which takes its time
+
+    people = read_record(record.file).agents()
+    for i, who in enumerate(people.id.tolist()):
+        start = float(people.x[i]), float(people.y[i])
+        goal = float(people.route[i, 0]), float(people.route[i, 1])  # one point each
+        yield {
+            **crowd.body.model_dump(include={"radius", "mass", "max_speed", "max_acceleration"}),
+            "id": who,
+            "x": start[0],
+            "y": start[1],
+            "heading": heading_to(*start, goal),
+            "speed": float(people.preferred_speed[i]),
+            "start_time": float(people.start_time[i]),
+            "group": -1,
+            "policy": "",
+            "at_goal": "remove",
+            "portals": ("", ""),
+            "goals": (goal,),
+            "goal_key": streams.seed("crowd.goal"),
+        }
+
+
+def _numbered(rows: Sequence[Row], taken: set[int]) -> Iterator[Row]:
+    """Rows with the smallest numbers that no explicit agent has, in order."""
+    free = (n for n in count() if n not in taken)
+    return (row | {"id": n} for row, n in zip(rows, free, strict=False))
+
+
+def _flow_rows(
+    flow: Flow, scenario: Scenario, crowd: Crowd, streams: Streams, occupancy: Occupancy
+) -> list[Row]:
+    """The people of the flow, spread over its zone."""
+    zone = scenario.environment.zones[flow.area]
+    people = round(flow.density * zone.area)
+    rng, body = streams.rng("crowd.spawn"), crowd.body
+    low = np.array([zone.x[0] + body.radius, zone.y[0] + body.radius])
+    high = np.array([zone.x[1] - body.radius, zone.y[1] - body.radius])
+    points: list[tuple[float, float]] = []
+    for i in range(people):
+        for _ in range(ATTEMPTS):
+            x, y = (low + (high - low) * rng.random(2)).tolist()
+            if occupancy.is_free(x, y, body.radius):
+                break
+        else:
+            raise InputError(f"only {i} of {people} people fit into the crowd's zone")
+        occupancy.add(x, y, body.radius)
+        points.append((x, y))
+    assert crowd.speed is not None  # checked with the document
+    speeds = draw_speeds(streams.rng("crowd.speed"), people, crowd.speed)
+    portals = flow.portals if flow.direction == "in" else flow.portals[::-1]
+    common: Row = {
+        "heading": stream_heading(portals, scenario.environment.portals),
+        "radius": body.radius,
+        "mass": body.mass,
+        "max_speed": body.max_speed,
+        "max_acceleration": body.max_acceleration,
+        "start_time": 0.0,
+        "group": -1,
+        "policy": "",
+        "at_goal": "portal",
+        "portals": portals,
+        "goals": (),
+    }
+    return [
+        common | {"x": x, "y": y, "speed": speed}
+        for (x, y), speed in zip(points, speeds, strict=True)
+    ]
+
+
+def _agent_row(agent: Agent, scenario: Scenario, crowd: Crowd, streams: Streams) -> Row:
+    """An explicit agent, the crowd's values where it has none of its own."""
+    row = agent.model_dump()
+    for name in ("radius", "mass", "max_speed", "max_acceleration"):
+        if row[name] is None:
+            row[name] = getattr(crowd.body, name)
+    if agent.speed is None:
+        assert crowd.speed is not None  # checked with the document
+        rng = streams.rng("crowd.agents.speed", agent.id)
+        row["speed"] = draw_speeds(rng, 1, crowd.speed)[0]
+    if agent.heading is None:
+        row["heading"] = (
+            stream_heading(agent.portals, scenario.environment.portals)
+            if agent.portals
+            else heading_to(agent.x, agent.y, agent.goals[0])
+        )
+    row["at_goal"] = "portal" if agent.portals else agent.at_goal or "stop"
+    row["portals"] = agent.portals or ("", "")
+    return row

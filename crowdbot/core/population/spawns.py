@@ -1,0 +1,228 @@
+"""Draws one spawn: groups, places, routes and the parameters of each person.
+
+Each purpose has its own stream, named after the spawn; places and goals have one for each group
+beside that, so that a place that is taken moves one group and nobody else.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.population.occupancy import Occupancy
+from crowdbot.core.population.placement import Placer
+from crowdbot.core.types.arrays import Array, Point
+from crowdbot.dsl.areas import Area, GoalArea, Place
+from crowdbot.dsl.parameters import Sample, SpeedDistribution
+from crowdbot.dsl.scenario import Crowd, Scenario
+from crowdbot.dsl.seeds import stream_seed
+from crowdbot.dsl.spawning import Goals, Spawn
+from crowdbot.dsl.spec import Rectangle
+from crowdbot.errors import InputError
+
+
+@dataclass(frozen=True, slots=True)
+class Streams:
+    """The named random streams of a crowd."""
+
+    root: int
+    key: str
+
+    def seed(self, name: str) -> int:
+        """Seed of a stream."""
+        return stream_seed(self.root, self.key, name)
+
+    def rng(self, name: str, unit: int | None = None) -> np.random.Generator:
+        """A stream, or the one of a unit of it, such as a group."""
+        seed = self.seed(name)
+        return np.random.default_rng(seed if unit is None else (seed, unit))
+
+
+def area_of(place: Place, zones: Mapping[str, Rectangle]) -> Area:
+    """A zone's name or an area, as an area."""
+    return Area.of(zones[place]) if isinstance(place, str) else place
+
+
+def heading_to(x: float, y: float, goal: Point) -> float:
+    """Direction from a point to another, rad; 0 if they are the same."""
+    return math.atan2(goal[1] - y, goal[0] - x)
+
+
+def stream_heading(portals: tuple[str, str], boxes: Mapping[str, Rectangle]) -> float:
+    """Direction from the middle of one portal to that of the other, rad."""
+    start, end = (Area.of(boxes[name]).centre for name in portals)
+    return heading_to(*start, end)
+
+
+def draw_speeds(rng: np.random.Generator, count: int, speed: SpeedDistribution) -> Array:
+    """Normal, truncated at three standard deviations and at 5 % of the mean; (count,) m/s."""
+    mean, std = speed.mean, speed.std
+    low, high = max(mean - 3.0 * std, 0.05 * mean), mean + 3.0 * std
+    speeds = np.empty(count)
+    for i in range(count):
+        draw = rng.normal(mean, std)
+        while not low <= draw <= high:
+            draw = rng.normal(mean, std)
+        speeds[i] = draw
+    return speeds
+
+
+def linked_walk(
+    areas: Mapping[str, GoalArea], begin: tuple[str, ...], length: int, rng: np.random.Generator
+) -> list[str]:
+    """Names of a random walk on the areas' links; straight back only where nothing else follows."""
+    walk = [begin[rng.integers(len(begin))]]
+    while len(walk) < length:
+        links = areas[walk[-1]].next
+        onward = [n for n in links if len(walk) < 2 or n != walk[-2]] or list(links)
+        walk.append(onward[rng.integers(len(onward))])
+    return walk
+
+
+class SpawnSampler:
+    """Samples one spawn; `rows` makes its part of the agents' table."""
+
+    def __init__(
+        self, name: str, spawn: Spawn, scenario: Scenario, crowd: Crowd, streams: Streams
+    ) -> None:
+        self._name, self._spawn, self._crowd, self._streams = name, spawn, crowd, streams
+        self._environment = scenario.environment
+        self._area = area_of(spawn.area, scenario.environment.zones)
+        self._count = round(spawn.people(self._area.size[0] * self._area.size[1]))
+        self._radius = self._parameter("radius", spawn.radius, crowd.body.radius)
+
+    def rows(self, occupancy: Occupancy, next_group: int) -> list[dict[str, Any]]:
+        """One row a person without ``id`` and ``goal_key``; they are added to the occupancy.
+
+        Args:
+            occupancy: the discs of those who are there already.
+            next_group: number of the first group of several people.
+
+        Raises:
+            InputError: not all of them fit into the area.
+        """
+        groups = self._groups()
+        places = self._places(groups, occupancy)
+        table = self._parameters()
+        rows: list[dict[str, Any]] = []
+        for unit, members in enumerate(groups):
+            goals = self._goals(unit)
+            alone = len(members) == 1
+            for i in members:
+                x, y = places[i].tolist()
+                route = ((x, y),) if self._spawn.standing else goals
+                rows.append(
+                    {name: column[i] for name, column in table.items()}
+                    | {"x": x, "y": y, "heading": self._heading(i, x, y, route)}
+                    | {"group": -1 if alone else next_group, "goals": route}
+                )
+            next_group += not alone
+        return rows
+
+    # ------------------------------------------------------------------ parameters
+    def _rng(self, purpose: str, unit: int | None = None) -> np.random.Generator:
+        return self._streams.rng(f"crowd.spawns.{purpose}.{self._name}", unit)
+
+    def _parameter(self, purpose: str, sample: Sample | None, default: float) -> Array:
+        if sample is None:
+            return np.full(self._count, default)
+        even = 2.0 * self._rng(purpose).random(self._count) - 1.0
+        return sample.value + sample.spread * even
+
+    def _parameters(self) -> dict[str, Any]:
+        """Columns of the table that do not depend on anybody's place."""
+        spawn, body, count = self._spawn, self._crowd.body, self._count
+        goals = spawn.goals
+        at_goal = "portal" if spawn.portals else goals.at_goal if goals else "stop"
+        return {
+            "radius": self._radius,
+            "speed": self._speeds(),
+            "mass": self._parameter("mass", spawn.mass, body.mass),
+            "max_speed": self._parameter("max_speed", spawn.max_speed, body.max_speed),
+            "max_acceleration": self._parameter(
+                "max_acceleration", spawn.max_acceleration, body.max_acceleration
+            ),
+            "start_time": self._parameter("start_time", spawn.start_time, 0.0),
+            "policy": self._policies(),
+            "at_goal": [at_goal] * count,
+            "portals": [spawn.portals or ("", "")] * count,
+        }
+
+    def _speeds(self) -> Array:
+        speed = self._spawn.speed or self._crowd.speed
+        assert speed is not None  # checked with the document
+        if isinstance(speed, Sample):
+            return self._parameter("speed", speed, 0.0)
+        return draw_speeds(self._rng("speed"), self._count, speed)
+
+    def _policies(self) -> list[str]:
+        names = self._spawn.policy
+        if not names:
+            return [""] * self._count
+        return [names[i] for i in self._rng("policy").integers(len(names), size=self._count)]
+
+    def _heading(self, i: int, x: float, y: float, route: tuple[Point, ...]) -> float:
+        heading = self._spawn.heading
+        if heading == "random":
+            return float(self._rng("heading", i).uniform(-math.pi, math.pi))
+        if heading != "goal":
+            return heading
+        if self._spawn.portals:
+            return stream_heading(self._spawn.portals, self._environment.portals)
+        return heading_to(x, y, route[0])
+
+    # ---------------------------------------------------------------------- groups
+    def _groups(self) -> list[range]:
+        """Members of each group; the last one is cut short when the people run out."""
+        sizes, left = [], self._count
+        frequency = np.array([g.frequency for g in self._spawn.groups])
+        edges, rng = np.cumsum(frequency), self._rng("groups")
+        while left:
+            size = 1
+            if len(edges):
+                drawn = np.searchsorted(edges, rng.random() * edges[-1], side="right")
+                size = self._spawn.groups[int(drawn)].size
+            sizes.append(min(size, left))
+            left -= sizes[-1]
+        ends = np.cumsum(sizes, dtype=int)
+        return [range(e - s, e) for s, e in zip(sizes, ends.tolist(), strict=True)]
+
+    def _places(self, groups: list[range], occupancy: Occupancy) -> Array:
+        """Where everybody starts (N, 2), m; larger groups choose first."""
+        placer = Placer(self._area, self._radius, self._spawn.spacing or 0.0, occupancy)
+        for unit in sorted(range(len(groups)), key=lambda g: -len(groups[g])):
+            if not placer.put_group(groups[unit], self._rng("place", unit)):
+                raise InputError(
+                    f"only {placer.placed} of {self._count} people of spawn "
+                    f"'{self._name}' fit into its area"
+                )
+        return placer.places
+
+    # ---------------------------------------------------------------------- routes
+    def _goals(self, unit: int) -> tuple[Point, ...]:
+        """The route that a group shares; nothing without goals."""
+        goals = self._spawn.goals
+        if goals is None:
+            return ()
+        rng = self._rng("goals", unit)
+        points = [self._goal(name, rng) for name in self._sequence(goals, rng)]
+        if goals.order == "linked" and goals.at_goal == "loop":
+            points += points[-2:0:-1]
+        return tuple(points)
+
+    def _sequence(self, goals: Goals, rng: np.random.Generator) -> list[str]:
+        names, length = goals.areas, goals.length
+        if goals.order == "fixed":
+            return [names[i % len(names)] for i in range(length)]
+        if goals.order == "random":
+            return [names[i] for i in rng.integers(len(names), size=length)]
+        return linked_walk(self._crowd.goal_areas, names, length, rng)
+
+    def _goal(self, name: str, rng: np.random.Generator) -> Point:
+        area = area_of(self._crowd.goal_areas[name].area, self._environment.zones)
+        u, v = rng.random() - 0.5, rng.random() - 0.5
+        return area.point(u * area.size[0], v * area.size[1])

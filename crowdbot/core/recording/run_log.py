@@ -1,0 +1,118 @@
+"""RunLog: turns states into the rows of a recording: samples, trips, contacts.
+
+The recording is the run: scores, replay and hashes are all computed from what it reads back to.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd import state as s
+from crowdbot.core.recording import RecordingWriter
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Command
+from crowdbot.core.types.robot import RobotState
+
+
+class RunLog:
+    """Records each event of the crowd once, in the order of agents."""
+
+    def __init__(
+        self, writer: RecordingWriter, agent_id: NDArray[np.int64], *, sideways: bool = False
+    ) -> None:
+        """``sideways``: whether the robot's velocity may point elsewhere than it looks."""
+        self.writer = writer
+        self._sideways = sideways
+        self._id = agent_id
+        self._jumps = np.zeros(len(agent_id))  # at the latest sample
+        self._arrivals = np.zeros(len(agent_id))  # what is recorded already
+        self._agent_contacts = np.zeros(len(agent_id))
+        self.contacts = 0
+        self.trips = 0
+        self.clamped = 0
+        self._steps = 0
+        self._step_sum = self._step_max = 0.0
+
+    def sample(self, t: float, robot: RobotState | None, crowd: Array | None) -> None:
+        """One row of the log grid: the robot's state and the flat crowd state, either missing."""
+        agents = jump = None
+        if crowd is not None:
+            _, people = s.view(crowd)
+            agents = people[:, s.X : s.VY + 1].T.copy()
+            agents[:, people[:, s.WAITING] != s.PRESENT] = np.nan
+            jump = people[:, s.JUMPS] != self._jumps
+            self._jumps = people[:, s.JUMPS].copy()
+        self.writer.state(t, None if robot is None else self._row(robot), agents, jump)
+
+    @property
+    def events(self) -> int:
+        """Number of trips and contacts that are recorded."""
+        return self.trips + self.contacts
+
+    def record_events(self, crowd: Array) -> None:
+        """Record trips and contacts that ended since the last call; to be called every tick."""
+        header, people = s.view(crowd)
+        if int(header[s.TRIPS]) != self.trips:
+            self._record_trips(people)
+            self.trips = int(header[s.TRIPS])
+        if int(header[s.CONTACTS]) != self.contacts:
+            for i in np.flatnonzero(people[:, s.TOUCHES] != self._agent_contacts):
+                self._contact(people, i)
+            self._agent_contacts = people[:, s.TOUCHES].copy()
+            self.contacts = int(header[s.CONTACTS])
+
+    def command(self, t: float, command: Command, seconds: float, clamped: bool) -> None:
+        """One step of the planner."""
+        self.clamped += clamped
+        self._steps += 1
+        self._step_sum += seconds
+        self._step_max = max(self._step_max, seconds)
+        self.writer.command(t, command)
+        self.writer.planner_time(t, seconds)
+
+    def step_times(self) -> dict[str, float]:
+        """Mean and largest wall time of a planner step, s."""
+        mean = self._step_sum / self._steps if self._steps else 0.0
+        return {"mean": round(mean, 6), "max": round(self._step_max, 6)}
+
+    def finish(self, t: float, crowd: Array | None) -> None:
+        """Record what is still going on at the end: trips that were not finished, contacts."""
+        if crowd is None:
+            return
+        self.record_events(crowd)
+        _, people = s.view(crowd)
+        active = (people[:, s.ON_TRIP] != 0.0) & (people[:, s.WAITING] == s.PRESENT)
+        for i in np.flatnonzero(active):
+            self.writer.trip(int(self._id[i]), float(people[i, s.TRIP_START]), t, False)
+        for i in np.flatnonzero(people[:, s.TOUCHING] != 0.0):
+            self._contact(people, i)
+            self.contacts += 1
+
+    def _row(self, robot: RobotState) -> tuple[float, ...]:
+        forward = robot.vx * math.cos(robot.yaw) + robot.vy * math.sin(robot.yaw)
+        row = (robot.x, robot.y, robot.yaw, forward, robot.w)
+        velocity = (robot.vx, robot.vy) if self._sideways else ()
+        return tuple(float(number) for number in (*row, *velocity))
+
+    def _record_trips(self, people: Array) -> None:
+        """At most one arrival per agent lies between two ticks."""
+        for i in np.flatnonzero(people[:, s.ARRIVALS] != self._arrivals):
+            start, end = people[i, s.LAST_START], people[i, s.ARRIVED]
+            self.writer.trip(int(self._id[i]), float(start), float(end), True)
+        self._arrivals = people[:, s.ARRIVALS].copy()
+
+    def _contact(self, people: Array, i: np.signedinteger[Any]) -> None:
+        row = people[i]
+        self.writer.contact(
+            t0=float(row[s.TOUCH_START]),
+            t1=float(row[s.TOUCH_END]),
+            agent=int(self._id[i]),
+            impulse=float(row[s.TOUCH_IMPULSE]),
+            peak_force=float(row[s.TOUCH_PEAK]),
+            relative_speed=float(row[s.TOUCH_SPEED]),
+            bearing=float(row[s.TOUCH_SIDE]),
+        )

@@ -1,0 +1,164 @@
+"""Samples of the log as messages: many in one, people packed by `MotionCodec`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.types.arrays import Array
+from crowdbot.errors import InputError
+
+if TYPE_CHECKING:
+    from crowdbot.core.recording.motion_codec import MotionCodec
+
+
+class StateSample(NamedTuple):
+    """One sample: time (s), the robot's row, (4, M) x, y, vx, vy, (M,) who was teleported."""
+
+    t: float
+    robot: Sequence[float] | None
+    agents: Array | None
+    jump: NDArray[np.bool_] | None
+
+
+@dataclass(frozen=True, slots=True)
+class States:
+    """K samples: t (K,), robot (K, R), agents (K, 4, M), told (K,) whether jump (K, M) is known."""
+
+    t: Array
+    robot: Array
+    agents: Array
+    told: NDArray[np.bool_]
+    jump: NDArray[np.bool_]
+
+
+class StatesWriter:
+    """Makes ``crowdbot_msgs/RunStates`` of the samples of one run."""
+
+    def __init__(self, people: int) -> None:
+        self._people, self._written = people, 0
+        self._codec = _codec(people)
+
+    def message(self, samples: Sequence[StateSample]) -> Any:
+        """The next samples, at least one, as a message."""
+        t = np.array([s.t for s in samples], np.float64)
+        absent, unknown = np.full((4, self._people), np.nan), np.zeros(self._people, np.bool_)
+        agents = [absent if s.agents is None else s.agents for s in samples]
+        jump = [unknown if s.jump is None else s.jump for s in samples]
+        told = np.array([s.jump is not None for s in samples], np.bool_)
+        packed = self._codec.pack(t, np.array(agents, np.float64))
+        first, self._written = self._written, self._written + len(t)
+        return ros.new(
+            "crowdbot_msgs/RunStates",
+            first=first,
+            t=t,
+            robot=np.array([() if s.robot is None else s.robot for s in samples]).ravel(),
+            has_jump=told,
+            jump=np.packbits(np.array(jump)) if told.any() else np.zeros(0, np.uint8),
+            gain=packed.gain,
+            agents=np.frombuffer(packed.data, np.uint8),
+        )
+
+
+class StatesReader:
+    """Puts the samples of one run together again, of whatever format they are."""
+
+    def __init__(self, people: int) -> None:
+        self._people, self._read = people, 0
+        self._codec = _codec(people)
+
+    def states(self, messages: Iterable[Any]) -> States:
+        """All samples of a run.
+
+        Raises:
+            InputError: samples are missing or do not fit each other.
+        """
+        parts = [self._of_message(m) if hasattr(m, "first") else self._old(m) for m in messages]
+        if len({part.robot.shape[1] for part in parts}) > 1:
+            raise InputError("the samples of the robot do not have equally many numbers")
+        return States(
+            *(
+                np.concatenate([getattr(part, name) for part in parts])
+                for name in ("t", "robot", "agents", "told", "jump")
+            )
+        )
+
+    def _of_message(self, message: Any) -> States:
+        from crowdbot.core.recording.motion_codec import Packed  # like `_codec`
+
+        if message.first != self._read:
+            raise InputError(f"sample {self._read} is missing")
+        count = len(message.t)
+        self._read += count
+        told = np.array(message.has_jump, np.bool_)
+        bits = np.unpackbits(message.jump, count=count * self._people) if told.any() else None
+        zero = np.zeros((count, self._people), np.bool_)
+        if count == 0 or len(told) != count or len(message.robot) % count:
+            raise InputError("samples are missing")
+        return States(
+            message.t,
+            message.robot.reshape(count, -1),
+            self._codec.unpack(message.t, Packed(message.gain, message.agents.tobytes())),
+            told,
+            zero if bits is None else bits.reshape(zero.shape).astype(np.bool_),
+        )
+
+    def _old(self, message: Any) -> States:
+        """One sample, as formats 1 and 2 have it."""
+        if message.agents.size != 4 * self._people:
+            raise InputError(f"a sample of the agents does not have {4 * self._people} numbers")
+        jump = message.jump if message.has_jump else np.zeros(self._people, np.bool_)
+        return States(
+            np.array([message.t]),
+            message.robot.reshape(1, -1),
+            message.agents.reshape(1, 4, self._people),
+            np.array([message.has_jump], np.bool_),
+            np.asarray(jump, np.bool_).reshape(1, -1),
+        )
+
+
+class SeriesRows:
+    """Values of named series that wait to be written."""
+
+    def __init__(self) -> None:
+        self._rows: dict[str, tuple[list[float], list[float]]] = {}
+
+    def add(self, name: str, t: float, value: float) -> None:
+        """One value; s."""
+        times, values = self._rows.setdefault(name, ([], []))
+        times.append(t)
+        values.append(value)
+
+    def messages(self) -> Iterable[tuple[float, Any]]:
+        """Time of the last value and ``crowdbot_msgs/Series`` of each name; forgets them."""
+        rows, self._rows = self._rows, {}
+        for name, (times, values) in rows.items():
+            columns = {"t": np.array(times, np.float64), "value": np.array(values, np.float64)}
+            yield times[-1], ros.new("crowdbot_msgs/Series", name=name, **columns)
+
+
+def series(messages: Iterable[Any]) -> dict[str, Array]:
+    """Name -> (P, 2) times and values, of messages of any format."""
+    columns: dict[str, tuple[list[float], list[float]]] = {}
+    for message in messages:
+        times, values = columns.setdefault(message.name, ([], []))
+        if len(np.atleast_1d(message.t)) != len(np.atleast_1d(message.value)):
+            raise InputError(f"the series '{message.name}' has times and values of unequal number")
+        times += np.atleast_1d(message.t).tolist()
+        values += np.atleast_1d(message.value).tolist()
+    return {
+        name: np.array([times, values], np.float64).T.copy()
+        for name, (times, values) in columns.items()
+    }
+
+
+def _codec(people: int) -> MotionCodec:
+    """The codec; its module imports numba, which who only looks for runs does without."""
+    from crowdbot.core.recording.motion_codec import MotionCodec
+
+    return MotionCodec(people)

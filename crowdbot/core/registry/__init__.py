@@ -1,0 +1,1 @@
+"""The registry: which plugins are installed, and what they provide."""

@@ -1,0 +1,74 @@
+"""What somebody else's code raised: whose it is, and where it happened."""
+
+from __future__ import annotations
+
+import signal
+import sysconfig
+import traceback
+from collections.abc import Collection
+from importlib.resources import files
+from pathlib import Path
+
+from crowdbot.errors import Interrupted, PlannerHungError
+
+#: Frames of crowdbot are not where somebody else's error is.
+_PACKAGE = str(files("crowdbot"))
+
+
+def describe_error(error: BaseException, sources: Collection[str] = ()) -> str:
+    """Type, text and place of an error.
+
+    Args:
+        error: what was raised.
+        sources: files in which the culprit is known to be written; frames in them, beside them or
+            in nobody's library are preferred.
+    """
+    kind, text = type(error).__name__, _text(error)
+    return f"{kind}{f': {text}' if text else ''}{_where(error, sources)}"
+
+
+def is_user_interrupt(error: BaseException) -> bool:
+    """Whether an error is not the plugin's: the user's Ctrl-C, or our own interruption.
+
+    A plugin may raise KeyboardInterrupt, too. While Python's own handler is in place, nobody can
+    tell the two apart; commands install one that raises a subclass.
+    """
+    if isinstance(error, Interrupted | PlannerHungError):
+        return True
+    if not isinstance(error, KeyboardInterrupt):
+        return False
+    default = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    return default or type(error) is not KeyboardInterrupt
+
+
+def _text(error: BaseException) -> str:
+    try:
+        return str(error)
+    except BaseException as another:
+        if is_user_interrupt(another):
+            raise
+        return f"(its text raises {type(another).__name__})"
+
+
+def _where(error: BaseException, sources: Collection[str]) -> str:
+    """`` (file:line)`` of the innermost frame of the culprit, or nothing."""
+    frames = [
+        f for f in traceback.extract_tb(error.__traceback__) if not f.filename.startswith("<")
+    ]
+    own = [f for f in frames if _is_own(f.filename, sources)]
+    if not own and (isinstance(error, SyntaxError) or not frames):
+        return ""
+    frame = (own or frames)[-1]
+    return f" ({frame.filename}:{frame.lineno})" if not _is_ours(frame.filename) else ""
+
+
+def _is_ours(file: str) -> bool:
+    return file.startswith(f"{_PACKAGE}/core/")
+
+
+def _is_own(file: str, sources: Collection[str]) -> bool:
+    """A planner's file, a file beside it, or any file that is not an installed library."""
+    if file in sources or Path(file).parent in {Path(s).parent for s in sources}:
+        return True
+    libraries = {sysconfig.get_path(p) for p in ("stdlib", "platstdlib", "purelib", "platlib")}
+    return not _is_ours(file) and not any(file.startswith(p) for p in libraries if p)

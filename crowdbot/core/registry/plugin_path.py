@@ -1,0 +1,198 @@
+"""Plugins that are not installed: a file, a package folder, or a project with a pyproject.toml."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import importlib.util
+import sys
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from importlib.machinery import PathFinder
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from crowdbot.core.registry.plugin import Plugin
+from crowdbot.core.support.source_digest import source_digest
+from crowdbot.errors import PluginError
+
+#: Group of entry points in which a distribution says which module is its plugin.
+GROUP = "crowdbot"
+#: A package folder of this name is the plugin without it: ``crowdbot_acme`` is ``acme``.
+_PREFIX = "crowdbot_"
+#: Folders that plugins brought to ``sys.path``; one does not stand in another's way.
+_ADDED: set[str] = set()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PluginEntry:
+    """A plugin that was found and not imported yet."""
+
+    plugin: Plugin
+    load: Callable[[], Any]
+
+
+def entries_at(path: Path) -> list[PluginEntry]:
+    """The plugins at a path; where there is none, one that says so when it is loaded."""
+    try:
+        project = _project(path)
+        if project is None:
+            return [_entry(path, _bare_name(path), path, "")]
+        root, declared = project
+        return [_entry(path, name, *_located(root, value)) for name, value in declared.items()]
+    except PluginError as error:
+        plugin = Plugin(name=path.resolve().stem, distribution=str(path), pinned=False)
+        return [PluginEntry(plugin=plugin, load=partial(_fail, str(error)))]
+
+
+def load_path(path: Path) -> ModuleType:
+    """Import a Python file or a package folder under its own name, without installing it.
+
+    What lies beside it can be imported, too, after everything that is installed.
+
+    Raises:
+        PluginError: there is no such file, its name is taken, or it cannot be imported.
+    """
+    file = (path / "__init__.py" if path.is_dir() else path).resolve()
+    name = path.resolve().stem
+    if not file.is_file():
+        raise PluginError(f"{path}: no Python file or package")
+    taken = sys.modules.get(name)
+    if taken is not None and getattr(taken, "__file__", None) == str(file):
+        return taken
+    if taken is not None or _is_installed(name, file):
+        raise PluginError(
+            f"{path}: a module named '{name}' exists already; rename the plugin, or uninstall "
+            "the other one ('pip install -e' runs an installed plugin from its folder)"
+        )
+    return _import_file(name, file, package=path.is_dir())
+
+
+def _is_installed(name: str, file: Path) -> bool:
+    """Whether an import of that name would find something else."""
+    if name in sys.stdlib_module_names:
+        return True
+    found = PathFinder.find_spec(name, [p for p in sys.path if p not in _ADDED])
+    return found is not None and found.origin != str(file)
+
+
+def _import_file(name: str, file: Path, *, package: bool) -> ModuleType:
+    folders = [str(file.parent)] if package else None
+    spec = importlib.util.spec_from_file_location(name, file, submodule_search_locations=folders)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # build references name it
+    beside = str(file.parent.parent if package else file.parent)
+    if beside not in sys.path:
+        sys.path.append(beside)
+        _ADDED.add(beside)
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        for loaded in [m for m in sys.modules if m == name or m.startswith(f"{name}.")]:
+            del sys.modules[loaded]
+        raise
+    return module
+
+
+def _entry(given: Path, name: str, place: Path, value: str) -> PluginEntry:
+    file = place / "__init__.py" if place.is_dir() else place
+    plugin = Plugin(
+        name=name,
+        distribution=str(given),
+        pinned=False,
+        file=str(file.resolve()) if file.is_file() else "",
+        sha256=_digest(place),
+    )
+    return PluginEntry(plugin=plugin, load=partial(_load, place, value))
+
+
+def _load(place: Path, value: str) -> Any:
+    """Import the module at a place, and what an entry point names in it."""
+    found: Any = load_path(place)
+    module, _, attributes = value.partition(":")
+    if "." in module:
+        found = importlib.import_module(module)
+    for attribute in filter(None, attributes.strip().split(".")):
+        found = getattr(found, attribute)
+    return found
+
+
+def _fail(text: str) -> None:
+    raise PluginError(text)
+
+
+def _bare_name(path: Path) -> str:
+    stem = path.resolve().stem
+    return stem.removeprefix(_PREFIX) if path.is_dir() else stem
+
+
+def _project(path: Path) -> tuple[Path, Mapping[str, str]] | None:
+    """Root and entry points of the project that a folder is, or is the package of.
+
+    Raises:
+        PluginError: the folder is a project that declares no plugin.
+    """
+    if not path.is_dir():
+        return None
+    if (path / "pyproject.toml").is_file() and not (path / "__init__.py").is_file():
+        declared = _declared(path / "pyproject.toml")
+        if not declared:
+            raise PluginError(
+                f"{path / 'pyproject.toml'} declares no plugin; it needs "
+                f'[project.entry-points.{GROUP}] with NAME = "MODULE"'
+            )
+        return path, declared
+    folder = path.resolve()
+    for root in (folder.parent, folder.parent.parent):
+        file = root / "pyproject.toml"
+        declared = _declared(file) if file.is_file() else {}
+        mine = {n: v for n, v in declared.items() if _top(v) == folder.name}
+        if mine:
+            return root, mine
+    return None
+
+
+def _declared(file: Path) -> dict[str, str]:
+    try:
+        document = tomllib.loads(file.read_text(encoding="utf-8"))
+        entries = document.get("project", {}).get("entry-points", {}).get(GROUP, {})
+        return {str(name): str(value) for name, value in entries.items()}
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, AttributeError) as error:
+        raise PluginError(f"{file}: cannot be read: {error}") from error
+
+
+def _top(value: str) -> str:
+    return value.partition(":")[0].strip().partition(".")[0]
+
+
+def _located(root: Path, value: str) -> tuple[Path, str]:
+    """The top package or module that an entry point of a project names, beside or in ``src``."""
+    top = _top(value)
+    for folder in (root, root / "src"):
+        for place in (folder / top, folder / f"{top}.py"):
+            if place.is_file() or (place / "__init__.py").is_file():
+                return place, value
+    raise PluginError(f"{root}: no module '{top}', which its entry point names, here or in src/")
+
+
+def _digest(place: Path) -> str:
+    """Hash of the file and its helpers, or of all files of the package: names and contents."""
+    if place.is_file():
+        return source_digest(place)
+    sha = hashlib.sha256()
+    for name, file in _files(place):
+        sha.update(f"{name}\0{file.stat().st_size}\0".encode())
+        sha.update(file.read_bytes())
+    return sha.hexdigest()
+
+
+def _files(place: Path) -> Iterator[tuple[str, Path]]:
+    for file in sorted(place.rglob("*")):
+        parts = file.relative_to(place).parts
+        if file.is_file() and not any(p == "__pycache__" or p.startswith(".") for p in parts):
+            yield "/".join(parts), file

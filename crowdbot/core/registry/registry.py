@@ -1,0 +1,290 @@
+"""The registry: which components are installed. A value, built by a function, never changed.
+
+Discovery isolates failures: a plugin that cannot be imported, or speaks another API version, is
+listed with its error and hides nobody else. Two plugins of one name, or two components of one
+kind, are all disabled, and the error names them.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from pathlib import Path
+from typing import Annotated, Any, TypeVar, Union
+
+from pydantic import BaseModel, Field, SerializeAsAny, create_model
+
+from crowdbot.core.registry.build_reference import load_build
+from crowdbot.core.registry.entry_points import ALLOW, find_plugins
+from crowdbot.core.registry.plugin import BUILTIN, Plugin
+from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
+from crowdbot.dsl.component import Component
+from crowdbot.dsl.component_specs import CATEGORIES
+from crowdbot.dsl.components import components
+from crowdbot.dsl.parts import narrowed, parts_category
+from crowdbot.dsl.scenario import Crowd, NamedPolicy, Robot, Scenario
+from crowdbot.dsl.spec import ComponentSpec
+from crowdbot.errors import CrowdbotError, PluginError, UnknownNameError, did_you_mean, nearest
+
+__all__ = ["Plugin", "Registry", "assemble", "discover"]
+
+
+Built = TypeVar("Built")
+
+
+@dataclass(frozen=True)
+class Registry:
+    """All plugins, and the healthy ones' components by category and kind.
+
+    Attributes:
+        plugins: all that were found and may be loaded; some may have failed.
+        excluded: installed plugins that are not on the allow-list; nothing of them was imported.
+        allowed: the allow-list; None allows all.
+    """
+
+    plugins: tuple[Plugin, ...]
+    _by_category: Mapping[str, Mapping[str, Component[Any]]] = field(repr=False)
+    excluded: tuple[Plugin, ...] = ()
+    allowed: tuple[str, ...] | None = None
+
+    def components(self, category: str) -> Mapping[str, Component[Any]]:
+        """Kind -> component, sorted by kind."""
+        return self._by_category[category]
+
+    def find(self, category: str, kind: str) -> Component[Any]:
+        """The component of one kind.
+
+        Raises:
+            UnknownNameError: nothing of that kind is installed.
+        """
+        known = self._by_category[category]
+        if kind not in known:
+            raise UnknownNameError(category, kind, known, self.why_absent(kind))
+        return known[kind]
+
+    def why_absent(self, name: str) -> str:
+        """Why nothing of a plugin's is here; empty where there is nothing to say.
+
+        Args:
+            name: a plugin, or the kind of a component or the name of a suite of one.
+        """
+        plugin = name.replace(":", ".").partition(".")[0]
+        for p in self.plugins:
+            if p.name == plugin and p.error and plugin != BUILTIN:
+                return f"plugin '{plugin}' ({p.distribution}) failed: {p.error}"
+        for p in self.excluded:
+            if p.name == plugin:
+                why = f"{ALLOW}={','.join(self.allowed)}" if self.allowed else "--no-plugins"
+                return f"plugin '{plugin}' ({p.distribution}) is installed but not allowed: {why}"
+        return ""
+
+    def unknown_allowed(self) -> list[str]:
+        """One line for each name on the allow-list that no plugin has."""
+        known = {p.name for p in (*self.plugins, *self.excluded)}
+        return [
+            f"{ALLOW}: no plugin '{name}' is installed{did_you_mean(nearest(name, known)[:1])}"
+            for name in self.allowed or ()
+            if name not in known
+        ]
+
+    def owner(self, component: Component[Any]) -> Plugin:
+        """The plugin that provides a component."""
+        return next(p for p in self.plugins if any(c is component for c in p.components))
+
+    def plugin_call(
+        self,
+        spec: ComponentSpec,
+        *,
+        error: type[PluginError] = PluginError,
+        passes: Exceptions = CrowdbotError,
+    ) -> PluginCall:
+        """The boundary around calls into the plugin that provides a spec's component.
+
+        Args:
+            error: what the plugin's exceptions become.
+            passes: exceptions that stay what they are.
+        """
+        component = self.find(spec.category, spec.kind)
+        plugin = self.owner(component)
+        return PluginCall(
+            f"{spec.category} '{spec.kind}' ({plugin.distribution})",
+            sources=partial(_sources, plugin, component),
+            error=error,
+            passes=passes,
+        )
+
+    def build(
+        self,
+        spec: ComponentSpec,
+        check: Callable[[object], Built],
+        *args: object,
+        call: PluginCall | None = None,
+    ) -> Built:
+        """Build what a spec stands for, and check it.
+
+        Whoever needs an environment, a robot and so on calls ``build_environment`` and its
+        like, which know the check of their category.
+
+        Args:
+            spec: its parts, where its class has a field of parts, are built first and handed on
+                in the order of their names.
+            check: returns what was built if it keeps to the contract of its category, else
+                raises; what it raises is the plugin's failure.
+            args: further arguments of the build function.
+            call: the boundary to the plugin; by default a new one.
+
+        Raises:
+            PluginError: the build function cannot be imported, or raised, or what it built fails
+                the check.
+        """
+        if spec.parts_field:
+            parts = spec.parts()
+            args = ([self.build(parts[name], _unchecked) for name in sorted(parts)], *args)
+        call = call or self.plugin_call(spec)
+        build = load_build(self.find(spec.category, spec.kind), call)
+        with call("cannot be built"):
+            built = build(spec, *args)
+        with call("what was built"):
+            return check(built)
+
+    @cached_property
+    def scenario_model(self) -> type[Scenario]:
+        """`Scenario`, narrowed to the installed components."""
+        policy: Any = (self._union("crowd policy"), ...)
+        costs = self._named(Crowd, "costs", self._union("cost function"))
+        named: Any = create_model(
+            "NamedPolicy",
+            __base__=NamedPolicy,
+            __doc__=NamedPolicy.__doc__,
+            policy=policy,
+            costs=costs,
+        )
+        crowd: Any = create_model(
+            "Crowd",
+            __base__=Crowd,
+            __doc__=Crowd.__doc__,
+            policy=policy,
+            costs=costs,
+            policies=self._named(Crowd, "policies", named),
+        )
+        robot: Any = create_model(
+            "Robot",
+            __base__=Robot,
+            __doc__=Robot.__doc__,
+            model=(self._union("robot"), ...),
+            sensors=self._named(Robot, "sensors", self._union("sensor")),
+        )
+        return create_model(
+            "Scenario",
+            __base__=Scenario,
+            __doc__=Scenario.__doc__,
+            environment=(self._union("environment"), ...),
+            crowd=(crowd | None, None),
+            robots=self._named(Scenario, "robots", robot),
+        )
+
+    def spec_versions(self, scenario: Scenario) -> dict[str, int]:
+        """Kind -> spec_version of every component a scenario uses."""
+        used = [spec for _, spec in components(scenario)]
+        return {s.kind: self.find(s.category, s.kind).spec_version for s in used}
+
+    def spec_model(self, category: str, kind: str) -> type[ComponentSpec]:
+        """The spec of one kind, narrowed to the installed components where it holds others."""
+        spec: type[ComponentSpec] = self.find(category, kind).spec
+        if not spec.parts_field:
+            return spec
+        field = spec.model_fields[spec.parts_field]
+        fields: Any = {
+            spec.parts_field: (narrowed(field, self._union(parts_category(spec))), field)
+        }
+        return create_model(spec.__name__, __base__=spec, **fields)
+
+    @staticmethod
+    def _named(base: type[BaseModel], field: str, member: Any) -> Any:
+        """A map of named members, described as in the base model."""
+        description = base.model_fields[field].description
+        return dict[str, member], Field(default={}, description=description)
+
+    def _union(self, category: str) -> Any:
+        specs: Any = tuple(self.spec_model(category, kind) for kind in self._by_category[category])
+        if not specs:
+            broken = [f"{p.name} ({p.error})" for p in self.plugins if p.error]
+            why = f"; plugins that failed: {', '.join(broken)}" if broken else ""
+            raise PluginError(f"no {category} is installed{why}")
+        if len(specs) == 1:  # a discriminator needs two members
+            return SerializeAsAny[specs[0]]  # type: ignore[misc]
+        return Annotated[Union[specs], Field(discriminator="kind")]  # noqa: UP007
+
+
+def _unchecked(part: object) -> object:
+    """A part as its owner gets it, who alone knows what it is for."""
+    return part
+
+
+def _sources(plugin: Plugin, component: Component[Any]) -> frozenset[str]:
+    """Files in which a component is written, as far as they are known."""
+    modules = (component.build.partition(":")[0], component.spec.__module__)
+    files = (getattr(sys.modules.get(module), "__file__", None) for module in modules)
+    return frozenset(f for f in (plugin.file, *files) if f)
+
+
+def discover(
+    *, extra: Sequence[Path] = (), allow: Iterable[str] | None = None, entry_points: bool = True
+) -> Registry:
+    """Build the registry from what is installed and from paths given by hand.
+
+    Args:
+        extra: paths of plugins that are not installed (``--plugin DIR``).
+        allow: only these plugin names; default: ``CROWDBOT_PLUGINS``, else all.
+        entry_points: False reads no entry points except crowdbot's own.
+    """
+    found = find_plugins(extra=extra, allow=allow, entry_points=entry_points)
+    return replace(assemble(found.plugins), excluded=found.excluded, allowed=found.allowed)
+
+
+def assemble(found: Sequence[Plugin]) -> Registry:
+    """Disable collisions and sort what is left into a registry."""
+    plugins = _disable(found, _name_collisions(found))
+    plugins = _disable(plugins, _kind_collisions(plugins))
+    by_category: dict[str, dict[str, Component[Any]]] = {c.category: {} for c in CATEGORIES}
+    for plugin in plugins:
+        for component in plugin.components:
+            by_category[component.category][component.kind] = component
+    return Registry(tuple(plugins), {k: dict(sorted(v.items())) for k, v in by_category.items()})
+
+
+def _name_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
+    """The name of crowdbot's own plugin is refused to others before."""
+    names = Counter(p.name for p in plugins if not p.error)
+    return {
+        i: f"E301 plugin name '{p.name}' is claimed by {_origins(plugins, p.name)}"
+        for i, p in enumerate(plugins)
+        if names[p.name] > 1 and not p.error
+    }
+
+
+def _origins(plugins: Sequence[Plugin], name: str) -> str:
+    return " and ".join(p.origin for p in plugins if p.name == name and not p.error)
+
+
+def _kind_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
+    owners: dict[tuple[str, str], list[int]] = {}
+    for i, plugin in enumerate(plugins):
+        for component in plugin.components:
+            owners.setdefault((component.category, component.kind), []).append(i)
+    errors = {}
+    for (category, kind), indices in owners.items():
+        if len(indices) > 1:
+            who = " and ".join(plugins[i].origin for i in indices)
+            errors.update(dict.fromkeys(indices, f"E301 {category} '{kind}' is provided by {who}"))
+    return errors
+
+
+def _disable(plugins: Sequence[Plugin], errors: Mapping[int, str]) -> list[Plugin]:
+    return [
+        replace(p, components=(), scenario_dirs=(), error=errors[i]) if i in errors else p
+        for i, p in enumerate(plugins)
+    ]

@@ -1,0 +1,227 @@
+"""Robots as URDF, for the tools of ROS: the body, and a frame for each sensor.
+
+A robot is described in SDFormat or URDF (`RobotModel.description`). They differ in where joints
+stand: a URDF joint is its child's frame.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from copy import deepcopy
+from xml.etree import ElementTree as Xml
+
+import numpy as np
+
+from crowdbot.core.geometry.optical_frame import OPTICAL_RPY, optical
+from crowdbot.core.recording.writer import FRAMES
+from crowdbot.core.robots import Description, read_description
+from crowdbot.core.robots.xml import matrix, name_of, pose_of
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.robot import DifferentialDrive, RobotModel
+from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.errors import InputError
+
+FOOTPRINT, BASE = "base_footprint", "base_link"
+_SAME = 1e-3  # m, and of the entries of a rotation
+#: URDF must name limits that SDFormat may leave out, which there means that there are none.
+_UNLIMITED = 1e9
+LEVEL = (0.0, 0.0, 0.0)
+_SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
+
+
+def to_urdf(robot: RobotModel, sensors: Mapping[str, SensorInfo], name: str) -> str:
+    """The URDF text of a robot.
+
+    Args:
+        sensors: framed by their names; those that measure motion (odometry) get no frame.
+        name: what the document calls the robot.
+
+    Raises:
+        InputError: the description holds something that URDF cannot say, or `check_frames`
+            refuses a sensor.
+    """
+    check_frames(robot, sensors)
+    described = read_description(robot.description)
+    urdf = described.format == "urdf"
+    document = deepcopy(described.model) if urdf else _from_sdf(described, wheel_rates(robot))
+    document.set("name", name)
+    _ground(document, robot, described)
+    for sensor, info in sensors.items():
+        if info.category == "odometry":
+            continue
+        x, y, z, yaw = info.mount
+        if sensor not in described.links:
+            _frame(document, BASE, sensor, f"{sensor}_joint", (x, y, z), (0.0, 0.0, yaw))
+        if info.camera is not None:
+            eye = optical(sensor)
+            _frame(document, sensor, eye, f"{eye}_joint", (0.0, 0.0, 0.0), OPTICAL_RPY)
+    Xml.indent(document)
+    return '<?xml version="1.0"?>\n' + Xml.tostring(document, encoding="unicode") + "\n"
+
+
+def _ground(document: Xml.Element, robot: RobotModel, described: Description) -> None:
+    """The frames that every recording has: ``base_link``, and ``base_footprint`` on the floor."""
+    if robot.base != BASE:
+        _frame(document, robot.base, BASE, f"{BASE}_joint", (0.0, 0.0, 0.0), LEVEL)
+    if FOOTPRINT in described.links:
+        height = float(described.pose(robot.base, FOOTPRINT)[2, 3])
+        if not math.isclose(height, robot.base_height, abs_tol=_SAME):
+            raise InputError(
+                f"'{FOOTPRINT}' is {height:g} m below '{robot.base}', whose base_height is "
+                f"{robot.base_height:g} m"
+            )
+        return
+    rise = float(described.pose(robot.base, described.root)[2, 3])
+    at = (0.0, 0.0, robot.base_height - rise)
+    _frame(document, FOOTPRINT, described.root, f"{FOOTPRINT}_joint", at, LEVEL)
+
+
+def check_frames(robot: RobotModel, sensors: Mapping[str, SensorInfo]) -> None:
+    """Refuse sensors whose frames would not be theirs alone.
+
+    Raises:
+        InputError: one has the name of a frame that every recording has, of another sensor's
+            optical frame, or of a link that is elsewhere.
+    """
+    described = read_description(robot.description)
+    framed = {n: info for n, info in sensors.items() if info.category != "odometry"}
+    eyes = {optical(n) for n, info in framed.items() if info.camera is not None}
+    for sensor, info in framed.items():
+        if sensor in FRAMES or sensor in eyes:
+            raise InputError(
+                f"sensor '{sensor}' has the name of another frame of the recording: "
+                "give it another name"
+            )
+        if sensor in described.links:
+            _check_same(sensor, info, described, robot.base)
+
+
+def _check_same(sensor: str, info: SensorInfo, described: Description, base: str) -> None:
+    """A link that has a sensor's name stands for it, where it is where the sensor is."""
+    x, y, z, yaw = info.mount
+    if not np.allclose(described.pose(sensor, base), matrix([x, y, z, 0.0, 0.0, yaw]), atol=_SAME):
+        raise InputError(
+            f"sensor '{sensor}' has the name of a link of the robot, and is mounted elsewhere: "
+            f"give it another name, or the link's mount"
+        )
+
+
+def _frame(
+    document: Xml.Element,
+    parent: str,
+    child: str,
+    joint: str,
+    at: tuple[float, float, float],
+    rpy: tuple[float, float, float],
+) -> None:
+    """A fixed joint; links that are not there yet are made."""
+    links = {link.get("name") for link in document.iter("link")}
+    for link in (parent, child):
+        if link not in links:
+            Xml.SubElement(document, "link", name=link)
+    fixed = Xml.SubElement(document, "joint", name=joint, type="fixed")
+    Xml.SubElement(fixed, "parent", link=parent)
+    Xml.SubElement(fixed, "child", link=child)
+    _origin(fixed, [*at, *rpy])
+
+
+def _origin(parent: Xml.Element, pose: list[float]) -> None:
+    xyz, rpy = (" ".join(f"{v + 0.0:.12g}" for v in part) for part in (pose[:3], pose[3:]))
+    Xml.SubElement(parent, "origin", xyz=xyz, rpy=rpy)
+
+
+# ---------------------------------------------------------------------------- SDFormat
+def wheel_rates(robot: RobotModel) -> dict[str, float]:
+    """How fast each driven wheel turns at the robot's limits, rad/s, by its joint's name."""
+    drive, limits = robot.drive, robot.limits
+    if not isinstance(drive, DifferentialDrive):
+        return {}
+    rim = max(-limits.v_min, limits.v_max) + 0.5 * drive.track * limits.w_max
+    return dict.fromkeys((drive.left_joint, drive.right_joint), rim / drive.command_radius)
+
+
+def _from_sdf(described: Description, rates: Mapping[str, float]) -> Xml.Element:
+    document = Xml.Element("robot")
+    for name, link in described.links.items():
+        _link(Xml.SubElement(document, "link", name=name), link)
+    for joint in described.model.findall("joint"):
+        _joint(document, joint, described, rates.get(name_of(joint), _UNLIMITED))
+    return document
+
+
+def _link(link: Xml.Element, source: Xml.Element) -> None:
+    inertial = source.find("inertial")
+    if inertial is not None:
+        _inertial(Xml.SubElement(link, "inertial"), inertial)
+    for kind in ("visual", "collision"):
+        for item in source.findall(kind):
+            part = Xml.SubElement(link, kind, name=name_of(item))
+            _origin(part, pose_of(item))
+            _shape(Xml.SubElement(part, "geometry"), item)
+            _material(part, item)
+
+
+def _inertial(inertial: Xml.Element, source: Xml.Element) -> None:
+    _origin(inertial, pose_of(source))
+    Xml.SubElement(inertial, "mass", value=source.findtext("mass", "0").strip())
+    moments = {k: source.findtext(f"inertia/{k}", "0").strip() for k in _MOMENTS}
+    Xml.SubElement(inertial, "inertia", moments)
+
+
+_MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+
+
+def _shape(geometry: Xml.Element, source: Xml.Element) -> None:
+    for shape in _SHAPES:
+        found = source.find(f"geometry/{shape}")
+        if found is not None:
+            numbers = {c.tag: (c.text or "").strip() for c in found}
+            if "uri" in numbers:
+                numbers["filename"] = numbers.pop("uri")
+            Xml.SubElement(geometry, shape, numbers)
+            return
+    raise InputError(f"URDF has no shape like that of '{name_of(source)}'")
+
+
+def _material(part: Xml.Element, source: Xml.Element) -> None:
+    colour = source.findtext("material/diffuse")
+    if part.tag == "visual" and colour is not None:
+        material = Xml.SubElement(part, "material", name=f"{name_of(source)}_material")
+        Xml.SubElement(material, "color", rgba=colour.strip())
+
+
+def _joint(
+    document: Xml.Element, source: Xml.Element, described: Description, fastest: float
+) -> None:
+    """One joint; ``fastest`` (rad/s) is its limit of velocity where the description has none."""
+    found = described.joints[name_of(source)]
+    name, kind = found.name, "continuous" if found.free else found.kind
+    if any(pose_of(source)):
+        raise InputError(f"joint '{name}' stands beside its child's frame, as URDF joints cannot")
+    joint = Xml.SubElement(document, "joint", name=name, type=kind)
+    Xml.SubElement(joint, "parent", link=found.parent)
+    Xml.SubElement(joint, "child", link=found.child)
+    _origin(joint, _six(described.pose(found.child, found.parent)))
+    axis = source.findtext("axis/xyz")
+    if axis is not None:
+        Xml.SubElement(joint, "axis", xyz=axis.strip())
+    limits = {
+        k: v.strip()
+        for k in ("lower", "upper", "effort", "velocity")
+        if (v := source.findtext(f"axis/limit/{k}")) is not None
+    }
+    if limits:
+        whole = {"effort": f"{_UNLIMITED:g}", "velocity": f"{fastest:.12g}", **limits}
+        Xml.SubElement(joint, "limit", whole)
+
+
+def _six(matrix: Array) -> list[float]:
+    """x, y, z, roll, pitch, yaw of a 4 x 4 pose."""
+    flat = math.hypot(matrix[0, 0], matrix[1, 0])
+    pitch = math.atan2(-matrix[2, 0], flat)
+    if flat > 1e-9:
+        roll, yaw = math.atan2(matrix[2, 1], matrix[2, 2]), math.atan2(matrix[1, 0], matrix[0, 0])
+    else:
+        roll, yaw = math.atan2(-matrix[1, 2], matrix[1, 1]), 0.0
+    return [*matrix[:3, 3].tolist(), roll, pitch, yaw]

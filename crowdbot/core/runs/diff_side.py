@@ -1,0 +1,110 @@
+"""A side of a comparison: one scenario, or one run."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs.run_directory import RECORD, SCENARIO, SCORES, read_record
+from crowdbot.core.scenarios.library import open_spec, pick, suite_names
+from crowdbot.dsl.canonical import canonical_bytes, content_hash
+from crowdbot.errors import InputError
+
+#: What a run says about itself that two equal runs need not have in common.
+_PASSING = (
+    "cpu_time", "machine", "planner_step_time", "real_time_factor", "references", "wall_time",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DiffSide:
+    """What is compared.
+
+    Attributes:
+        name: what people call it.
+        scenario: canonical form.
+        hash: content hash of the scenario.
+        run: ``run.json`` without what passes; None for a scenario.
+        scores: ``metric.variant`` -> value, unit and status; empty for a scenario.
+    """
+
+    name: str
+    scenario: dict[str, Any]
+    hash: str
+    run: dict[str, Any] | None = None
+    scores: dict[str, Any] = field(default_factory=dict)
+
+
+def read_diff_side(text: str, registry: Registry, overrides: Sequence[str] = ()) -> DiffSide:
+    """Read one side.
+
+    Args:
+        text: a run directory; ``SPEC/ID`` or ``SPEC#ID``, SPEC a packaged suite or a file; or a
+            document that holds one scenario.
+        registry: the installed components.
+        overrides: ``key=value`` texts, laid over the scenario.
+
+    Raises:
+        InputError: it is nothing of these, or something in it is wrong.
+    """
+    folder = Path(text)
+    if folder.is_dir():
+        return _run(folder, registry, overrides)
+    spec, wanted = _split(text, registry)
+    return _scenario(text, spec, wanted, registry, overrides)
+
+
+def _split(text: str, registry: Registry) -> tuple[str, str | None]:
+    """The document and the id in it. A file may have any name, so that ``#`` is looked for last."""
+    if Path(text).is_file():
+        return text, None
+    if "#" in text:
+        spec, _, wanted = text.rpartition("#")
+        return spec, wanted
+    spec, slash, wanted = text.partition("/")
+    if slash and spec in suite_names(registry) and not text.endswith((".yaml", ".yml")):
+        return spec, wanted
+    return text, None
+
+
+def _scenario(
+    name: str, spec: str, wanted: str | None, registry: Registry, overrides: Sequence[str]
+) -> DiffSide:
+    scenario = pick(open_spec(spec, registry, overrides), wanted)
+    kinds = registry.spec_versions(scenario)
+    content = json.loads(canonical_bytes(scenario, kinds))
+    return DiffSide(name=name, scenario=content, hash=content_hash(scenario, kinds))
+
+
+def _run(folder: Path, registry: Registry, overrides: Sequence[str]) -> DiffSide:
+    record = read_record(folder)
+    if record is None:
+        raise InputError(f"{folder}: no run directory, there is no readable {RECORD} in it")
+    if overrides:
+        raise InputError(f"{folder}: --set changes a scenario, not a run")
+    found = _scenario(str(folder), str(folder / SCENARIO), None, registry, ())
+    kept = {k: v for k, v in record.items() if k not in _PASSING}
+    return DiffSide(
+        name=str(folder), scenario=found.scenario, hash=found.hash, run=kept,
+        scores=_scores(folder / SCORES),
+    )  # fmt: skip
+
+
+def _scores(path: Path) -> dict[str, Any]:
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        return {
+            f"{row['metric']}.{row['variant']}": {
+                "value": float(row["value"]) if row["value"] else None,
+                **{key: row[key] for key in ("unit", "status", "reason")},
+            }
+            for row in rows
+        }
+    except (OSError, ValueError, KeyError, csv.Error) as error:
+        raise InputError(f"{path}: no table of scores ({error})") from error

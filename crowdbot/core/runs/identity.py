@@ -1,0 +1,185 @@
+"""What decides what happens in a run, and where it goes. Nothing here simulates or knows Drake."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs import provenance
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.outcome import PLANNER_FAILED
+from crowdbot.core.runs.request import Request
+from crowdbot.core.scenarios.lock import Population, population
+from crowdbot.dsl.canonical import content_hash
+from crowdbot.dsl.scenario import Scenario
+from crowdbot.errors import InputError
+
+ROBOT_ALONE, CROWD_ALONE = "robot_alone", "crowd_alone"
+#: How the people of a scenario are found.
+Populate = Callable[[Scenario, Registry], Population]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trial:
+    """A scenario, or one of its calibration runs, with its people.
+
+    Attributes:
+        spec, realisation: hashes of its words and of its people.
+    """
+
+    scenario: Scenario
+    people: Population
+    spec: str
+    realisation: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prepared:
+    """Everything about a scenario that neither planner nor seed change.
+
+    Attributes:
+        run: the scenario.
+        alone, crowd: its calibration runs; None where there is nobody to compare with.
+    """
+
+    run: Trial
+    alone: Trial | None
+    crowd: Trial | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reference:
+    """One calibration run.
+
+    Attributes:
+        name: ``robot_alone`` or ``crowd_alone``.
+        key: all that it depends on; part of its record.
+        run_id: hash of name and key.
+        directory: where it goes, shared by all runs that depend on the same.
+    """
+
+    name: str
+    trial: Trial
+    key: Mapping[str, Any]
+    run_id: str
+    directory: Path
+
+    @property
+    def finished(self) -> bool:
+        """Whether it is complete, perhaps with a planner that failed."""
+        return files.is_complete(self.directory, self.run_id)
+
+    @property
+    def complete(self) -> bool:
+        """Whether it is there and no planner failed in it, which may have a passing cause."""
+        record = files.read_record(self.directory) or {}
+        return record.get("run_id") == self.run_id and record["status"] != PLANNER_FAILED
+
+
+def prepare(
+    scenario: Scenario,
+    registry: Registry,
+    *,
+    references: bool = True,
+    populate: Populate = population,
+) -> Prepared:
+    """Find the people of a scenario and of its calibration runs.
+
+    Args:
+        scenario: from an expanded suite.
+        registry: the installed components.
+        references: False leaves the calibration runs out.
+        populate: finds people; a caller with many scenarios remembers them.
+
+    Raises:
+        InputError: it has not exactly one robot, or its lock does not fit it any more.
+    """
+    if len(scenario.robots) != 1:
+        raise InputError(
+            f"{scenario.id} has {len(scenario.robots)} robots; this release simulates exactly one"
+        )
+
+    def trial(of: Scenario, people: Population) -> Trial:
+        spec = content_hash(of, registry.spec_versions(of))
+        return Trial(scenario=of, people=people, spec=spec, realisation=people.agents.hash)
+
+    run = trial(scenario, populate(scenario, registry))
+    if not references or scenario.crowd is None:  # without people a run is its own reference
+        return Prepared(run=run, alone=None, crowd=None)
+    alone = scenario.references.get(ROBOT_ALONE) or scenario.model_copy(update={"crowd": None})
+    crowd = scenario.references.get(CROWD_ALONE) or scenario.model_copy(update={"robots": {}})
+    same = (crowd.crowd, crowd.environment) == (scenario.crowd, scenario.environment)
+    people = run.people if same else populate(crowd, registry)  # the same, also near the robot
+    return Prepared(
+        run=run, alone=trial(alone, populate(alone, registry)), crowd=trial(crowd, people)
+    )
+
+
+def run_identity(request: Request, run: Trial) -> dict[str, Any]:
+    """Everything that decides what happens in a run; its digest is the run's id."""
+    return {
+        "scenario": run.scenario.id,
+        "suite": request.suite,
+        "planner": {
+            **request.choice.spec_dump,
+            "name": request.choice.name,
+            "label": request.choice.label,
+        },
+        **_budget(request),
+        "seed": request.seed,
+        "hashes": {"spec": run.spec, "realisation": run.realisation},
+        "versions": provenance.versions(),
+        "plugins": provenance.plugins(request.registry),
+    }
+
+
+def references_of(request: Request, prepared: Prepared) -> tuple[Reference, ...]:
+    """The calibration runs of a run, whether they are there or not."""
+    if prepared.alone is None or prepared.crowd is None:
+        return ()
+    (robot,) = prepared.run.scenario.robots.values()
+    by_planner = {"planner": request.choice.spec_dump, "seed": request.seed, **_budget(request)}
+    by_people = {
+        "realisation": prepared.crowd.realisation,
+        "duration": robot.task.time_limit,
+    }
+    return (
+        _reference(request, ROBOT_ALONE, prepared.alone, by_planner),
+        _reference(request, CROWD_ALONE, prepared.crowd, by_people),
+    )
+
+
+def _budget(request: Request) -> dict[str, float]:
+    return {} if request.step_budget is None else {"step_budget": request.step_budget}
+
+
+def _reference(
+    request: Request, name: str, trial: Trial, depends_on: Mapping[str, Any]
+) -> Reference:
+    others = provenance.third_parties(request.registry)
+    key = {"spec": trial.spec, "versions": provenance.versions(), **others, **depends_on}
+    run_id = provenance.digest({"reference": name, **key})
+    short = run_id.removeprefix("cb1-sha256:")[:16]
+    directory = request.out / "references" / f"{name}-{short}"
+    return Reference(name=name, trial=trial, key=key, run_id=run_id, directory=directory)
+
+
+def reusable_record(request: Request, run_id: str, *, compared: bool) -> dict[str, Any] | None:
+    """The record of the run if it is complete and was recorded as it is wanted now.
+
+    Args:
+        request: what is wanted.
+        run_id: from `run_identity`.
+        compared: whether it must have calibration runs.
+    """
+    record = files.read_record(request.directory)
+    if record is None or record.get("run_id") != run_id:
+        return None
+    if record.get("recorded") != request.record or (compared and not record.get("references")):
+        return None
+    if request.replay and not (request.directory / files.REPLAY).exists():
+        return None
+    return record

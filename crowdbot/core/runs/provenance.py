@@ -1,0 +1,122 @@
+"""Provenance: hashes of what a run depends on and left behind, and what it ran on."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import platform
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from functools import cache
+from importlib import metadata
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.registry.plugin import BUILTIN
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.support.float_fingerprint import fingerprint
+from crowdbot.core.trajectories.trajectories import Trajectories
+
+_PACKAGES = ("crowdbot", "drake", "mcap", "numba", "numpy", "pydantic", "rosbags")
+
+
+def digest(document: Mapping[str, Any]) -> str:
+    """``cb1-sha256:`` hash of a JSON document."""
+    text = json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
+    return f"cb1-sha256:{hashlib.sha256(text.encode()).hexdigest()}"
+
+
+def trajectory_hash(run: Trajectories) -> str:
+    """Hash of every simulated number of a run; wall times are left out.
+
+    Two runs with equal hashes agree bit by bit.
+    """
+    sha = hashlib.sha256()
+    for name in ("t", "robot", "agents", "trips", "contacts", "signals"):
+        _feed(sha, name, getattr(run, name))
+    return f"cb1-sha256:{sha.hexdigest()}"
+
+
+def _feed(sha: Any, name: str, value: Any) -> None:
+    sha.update(name.encode() + b"\0")
+    if is_dataclass(value):
+        for part in fields(value):
+            _feed(sha, part.name, getattr(value, part.name))
+    elif isinstance(value, np.ndarray):
+        sha.update(repr((value.dtype.str, value.shape)).encode())
+        sha.update(np.ascontiguousarray(value).tobytes())
+    elif isinstance(value, Mapping):
+        for key in sorted(value):
+            _feed(sha, key, value[key])
+    else:
+        sha.update(repr(value).encode())
+
+
+def versions() -> dict[str, str]:
+    """Versions of crowdbot and of what its numbers depend on."""
+    return dict(_versions())
+
+
+@cache
+def _versions() -> tuple[tuple[str, str], ...]:
+    packages = ((p, metadata.version(p)) for p in _PACKAGES)
+    return ("python", platform.python_version()), *packages
+
+
+def plugins(registry: Registry) -> list[dict[str, Any]]:
+    """The plugins that were loaded; of those that are not installed, the hash of their files."""
+    return [
+        {
+            "name": p.name,
+            "distribution": p.distribution,
+            "pinned": p.pinned,
+            **({} if p.pinned else {"sha256": p.sha256}),
+        }
+        for p in registry.plugins
+        if not p.error
+    ]
+
+
+def third_parties(registry: Registry) -> dict[str, Any]:
+    """What decides what a reference run does, beside crowdbot itself; nothing without plugins."""
+    others = [p for p in plugins(registry) if p["name"] != BUILTIN]
+    return {"plugins": others} if others else {}
+
+
+def remarks(record: Mapping[str, Any]) -> dict[str, str]:
+    """What a reader of scores must know of where they come from, if there is anything.
+
+    Args:
+        record: ``run.json``, or what will be.
+    """
+    found = {}
+    if record.get("privileged"):
+        found["Privileged"] = "the planner sees the truth"
+    if not record.get("pinned", True):
+        loose = [p["distribution"] for p in record.get("plugins", ()) if not p["pinned"]]
+        if "sha256" in record["planner"]:
+            loose.append(record["planner"]["kind"])
+        found["Not pinned"] = f"{', '.join(loose)}: not from an installed distribution"
+    return found
+
+
+def machine() -> dict[str, str]:
+    """What the run ran on.
+
+    ``processor`` is the one that compiled code was made for; machines with equal ``processor`` and
+    ``rounding`` give equal trajectories.
+    """
+    return {
+        "system": platform.system(),
+        "machine": platform.machine(),
+        "processor": _processor(),
+        "rounding": fingerprint(),
+    }
+
+
+def _processor() -> str:
+    from llvmlite import binding  # type: ignore[import-untyped]
+
+    return os.environ.get("NUMBA_CPU_NAME") or str(binding.get_host_cpu_name())

@@ -1,0 +1,121 @@
+"""Where the recording of a run and those of its references are."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.runs.run_directory import RECORD, RECORDING
+from crowdbot.errors import InputError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordingSource:
+    """A recording to score, and what is known about it.
+
+    Attributes:
+        path: what the user named, or a run directory below it.
+        planner: name of the planner; ``label`` tells its parameters apart, too.
+    """
+
+    path: Path
+    recording: Path
+    robot_alone: Path | None = None
+    crowd_alone: Path | None = None
+    scenario: str = ""
+    planner: str = ""
+    label: str = ""
+    seed: int | None = None
+
+
+def expand_paths(paths: Iterable[Path]) -> list[Path]:
+    """Files and run directories as they are; in place of any other directory the runs below it.
+
+    Calibration runs are not runs of their own, and what is being written is left alone.
+    """
+    found: list[Path] = []
+    for path in paths:
+        plain = not path.is_dir() or (path / RECORD).exists() or path.name.endswith(".partial")
+        below = [] if plain else sorted(r.parent for r in path.rglob(RECORD) if _is_run(r, path))
+        found += below or [path]
+    return found
+
+
+def find_source(
+    path: Path, robot_alone: Path | None = None, crowd_alone: Path | None = None
+) -> RecordingSource:
+    """The recording of one run directory or file; references that are given win.
+
+    Raises:
+        InputError: there is no such run or file, or run.json is not a record of a run.
+    """
+    if path.is_dir():
+        found = _in_directory(path)
+    elif path.exists():
+        found = RecordingSource(path=path, recording=path)
+    else:
+        raise InputError(f"{path}: no such run directory or recording")
+    found = replace(
+        found,
+        robot_alone=robot_alone or found.robot_alone,
+        crowd_alone=crowd_alone or found.crowd_alone,
+    )
+    for what in ("recording", "robot_alone", "crowd_alone"):
+        file = getattr(found, what)
+        if file is not None and not file.is_file():
+            raise InputError(f"{path}: {what.replace('_', ' ')} not found: {file}")
+    return found
+
+
+def _is_run(record: Path, root: Path) -> bool:
+    parts = record.relative_to(root).parts[:-1]
+    return "references" not in parts and not any(".partial" in p or ".old-" in p for p in parts)
+
+
+def _in_directory(folder: Path) -> RecordingSource:
+    record = _record(folder)
+    references = record.get("references") or {}
+    seed = record.get("seed")
+    if not isinstance(references, Mapping) or not isinstance(seed, int | None):
+        raise InputError(f"{folder / RECORD}: 'references' or 'seed' is malformed")
+    planner = record.get("planner")
+    return RecordingSource(
+        path=folder,
+        recording=folder / RECORDING,
+        robot_alone=_beside(folder, references.get("robot_alone")),
+        crowd_alone=_beside(folder, references.get("crowd_alone")),
+        scenario=str(record.get("scenario") or ""),
+        planner=_name(planner, "name", "kind"),
+        label=_name(planner, "label", "name", "kind"),
+        seed=seed,
+    )
+
+
+def _record(folder: Path) -> Mapping[str, Any]:
+    """run.json; an interrupted run may have none."""
+    file = folder / RECORD
+    if not file.is_file():
+        if folder.name.endswith(".partial"):
+            return {}
+        raise InputError(f"{folder}: no run directory: {RECORD} is missing")
+    try:
+        record = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise InputError(f"{file}: cannot be read: {error}") from error
+    if not isinstance(record, Mapping):
+        raise InputError(f"{file}: not a record of a run")
+    return record
+
+
+def _beside(folder: Path, reference: object) -> Path | None:
+    return None if reference is None else folder / str(reference)
+
+
+def _name(planner: object, *keys: str) -> str:
+    """A planner is recorded by name, or as its document and names."""
+    if isinstance(planner, Mapping):
+        planner = next((planner[k] for k in keys if planner.get(k)), "")
+    return str(planner or "")

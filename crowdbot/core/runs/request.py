@@ -1,0 +1,129 @@
+"""What to simulate, and what came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Any, Literal
+
+from crowdbot.core.planning.resolve import PlannerChoice
+from crowdbot.core.recording import read_trajectories
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.outcome import Progress
+from crowdbot.core.scoring.metric import References
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.dsl.scenario import Scenario
+
+Recorded = Literal["all", "used", "none"]
+
+
+@dataclass(frozen=True)
+class Run:
+    """A complete run on disk.
+
+    Attributes:
+        directory: where its files are.
+        record: ``run.json``.
+        scores: what was computed when it was made.
+        reused: it had been there already.
+    """
+
+    directory: Path
+    record: Mapping[str, Any] = field(repr=False)
+    reused: bool = False
+    _keep: object = field(default=None, repr=False, compare=False)
+
+    @property
+    def status(self) -> str:
+        """``arrived``, ``timeout`` or ``planner_failed``."""
+        return str(self.record["status"])
+
+    @cached_property
+    def trajectories(self) -> Trajectories:
+        """The run itself, read from its recording."""
+        return read_trajectories(self.directory / files.RECORDING)
+
+    @cached_property
+    def references(self) -> References:
+        """The calibration runs, as far as they were computed."""
+        paths: Mapping[str, str] = self.record["references"]
+        return read_references({n: (self.directory / p).resolve() for n, p in paths.items()})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """What to simulate, and how.
+
+    Attributes:
+        seed: of the run: sensor noise and planner.
+        out: root of the run directories.
+        suite: first folder below it.
+        record: which sensors are simulated and recorded.
+        references: whether calibration runs are made where they are missing.
+        force: whether a complete run is made again.
+        metrics: patterns of the metrics to score; None is all.
+        axes: axis of the suite -> label, in the suite's order.
+        position: of the scenario in its suite.
+        replay: whether to write the replay page.
+        references_finished: whoever asks has seen to the references; those in which the planner
+            failed are not tried again.
+        progress: called several times a simulated second.
+        stop: asked several times a simulated second; True ends the run as interrupted.
+        on_hang: called when a planner cannot be interrupted; should end the process.
+        step_budget: seconds of wall time that a planner step may take; None sets no limit.
+    """
+
+    scenario: Scenario
+    choice: PlannerChoice
+    registry: Registry
+    seed: int
+    out: Path
+    suite: str = "scenarios"
+    record: Recorded = "all"
+    references: bool = True
+    force: bool = False
+    metrics: Sequence[str] | None = None
+    axes: Mapping[str, str] = field(default_factory=dict)
+    position: int = 0
+    replay: bool = True
+    references_finished: bool = False
+    progress: Callable[[Progress], None] | None = None
+    stop: Callable[[], bool] = lambda: False
+    on_hang: Callable[[], object] | None = None
+    step_budget: float | None = None
+
+    @property
+    def pinned(self) -> bool:
+        """Whether planner and plugins all come from installed distributions."""
+        return self.choice.pinned and all(p.pinned for p in self.registry.plugins if not p.error)
+
+    @property
+    def directory(self) -> Path:
+        """Where the run goes."""
+        return self.out / self.suite / self.scenario.id / self.choice.label / f"seed-{self.seed}"
+
+
+def read_references(paths: Mapping[str, Path]) -> References:
+    """The recordings of the calibration runs, by name.
+
+    Several runs share them: the latest few are kept, as long as their files do not change.
+    """
+    runs: dict[str, Any] = {name: _read_kept(path) for name, path in paths.items()}
+    return References(**runs)
+
+
+def _read_kept(path: Path) -> Trajectories:
+    try:
+        state = path.stat()
+    except OSError:
+        return read_trajectories(path)  # says what is wrong
+    return _kept(path.resolve(), state.st_ino, state.st_mtime_ns, state.st_size)
+
+
+@lru_cache(maxsize=4)  # with 200 people for 180 s one takes 18 MB
+def _kept(path: Path, *state: int) -> Trajectories:
+    del state  # another one is another recording
+    return read_trajectories(path)

@@ -1,0 +1,137 @@
+"""Run directories: written under a ``.partial`` name, renamed when complete."""
+
+from __future__ import annotations
+
+import errno
+import fcntl
+import json
+import os
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.errors import InputError
+
+RECORD, RECORDING, SCENARIO, SCORES, REPLAY = (
+    "run.json", "run.mcap", "scenario.yaml", "scores.csv", "replay.html",
+)  # fmt: skip
+_LOCK = ".lock"
+
+
+def read_record(directory: Path) -> dict[str, Any] | None:
+    """``run.json`` of a complete run, or None."""
+    try:
+        record = json.loads((directory / RECORD).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return record if isinstance(record, dict) else None
+
+
+def is_complete(directory: Path, run_id: str) -> bool:
+    """Whether a directory holds the complete run of this id."""
+    record = read_record(directory)
+    return record is not None and record.get("run_id") == run_id
+
+
+def write_json(path: Path, document: Mapping[str, Any]) -> None:
+    """Write a document under a temporary name, then rename it."""
+    atomic_write(path, json.dumps(document, indent=2, ensure_ascii=False) + "\n")
+
+
+@contextmanager
+def partial(final: Path) -> Iterator[Path]:
+    """A directory of one's own beside ``final``; kept as it is when the body raises.
+
+    Leftovers of an interrupted run are replaced; the directory of a run that is still going on
+    in another process is left alone, and the next free name is taken.
+
+    Raises:
+        InputError: it cannot be made or written.
+    """
+    try:
+        final.parent.mkdir(parents=True, exist_ok=True)
+        if final.is_file():
+            raise NotADirectoryError(errno.ENOTDIR, f"{final.name} is a file")
+        folder, lock = _claim(final)
+    except OSError as error:
+        raise InputError(f"{final.parent}: cannot be written: {error.strerror}") from error
+    try:
+        yield folder
+    finally:
+        with suppress(OSError):
+            if _is_ours(lock, folder):  # once published, the name may be another process's
+                (folder / _LOCK).unlink()
+        os.close(lock)
+
+
+def publish(folder: Path, final: Path) -> None:
+    """Give a complete directory its final name, in place of what was there."""
+    for file in folder.iterdir():
+        _sync(file)
+    old = final.with_name(f"{final.name}.old-{os.getpid()}")
+    with suppress(FileNotFoundError):
+        final.rename(old)
+    try:
+        folder.rename(final)
+    except OSError as error:
+        if error.errno not in (errno.EEXIST, errno.ENOTEMPTY):
+            raise
+        shutil.rmtree(old, ignore_errors=True)  # another process was faster with the very same run
+        folder.rename(old)
+    with suppress(OSError):  # only now: until it is renamed, the folder must stay claimed
+        (final / _LOCK).unlink()
+    _sync(final.parent)
+    shutil.rmtree(old, ignore_errors=True)
+
+
+def _claim(final: Path) -> tuple[Path, int]:
+    for number in range(1, 1000):
+        suffix = "" if number == 1 else f"-{number}"
+        folder = final.with_name(f"{final.name}{suffix}.partial")
+        lock = _lock(folder)
+        if lock is None:
+            continue
+        for leftover in folder.iterdir():
+            if leftover.name != _LOCK:
+                shutil.rmtree(leftover) if leftover.is_dir() else leftover.unlink()
+        return folder, lock
+    raise InputError(f"{final}: a thousand runs of it are going on already")
+
+
+def _lock(folder: Path) -> int | None:
+    """Make a folder and lock it; None when another process has it."""
+    while True:
+        try:
+            folder.mkdir(exist_ok=True)
+            lock = os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT, 0o644)
+        except (FileNotFoundError, FileExistsError):  # published in between
+            if folder.is_file():
+                raise
+            continue
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(lock)
+            return None
+        if _is_ours(lock, folder):
+            return lock
+        os.close(lock)  # the lock of a folder that has another name by now
+
+
+def _is_ours(lock: int, folder: Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(lock), (folder / _LOCK).stat())
+    except FileNotFoundError:
+        return False
+
+
+def _sync(path: Path) -> None:
+    """Wait until a file or directory is on the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

@@ -1,0 +1,94 @@
+"""run.json: what a run says about itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs import provenance
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.outcome import Outcome
+from crowdbot.core.runs.realised_density import mean_density
+from crowdbot.core.runs.request import Request
+from crowdbot.core.scoring.evaluate import Scores
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.dsl.canonical import dump_scenario_yaml
+from crowdbot.dsl.scenario import Scenario
+
+
+def run_record(
+    request: Request,
+    identity: Mapping[str, Any],
+    references: Mapping[str, Path],
+    outcome: Outcome,
+    run: Trajectories,
+    scores: Scores,
+    *,
+    parts: EnvironmentParts,
+) -> dict[str, Any]:
+    """The record of a run, but for how its people were found."""
+    scenario, registry = request.scenario, request.registry
+    hashes = {**identity["hashes"], "trajectory": provenance.trajectory_hash(run)}
+    up = "/".join([".."] * len(request.directory.relative_to(request.out).parts))
+    return {
+        "run_id": provenance.digest(identity),
+        **identity,
+        "axes": dict(request.axes),
+        "position": request.position,
+        "hashes": hashes,
+        "pinned": request.pinned,
+        "privileged": request.choice.privileged,
+        "allowed_plugins": request.registry.allowed,
+        "recorded": request.record,
+        **ending(outcome),
+        "references": {
+            n: f"{up}/{p.relative_to(request.out).as_posix()}" for n, p in references.items()
+        },
+        "density": mean_density(run, scenario, parts),
+        "conditions": _conditions(scenario, run),
+        "metrics": _metrics(registry, scores),
+        "machine": provenance.machine(),
+    }
+
+
+def ending(outcome: Outcome) -> dict[str, Any]:
+    """How a run ended, and what it took."""
+    return {
+        "status": outcome.status,
+        "reason": outcome.reason,
+        "goal_time": outcome.goal_time,
+        "sim_time": outcome.sim_time,
+        "wall_time": round(outcome.wall_time, 3),
+        "cpu_time": round(outcome.cpu_time, 3),
+        "real_time_factor": round(outcome.real_time_factor, 2),
+        "planner_step_time": outcome.planner_step_time,
+        "clamped_commands": outcome.clamped,
+    }
+
+
+def write_scenario(folder: Path, scenario: Scenario, registry: Registry) -> None:
+    """Write the scenario with every default."""
+    text = dump_scenario_yaml(scenario, registry.spec_versions(scenario))
+    (folder / files.SCENARIO).write_text(text, encoding="utf-8")
+
+
+def _conditions(scenario: Scenario, run: Trajectories) -> dict[str, str]:
+    """What of a scenario must be equal in runs that are compared, whatever their axes are."""
+    found = {f"rates.{name}": f"{rate:g} Hz" for name, rate in scenario.rates}
+    if scenario.crowd is not None and run.robot is not None:
+        response = scenario.crowd.robot_response
+        found["perceived_radius"] = f"{run.robot.radius + response.margin:.10g} m"
+        share = f" {response.ignoring:g}" if response.reaction == "mixed" else ""
+        found["people_and_robot"] = f"{response.reaction}{share}, velocity {response.velocity}"
+    return found
+
+
+def _metrics(registry: Registry, scores: Scores) -> dict[str, Any]:
+    """Metric -> version of its words, and the parameters it was computed with."""
+    known = registry.components("metric")
+    return {
+        s.metric: {"spec_version": known[s.metric].spec_version, **s.parameters} for s in scores
+    }

@@ -1,0 +1,1 @@
+"""Scenarios: the library of suites, and their locks."""

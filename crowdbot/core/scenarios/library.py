@@ -1,0 +1,231 @@
+"""Opening suites by path or packaged name, and picking scenarios by id, prefix or pattern."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Sequence
+from dataclasses import replace
+from fnmatch import fnmatchcase
+from functools import cache, cached_property, partial
+from importlib.resources.abc import Traversable
+from pathlib import Path
+
+from crowdbot.core.registry.registry import Registry
+from crowdbot.dsl.diagnostics import Diagnostic
+from crowdbot.dsl.expand import Expansion, expand_document, load_document
+from crowdbot.dsl.installed import Installed
+from crowdbot.dsl.lock import LockFiles
+from crowdbot.dsl.scenario import Locked, Scenario
+from crowdbot.dsl.suite import ParsedSuite
+from crowdbot.errors import InputError, SpecError, UnknownNameError
+
+_BUILTIN = "builtin"
+_UNPACKED = "crowdbot-unpacked-"
+#: Errors about something that no plugin has: kind, metric, file.
+_UNKNOWN = ("E120", "E121", "E201")
+
+
+def open_spec(spec: str, registry: Registry, overrides: Sequence[str] = ()) -> Expansion:
+    """Read, expand and validate a suite or scenario.
+
+    Args:
+        spec: a path, or the name of a packaged suite (``challenge-2020``, ``acme:office``).
+        registry: the installed components.
+        overrides: ``key=value`` texts, laid over every scenario.
+
+    Raises:
+        SpecError: the document is wrong; every error at once.
+        UnknownNameError: neither a file nor a packaged suite has this name.
+    """
+    expansion, _ = open_suite(spec, registry, overrides)
+    return expansion
+
+
+def open_suite(
+    spec: str, registry: Registry, overrides: Sequence[str] = ()
+) -> tuple[Expansion, LockFiles]:
+    """As `open_spec`, with the files of the lock, which need not exist."""
+    roots = _folders(registry)
+    path, name = _find(spec, roots, registry)
+    try:
+        suite = load_document(path, roots, name=name, installed=installed(registry))
+        expansion = expand_document(suite, registry.scenario_model, overrides)
+    except SpecError as error:
+        raise SpecError([_with_reason(d, registry) for d in error.diagnostics]) from None
+    files = LockFiles(path, spec)
+    if files.lock_path.exists():
+        _attach(expansion, files, _Origins(suite, registry, expansion, overrides))
+    return expansion, files
+
+
+def _with_reason(diagnostic: Diagnostic, registry: Registry) -> Diagnostic:
+    """An error about something of a plugin that failed, or is not allowed, says so."""
+    if diagnostic.code not in _UNKNOWN:
+        return diagnostic
+    quoted = re.search(r"'([^']+)'", diagnostic.message)
+    why = registry.why_absent(quoted[1]) if quoted else ""
+    return replace(diagnostic, hint=why) if why else diagnostic
+
+
+def check_writable(files: LockFiles) -> None:
+    """Whether a lock may be written where it belongs.
+
+    Raises:
+        InputError: it belongs into an installed package.
+    """
+    folder = files.lock_path.parent.resolve()
+    installed_ = {"site-packages", "dist-packages"} & set(folder.parts)
+    if installed_ or any(part.startswith(_UNPACKED) for part in folder.parts):
+        raise InputError(
+            f"{files.spec} belongs to an installed package, which is not changed; copy its "
+            "folder, or write a suite of your own that extends it, and lock that"
+        )
+
+
+class _Origins:
+    """The scenarios as the suite has them, without ``--set``; expanded when somebody asks."""
+
+    def __init__(
+        self,
+        suite: ParsedSuite,
+        registry: Registry,
+        expansion: Expansion,
+        overrides: Sequence[str],
+    ) -> None:
+        self._suite, self._registry = suite, registry
+        self._given = None if overrides else expansion.scenarios
+
+    def scenario(self, index: int) -> Scenario:
+        return self._scenarios[index]
+
+    @cached_property
+    def _scenarios(self) -> list[Scenario]:
+        return self._given or expand_document(self._suite, self._registry.scenario_model).scenarios
+
+
+def _attach(expansion: Expansion, files: LockFiles, origins: _Origins) -> None:
+    for index, scenario in enumerate(expansion.scenarios):
+        scenario.lock_to(Locked(files, partial(origins.scenario, index)))
+
+
+def installed(registry: Registry) -> Installed:
+    """What is installed, by the names that documents use."""
+    versions = {
+        c.kind: (c.spec_version, p.distribution) for p in registry.plugins for c in p.components
+    }
+    return Installed(registry.components("metric"), versions)
+
+
+def suite_names(registry: Registry) -> list[str]:
+    """Names of all packaged suites."""
+    return sorted(_packaged(_folders(registry)))
+
+
+def pick(expansion: Expansion, pattern: str | None) -> Scenario:
+    """The one scenario that an id means.
+
+    Args:
+        expansion: from `open_spec`.
+        pattern: an id, a unique prefix or pattern of one, with or without ``suite-id/`` in front;
+            None means the only scenario.
+
+    Raises:
+        UnknownNameError: no scenario has such an id.
+        InputError: several have.
+    """
+    if pattern is None:
+        return _only(expansion, expansion.scenarios, "no id was given")
+    found = select(expansion, pattern)
+    exact = [s for s in found if s.id == _bare(expansion, pattern)]
+    if not found:
+        prefix = f"{expansion.suite_id}/" if "/" in pattern else ""
+        raise UnknownNameError("scenario", pattern, [prefix + s.id for s in expansion.scenarios])
+    return _only(expansion, exact or found, f"'{pattern}' fits more than one")
+
+
+def select(expansion: Expansion, pattern: str) -> list[Scenario]:
+    """All scenarios whose id fits: equal, beginning with ``pattern``, or matching it as a glob.
+
+    A ``+`` suffix that ``--set`` gave to the ids need not be written.
+    """
+    bare = _bare(expansion, pattern)
+    ids = [s for s in expansion.scenarios if bare in (s.id, s.id.partition("+")[0])]
+    return ids or [
+        s for s in expansion.scenarios if s.id.startswith(bare) or fnmatchcase(s.id, bare)
+    ]
+
+
+def _bare(expansion: Expansion, pattern: str) -> str:
+    return pattern.removeprefix(f"{expansion.suite_id}/")
+
+
+def _only(expansion: Expansion, found: Sequence[Scenario], why: str) -> Scenario:
+    if len(found) == 1:
+        return found[0]
+    some = ", ".join(s.id for s in found[:3]) + (", …" if len(found) > 3 else "")
+    raise InputError(
+        f"{why}: {len(found)} scenarios of {expansion.suite_id} match ({some}); "
+        "give one id, e.g. from 'crowdbot expand'"
+    )
+
+
+def _find(spec: str, roots: dict[str, list[Path]], registry: Registry) -> tuple[Path, str]:
+    """The file that a SPEC means, and what messages call it."""
+    path, packaged = Path(spec), _packaged(roots)
+    looks_like_path = path.suffix in (".yaml", ".yml") or os.sep in spec or "/" in spec
+    if not looks_like_path and spec in packaged:
+        return packaged[spec], _shown(packaged[spec], spec)
+    if looks_like_path or os.path.lexists(spec):
+        return path, spec
+    why = registry.why_absent(spec) if ":" in spec else ""
+    raise UnknownNameError("suite", spec, packaged, why)
+
+
+def _packaged(roots: dict[str, list[Path]]) -> dict[str, Path]:
+    """Name -> file of every packaged suite; crowdbot's own have no prefix."""
+    return {
+        file.stem if plugin == _BUILTIN else f"{plugin}:{file.stem}": file
+        for plugin, folders in roots.items()
+        for folder in folders
+        for file in sorted(folder.glob("*.yaml"))
+    }
+
+
+def _folders(registry: Registry) -> dict[str, list[Path]]:
+    """Plugin name -> its scenario folders as real ones; those inside archives are unpacked."""
+    roots: dict[str, list[Path]] = {}
+    for plugin in registry.plugins:
+        folders = [f for f in plugin.scenario_dirs if f.is_dir()]
+        if folders:
+            roots[plugin.name] = [f if isinstance(f, Path) else _unpacked(f) for f in folders]
+    return roots
+
+
+@cache
+def _unpacked(folder: Traversable) -> Path:
+    """A folder of an archive as a real one, which lives as long as the process."""
+    target = Path(tempfile.mkdtemp(prefix=_UNPACKED))
+    atexit.register(shutil.rmtree, target, ignore_errors=True)
+    _unpack(folder, target)
+    return target
+
+
+def _unpack(folder: Traversable, target: Path) -> None:
+    for item in folder.iterdir():
+        if item.is_dir():
+            (target / item.name).mkdir()
+            _unpack(item, target / item.name)
+        else:
+            (target / item.name).write_bytes(item.read_bytes())
+
+
+def _shown(path: Path, spec: str) -> str:
+    """A packaged file for messages: relative below the working directory, else as in `extends`."""
+    if path.is_relative_to(Path.cwd()):
+        return str(path.relative_to(Path.cwd()))
+    plugin, _, _ = spec.rpartition(":")
+    return f"{plugin or _BUILTIN}:{path.name}"

@@ -1,0 +1,202 @@
+"""Locks with their tables: the agents of a suite are drawn once, and read ever after."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import Literal
+
+from crowdbot.core.population.realisation import Realisation
+from crowdbot.core.population.realise import realise
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.scenarios.lock_check import check_fits, spec_of, values_of
+from crowdbot.dsl.expand import Expansion
+from crowdbot.dsl.lock import (
+    LOCK,
+    Lock,
+    LockedScenario,
+    LockedTable,
+    LockFiles,
+    join_tables,
+    split_values,
+    table_hash,
+)
+from crowdbot.dsl.lock_inputs import population_inputs
+from crowdbot.dsl.scenario import Scenario
+from crowdbot.errors import InputError
+
+_NAME = re.compile(r"[A-Za-z0-9_.+-]+")
+
+
+@dataclass(frozen=True, slots=True)
+class Population:
+    """The agents of a scenario, and whether they were read from a lock."""
+
+    agents: Realisation
+    source: Literal["locked", "drawn", "none"]
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """A new lock, its tables by name, and how many of these were drawn just now."""
+
+    lock: Lock
+    tables: Mapping[str, str]
+    drawn: int
+
+
+def population(scenario: Scenario, registry: Registry) -> Population:
+    """The agents of a scenario: from its suite's lock, drawn only where there is none.
+
+    Agents are drawn all the same when ``--set`` or Python code changed something that the
+    drawing depends on.
+
+    Raises:
+        InputError: the lock does not fit the suite any more.
+    """
+    if scenario.crowd is None:
+        return Population(Realisation.nobody(), "none")
+    if scenario.locked is None:
+        return Population(realise(scenario), "drawn")
+    files = scenario.locked.files
+    check_fits(files, scenario.locked.origin(), registry)
+    name = files.lock.table_of(population_inputs(scenario))
+    if name is None:
+        return Population(realise(scenario), "drawn")
+    text = files.table(name)
+    try:
+        return Population(Realisation.from_csv(text), "locked")
+    except InputError as error:
+        raise InputError(f"{files.agents_path.name}: table '{name}': {error}") from None
+
+
+def make_lock(expansion: Expansion, registry: Registry, old: LockFiles | None) -> Made:
+    """Freeze a suite; tables whose inputs did not change since ``old`` are kept as they are.
+
+    Raises:
+        InputError: a crowd cannot be drawn, or the old lock is not a lock.
+    """
+    locked, drawn = dict[str, LockedTable](), 0
+    tables, by_inputs = dict[str, str](), dict[str, str]()
+    for scenario in _with_crowd(expansion):
+        inputs = population_inputs(scenario)
+        if inputs in by_inputs:
+            continue
+        kept = _kept(old, inputs)
+        table = realise(scenario).to_csv() if kept is None else kept
+        drawn += kept is None
+        name = _free_name(scenario, expansion.suite_id, locked)
+        by_inputs[inputs], tables[name] = name, table
+        locked[name] = LockedTable(inputs=inputs, realisation=table_hash(table))
+    scenarios, common = _scenarios(expansion, registry, by_inputs, locked)
+    kinds = {k: v for s in expansion.scenarios for k, v in registry.spec_versions(s).items()}
+    lock = Lock(
+        lock=LOCK,
+        crowdbot=metadata.version("crowdbot"),
+        suite=expansion.suite_id,
+        kinds=dict(sorted(kinds.items())),
+        common=common,
+        draws=locked,
+        scenarios=scenarios,
+    )
+    return Made(lock, tables, drawn)
+
+
+def write_lock(files: LockFiles, made: Made) -> None:
+    """Write both files under temporary names, then rename them; both or neither.
+
+    Raises:
+        InputError: the folder cannot be written to.
+    """
+    texts = {
+        files.agents_path: join_tables(made.tables),
+        files.lock_path: made.lock.text(),
+    }
+    parts = {path: path.with_name(f".{path.name}.{os.getpid()}.part") for path in texts}
+    before = {path: path.read_bytes() if path.exists() else None for path in texts}
+    try:
+        for path, part in parts.items():
+            _write(part, texts[path].encode())
+        try:
+            for path, part in parts.items():
+                part.replace(path)
+        except OSError:
+            _restore(before)
+            raise
+    except OSError as error:
+        folder, why = files.lock_path.parent, error.strerror or error
+        raise InputError(
+            f"the lock cannot be written into {folder}: {str(why).lower()}; copy the suite into a "
+            "folder of your own and lock it there"
+        ) from error
+    finally:
+        for part in parts.values():
+            part.unlink(missing_ok=True)
+
+
+def _kept(old: LockFiles | None, inputs: str) -> str | None:
+    """The table that was drawn from these inputs before, if it is there and whole."""
+    name = old.lock.table_of(inputs) if old else None
+    if old is None or name is None:
+        return None
+    try:
+        return old.table(name)
+    except InputError:
+        return None
+
+
+def _with_crowd(expansion: Expansion) -> Iterator[Scenario]:
+    for scenario in expansion.scenarios:
+        for one in (scenario, *scenario.references.values()):
+            if one.crowd is not None:
+                yield one
+
+
+def _free_name(scenario: Scenario, suite: str, taken: Mapping[str, object]) -> str:
+    """The crowd's seed key if it has one; numbered if other inputs have the same."""
+    assert scenario.crowd is not None
+    key = scenario.crowd.seed.key
+    name = key if _NAME.fullmatch(key) else suite
+    numbered = (f"{name}~{number}" for number in itertools.count(2))
+    return name if name not in taken else next(n for n in numbered if n not in taken)
+
+
+def _scenarios(
+    expansion: Expansion,
+    registry: Registry,
+    by_inputs: Mapping[str, str],
+    locked: Mapping[str, LockedTable],
+) -> tuple[dict[str, LockedScenario], dict[str, object]]:
+    common, rest = split_values({s.id: values_of(s) for s in expansion.scenarios})
+    found = {}
+    for scenario in expansion.scenarios:
+        name = by_inputs[population_inputs(scenario)] if scenario.crowd is not None else None
+        found[scenario.id] = LockedScenario(
+            spec=spec_of(scenario, registry),
+            realisation=locked[name].realisation if name else Realisation.nobody().hash,
+            draw=name,
+            values=rest[scenario.id],
+        )
+    return found, common
+
+
+def _write(path: Path, content: bytes) -> None:
+    with path.open("wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _restore(before: Mapping[Path, bytes | None]) -> None:
+    with suppress(OSError):
+        for path, content in before.items():
+            if content is None:
+                path.unlink(missing_ok=True)
+            else:
+                path.write_bytes(content)

@@ -1,0 +1,222 @@
+"""Scores of one run: choose metrics from a registry, build them, ask each."""
+
+from __future__ import annotations
+
+import fnmatch
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, cast, overload
+
+import numpy as np
+from pydantic import ValidationError
+
+from crowdbot.core.registry.plugin_boundary import PluginCall
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.scoring.metric import Metric, References
+from crowdbot.core.trajectories.commands import Commands
+from crowdbot.core.trajectories.preprocess import truncate_at_arrival
+from crowdbot.core.trajectories.questionnaires import Questionnaires
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.score import Score
+from crowdbot.dsl.component import Component
+from crowdbot.dsl.component_specs import MetricSpec
+from crowdbot.dsl.metric_component import MetricComponent
+from crowdbot.errors import InputError, PluginError, UnknownNameError, did_you_mean, nearest
+
+#: Metric -> field -> value.
+MetricParameters = Mapping[str, Mapping[str, object]]
+
+
+@dataclass(frozen=True, slots=True)
+class Scores(Sequence[Score]):
+    """The scores of one run, ordered by metric; unchangeable."""
+
+    items: tuple[Score, ...] = ()
+
+    @overload
+    def __getitem__(self, index: int) -> Score: ...
+    @overload
+    def __getitem__(self, index: slice) -> Scores: ...
+    def __getitem__(self, index: int | slice) -> Score | Scores:
+        """One score, or a part of them."""
+        found = self.items[index]
+        return Scores(found) if isinstance(found, tuple) else found
+
+    def __len__(self) -> int:
+        """How many there are."""
+        return len(self.items)
+
+    def __iter__(self) -> Iterator[Score]:
+        """In order."""
+        return iter(self.items)
+
+    def find(self, metric: str, variant: str = "corrected") -> Score:
+        """The score of one metric and variant.
+
+        Raises:
+            UnknownNameError: there is none.
+        """
+        of_metric = {s.variant: s for s in self.items if s.metric == metric}
+        if not of_metric:
+            raise UnknownNameError("metric", metric, {s.metric for s in self.items})
+        if variant not in of_metric:
+            raise UnknownNameError(f"variant of {metric}", variant, of_metric)
+        return of_metric[variant]
+
+
+def score(
+    registry: Registry,
+    crowded: Trajectories | None,
+    robot_alone: Trajectories | None = None,
+    crowd_alone: Trajectories | None = None,
+    commands: Commands | None = None,
+    commands_baseline: Commands | None = None,
+    questionnaires: Questionnaires | Mapping[str, object] | None = None,
+    metrics: str | Sequence[str] = "*",
+    variants: str | Sequence[str] = "all",
+    parameters: MetricParameters | None = None,
+) -> Scores:
+    """Score a run.
+
+    Args:
+        registry: where metrics come from.
+        crowded: the run; None where only commands or answers are known. Then metrics that need a
+            run are undefined: there is no robot in it, and nobody else.
+        robot_alone: the same robot without people, where known.
+        crowd_alone: the same people without robot, where known.
+        commands: the user's and the final commands.
+        commands_baseline: commands of a drive of the same user without shared control.
+        questionnaires: answers; see `Questionnaires.from_mapping`.
+        metrics: one or several globs over metric names; each must match. Experimental metrics are
+            scored only where a glob matches no stable one, as their own names do.
+        variants: ``all``, or the names of the variants to keep.
+        parameters: metric -> field -> value; what is left out keeps its default.
+
+    Raises:
+        UnknownNameError: no metric or variant answers to a name.
+        InputError: there is nothing to score, a metric is retired, a parameter does not fit, or an
+            arrival time lies outside its run.
+        PluginError: a metric failed.
+    """
+    if crowded is None and commands is None and questionnaires is None:
+        raise InputError("nothing to score: no run, no commands, no questionnaires")
+    if questionnaires is not None and not isinstance(questionnaires, Questionnaires):
+        questionnaires = Questionnaires.from_mapping(questionnaires)
+    refs = References(
+        robot_alone=robot_alone,
+        crowd_alone=crowd_alone,
+        commands=commands,
+        commands_baseline=commands_baseline,
+        questionnaires=questionnaires,
+    )
+    run = Trajectories(t=np.zeros(1)) if crowded is None else crowded
+    for trajectories in (run, robot_alone, crowd_alone):
+        if trajectories is not None:
+            truncate_at_arrival(trajectories)  # an impossible arrival is not a metric's failure
+    specs = metric_specs(registry, metrics, parameters or {})
+    scores = [s for spec in specs for s in _scores_of(registry, spec, run, refs)]
+    return Scores(tuple(_of_variants(scores, variants)))
+
+
+def metric_specs(
+    registry: Registry, metrics: str | Sequence[str], parameters: MetricParameters
+) -> list[MetricSpec]:
+    """Specs of the metrics that match, by name; all parameters are checked.
+
+    Raises:
+        UnknownNameError: a glob, or a metric with parameters, matches nothing installed.
+        InputError: a parameter does not fit, or a metric that is named is retired.
+    """
+    known = registry.components("metric")
+    for kind in parameters:
+        registry.find("metric", kind)
+    chosen: set[str] = set()
+    for glob in [metrics] if isinstance(metrics, str) else metrics:
+        chosen.update(_matching(known, glob, registry.why_absent(glob)))
+    specs = {kind: _spec(known[kind], parameters.get(kind, {})) for kind in known}
+    return [specs[kind] for kind in known if kind in chosen]
+
+
+def _matching(known: Mapping[str, Component[MetricSpec]], glob: str, absent: str) -> list[str]:
+    """Stable metrics that match; if there are none, experimental ones."""
+    if glob in known and known[glob].successor:
+        raise InputError(f"metric '{glob}' is retired; use '{known[glob].successor}'")
+    matching = [kind for kind in fnmatch.filter(known, glob) if not known[kind].successor]
+    stable = [kind for kind in matching if not known[kind].experimental]
+    if not matching:
+        raise UnknownNameError("metric", glob, known, absent)
+    return stable or matching
+
+
+def _spec(component: Component[MetricSpec], fields: Mapping[str, Any]) -> MetricSpec:
+    try:
+        return component.spec.model_validate({"kind": component.kind, **fields})
+    except ValidationError as error:
+        lines = [_complaint(component, e["loc"], e["msg"]) for e in error.errors()]
+        raise InputError("\n".join(lines)) from error
+
+
+def _complaint(component: Component[MetricSpec], where: Sequence[int | str], what: str) -> str:
+    field, known = str(where[0]) if where else "", component.spec.model_fields
+    if where and field not in known:
+        what = f"unknown{did_you_mean(nearest(field, known))}"
+    return f"metric '{component.kind}', parameter '{'.'.join(map(str, where))}': {what}"
+
+
+def build_metric(registry: Registry, spec: MetricSpec, call: PluginCall | None = None) -> Metric:
+    """The metric that a spec describes.
+
+    Args:
+        call: the boundary to its plugin; by default a new one.
+
+    Raises:
+        PluginError: it cannot be built, or is not a metric.
+    """
+    return registry.build(spec, _checked_metric, call=call)
+
+
+def _checked_metric(metric: object) -> Metric:
+    if not callable(getattr(metric, "score", None)):
+        raise PluginError(f"build returned a {type(metric).__name__}, which has no score")
+    return cast(Metric, metric)
+
+
+def _scores_of(
+    registry: Registry, spec: MetricSpec, run: Trajectories, refs: References
+) -> list[Score]:
+    """Ask one metric; whatever it does wrong is its plugin's failure."""
+    call = registry.plugin_call(spec, passes=PluginError)
+    metric = build_metric(registry, spec, call)
+    with call("score"):
+        answer: object = metric.score(run, refs)
+        if not isinstance(answer, Iterable):
+            call.fail(f"score returned {answer!r}; a list of scores is wanted")
+        scores = list(answer)
+    if wrong := _what_is_wrong(scores, registry.find("metric", spec.kind)):
+        call.fail(wrong)
+    parameters = spec.model_dump(exclude={"kind"})
+    return [replace(s, parameters=parameters) for s in scores]
+
+
+def _what_is_wrong(scores: Sequence[object], component: Component[MetricSpec]) -> str:
+    """What is wrong with what a metric returned; empty where nothing is."""
+    for item in scores:
+        if not isinstance(item, Score) or item.metric != component.kind:
+            return f"returned {item!r} instead of its own scores"
+    names = [s.variant for s in scores if isinstance(s, Score)]
+    if len(set(names)) != len(names):
+        return f"returned a variant twice: {', '.join(names)}"
+    if isinstance(component, MetricComponent) and set(names) != set(component.variants):
+        declared = ", ".join(component.variants)
+        return f"returned the variants {', '.join(names) or 'none'}; declared are {declared}"
+    return ""
+
+
+def _of_variants(scores: Sequence[Score], variants: str | Sequence[str]) -> list[Score]:
+    if variants == "all":
+        return list(scores)
+    wanted = {variants} if isinstance(variants, str) else set(variants)
+    known = {s.variant for s in scores}
+    for name in sorted(wanted - known):
+        raise UnknownNameError("variant", name, known)
+    return [s for s in scores if s.variant in wanted]

@@ -1,0 +1,206 @@
+"""scores.csv, and the table of scores that a terminal shows."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.types.score import Score
+from crowdbot.errors import InputError
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+COLUMNS = (
+    "scenario",
+    "planner",
+    "seed",
+    "category",
+    "metric",
+    "symbol",
+    "variant",
+    "value",
+    "unit",
+    "better",
+    "status",
+    "reason",
+    "lower",
+    "upper",
+)
+_VALUE_WIDTH = 20
+_NUMBERS = ("value", "lower", "upper")
+_TEXTS = ("category", "metric", "symbol", "variant", "unit", "better", "status", "reason")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunScore:
+    """One row of scores.csv; extras are not kept there."""
+
+    scenario: str
+    planner: str
+    seed: int
+    score: Score
+
+
+# ------------------------------------------------------------------------ csv
+def write_scores_csv(
+    path: str | os.PathLike[str], scores: Iterable[Score], scenario: str, planner: str, seed: int
+) -> None:
+    """Write one row a score: RFC 4180, UTF-8; floats come back bit for bit.
+
+    The file appears under its name only when complete.
+
+    Raises:
+        InputError: it cannot be written there.
+    """
+    rows = [(scenario, planner, str(seed), *cells_of(s)) for s in scores]
+    write_table(Path(path), [COLUMNS, *rows])
+
+
+def write_table(path: Path, rows: Iterable[Sequence[str]]) -> None:
+    """Write rows of text, RFC 4180, UTF-8; the file appears under its name only when complete.
+
+    Raises:
+        InputError: it cannot be written there.
+    """
+    text = io.StringIO(newline="")
+    csv.writer(text).writerows(rows)
+    atomic_write(path, text.getvalue())
+
+
+def read_scores_csv(path: str | os.PathLike[str]) -> list[RunScore]:
+    """Read what `write_scores_csv` wrote.
+
+    Raises:
+        InputError: no such file, other columns, or a cell that is not a score; names the line.
+    """
+    path = Path(path)
+    try:
+        text = path.read_bytes().decode()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not a table of scores: {error}") from error
+    return parse_scores(text, path)
+
+
+def parse_scores(text: str, name: str | os.PathLike[str]) -> list[RunScore]:
+    """The rows of a ``scores.csv``; ``name`` is what messages call it.
+
+    Raises:
+        InputError: other columns, or a cell that is not a score; names the line.
+    """
+    path = os.fspath(name)
+    try:
+        reader = csv.DictReader(io.StringIO(text, newline=""), strict=True)
+        if tuple(reader.fieldnames or ()) != COLUMNS:
+            raise InputError(f"{path}:1: not a table of scores: expected {','.join(COLUMNS)}")
+        return [_row(path, reader.line_num, cells) for cells in reader]
+    except csv.Error as error:
+        raise InputError(f"{path}: not a table of scores: {error}") from error
+
+
+def cells_of(score: Score) -> list[str]:
+    """What stands in the columns from ``category`` on."""
+    cells = {name: str(getattr(score, name)) for name in _TEXTS}
+    for name in _NUMBERS:
+        number = getattr(score, name)
+        cells[name] = "" if number is None else repr(float(number))
+    return [cells[name] for name in COLUMNS[3:]]
+
+
+def _row(path: str, line: int, cells: Mapping[str, Any]) -> RunScore:
+    try:
+        if None in cells or None in cells.values():
+            raise ValueError(f"a row has {len(COLUMNS)} cells")
+        return RunScore(
+            scenario=cells["scenario"],
+            planner=cells["planner"],
+            seed=int(cells["seed"]),
+            score=_score(cells),
+        )
+    except ValueError as error:
+        raise InputError(f"{path}:{line}: not a score: {error}") from error
+
+
+def _score(cells: Mapping[str, Any]) -> Score:
+    for name, known in (
+        ("status", ("ok", "undefined", "censored")),
+        ("better", ("higher", "lower", "reference", "none")),
+    ):
+        if cells[name] not in known:
+            raise ValueError(f"{name} '{cells[name]}' is not one of {', '.join(known)}")
+    values: dict[str, Any] = {name: cells[name] for name in _TEXTS}
+    values |= {name: float(cells[name]) if cells[name] else None for name in _NUMBERS}
+    return Score(**values)
+
+
+# ------------------------------------------------------------------- terminal
+#: Reasons of metrics whose data no simulated run has: commands and answers of a driver.
+_NOT_ASKED = ("no_command", "no_answers", "no_formula_in_seed")
+_SIGNS = {"higher": "+", "lower": "-", "reference": "=", "none": ""}
+
+
+def headlines(scores: Sequence[Score]) -> list[Score]:
+    """One score for each metric that the run has data for: corrected, else what stands for it."""
+    found = []
+    for _, group in groupby(scores, key=lambda s: s.metric):
+        variants = [s for s in group if s.reason not in _NOT_ASKED]
+        corrected = [s for s in variants if s.variant == "corrected"]
+        restricted = [s for s in variants if s.variant == "restricted" and s.status == "ok"]
+        unclear = corrected and corrected[0].status != "ok"
+        found += ((restricted if unclear else []) + corrected + variants)[:1]
+    return found
+
+
+def scores_table(scores: Sequence[Score]) -> Table:
+    """A table for people, grouped by category; fits 80 columns.
+
+    The last column says what is better: + higher, - lower, = like the people.
+    """
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=SIMPLE_HEAD, padding=0, pad_edge=False)
+    for name in ("metric", "symbol", "variant"):
+        table.add_column(name, overflow="fold", no_wrap=True)
+    table.add_column("value", overflow="fold", min_width=_VALUE_WIDTH)
+    table.add_column("")
+    by_category = sorted(scores, key=lambda s: s.category)
+    for category, group in groupby(by_category, key=lambda s: s.category):
+        table.add_section()
+        table.add_row(Text(category, style="bold"))
+        shown = ""
+        for s in group:
+            head = ("", "") if s.metric == shown else (s.metric, s.symbol)
+            style = "" if s.status == "ok" else "dim"
+            cells = (*head, s.variant, verdict(s), _SIGNS[s.better])
+            table.add_row(*map(Text, cells), style=style)
+            shown = s.metric
+    return table
+
+
+def verdict(score: Score) -> str:
+    """Value and unit; without a value why, and within which bounds it lies."""
+    if score.value is not None:
+        return _with_unit(float(score.value), score.unit)
+    bounds = [
+        f"{word} {_with_unit(float(number), score.unit)}"
+        for word, number in (("at least", score.lower), ("at most", score.upper))
+        if number is not None
+    ]
+    return ", ".join([f"{score.status}: {score.reason}", *bounds])
+
+
+def _with_unit(number: float, unit: str) -> str:
+    whole = number.is_integer() and abs(number) < 1e9
+    text = str(int(number)) if whole else f"{number:.5g}"
+    return text if unit in ("1", "") else f"{text} {unit}"

@@ -1,0 +1,150 @@
+"""Sensors as plugins return them: described soundly, and checked at each reading."""
+
+from __future__ import annotations
+
+import math
+from numbers import Integral
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.registry.plugin_boundary import PluginCall
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.sensing.sensor import DepthCamera, NoiseGenerator, Sensor, SensorWithMemory
+from crowdbot.core.support.ticks import TICKS_PER_SECOND
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.dsl.component_specs import NoiseSpec, SensorSpec
+from crowdbot.errors import PluginError
+
+_TEXTS = ("category", "frame", "ros_type")
+
+
+def build_sensor(registry: Registry, spec: SensorSpec) -> Sensor | SensorWithMemory:
+    """The sensor that a spec describes; each of its readings is checked.
+
+    Raises:
+        PluginError: it cannot be built, or its description is unsound.
+    """
+    call = registry.plugin_call(spec)
+    return registry.build(spec, lambda sensor: checked_sensor(sensor, call), call=call)
+
+
+def build_noise(registry: Registry, spec: NoiseSpec) -> NoiseGenerator:
+    """The noise generator that a spec describes.
+
+    Raises:
+        PluginError: it cannot be built.
+    """
+    return registry.build(spec, checked_noise)
+
+
+def checked_noise(noise: object) -> NoiseGenerator:
+    """A noise generator, as far as that can be seen before it is called.
+
+    Raises:
+        PluginError: it is not one.
+    """
+    if not (callable(getattr(noise, "errors", None)) and hasattr(noise, "random")):
+        raise PluginError(f"build returned a {type(noise).__name__}, which has no errors or random")
+    return cast(NoiseGenerator, noise)
+
+
+def checked_sensor(sensor: object, call: PluginCall) -> Sensor | SensorWithMemory:
+    """A sensor around another one, whose readings are checked.
+
+    Args:
+        sensor: what a build function returned.
+        call: the boundary to its plugin.
+
+    Raises:
+        PluginError: it is not a sensor, or its description is unsound.
+    """
+    missing = [m for m in ("info", "read") if not callable(getattr(sensor, m, None))]
+    if missing:
+        raise PluginError(
+            f"build returned a {type(sensor).__name__}, which has no {' and no '.join(missing)}"
+        )
+    built = cast(Sensor, sensor)
+    with call("info"):
+        info = built.info()
+    _check(info)
+    checked = CheckedCamera if isinstance(sensor, DepthCamera) else CheckedSensor
+    return checked(built, info, call)
+
+
+class CheckedSensor:
+    """A sensor whose readings have the shape that it promised and no NaN, or an error says so."""
+
+    def __init__(self, sensor: Any, info: SensorInfo, call: PluginCall) -> None:
+        self._sensor, self._info, self._call = sensor, info, call
+        self._shape = tuple(info.shape)
+
+    def info(self) -> SensorInfo:
+        """Constant description."""
+        return self._info
+
+    def read(self, *given: Any) -> Array:
+        """What the sensor reads; arguments as those of its contract.
+
+        Raises:
+            PluginError: it raised, or returned something that is not a reading.
+        """
+        with self._call("read", given[2]):
+            values = np.asarray(self._sensor.read(*given), np.float64)
+        if values.shape != self._shape:
+            self._call.fail(f"read returned shape {values.shape}; info() says {self._shape}")
+        if math.isnan(np.minimum.reduce(values, axis=None)):  # quicker than looking at each
+            self._call.fail("read returned NaN; nothing in reach is inf")
+        if self._info.memory and not np.isfinite(given[-1]).all():
+            self._call.fail("read left a memory that is not finite")
+        return values
+
+
+class CheckedCamera(CheckedSensor):
+    """A camera that has images in whole millimetres, which are checked as well."""
+
+    def depth_mm(self, *given: Any) -> NDArray[np.uint16]:
+        """What the camera sees, in whole millimetres; copied, for it is written later.
+
+        Raises:
+            PluginError: it raised, or returned something that is not an image.
+        """
+        with self._call("depth_mm", given[2]):
+            image = self._sensor.depth_mm(*given)
+        if getattr(image, "dtype", None) != np.uint16 or image.shape != self._shape:
+            what = f"{getattr(image, 'dtype', type(image).__name__)} {np.shape(image)}"
+            self._call.fail(f"depth_mm returned {what}, not uint16 {self._shape}")
+        return cast(NDArray[np.uint16], image.copy())
+
+
+def _check(info: object) -> None:
+    def refuse(text: str) -> None:
+        raise PluginError(f"info(): {text}")
+
+    if not isinstance(info, SensorInfo):
+        raise PluginError(f"info() is a {type(info).__name__}, not a SensorInfo")
+    for name in _TEXTS:
+        if not (isinstance(getattr(info, name), str) and getattr(info, name)):
+            refuse(f"{name} is {getattr(info, name)!r}")
+    if not (isinstance(info.rate, int | float) and 0.0 < info.rate <= TICKS_PER_SECOND):
+        refuse(f"rate is {info.rate!r} Hz; it must be above 0 and at most {TICKS_PER_SECOND}")
+    shape: object = info.shape
+    if not (
+        isinstance(shape, tuple) and all(isinstance(n, Integral) and int(n) > 0 for n in shape)
+    ):
+        refuse(f"shape is {shape!r}; a tuple of whole numbers above 0 is wanted")
+    mount = np.asarray(info.mount, np.float64)
+    if mount.shape != (4,) or not np.all(np.isfinite(mount)):
+        refuse(f"mount is {info.mount!r}; x, y, z, yaw are wanted")
+    if not (isinstance(info.memory, Integral) and int(info.memory) >= 0):
+        refuse(f"memory is {info.memory!r}")
+    if info.angles is not None and not np.all(np.isfinite(info.angles)):
+        refuse("angles are not finite")
+    if math.isnan(info.range_min) or not info.range_min < info.range_max:
+        refuse(f"range is from {info.range_min} to {info.range_max} m")
+    if info.camera is not None and (
+        info.memory or info.shape != (info.camera.height, info.camera.width)
+    ):
+        refuse("a camera's shape is its height and width, and it has no memory")

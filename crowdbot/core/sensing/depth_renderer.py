@@ -1,0 +1,65 @@
+"""Depth images of a pinhole camera, one ray through the centre of each pixel."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crowdbot.core.sensing.depth import render_depth
+from crowdbot.core.sensing.projection import EDGE_ROWS, RAY_ROWS, Image, Lens
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.sensor import Pinhole
+
+#: 65535 mm are needed for what is too far, m.
+MOST_MILLIMETRES = 65.534
+
+
+class DepthRenderer:
+    """Renders depth with a camera that looks along a level axis.
+
+    Attributes:
+        shape: rows H and columns W.
+        slope: (H,) by how much rays rise per metre of depth; the first row is on top.
+        left: (W,) by how much they go to the left; the first column is on the left.
+        cos_azimuth: (W,) cosines of the columns' azimuths: depth per metre over the floor.
+    """
+
+    def __init__(self, pinhole: Pinhole, nearest: float, farthest: float) -> None:
+        """Take a camera that measures depths from ``nearest`` to ``farthest``, m."""
+        self.shape = pinhole.height, pinhole.width
+        column, row = pinhole.centre
+        self.slope = (row - np.arange(pinhole.height, dtype=np.float64)) / pinhole.focal
+        self.left = (column - np.arange(pinhole.width, dtype=np.float64)) / pinhole.focal
+        self.cos_azimuth: Array = 1.0 / np.sqrt(1.0 + self.left**2)
+        azimuth = np.arctan(self.left)
+        self._cos, self._sin = np.cos(azimuth), np.sin(azimuth)
+        self._lens = Lens(pinhole.focal, column, row, nearest, farthest, 0.0)
+        self._lens_mm = self._lens._replace(steps=1000.0)
+        self._rays = np.empty((RAY_ROWS, pinhole.width))
+        self._edges = np.empty((EDGE_ROWS, pinhole.width), np.float32)
+
+    def render_depth(
+        self,
+        image: Image,
+        at: tuple[float, float, float],
+        yaw: float,
+        walls: Array,
+        wall_heights: Array,
+        discs: Array,
+    ) -> None:
+        """Write what the camera sees of walls, upright cylinders and the floor z = 0.
+
+        Args:
+            image: (H, W) depth along the axis. As float32 in m: 0 for too near, inf for nothing
+                in reach. As uint16 that of `crowdbot.core.sensing.depth_mm`, 0 for both; only
+                for a camera that measures less than `MOST_MILLIMETRES`.
+            at: where it is, world frame, m.
+            yaw: where it looks, world frame, rad.
+            walls, wall_heights: (S, 4), (S, 2), m, as in `crowdbot.core.sensing.scene.Scene`.
+            discs: (D, 5) cylinders, as in `crowdbot.core.sensing.body_model`.
+        """
+        lens = self._lens_mm if image.dtype == np.uint16 else self._lens
+        faces = np.empty(self.shape[1], image.dtype)
+        render_depth(
+            *at, yaw, *lens, self.slope, self.cos_azimuth, self._cos, self._sin, walls,
+            wall_heights, discs, self._rays, self._edges, faces, image,
+        )  # fmt: skip

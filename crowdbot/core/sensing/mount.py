@@ -1,0 +1,28 @@
+"""Where a sensor on a robot is in the world."""
+
+from __future__ import annotations
+
+import math
+
+from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.types.motion import Pose
+from crowdbot.dsl.spec import Mount
+
+#: Height of base_link above the floor (m) where the scene does not say it: the Kobuki's.
+BASE_HEIGHT = 0.0102
+
+
+def mount_pose(mount: Mount) -> tuple[float, float, float, float]:
+    """x, y, z, yaw from base_link, m and rad."""
+    return mount.x, mount.y, mount.z, mount.yaw
+
+
+def sensor_pose_in_world(
+    mount: Mount, scene: Scene, pose: Pose
+) -> tuple[tuple[float, float, float], float]:
+    """Position and heading of a sensor in the world frame, m and rad."""
+    c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+    base = BASE_HEIGHT if scene.robot is None else scene.robot.z
+    ahead, aside = mount.x, mount.y
+    x, y = pose.x + c * ahead - s * aside, pose.y + s * ahead + c * aside
+    return (x, y, base + mount.z), pose.yaw + mount.yaw

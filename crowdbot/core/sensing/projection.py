@@ -1,0 +1,189 @@
+"""Where bodies show in the image of a level pinhole camera.
+
+Depth is measured along the optical axis: an upright face has one depth in all rows of a column.
+Heights are here those over the camera, and rays to the left and up have positive slopes. What is
+hit is what `crowdbot.core.sensing.raycast_columns.cast_columns` hits, pixel by pixel.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.sensing.raycast_columns import OVERLAP
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array
+
+Edges = NDArray[np.float32]
+#: Depths in m, or whole millimetres.
+Image = NDArray[np.float32] | NDArray[np.uint16]
+
+#: What is known of a body in a column: its top shows in the rows [UP, BEGIN), its face in
+#: [BEGIN, END) and its bottom in [END, DOWN); as float32, which the processor compares several at
+#: once.
+UP, BEGIN, END, DOWN = range(4)
+EDGE_ROWS = 4
+#: Rows of `RenderPass.rays`, a column for each of the image: direction in the world frame; depths
+#: at which the ray enters and leaves a body, m.
+RAY_X, RAY_Y, NEAR, FAR = range(4)
+RAY_ROWS = 4
+_ROOM = 1e-6  # m; what is so close before the camera has no projection
+_TOUCH = 1e-12  # m; depths of bodies around the camera
+#: Whole millimetres that stand for nothing in reach, until an image is finished.
+NOTHING = np.float32(65535.0)
+
+
+class Lens(NamedTuple):
+    """A pinhole camera and what it can measure.
+
+    Attributes:
+        focal: focal length, pixels.
+        column, row: where the optical axis meets the image, pixels.
+        nearest, farthest: depths that are measured, m.
+        steps: steps per metre to which depth is rounded, or 0.
+    """
+
+    focal: float
+    column: float
+    row: float
+    nearest: float
+    farthest: float
+    steps: float
+
+
+class RenderPass(NamedTuple):
+    """One image of H rows and W columns that is being rendered.
+
+    Attributes:
+        lens: of the camera.
+        slope: (H,) rise of the rows' rays per metre of depth, falling evenly.
+        cos_azimuth: (W,) depth per metre over the floor, along each column.
+        rays: (`RAY_ROWS`, W) directions of the columns, and scratch for one body.
+        edges: (`EDGE_ROWS`, W) scratch: the rows of one body.
+        faces: (W,) scratch: depths of its face, like the image.
+        image: (H, W) the result.
+    """
+
+    lens: Lens
+    slope: Array
+    cos_azimuth: Array
+    rays: Array
+    edges: Edges
+    faces: Image
+    image: Image
+
+
+@kernel
+def depth_reading(depth: float, lens: Lens) -> np.float32:
+    """A depth as the camera gives it: 0 for too near, inf, or `NOTHING`, for too far."""
+    if lens.steps > 0.0:
+        rounded = np.rint(np.float32(depth) * np.float32(lens.steps))
+        if depth < lens.nearest:
+            return np.float32(0.0)
+        return rounded if depth <= lens.farthest else NOTHING
+    if depth < lens.nearest:
+        return np.float32(0.0)
+    return np.float32(depth if depth <= lens.farthest else math.inf)
+
+
+@kernel
+def _between(right: float, left: float, lens: Lens, columns: int) -> tuple[int, int]:
+    """Columns whose rays go to the left by ``right`` to ``left`` per metre, one more a side."""
+    first = max(0.0, lens.column - lens.focal * left)
+    last = min(columns - 1.0, lens.column - lens.focal * right + 1.0)
+    return (int(first), int(last) + 1) if first <= last else (0, 0)
+
+
+@kernel
+def columns_of_disc(
+    forward: float, left: float, r: float, lens: Lens, columns: int
+) -> tuple[int, int]:
+    """First column that may meet an upright cylinder, and the one after the last.
+
+    Args:
+        forward, left: of its axis, seen by the camera, m.
+    """
+    if forward <= r + _ROOM:  # beside or around the camera
+        return 0, columns
+    middle, half = forward * left, r * math.sqrt(forward * forward + left * left - r * r)
+    over = 1.0 / (forward * forward - r * r)
+    return _between((middle - half) * over, (middle + half) * over, lens, columns)
+
+
+@kernel
+def columns_of_wall(
+    forward0: float, left0: float, forward1: float, left1: float, lens: Lens, columns: int
+) -> tuple[int, int]:
+    """As `columns_of_disc`, of an upright plate with two ends."""
+    if forward0 <= _ROOM or forward1 <= _ROOM:
+        return 0, columns
+    slope0, slope1 = left0 / forward0, left1 / forward1
+    return _between(min(slope0, slope1), max(slope0, slope1), lens, columns)
+
+
+@kernel
+def cross_disc(
+    px: float, py: float, r: float, first: int, last: int, rays: Array, cosines: Array
+) -> None:
+    """Write depths at which rays of columns enter and leave a cylinder; inf for a miss.
+
+    Args:
+        px, py: its axis, seen from the camera in the directions of the world, m.
+        first, last: first column, and the one after the last.
+        rays, cosines: of `RenderPass`.
+    """
+    cosine, dx, dy = cosines[first:last], rays[RAY_X, first:last], rays[RAY_Y, first:last]
+    near, far = rays[NEAR, first:last], rays[FAR, first:last]
+    for c in range(cosine.shape[0]):
+        along = dx[c] * px + dy[c] * py
+        across = dx[c] * py - dy[c] * px
+        room = r * r - across * across
+        half = math.sqrt(max(room, 0.0))
+        hit = (room >= 0.0) & (along + half >= 0.0)
+        near[c] = max(0.0, along - half) * cosine[c] if hit else math.inf
+        far[c] = (along + half) * cosine[c]
+
+
+@kernel
+def cross_wall(
+    px: float, py: float, ex: float, ey: float, first: int, last: int, rays: Array, cosines: Array
+) -> None:
+    """As `cross_disc`, of an upright plate from p to p + e."""
+    cosine, dx, dy = cosines[first:last], rays[RAY_X, first:last], rays[RAY_Y, first:last]
+    near, far = rays[NEAR, first:last], rays[FAR, first:last]
+    for c in range(cosine.shape[0]):
+        across = dx[c] * ey - dy[c] * ex
+        distance = (px * ey - py * ex) / across
+        share = (px * dy[c] - py * dx[c]) / across
+        hit = (distance >= 0.0) & (share >= -OVERLAP) & (share <= 1.0 + OVERLAP)
+        near[c] = far[c] = distance * cosine[c] if hit else math.inf
+
+
+@kernel
+def project_body(low: float, high: float, first: int, last: int, target: RenderPass) -> None:
+    """Work out in which rows of the columns [first, last) a body shows, and how its face reads.
+
+    A ray of row r is at the depth d over a height h if r < horizon - h focal / d.
+
+    Args:
+        low, high: heights of the body, m.
+        target: `rays` say where it begins and ends; `edges` and `faces` are written.
+    """
+    lens, rays, edges = target.lens, target.rays, target.edges
+    focal, horizon, rows = lens.focal, lens.row, float(target.slope.shape[0])
+    near, far, face = rays[NEAR, first:last], rays[FAR, first:last], target.faces[first:last]
+    up, begin = edges[UP, first:last], edges[BEGIN, first:last]
+    end, down = edges[END, first:last], edges[DOWN, first:last]
+    for c in range(near.shape[0]):
+        hit = near[c] <= lens.farthest
+        scale, behind = focal / max(near[c], _TOUCH), focal / max(far[c], _TOUCH)
+        over, over_behind = np.ceil(horizon - high * scale), np.ceil(horizon - high * behind)
+        under, under_behind = np.floor(horizon - low * scale), np.floor(horizon - low * behind)
+        up[c] = min(max(over_behind, 0.0), rows) if hit else math.inf
+        begin[c] = min(max(over, 0.0), rows) if hit else math.inf
+        end[c] = min(max(under + 1.0, 0.0), rows) if hit else -math.inf
+        down[c] = min(max(under_behind + 1.0, 0.0), rows) if hit else -math.inf
+        face[c] = depth_reading(near[c], lens)

@@ -1,0 +1,79 @@
+"""From true distances to readings: what all sensors that measure distances share.
+
+A hit nearer than ``range_min`` reads ``range_min``: inf would tell a planner that the way is free
+while something touches the sensor.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.sensing.mount import mount_pose, sensor_pose_in_world
+from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.sensing.sensor import NoiseGenerator
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Pose
+from crowdbot.dsl.range_sensor import RangeSensorSpec
+
+_KEPT = np.zeros(0, dtype=np.bool_)
+
+
+class RangeModel:
+    """Pose, incidence limit, noise, range, bits and dropouts of one range sensor.
+
+    Attributes:
+        drops_slanted: whether surfaces struck at a slant are not seen, so that angles are wanted.
+        random: whether `measure` draws random numbers.
+    """
+
+    def __init__(self, spec: RangeSensorSpec, noise: Sequence[NoiseGenerator]) -> None:
+        self._spec, self._noise = spec, tuple(noise)
+        self.drops_slanted = spec.max_incidence < math.pi / 2
+        self.random = spec.dropout > 0.0 or any(g.random for g in noise)
+        self._step = (spec.range_max - spec.range_min) / 2.0**spec.bits if spec.bits else 0.0
+
+    @property
+    def mount(self) -> tuple[float, float, float, float]:
+        """x, y, z, yaw from base_link, m and rad."""
+        return mount_pose(self._spec.mount)
+
+    def pose_in_world(self, scene: Scene, pose: Pose) -> tuple[tuple[float, float, float], float]:
+        """Position and heading of the sensor in the world frame, m and rad."""
+        return sensor_pose_in_world(self._spec.mount, scene, pose)
+
+    def drop_slanted(self, distance: Array, incidence: Array) -> None:
+        """Set to inf, in place, what is struck at too large an angle; both (N,), m and rad."""
+        if self.drops_slanted:
+            distance[incidence > self._spec.max_incidence] = np.inf
+
+    def measure(self, distance: Array, rng: np.random.Generator) -> Array:
+        """Turn true distances (N,) into readings, in place; inf where nothing returns.
+
+        Numbers are drawn in the order of the generators, then for dropouts.
+        """
+        spec, lost = self._spec, _KEPT
+        for generator in self._noise:
+            distance += generator.errors(distance, rng)
+        if spec.dropout > 0.0:
+            lost = rng.random(len(distance)) < spec.dropout
+        _finish(distance, lost, spec.range_min, spec.range_max, self._step)
+        return distance
+
+
+@kernel
+def _finish(
+    distance: Array, lost: NDArray[np.bool_], shortest: float, longest: float, step: float
+) -> None:
+    """Keep hits within range, round them down to whole steps, lose some; in place."""
+    for k in range(len(distance)):
+        if distance[k] < math.inf:
+            distance[k] = min(max(distance[k], shortest), longest)
+            if step > 0.0:
+                distance[k] = max(math.floor(distance[k] / step) * step, shortest)
+        if len(lost) and lost[k]:
+            distance[k] = math.inf

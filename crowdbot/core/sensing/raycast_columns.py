@@ -1,0 +1,354 @@
+"""Ray casting by columns, compiled: fans of level rays, layered lidars, depth images.
+
+All rays of a column share one horizontal direction, so each upright body is met once for all of
+them; columns follow each other by azimuth, so each body is tried only for those that it can cover.
+The distances are those of `crowdbot.core.sensing.raycast.cast_rays`, ray by ray.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array, Indices
+
+#: Bodies that one column may hold; the farthest are dropped when there are more.
+DEEPEST = 32
+#: What is known of a body in a column: where it begins and ends (m over the floor), cosine of the
+#: level angle between ray and normal, bottom and top (m), whose body it is.
+NEAR, FAR, FACING, LOW, HIGH, WHO = range(6)
+WORK_COLUMNS = 6
+_TURN = 2.0 * math.pi
+_MARGIN = 1e-9  # rad; columns at the very edge are left to the exact test
+#: Ends of a wall are longer by this fraction, so that no ray slips through a corner.
+OVERLAP = 1e-9
+
+
+class Obstacles(NamedTuple):
+    """What rays can hit, in the form that compiled code takes; see `Scene.obstacles`.
+
+    Attributes:
+        walls, wall_heights: (S, 4), (S, 2) upright plates: x0, y0, x1, y1; bottom and top, m.
+        discs: (D, 5) upright cylinders, columns as in `crowdbot.core.sensing.body_model`, m.
+        owner: (D,) whose each cylinder is: a person's index, -(2 + S + index) of a pillar.
+    """
+
+    walls: Array
+    wall_heights: Array
+    discs: Array
+    owner: Indices
+
+
+class GridArrays(NamedTuple):
+    """A `RayGrid` in the form that compiled code takes, with R rows and C columns.
+
+    Attributes:
+        azimuth, cos, sin: (C,) rising, within one turn, rad; 0 is straight ahead.
+        slope, slope_scale: (R,), (C,).
+        work: (C, K, `WORK_COLUMNS`) scratch: the K nearest bodies of each column, nearest first.
+        filled: (C,) scratch: how many bodies each column holds.
+        directions: (2, C) scratch: the columns' directions in the world frame.
+        runs: (3, 2) scratch.
+    """
+
+    azimuth: Array
+    cos: Array
+    sin: Array
+    slope: Array
+    slope_scale: Array
+    work: Array
+    filled: Indices
+    directions: Array
+    runs: Indices
+
+
+class RayGrid:
+    """Directions of a grid of rays that stays as it is, seen from the sensor.
+
+    The ray of row r and column c goes along ``azimuth[c]`` and rises by
+    ``slope[r] * slope_scale[c]`` per metre over the floor.
+
+    Attributes:
+        azimuth: (C,) rising, within one turn, rad; 0 is straight ahead.
+        slope: (R,).
+        slope_scale: (C,) 1 by default; of a pinhole camera the cosine of the azimuth.
+        arrays: all of these, and scratch.
+    """
+
+    def __init__(
+        self, azimuth: ArrayLike, slope: ArrayLike, slope_scale: ArrayLike | None = None
+    ) -> None:
+        self.azimuth = np.array(azimuth, dtype=np.float64)
+        self.slope = np.array(slope, dtype=np.float64)
+        given = np.ones_like(self.azimuth) if slope_scale is None else slope_scale
+        self.slope_scale = np.array(given, np.float64)
+        # What a level ray meets hides all behind it.
+        deepest = DEEPEST if np.any(self.slope) else 1
+        columns = len(self.azimuth)
+        self.arrays = GridArrays(
+            self.azimuth, np.cos(self.azimuth), np.sin(self.azimuth), self.slope,
+            self.slope_scale, np.empty((columns, deepest, WORK_COLUMNS)),
+            np.zeros(columns, np.int64), np.empty((2, columns)), np.empty((3, 2), np.int64),
+        )  # fmt: skip
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return len(self.slope), len(self.azimuth)
+
+
+class _Columns(NamedTuple):
+    """Columns that are being filled: their azimuths, directions in the world, and `GridArrays`."""
+
+    azimuth: Array
+    cos: Array
+    sin: Array
+    work: Array
+    filled: Indices
+    runs: Indices
+
+
+@kernel
+def _first_from(azimuth: Array, value: float) -> int:
+    """Index of the first column at or after an azimuth."""
+    low, high = 0, azimuth.shape[0]
+    while low < high:
+        middle = (low + high) // 2
+        if azimuth[middle] < value:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@kernel
+def _cover(azimuth: Array, low: float, high: float, runs: Indices) -> int:
+    """Write the runs of columns whose azimuths lie in [low, high], a turn more or less.
+
+    Returns:
+        how many runs there are, at most three.
+    """
+    count, last = 0, azimuth[azimuth.shape[0] - 1]
+    turn = math.floor((azimuth[0] - high) / _TURN) * _TURN
+    while low + turn <= last and count < 3:
+        if high + turn >= azimuth[0]:
+            begin = _first_from(azimuth, low + turn)
+            end = begin
+            while end < azimuth.shape[0] and azimuth[end] <= high + turn:
+                end += 1
+            runs[count, 0], runs[count, 1] = begin, end
+            count += 1
+        turn += _TURN
+    return count
+
+
+@kernel
+def _insert(
+    columns: _Columns, c: int,
+    near: float, far: float, facing: float, low: float, high: float, who: int,
+) -> None:  # fmt: skip
+    """Put a body into column c, nearest first; equal distances keep the order of insertion."""
+    work, filled = columns.work, columns.filled
+    n = filled[c]
+    if n == work.shape[1]:
+        if near >= work[c, n - 1, NEAR]:
+            return
+        n -= 1
+    k = n
+    while k > 0 and work[c, k - 1, NEAR] > near:
+        for column in range(WORK_COLUMNS):
+            work[c, k, column] = work[c, k - 1, column]
+        k -= 1
+    work[c, k, NEAR], work[c, k, FAR], work[c, k, FACING] = near, far, facing
+    work[c, k, LOW], work[c, k, HIGH], work[c, k, WHO] = low, high, who
+    filled[c] = n + 1
+
+
+@kernel
+def _add_disc(
+    px: float, py: float, r: float, bottom: float, top: float, yaw: float, who: int,
+    columns: _Columns,
+) -> None:  # fmt: skip
+    """Put an upright cylinder, its axis at (px, py) from the rays' origin, into its columns."""
+    azimuth, cos, sin, runs = columns.azimuth, columns.cos, columns.sin, columns.runs
+    away = math.hypot(px, py)
+    number = 1
+    if away <= r:
+        runs[0, 0], runs[0, 1] = 0, azimuth.shape[0]
+    else:
+        bearing, half = math.atan2(py, px) - yaw, math.asin(r / away) + _MARGIN
+        number = _cover(azimuth, bearing - half, bearing + half, runs)
+    for run in range(number):
+        for c in range(runs[run, 0], runs[run, 1]):
+            along, across = cos[c] * px + sin[c] * py, cos[c] * py - sin[c] * px
+            room = r * r - across * across
+            if room < 0.0:
+                continue
+            depth = math.sqrt(room)
+            if along + depth < 0.0:
+                continue
+            near = max(0.0, along - depth)
+            facing = 1.0 if near == 0.0 or r == 0.0 else min(1.0, depth / r)
+            _insert(columns, c, near, along + depth, facing, bottom, top, who)
+
+
+@kernel
+def _gap(px: float, py: float, ex: float, ey: float) -> float:
+    """Distance from the origin to the segment from p to p + e, m."""
+    share = min(1.0, max(0.0, -(px * ex + py * ey) / (ex * ex + ey * ey)))
+    return math.hypot(px + share * ex, py + share * ey)
+
+
+@kernel
+def _add_wall(
+    ox: float, oy: float, yaw: float, wall: Array, heights: Array, who: int, reach: float,
+    columns: _Columns,
+) -> None:  # fmt: skip
+    """Put an upright plate into every column that meets it within ``reach``."""
+    azimuth, cos, sin, runs = columns.azimuth, columns.cos, columns.sin, columns.runs
+    px, py = wall[0] - ox, wall[1] - oy
+    ex, ey = wall[2] - wall[0], wall[3] - wall[1]
+    length = math.hypot(ex, ey)
+    if length == 0.0 or _gap(px, py, ex, ey) > reach:
+        return
+    begin, end = math.atan2(py, px), math.atan2(py + ey, px + ex)
+    turn = end - begin  # a plate covers less than half a turn
+    if turn > math.pi:
+        turn -= _TURN
+    elif turn < -math.pi:
+        turn += _TURN
+    start = (begin if turn >= 0.0 else begin + turn) - yaw
+    number = _cover(azimuth, start - _MARGIN, start + abs(turn) + _MARGIN, runs)
+    for run in range(number):
+        for c in range(runs[run, 0], runs[run, 1]):
+            across = cos[c] * ey - sin[c] * ex
+            if across == 0.0:
+                continue
+            t = (px * ey - py * ex) / across
+            s = (px * sin[c] - py * cos[c]) / across
+            if t < 0.0 or t > reach or s < -OVERLAP or s > 1.0 + OVERLAP:
+                continue
+            _insert(columns, c, t, t, abs(across) / length, heights[0], heights[1], who)
+
+
+@kernel
+def fill_columns(
+    x: float,
+    y: float,
+    yaw: float,
+    lowest: float,
+    highest: float,
+    max_range: float,
+    grid: GridArrays,
+    obstacles: Obstacles,
+) -> None:
+    """Put every body between two heights into the columns of a grid that meet it.
+
+    Args:
+        x, y, yaw: origin and direction in the world frame, m and rad.
+        lowest, highest: heights between which rays run, m.
+        max_range: m; what is farther is left out.
+        grid: ``work`` and ``filled`` are the result.
+    """
+    c0, s0 = math.cos(yaw), math.sin(yaw)
+    world_cos, world_sin, filled = grid.directions[0], grid.directions[1], grid.filled
+    for c in range(grid.azimuth.shape[0]):
+        world_cos[c] = c0 * grid.cos[c] - s0 * grid.sin[c]
+        world_sin[c] = s0 * grid.cos[c] + c0 * grid.sin[c]
+        filled[c] = 0
+    columns = _Columns(grid.azimuth, world_cos, world_sin, grid.work, filled, grid.runs)
+    walls, heights, discs = obstacles.walls, obstacles.wall_heights, obstacles.discs
+    for i in range(walls.shape[0]):
+        if heights[i, 0] <= highest and heights[i, 1] >= lowest:
+            _add_wall(x, y, yaw, walls[i], heights[i], -(2 + i), max_range, columns)
+    for i in range(discs.shape[0]):
+        px, py, r = discs[i, X] - x, discs[i, Y] - y, discs[i, RADIUS]
+        far = max_range + r  # most are: sorted out here, before anything is called
+        if not (abs(px) <= far and abs(py) <= far and math.hypot(px, py) - r <= max_range):
+            continue
+        bottom, top = discs[i, BOTTOM], discs[i, TOP]
+        if bottom <= highest and top >= lowest:
+            _add_disc(px, py, r, bottom, top, yaw, obstacles.owner[i], columns)
+
+
+@kernel
+def heights_of(z: float, grid: GridArrays, max_range: float) -> tuple[float, float]:
+    """Heights between which the rays of a grid from a height ``z`` run, m."""
+    longest = lowest = highest = 0.0
+    for k in range(grid.slope_scale.shape[0]):
+        longest = max(longest, abs(grid.slope_scale[k]))
+    for k in range(grid.slope.shape[0]):
+        lowest, highest = min(lowest, grid.slope[k]), max(highest, grid.slope[k])
+    reach = longest * max_range
+    return z + lowest * reach, z + highest * reach
+
+
+@kernel
+def meet(slope: float, oz: float, near: float, far: float, low: float, high: float) -> float:
+    """Horizontal distance at which a ray meets an upright body; inf if it misses.
+
+    The ray rises by ``slope`` per metre from the height ``oz``.
+    """
+    z = oz + slope * near
+    if low <= z <= high:
+        return near
+    face = high if z > high else low
+    if (z > high) == (slope < 0.0) and slope != 0.0:  # comes down on the top, or up from below
+        t = (face - oz) / slope
+        if t <= far and far > near:
+            return t
+    return math.inf
+
+
+@kernel
+def cast_columns(
+    x: float, y: float, z: float, yaw: float, max_range: float, floor: bool,
+    azimuth: Array, cos: Array, sin: Array, slope: Array, slope_scale: Array, work: Array,
+    filled: Indices, directions: Array, runs: Indices,
+    walls: Array, wall_heights: Array, discs: Array, owner: Indices,
+    distance: Array, incidence: Array, body: Indices,
+) -> None:  # fmt: skip
+    """Nearest hit of each ray of a grid.
+
+    Args:
+        x, y, z, yaw: origin and direction in the world frame, m and rad.
+        max_range: m; hits beyond it do not count.
+        floor: whether the floor z = 0 is hit.
+        azimuth to runs: fields of `GridArrays`.
+        walls to owner: fields of `Obstacles`.
+        distance: (R, C) result, m; inf without a hit.
+        incidence: (R, C) result, angle to the normal, rad, 0 without a hit; or (0, 0).
+        body: (R, C) result: owner, -(2 + index) of a wall, -1 for nothing and the floor; or (0, 0).
+    """
+    grid = GridArrays(azimuth, cos, sin, slope, slope_scale, work, filled, directions, runs)
+    lowest, highest = heights_of(z, grid, max_range)
+    obstacles = Obstacles(walls, wall_heights, discs, owner)
+    fill_columns(x, y, yaw, lowest, highest, max_range, grid, obstacles)
+    wants_incidence, wants_body = incidence.shape[0] > 0, body.shape[0] > 0
+    for r in range(slope.shape[0]):
+        for c in range(azimuth.shape[0]):
+            climb = slope[r] * slope_scale[c]
+            best, hit = -z / climb if floor and climb < 0.0 else math.inf, -1
+            for k in range(filled[c]):
+                here = work[c, k]
+                if here[NEAR] >= best:
+                    break
+                t = meet(climb, z, here[NEAR], here[FAR], here[LOW], here[HIGH])
+                if t < best:
+                    best, hit = t, k
+            stretch = math.sqrt(1.0 + climb * climb)
+            found = best * stretch <= max_range
+            distance[r, c] = best * stretch if found else math.inf
+            if wants_body:
+                body[r, c] = int(work[c, hit, WHO]) if found and hit >= 0 else -1
+            if wants_incidence:
+                incidence[r, c] = 0.0
+                if found and best > 0.0:
+                    level = hit < 0 or best > work[c, hit, NEAR]  # the floor, a top or a bottom
+                    cosine = (abs(climb) if level else work[c, hit, FACING]) / stretch
+                    incidence[r, c] = math.acos(min(1.0, cosine))

@@ -1,0 +1,112 @@
+"""From a scenario's words to a crowd engine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
+from crowdbot.core.crowd.build import build_cost, build_policy
+from crowdbot.core.crowd.engine import PolicyFactory
+from crowdbot.core.crowd.policy import LOOP, PORTAL, REMOVE, STOP
+from crowdbot.core.crowd.velocity_search.counter_rng import chosen
+from crowdbot.core.population.realisation import Realisation
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.dsl.scenario import Crowd, NamedPolicy, Scenario
+from crowdbot.dsl.seeds import stream_seed
+
+#: Names of the portals of a stream, from and to.
+Flow = tuple[str, str]
+
+_AT_GOAL = {"portal": PORTAL, "stop": STOP, "remove": REMOVE, "loop": LOOP}
+
+
+def build_crowd(
+    scenario: Scenario, realisation: Realisation, parts: EnvironmentParts, registry: Registry
+) -> CrowdEngine | None:
+    """The engine for a scenario's crowd, or None when it has none."""
+    crowd = scenario.crowd
+    if crowd is None:
+        return None
+    flows, policies = _flows(realisation), _policies(crowd, realisation)
+    return CrowdEngine(
+        _agents(crowd, realisation, flows, list(policies)),
+        _world(scenario, crowd, realisation, parts, _boxes(flows, parts)),
+        [_factory(group, registry) for group in policies.values()],
+    )
+
+
+def _factory(group: Crowd | NamedPolicy, registry: Registry) -> PolicyFactory:
+    costs = [build_cost(registry, cost) for cost in group.costs.values()]
+    return lambda agents: build_policy(registry, group.policy, costs, agents)
+
+
+def _flows(drawn: Realisation) -> list[Flow]:
+    """The streams between portals, in the order of the agents."""
+    return list(dict.fromkeys(pair for pair in drawn.portals if any(pair)))
+
+
+def _boxes(flows: Sequence[Flow], parts: EnvironmentParts) -> NDArray[np.float64]:
+    """(F, 2, 4) entrance and exit of each stream, x0, x1, y0, y1, m."""
+    boxes = [[parts.portals[name] for name in flow] for flow in flows]
+    return np.array(boxes, dtype=np.float64).reshape(-1, 2, 4)
+
+
+def _policies(crowd: Crowd, drawn: Realisation) -> dict[str, Crowd | NamedPolicy]:
+    """The policies that somebody follows, by name; the crowd's own is first, without a name."""
+    used = {name: crowd.policies[name] for name in sorted(set(drawn.policy) - {""})}
+    return {"": crowd, **used}
+
+
+def _agents(
+    crowd: Crowd, drawn: Realisation, flows: Sequence[Flow], policies: Sequence[str]
+) -> Agents:
+    return Agents.of(
+        id=drawn.id,
+        x=drawn.x,
+        y=drawn.y,
+        preferred_speed=drawn.speed,
+        radius=drawn.radius,
+        max_speed=drawn.max_speed,
+        max_acceleration=drawn.max_acceleration,
+        mass=drawn.mass,
+        start_time=drawn.start_time,
+        at_goal=[_AT_GOAL[word] for word in drawn.at_goal],
+        flow=[flows.index(pair) if any(pair) else 0 for pair in drawn.portals],
+        policy=[policies.index(name) for name in drawn.policy],
+        routes=drawn.goals,
+        ignores_robot=chosen(
+            stream_seed(crowd.seed.root, crowd.seed.key, "crowd.reaction"),
+            drawn.id,
+            crowd.robot_response.ignoring,
+        ),
+    )
+
+
+def _world(
+    scenario: Scenario,
+    crowd: Crowd,
+    drawn: Realisation,
+    parts: EnvironmentParts,
+    boxes: NDArray[np.float64],
+) -> CrowdWorld:
+    response = crowd.robot_response
+    return CrowdWorld(
+        walls=parts.walls[parts.stops_crowd],
+        pillars=parts.pillars,
+        periodic_boundary=parts.periodic_boundary,
+        entrance=boxes[:, 0],
+        out=boxes[:, 1],
+        exit_point=crowd.exit_point,
+        response=np.array(
+            [response.stiffness_moving, response.stiffness_stopped, response.slow_speed]
+        ),
+        robot_visible=response.velocity == "visible",
+        stiffness=scenario.contact.stiffness,
+        dissipation=scenario.contact.dissipation,
+        goal_key=drawn.goal_key,
+        decision_rate=scenario.rates.crowd,
+    )

@@ -1,0 +1,56 @@
+"""Refuses a start at which the robot stands in a wall, an obstacle or a person."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crowdbot.core.crowd import CrowdEngine
+from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.contact.robot_contact import overlap
+from crowdbot.core.geometry.footprint import footprint_of_model
+from crowdbot.core.geometry.polygon import inside
+from crowdbot.core.sim.control.kinematic import obstacles
+from crowdbot.core.sim.outline_gap import outline_gap
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.robot import RobotModel
+from crowdbot.errors import InputError
+
+#: Less than this is rounding of the document's numbers, m.
+_TOLERANCE = 1e-6
+
+
+def check_start(
+    parts: EnvironmentParts, robot: RobotModel, start: Pose, engine: CrowdEngine | None, name: str
+) -> None:
+    """Look at the robot's whole outline; who touches only may start.
+
+    Args:
+        engine: people, of whom those count who are there at the start.
+        name: the robot's, for the message.
+
+    Raises:
+        InputError: the robot overlaps something, or is inside a solid.
+    """
+    where = f"robot '{name}' at x {start.x:g} m, y {start.y:g} m"
+    body = footprint_of_model(robot)
+    walls, pillars = obstacles(parts, robot.height)
+    depth = body.radius - outline_gap(walls, pillars, body.corners, *start)
+    boxed = any(
+        bottom < robot.height and inside(outline, start.x, start.y)
+        for outline, (bottom, _) in zip(parts.solids, parts.solid_heights, strict=True)
+    )
+    if depth > _TOLERANCE or boxed or (depth >= 0.0 and len(body.corners) > 2):
+        raise InputError(f"{where} would start in a wall or an obstacle; move task.start")
+    if engine is None:
+        return
+    row = np.array([start.x, start.y, 0.0, 0.0, body.radius, 0.0, start.yaw, 0.0])
+    _, people = s.view(engine.initial_state())
+    for i in np.flatnonzero(people[:, s.WAITING] == s.PRESENT):
+        away = start.x - people[i, s.X], start.y - people[i, s.Y]
+        reach = body.radius + engine.agents.radius[i]
+        if overlap(row, body.corners, *away, reach)[0] > _TOLERANCE:
+            raise InputError(
+                f"{where} would start in agent {engine.agents.id[i]}, who stands at "
+                f"x {people[i, s.X]:g} m, y {people[i, s.Y]:g} m; move one of them"
+            )

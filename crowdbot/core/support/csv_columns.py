@@ -1,0 +1,47 @@
+"""Reads columns of numbers from CSV files."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+
+from crowdbot.core.types.arrays import Array
+from crowdbot.errors import InputError
+
+
+def read_columns(
+    path: Path, needed: tuple[str, ...], optional: tuple[str, ...] = ()
+) -> dict[str, Array]:
+    """Columns of a CSV file with a header; empty cells are NaN.
+
+    Raises:
+        InputError: it cannot be read, a column is missing, or a cell is not a number; with its
+            line.
+    """
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            reader = csv.DictReader(file, strict=True)
+            header = reader.fieldnames or ()
+            missing = [name for name in needed if name not in header]
+            if missing:
+                raise InputError(f"{path}:1: the column {', '.join(missing)} is missing")
+            names = [*needed, *(n for n in optional if n in header)]
+            rows = [[_cell(path, reader.line_num, n, row[n]) for n in names] for row in reader]
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: not a table: {error}") from error
+    table = np.array(rows, dtype=np.float64).reshape(len(rows), len(names))
+    return {name: table[:, i] for i, name in enumerate(names)}
+
+
+def _cell(path: Path, line: int, name: str, text: str | None) -> float:
+    try:
+        if text is None:
+            raise ValueError("the row is too short")
+        return float(text) if text.strip() else math.nan
+    except ValueError as error:
+        raise InputError(f"{path}:{line}: {name}: {error}") from error

@@ -1,0 +1,304 @@
+"""The robot and each person as two bodies that move: gaps, time to contact, contact events.
+
+People are discs; the robot is a disc, or has a footprint. N samples, M people; world frame, SI
+units. NaN stands for "not there" or "not known". What is computed for a run is computed once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.geometry.footprint import Footprint, into_frame
+from crowdbot.core.trajectories.footprint_of_run import footprint_of
+from crowdbot.core.trajectories.preprocess import (
+    agent_velocities,
+    inf_to_nan,
+    robot_velocity,
+    valid_agent_steps,
+    valid_robot_steps,
+    wrap,
+)
+from crowdbot.core.trajectories.trajectories import AgentTracks, RobotTrack, Trajectories
+from crowdbot.core.types.arrays import Array, Mask
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Encounter:
+    """Every person relative to the robot.
+
+    Attributes:
+        t: (N,) sample times, s.
+        px, py: (N, M) position of each person minus the robot's, m.
+        reach: (M,) sum of both radii, m; the person's alone beside a footprint.
+        distance: (N, M) distance between centres, m.
+        gap: (N, M) distance between surfaces, m; negative in contact.
+        valid: (N-1, M) steps on which both bodies moved continuously.
+        footprint: outline of a robot that is not a disc.
+        theta: (N,) heading of the robot, rad.
+    """
+
+    t: Array
+    px: Array
+    py: Array
+    reach: Array
+    distance: Array
+    gap: Array
+    valid: Mask
+    footprint: Footprint | None
+    theta: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contacts:
+    """Beginnings of contact: time (s), column of the person, sample before the onset; (K,)."""
+
+    time: Array
+    agent: NDArray[np.int64]
+    sample: NDArray[np.int64]
+
+
+def robot_of(run: Trajectories) -> RobotTrack:
+    """The robot of a run that is known to have one."""
+    assert run.robot is not None
+    return run.robot
+
+
+def people(run: Trajectories) -> AgentTracks:
+    """Everybody in a run; nobody at all (M = 0) in a run without people."""
+    if run.agents is not None:
+        return run.agents
+    nowhere, none = np.empty((len(run.t), 0)), np.empty(0)
+    return AgentTracks(
+        id=np.empty(0, dtype=np.int64),
+        **dict.fromkeys(("x", "y", "vx", "vy"), nowhere),
+        radius=none,
+        mass=none,
+        jump=None,
+    )
+
+
+def encounter(run: Trajectories, jump_speed: float) -> Encounter:
+    """Relative positions of all people; ``jump_speed`` (m/s) tells teleports."""
+    return run.cached(("encounter", jump_speed), lambda: _encounter(run, jump_speed))
+
+
+def robot_velocities(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
+    """World velocity of the robot (N,), (N,), m/s."""
+    return run.cached(
+        ("robot_velocities", jump_speed), lambda: robot_velocity(run.t, robot_of(run), jump_speed)
+    )
+
+
+def people_velocities(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
+    """World velocities of people (N, M), (N, M), m/s; NaN where absent or unknown."""
+    return run.cached(
+        ("people_velocities", jump_speed), lambda: agent_velocities(run.t, people(run), jump_speed)
+    )
+
+
+def people_speeds(run: Trajectories, jump_speed: float) -> Array:
+    """Speeds of people (N, M), m/s; NaN where absent or unknown."""
+    return run.cached(
+        ("people_speeds", jump_speed), lambda: np.hypot(*people_velocities(run, jump_speed))
+    )
+
+
+def relative_velocity(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
+    """Velocity of each person minus the robot's (N, M), (N, M), m/s; NaN where unknown."""
+    rx, ry = robot_velocities(run, jump_speed)
+    ax, ay = people_velocities(run, jump_speed)
+    return ax - rx[:, None], ay - ry[:, None]
+
+
+def approach(
+    run: Trajectories, jump_speed: float, contact_tol: float, rel_speed_tol: float
+) -> tuple[Array, Array]:
+    """Time to contact (s) and relative speed (m/s) of each person (N, M), (N, M)."""
+
+    def compute() -> tuple[Array, Array]:
+        velocity = relative_velocity(run, jump_speed)
+        pair = encounter(run, jump_speed)
+        tau = time_to_contact(pair, velocity, contact_tol=contact_tol, rel_speed_tol=rel_speed_tol)
+        return tau, np.hypot(*velocity)
+
+    return run.cached(("approach", jump_speed, contact_tol, rel_speed_tol), compute)
+
+
+def onsets(
+    run: Trajectories, jump_speed: float, contact_tol: float, release_gap: float
+) -> Contacts:
+    """`contact_onsets` of a run."""
+    return run.cached(
+        ("onsets", jump_speed, contact_tol, release_gap),
+        lambda: contact_onsets(
+            encounter(run, jump_speed), contact_tol=contact_tol, release_gap=release_gap
+        ),
+    )
+
+
+def _encounter(run: Trajectories, jump_speed: float) -> Encounter:
+    robot, agents = robot_of(run), people(run)
+    px = inf_to_nan(agents.x) - inf_to_nan(robot.x)[:, None]
+    py = inf_to_nan(agents.y) - inf_to_nan(robot.y)[:, None]
+    distance, footprint, theta = np.hypot(px, py), footprint_of(run), inf_to_nan(robot.theta)
+    if footprint is None:
+        reach = agents.radius + robot.radius
+        gap = distance - reach
+    else:
+        reach = agents.radius
+        gap = footprint.gap(*into_frame(theta, px, py)) - reach
+    valid = valid_agent_steps(run.t, agents, jump_speed)
+    return Encounter(
+        t=run.t,
+        px=px,
+        py=py,
+        reach=reach,
+        distance=distance,
+        gap=gap,
+        valid=valid & valid_robot_steps(run.t, robot, jump_speed)[:, None],
+        footprint=footprint,
+        theta=theta,
+    )
+
+
+def time_to_contact(
+    pair: Encounter, velocity: tuple[Array, Array], *, contact_tol: float, rel_speed_tol: float
+) -> Array:
+    """Time until two discs that keep their velocities touch (N, M), s.
+
+    0 where they touch already, inf where they never will, or where a velocity is unknown. The
+    smaller root of ``|p + tau v| = reach``, in the form without cancellation.
+
+    Args:
+        pair: relative positions.
+        velocity: relative velocities, m/s.
+        contact_tol: a miss by less than this is a hit, m.
+        rel_speed_tol: slower relative motion counts as none, m/s.
+    """
+    px, py = pair.px, pair.py
+    vx, vy = velocity
+    speed = np.hypot(vx, vy)
+    moves = speed > rel_speed_tol
+    if pair.footprint is not None:
+        at, along = into_frame(pair.theta, px, py), into_frame(pair.theta, vx, vy)
+        tau = pair.footprint.first_touch(*at, *along, pair.reach + contact_tol)
+        tau = np.where(moves, tau, np.inf)
+    else:
+        nearing = -(px * vx + py * vy)
+        miss = np.abs(px * vy - py * vx)
+        hits = moves & (nearing > 0) & (miss <= (pair.reach + contact_tol) * speed)
+        root = np.sqrt(np.maximum((pair.reach * speed) ** 2 - miss**2, 0.0))
+        gap = pair.gap * (pair.distance + pair.reach)
+        tau = np.divide(gap, nearing + root, out=np.full(px.shape, np.inf), where=hits)
+    return np.where(touching(pair, contact_tol), 0.0, tau)
+
+
+def touching(pair: Encounter, contact_tol: float) -> Mask:
+    """Samples (N, M) at which the surfaces touch or overlap."""
+    return pair.gap <= contact_tol
+
+
+def contact_runs(pair: Encounter, contact_tol: float) -> int:
+    """Maximal runs of touching samples, over all people; a teleport or absence ends a run."""
+    touch = touching(pair, contact_tol)
+    return int(touch[:1].sum() + (touch[1:] & ~(touch[:-1] & pair.valid)).sum())
+
+
+def contact_onsets(pair: Encounter, *, contact_tol: float, release_gap: float) -> Contacts:
+    """Contacts of the continuous piecewise linear motion, with hysteresis, by time.
+
+    A contact begins when the gap reaches 0 on a valid step, or when a body appears overlapping;
+    it ends when the gap at a sample exceeds ``release_gap`` (m), or when a body disappears or is
+    teleported.
+    """
+    return contact_events(
+        pair.t,
+        pair.gap,
+        _first_touch(pair, contact_tol),
+        pair.valid,
+        contact_tol=contact_tol,
+        release_gap=release_gap,
+    )
+
+
+def contact_events(
+    t: Array,
+    gap: Array,
+    fraction: Array,
+    valid: Mask,
+    *,
+    contact_tol: float,
+    release_gap: float,
+) -> Contacts:
+    """`contact_onsets` of any M bodies with the robot.
+
+    Args:
+        t: (N,) times, s.
+        gap: (N, M) between the surfaces, m; NaN where absent.
+        fraction: (N-1, M) of each step at which the surfaces first touch, NaN where they do not.
+        valid: (N-1, M) steps on which both bodies moved continuously.
+        contact_tol: surfaces this close touch, m.
+        release_gap: a contact ends when the surfaces are farther apart, m.
+    """
+    touch = gap <= contact_tol
+    swept = valid & np.isfinite(fraction)
+    appears = np.ones(touch.shape, dtype=bool)
+    appears[1:] = ~valid
+    apart = ~(gap <= release_gap + contact_tol)  # absent people, too
+    free = ~_in_contact(touch, swept, appears, apart)
+    k_first, a_first = np.nonzero(appears & touch)
+    k_swept, a_swept = np.nonzero(swept & free[:-1])
+    start, step = t[k_swept], np.diff(t)[k_swept]
+    time = np.concatenate([t[k_first], start + fraction[k_swept, a_swept] * step])
+    agent, sample = np.concatenate([a_first, a_swept]), np.concatenate([k_first, k_swept])
+    order = np.lexsort((agent, time))
+    return Contacts(time=time[order], agent=agent[order], sample=sample[order])
+
+
+def _in_contact(touch: Mask, swept: Mask, appears: Mask, apart: Mask) -> Mask:
+    """Whether each pair is in contact after each sample (N, M).
+
+    Every sample either decides this anew or leaves it as it was after the last one that did.
+    """
+    begins = appears & touch
+    begins[1:] |= swept & ~apart[1:]
+    decides = begins | apart | appears
+    rows = np.arange(len(touch))[:, None]
+    last = np.maximum.accumulate(np.where(decides, rows, 0), axis=0)
+    return np.take_along_axis(begins, last, axis=0)
+
+
+def _first_touch(pair: Encounter, contact_tol: float) -> Array:
+    """Fraction of each step (N-1, M) at which the surfaces first touch; NaN where they do not.
+
+    A footprint slides along the step with its middle heading, and turns at both ends.
+    """
+    if pair.footprint is None:
+        return _discs_touch(pair, contact_tol)
+    theta = pair.theta[:-1] + wrap(np.diff(pair.theta)) / 2.0
+    x, y = into_frame(theta, pair.px[:-1], pair.py[:-1])
+    dx, dy = into_frame(theta, np.diff(pair.px, axis=0), np.diff(pair.py, axis=0))
+    reach = pair.reach + contact_tol
+    first = pair.footprint.first_touch(x, y, dx, dy, reach)
+    touch = touching(pair, contact_tol)
+    at_start = touch[:-1] | (pair.footprint.gap(x, y) <= reach)
+    first = np.where(at_start, 0.0, np.where(touch[1:], np.minimum(first, 1.0), first))
+    return np.where(first <= 1.0, first, np.nan)
+
+
+def _discs_touch(pair: Encounter, contact_tol: float) -> Array:
+    """The distance along a step is convex, so its smallest value decides."""
+    px, py = pair.px[:-1], pair.py[:-1]
+    dx, dy = np.diff(pair.px, axis=0), np.diff(pair.py, axis=0)
+    square, nearing = dx**2 + dy**2, -(px * dx + py * dy)
+    moves = square > 0
+    nearest = np.clip(np.divide(nearing, square, out=np.zeros(px.shape), where=moves), 0.0, 1.0)
+    closest = np.hypot(px + nearest * dx, py + nearest * dy)
+    root = np.sqrt(np.maximum(square * pair.reach**2 - (px * dy - py * dx) ** 2, 0.0))
+    gap = pair.gap[:-1] * (pair.distance[:-1] + pair.reach)
+    onset = np.divide(gap, nearing + root, out=np.zeros(px.shape), where=nearing + root > 0)
+    # the root of a touch within the tolerance may lie beside the step
+    return np.where(closest <= pair.reach + contact_tol, np.clip(onset, 0.0, nearest), np.nan)

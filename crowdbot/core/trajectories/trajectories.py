@@ -1,0 +1,404 @@
+"""Trajectories: the typed arrays a run leaves behind; all that metrics may see.
+
+Layout of the metric specification, section 1. Arrays are float64, read-only, shape-checked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crowdbot.core.trajectories.csv_tables import read_tables
+from crowdbot.core.types.arrays import Array
+from crowdbot.errors import InputError
+from crowdbot.lazy import lazy_names
+
+_Cached = TypeVar("_Cached")
+#: Recordings lie a floor above; their reader is named as text, like whatever is built.
+_above = lazy_names(__name__, {"crowdbot.core.recording.reader": "read_trajectories"})
+
+
+def _read_only(values: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
+    try:
+        array = np.array(values, dtype=dtype)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"trajectories: not an array of numbers: {error}") from error
+    array.setflags(write=False)
+    return array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotTrack:
+    """One robot: x, y, theta, v, w are (N,); m, rad, m/s signed forward, rad/s.
+
+    ``vx``, ``vy`` (N,) are the world velocity (m/s) of a robot that also moves sideways; without
+    them it is ``v`` along ``theta``.
+    """
+
+    x: Array
+    y: Array
+    theta: Array
+    v: Array
+    w: Array
+    radius: float
+    mass: float
+    goal_time: float | None
+    goal: tuple[float, float] | None
+    goal_radius: float
+    vx: Array | None = None
+    vy: Array | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AgentTracks:
+    """People: id, radius, mass (M,); x, y, vx, vy (N, M), NaN = absent; jump (N-1, M)."""
+
+    id: NDArray[np.int64]
+    x: Array
+    y: Array
+    vx: Array
+    vy: Array
+    radius: Array
+    mass: Array
+    jump: NDArray[np.bool_] | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trips:
+    """Journeys to one goal: agent (id), t0, t1 (s), reached; each (K,)."""
+
+    agent: NDArray[np.int64]
+    t0: Array
+    t1: Array
+    reached: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactEvents:
+    """Contacts of the robot, each (K,).
+
+    t0, t1 (s), agent id (-1: a wall), impulse (N s), peak force (N), relative speed before (m/s),
+    bearing of the point of the robot that was touched first, in the robot's frame (rad; NaN:
+    unknown), for which `crowdbot.core.geometry.footprint.body_side` has names.
+    """
+
+    t0: Array
+    t1: Array
+    agent: NDArray[np.int64]
+    impulse: Array
+    peak_force: Array
+    relative_speed: Array
+    bearing: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trajectories:
+    """One run. ``robot`` or ``agents`` is None in the calibration runs.
+
+    Attributes:
+        t: (N,) sample times, s.
+        goal_zone: (K, 2) polygon, m.
+        walls: (S, 4) segments x0, y0, x1, y1, m.
+        planner_step_time: (P,) seconds per planner step.
+        robot_footprint: outline of the robot in its own frame (x forward), m: the (K, 2) corners
+            of a polygon in either sense, K >= 3; or the (2, 2) ends of the axis of a capsule,
+            whose radius is ``robot.radius``. None: a disc of ``robot.radius``.
+        signals: name -> (P, 2) time (s) and value.
+    """
+
+    t: Array
+    robot: RobotTrack | None = None
+    agents: AgentTracks | None = None
+    trips: Trips | None = None
+    goal_zone: Array | None = None
+    contacts: ContactEvents | None = None
+    walls: Array | None = None
+    planner_step_time: Array | None = None
+    robot_footprint: Array | None = None
+    signals: Mapping[str, Array] = field(default_factory=dict)
+    _cache: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    def cached(self, key: Hashable, compute: Callable[[], _Cached]) -> _Cached:
+        """What ``compute`` makes of this run; computed once, for all metrics that ask.
+
+        A run never changes, and its cache is dropped with it.
+        """
+        if key not in self._cache:
+            self._cache[key] = compute()
+        return cast(_Cached, self._cache[key])
+
+    @classmethod
+    def from_csv(
+        cls,
+        robot: Path | str | None = None,
+        agents: Path | str | None = None,
+        trips: Path | str | None = None,
+        *,
+        agent_radius: float = 0.25,
+        agent_mass: float = 70.0,
+        contacts: Path | str | Mapping[str, ArrayLike] | None = None,
+        robot_radius: float | None = None,
+        robot_mass: float | None = None,
+        robot_goal_time: float | None = None,
+        robot_goal: tuple[float, float] | None = None,
+        robot_goal_radius: float = 0.0,
+        goal_zone: ArrayLike | None = None,
+        walls: ArrayLike | None = None,
+        planner_step_time: ArrayLike | None = None,
+        robot_footprint: ArrayLike | None = None,
+        signals: Mapping[str, ArrayLike] | None = None,
+    ) -> Trajectories:
+        """Read tables with a header row; SI units, radians, an empty cell is unknown.
+
+        Args:
+            robot: t, x, y, theta, v, w, optionally vx, vy: one row a sample. It sets the samples.
+            agents: t, id, x, y, optionally vx, vy, radius, mass, jump: one row for each person
+                and sample; no row, no person. ``jump`` is 1 where the person was teleported since
+                the sample before. Times must be those of the robot, if there is one.
+            trips: agent, t0, t1, reached (0 or 1): one row a trip.
+            agent_radius: m, where the table does not say it.
+            agent_mass: kg, where the table does not say it.
+            contacts: t0, t1, agent (-1: a wall), impulse, peak_force, relative_speed, optionally
+                bearing: one row a contact of the robot; or such columns.
+            robot_radius, robot_mass: m, kg; needed with a robot.
+            robot_goal_time: when it arrived, s; None: it did not.
+            robot_goal, robot_goal_radius: middle and radius of the goal, m.
+            goal_zone, walls, planner_step_time, robot_footprint, signals: as in `Trajectories`.
+
+        Raises:
+            InputError: a file cannot be read, does not fit the others, or there is no table.
+        """
+        in_files = isinstance(contacts, Path | str)
+        columns: dict[str, Any] = {} if in_files else {"contacts": contacts}
+        columns |= read_tables(
+            _path(robot),
+            _path(agents),
+            _path(trips),
+            contacts=_path(contacts) if isinstance(contacts, Path | str) else None,
+            agent_radius=agent_radius,
+            agent_mass=agent_mass,
+        )
+        return cls.from_arrays(
+            **columns,
+            robot_radius=robot_radius,
+            robot_mass=robot_mass,
+            robot_goal_time=robot_goal_time,
+            robot_goal=robot_goal,
+            robot_goal_radius=robot_goal_radius,
+            goal_zone=goal_zone,
+            walls=walls,
+            planner_step_time=planner_step_time,
+            robot_footprint=robot_footprint,
+            signals=signals,
+        )
+
+    @classmethod
+    def from_mcap(cls, path: Path | str) -> Trajectories:
+        """Read a recording; see `crowdbot.core.recording.reader.read_trajectories`."""
+        read = _above("read_trajectories")
+        return cast(Trajectories, read(Path(path)))
+
+    @classmethod
+    def from_arrays(
+        cls,
+        *,
+        t: ArrayLike,
+        robot_x: ArrayLike | None = None,
+        robot_y: ArrayLike | None = None,
+        robot_theta: ArrayLike | None = None,
+        robot_v: ArrayLike | None = None,
+        robot_w: ArrayLike | None = None,
+        robot_vx: ArrayLike | None = None,
+        robot_vy: ArrayLike | None = None,
+        robot_radius: float | None = None,
+        robot_mass: float | None = None,
+        robot_goal_time: float | None = None,
+        robot_goal: tuple[float, float] | None = None,
+        robot_goal_radius: float = 0.0,
+        agent_id: ArrayLike | None = None,
+        agent_x: ArrayLike | None = None,
+        agent_y: ArrayLike | None = None,
+        agent_vx: ArrayLike | None = None,
+        agent_vy: ArrayLike | None = None,
+        agent_radius: ArrayLike | None = None,
+        agent_mass: ArrayLike | None = None,
+        agent_jump: ArrayLike | None = None,
+        trip_agent: ArrayLike | None = None,
+        trip_t0: ArrayLike | None = None,
+        trip_t1: ArrayLike | None = None,
+        trip_reached: ArrayLike | None = None,
+        goal_zone: ArrayLike | None = None,
+        contacts: Mapping[str, ArrayLike] | None = None,
+        walls: ArrayLike | None = None,
+        planner_step_time: ArrayLike | None = None,
+        robot_footprint: ArrayLike | None = None,
+        signals: Mapping[str, ArrayLike] | None = None,
+    ) -> Trajectories:
+        """Build from plain arrays; ``robot_*`` or ``agent_*`` may be left out.
+
+        An omnidirectional robot gives ``robot_vx`` and ``robot_vy`` (world frame, m/s), and may
+        leave out ``robot_v``. Velocities that are left out, or NaN, are derived from positions
+        and headings. ``robot_footprint`` is a polygon (K, 2), or the (2, 2) ends of a
+        capsule of radius ``robot_radius``, in the robot's frame. ``contacts`` has the columns of
+        `ContactEvents`, of which ``bearing`` may be left out.
+
+        Raises:
+            InputError: a shape does not fit, time does not increase, a part is missing.
+        """
+        arguments = locals()
+        run = cls(
+            t=_read_only(t),
+            robot=_robot(arguments) if robot_x is not None else None,
+            agents=_agents(arguments) if agent_x is not None else None,
+            trips=_trips(arguments) if trip_agent is not None else None,
+            goal_zone=None if goal_zone is None else _read_only(goal_zone),
+            contacts=None if contacts is None else _contacts(contacts),
+            walls=None if walls is None else _read_only(walls),
+            planner_step_time=None if planner_step_time is None else _read_only(planner_step_time),
+            robot_footprint=None if robot_footprint is None else _read_only(robot_footprint),
+            signals={k: _read_only(v) for k, v in (signals or {}).items()},
+        )
+        _check(run)
+        return run
+
+
+def _path(path: Path | str | None) -> Path | None:
+    return None if path is None else Path(path)
+
+
+def _require(arguments: Mapping[str, Any], *names: str) -> None:
+    missing = [n for n in names if arguments[n] is None]
+    if missing:
+        raise InputError(f"trajectories: {', '.join(missing)} missing")
+
+
+def _robot(arguments: Mapping[str, Any]) -> RobotTrack:
+    _require(arguments, "robot_y", "robot_theta", "robot_radius", "robot_mass")
+    goal_time, goal = arguments["robot_goal_time"], arguments["robot_goal"]
+    rows = {k: _read_only(arguments[f"robot_{k}"]) for k in ("x", "y", "theta")}
+    unknown = np.full(rows["x"].shape, np.nan)
+    rows["w"] = _read_only(unknown if arguments["robot_w"] is None else arguments["robot_w"])
+    v = arguments["robot_v"]
+    if arguments["robot_vx"] is not None or arguments["robot_vy"] is not None:
+        _require(arguments, "robot_vx", "robot_vy")
+        rows |= {k: _read_only(arguments[f"robot_{k}"]) for k in ("vx", "vy")}
+        v = _forward(rows) if v is None else v
+    return RobotTrack(
+        **rows,
+        v=_read_only(unknown if v is None else v),
+        radius=float(arguments["robot_radius"]),
+        mass=float(arguments["robot_mass"]),
+        goal_time=None if goal_time is None else float(goal_time),
+        goal=None if goal is None else (float(goal[0]), float(goal[1])),
+        goal_radius=float(arguments["robot_goal_radius"]),
+    )
+
+
+def _forward(rows: Mapping[str, Array]) -> Array:
+    """Forward speed of a robot that gave its world velocity, m/s."""
+    try:
+        return _read_only(rows["vx"] * np.cos(rows["theta"]) + rows["vy"] * np.sin(rows["theta"]))
+    except ValueError as error:
+        raise InputError(f"trajectories: robot_vx, robot_vy, robot_theta: {error}") from error
+
+
+def _agents(arguments: Mapping[str, Any]) -> AgentTracks:
+    _require(arguments, "agent_y", "agent_radius", "agent_mass")
+    x = _read_only(arguments["agent_x"])
+    count = x.shape[1] if x.ndim == 2 else 0
+    absent = np.full(x.shape, np.nan)
+    ids = arguments["agent_id"] if arguments["agent_id"] is not None else np.arange(count)
+    jump = arguments["agent_jump"]
+    return AgentTracks(
+        id=_read_only(ids, np.int64),
+        x=x,
+        y=_read_only(arguments["agent_y"]),
+        vx=_read_only(absent if arguments["agent_vx"] is None else arguments["agent_vx"]),
+        vy=_read_only(absent if arguments["agent_vy"] is None else arguments["agent_vy"]),
+        radius=_read_only(np.broadcast_to(arguments["agent_radius"], (count,))),
+        mass=_read_only(np.broadcast_to(arguments["agent_mass"], (count,))),
+        jump=None if jump is None else _read_only(jump, np.bool_),
+    )
+
+
+def _trips(arguments: Mapping[str, Any]) -> Trips:
+    _require(arguments, "trip_t0", "trip_t1", "trip_reached")
+    return Trips(
+        agent=_read_only(arguments["trip_agent"], np.int64),
+        t0=_read_only(arguments["trip_t0"]),
+        t1=_read_only(arguments["trip_t1"]),
+        reached=_read_only(arguments["trip_reached"], np.bool_),
+    )
+
+
+def _contacts(table: Mapping[str, ArrayLike]) -> ContactEvents:
+    names = [f.name for f in fields(ContactEvents)]
+    if "bearing" not in table:  # tables of others, and of older recordings
+        table = {**table, "bearing": np.full(np.shape(table.get("t0", ())), np.nan)}
+    if set(table) != set(names):
+        raise InputError(f"trajectories: contacts needs the columns {', '.join(names)}")
+    return ContactEvents(
+        **{n: _read_only(table[n], np.int64 if n == "agent" else np.float64) for n in names}
+    )
+
+
+def _check(run: Trajectories) -> None:
+    n = len(run.t)
+    if run.t.ndim != 1 or n == 0 or not np.all(np.isfinite(run.t)):
+        raise InputError("trajectories: t must be a non-empty row of finite times")
+    if np.any(np.diff(run.t) <= 0):
+        raise InputError("trajectories: t must strictly increase")
+    if run.robot is not None:
+        for name in ("x", "y", "theta", "v", "w", "vx", "vy"):
+            if getattr(run.robot, name) is not None:
+                _check_shape(f"robot_{name}", getattr(run.robot, name), (n,))
+        _check_non_negative("robot_radius", run.robot.radius)
+        _check_non_negative("robot_mass", run.robot.mass)
+    if run.agents is not None:
+        m = run.agents.x.shape[1] if run.agents.x.ndim == 2 else 0
+        _check_shape("agent_id", run.agents.id, (m,))
+        if len(np.unique(run.agents.id)) < m:
+            raise InputError("trajectories: agent_id holds a number twice")
+        _check_non_negative("agent_radius", run.agents.radius)
+        _check_non_negative("agent_mass", run.agents.mass)
+        for name in ("x", "y", "vx", "vy"):
+            _check_shape(f"agent_{name}", getattr(run.agents, name), (n, m))
+        if run.agents.jump is not None:
+            _check_shape("agent_jump", run.agents.jump, (n - 1, m))
+    for table in (run.trips, run.contacts):
+        if table is not None:
+            k = table.agent.shape
+            for column in fields(table):
+                _check_shape(column.name, getattr(table, column.name), k)
+    if run.trips is not None and not np.all(run.trips.t0 <= run.trips.t1):
+        raise InputError("trajectories: trip_t0 and trip_t1 must be times, trip_t1 the later one")
+    if run.walls is not None and run.walls.size:
+        _check_shape("walls", run.walls, (len(run.walls), 4))
+    for name, least in (("goal_zone", 3), ("robot_footprint", 2)):
+        outline = getattr(run, name)
+        if outline is not None:
+            _check_outline(name, outline, least)
+
+
+def _check_outline(name: str, corners: Array, least: int) -> None:
+    if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < least:
+        raise InputError(
+            f"trajectories: {name} has shape {corners.shape}, expected (K, 2), K >= {least}"
+        )
+    if not np.all(np.isfinite(corners)):
+        raise InputError(f"trajectories: {name} has a corner that is not finite")
+
+
+def _check_non_negative(name: str, values: float | Array) -> None:
+    if not (np.all(np.isfinite(values)) and np.all(np.asarray(values) >= 0)):
+        raise InputError(f"trajectories: {name} must be finite and not negative")
+
+
+def _check_shape(name: str, array: NDArray[Any], shape: tuple[int, ...]) -> None:
+    if array.shape != shape:
+        raise InputError(f"trajectories: {name} has shape {array.shape}, expected {shape}")

@@ -1,0 +1,1 @@
+"""Types: plain values that several folders share."""

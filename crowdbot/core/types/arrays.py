@@ -1,0 +1,11 @@
+"""Names for arrays; shapes stand in the docstrings of those who use them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+Point = tuple[float, float]

@@ -1,0 +1,45 @@
+"""What an environment is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.types.arrays import Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EnvironmentParts:
+    """Plain geometry; core makes plant boxes, ray targets, crowd obstacles and drawings of it.
+
+    Attributes:
+        walls: (S, 4) segments x0, y0, x1, y1, m; the free side is on their left.
+        wall_heights: (S, 2) bottom and top, m.
+        stops_robot: (S,) bool, the robot collides with the segment.
+        stops_crowd: (S,) bool, people avoid the segment.
+        zones: name -> (K, 2) polygon, counter-clockwise, m.
+        portals: name -> (x0, x1, y0, y1), m.
+        pillars: (P, 3) x, y and radius of round obstacles for robot and people, m.
+        pillar_heights: (P, 2) bottom and top, m.
+        solids: convex outlines (K, 2), counter-clockwise, of what the robot collides with as a
+            whole, m; sensors and people meet their sides, which are among ``walls``.
+        solid_heights: (B, 2) bottom and top, m.
+        periodic_boundary: (x0, x1, y0, y1) of a floor on which people who leave on one side come
+            back on the other and see each other across the border, m; None for a floor with
+            borders.
+    """
+
+    walls: Array
+    wall_heights: Array
+    stops_robot: NDArray[np.bool_]
+    stops_crowd: NDArray[np.bool_]
+    zones: Mapping[str, Array]
+    portals: Mapping[str, tuple[float, float, float, float]]
+    pillars: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    pillar_heights: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    solids: tuple[Array, ...] = ()
+    solid_heights: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    periodic_boundary: tuple[float, float, float, float] | None = None

@@ -1,0 +1,106 @@
+"""What a robot is made of, and what is known about it at an instant."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from crowdbot.core.types.arrays import Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotLimits:
+    """A box of velocities and slew limits: m/s, rad/s, m/s^2, rad/s^2.
+
+    |vy| is at most ``vy_max``, which is 0 where the drive does not go sideways. ``a_max`` limits
+    the change of the vector (v, vy), in the robot's frame. A robot that gets no command for
+    ``command_timeout`` seconds brakes to a stop.
+    """
+
+    v_min: float
+    v_max: float
+    w_max: float
+    a_max: float
+    alpha_max: float
+    command_timeout: float = math.inf
+    vy_max: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DifferentialDrive:
+    """Two driven wheels on one axis. ``command_radius`` turns commands into wheel rates."""
+
+    left_joint: str
+    right_joint: str
+    command_radius: float
+    track: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HolonomicDrive:
+    """A base that goes in every direction, such as one on omni wheels.
+
+    The wheels themselves are not simulated: a force moves the base (control ``force``), or the
+    command does (``kinematic``). What touches the floor must slide without friction.
+
+    Attributes:
+        max_force: the largest horizontal force, N, in any direction.
+        max_torque: the largest torque about the vertical, N m.
+        wheel_radius: of the measuring wheels that odometry counts, m: two that roll forward,
+            ``track`` apart, and one under the base's frame that rolls to the left.
+        track: m.
+    """
+
+    max_force: float
+    max_torque: float
+    wheel_radius: float = 0.035
+    track: float = 0.23
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotModel:
+    """A robot's body and drive.
+
+    Attributes:
+        description: one robot in SDFormat or URDF. Joints with limits are held at zero; others
+            roll freely, but for the driven wheels. `crowdbot.core.robot_description` reads it.
+        base: name of the base link, which sensors are mounted on: x ahead, on the vertical of the
+            drive axis, ``base_height`` above the floor.
+        footprint_radius: radius of the physical disc, m; of a capsule with ``footprint``.
+        footprint: outline of a robot that is not a disc, in its own frame, m: (2, 2) is the segment
+            of a capsule, (K, 2) with K > 2 a convex polygon, counter-clockwise.
+        height: of the whole robot, m.
+        force_height: height above the floor at which people push, m.
+    """
+
+    description: str
+    base: str
+    base_height: float
+    drive: DifferentialDrive | HolonomicDrive
+    limits: RobotLimits
+    footprint_radius: float
+    height: float
+    force_height: float
+    mass: float
+    footprint: Array | None = None
+
+
+class RobotState(NamedTuple):
+    """What everything downstream of the robot reads; world frame, SI.
+
+    The last three are angles of wheels, driven or measuring: left, right, and one that rolls to
+    the left, which only a robot with a holonomic drive has.
+    """
+
+    x: float
+    y: float
+    yaw: float
+    vx: float
+    vy: float
+    w: float
+    tilt: float
+    z: float
+    left_angle: float
+    right_angle: float
+    side_angle: float = 0.0

@@ -1,0 +1,94 @@
+"""What a sensor says about itself, and what it reads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.types.arrays import Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pinhole:
+    """A camera that looks along x of its frame; images are (height, width), top left first.
+
+    Attributes:
+        width, height: pixels.
+        focal: focal length, pixels; pixels are square and the axis goes through the centre.
+        colour: whether it takes colour images too.
+    """
+
+    width: int
+    height: int
+    focal: float
+    colour: bool = False
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """Column and row of the optical axis, counted from the centre of the first pixel."""
+        return 0.5 * (self.width - 1), 0.5 * (self.height - 1)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorInfo:
+    """What a planner or a recorder may know about a sensor.
+
+    Attributes:
+        category: ``lidar``, ``odometry``, ``ultrasound``, …
+        mount: x, y, z, yaw from base_link (m, rad).
+        shape: shape of a reading's values.
+        angles: in the sensor frame, rad: (R,) of the beams of a lidar, (L, C, 2) azimuth and
+            elevation of each beam of a multi-layer lidar, (2,) edges of the zone of an ultrasound
+            or an infrared sensor; or None.
+        sees: whether ``read`` looks at the people of the scene; if not, they may be out of date.
+        memory: number of float64 the sensor keeps between readings (0: none).
+        random: whether ``read`` draws from ``rng``; if not, it must leave it alone.
+        camera: of a sensor whose readings are images. They are a pure function of what is seen
+            at their instant and are kept out of the simulation's state; such a sensor has no
+            memory.
+        privileged: whether readings tell what no sensor of a real robot could; only planners
+            that say that they are privileged may read them.
+    """
+
+    category: str
+    frame: str
+    mount: tuple[float, float, float, float]
+    rate: float
+    shape: tuple[int, ...]
+    ros_type: str
+    angles: Array | None = None
+    range_min: float = 0.0
+    range_max: float = float("inf")
+    memory: int = 0
+    random: bool = True
+    sees: bool = True
+    camera: Pinhole | None = None
+    privileged: bool = False
+
+
+class Reading(NamedTuple):
+    """A sensor's latest values and the simulated time at which they were taken (s).
+
+    Images are float32. ``colour`` is (height, width, 3) uint8 of a camera that has it.
+    """
+
+    stamp: float
+    values: Array
+    colour: NDArray[np.uint8] | None = None
+
+
+class CameraFrame(NamedTuple):
+    """What a recording keeps of a camera's reading, and the time at which it was taken (s).
+
+    Attributes:
+        depth_mm: (height, width) uint16, whole millimetres as ROS has them in ``16UC1``: 0
+            where nothing was measured.
+        colour: (height, width, 3) uint8 of a camera that has it.
+    """
+
+    stamp: float
+    depth_mm: NDArray[np.uint16]
+    colour: NDArray[np.uint8] | None = None

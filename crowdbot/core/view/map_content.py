@@ -1,0 +1,259 @@
+"""Everything that a scenario holds at its start, as shapes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+import numpy as np
+
+from crowdbot.core.population.realisation import Realisation
+from crowdbot.core.types.arrays import Point
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.view.shapes import SPEEDS, Disc, Path, Shape, Text
+from crowdbot.core.view.world import Map
+
+_ARC = 120  # corners of a full circle that is drawn as an area
+_TALL = 1.6  # an area this much taller than wide has its name turned
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sector:
+    """What a sensor sees: a sector around a place, m and rad, world frame."""
+
+    name: str
+    x: float
+    y: float
+    start: float
+    end: float
+    reach: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotView:
+    """A robot at its start: x, y, heading; name of its goal zone.
+
+    ``radius`` reaches round the whole footprint, m; ``outline``, of a robot that is not a disc, are
+    points around it, world frame.
+    """
+
+    name: str
+    x: float
+    y: float
+    yaw: float
+    radius: float
+    goal: str
+    sensors: tuple[Sector, ...] = ()
+    outline: tuple[Point, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapContent:
+    """What a map shows; ``areas``: role -> name -> polygon, of spawns and goal areas."""
+
+    parts: EnvironmentParts
+    people: Realisation
+    robots: tuple[RobotView, ...] = ()
+    areas: Mapping[str, Mapping[str, tuple[Point, ...]]] = field(
+        default_factory=lambda: MappingProxyType({})
+    )
+
+
+def extent(content: MapContent) -> Iterator[Point]:
+    """Points whose bounds hold everything but the sensors' views."""
+    parts, people = content.parts, content.people
+    for x0, y0, x1, y1 in parts.walls.tolist():
+        yield from ((x0, y0), (x1, y1))
+    for x, y, r in parts.pillars.tolist():
+        yield from ((x - r, y - r), (x + r, y + r))
+    for polygon in parts.zones.values():
+        yield from ((float(x), float(y)) for x, y in polygon)
+    for box in (
+        *parts.portals.values(),
+        *([parts.periodic_boundary] if parts.periodic_boundary else []),
+    ):
+        yield from _corners(box)
+    for named in content.areas.values():
+        for corners in named.values():
+            yield from corners
+    yield from zip(people.x.tolist(), people.y.tolist(), strict=True)
+    for route in people.goals:
+        yield from route
+    for robot in content.robots:
+        yield (robot.x, robot.y)
+
+
+def shapes(content: MapContent, world: Map) -> Iterator[Shape]:
+    """All shapes of the map, from the floor up."""
+    x, y, width, height = world.box
+    corners = ((x, y), (x + width, y), (x + width, y + height), (x, y + height))
+    yield Path(points=corners, role="floor", closed=True)
+    yield from world.grid()
+    yield from _places(content, world)
+    yield from _sensors(content.robots, world)
+    yield from _walls(content.parts, world)
+    yield from _routes(content.people, world)
+    yield from _people(content, world)
+    yield from _robots(content, world)
+    yield from _names(content, world)
+    yield Path(points=corners, role="frame", closed=True, inside=False)
+    yield from world.numbers()
+
+
+def fastest(people: Realisation) -> float:
+    """Upper end of the colours' range, m/s: the largest preferred speed, rounded up to 0.2."""
+    return math.ceil(float(people.speed.max(initial=0.0)) * 5.0 - 1e-9) / 5.0 or 1.0
+
+
+def _places(content: MapContent, world: Map) -> Iterator[Shape]:
+    goals = {robot.goal for robot in content.robots}
+    for name, polygon in content.parts.zones.items():
+        yield world.path(polygon.tolist(), "goal" if name in goals else "zone", closed=True)
+    for box in content.parts.portals.values():
+        yield world.path(_corners(box), "portal", closed=True)
+    for role, named in content.areas.items():
+        for corners in named.values():
+            yield world.path(corners, role, closed=True)
+    if content.parts.periodic_boundary is not None:
+        yield world.path(_corners(content.parts.periodic_boundary), "torus", closed=True)
+
+
+def _walls(parts: EnvironmentParts, world: Map) -> Iterator[Shape]:
+    rows = zip(parts.walls.tolist(), parts.stops_robot, parts.stops_crowd, strict=True)
+    for (x0, y0, x1, y1), robot, crowd in rows:
+        role = "wall" if robot and crowd else "wall-robot" if robot else "wall-crowd"
+        yield world.path([(x0, y0), (x1, y1)], role)
+    for x, y, r in parts.pillars.tolist():
+        yield Disc(centre=world.at(x, y), radius=r * world.scale, role="pillar")
+
+
+def _routes(people: Realisation, world: Map) -> Iterator[Shape]:
+    """The way of each agent through its goals; one line for those who share it."""
+    for i, route in enumerate(people.goals):
+        if route:
+            start = (float(people.x[i]), float(people.y[i]))
+            back = route[:1] if people.at_goal[i] == "loop" and len(route) > 2 else ()
+            yield world.path([start, *route, *back], "route")
+    for x, y in dict.fromkeys(point for route in people.goals for point in route):
+        yield Disc(centre=world.at(x, y), radius=3.5, role="route-end")
+
+
+def _people(content: MapContent, world: Map) -> Iterator[Shape]:
+    """Groups tied together, then everybody, then everybody's way: no disc hides an arrow."""
+    people, top = content.people, fastest(content.people)
+    for group in np.unique(people.group[people.group >= 0]):
+        members = np.flatnonzero(people.group == group)
+        yield world.path([(float(people.x[i]), float(people.y[i])) for i in members], "group")
+    for i in range(len(people)):
+        shade = min(len(SPEEDS) - 1, int(float(people.speed[i]) / top * len(SPEEDS)))
+        yield Disc(
+            centre=world.at(float(people.x[i]), float(people.y[i])),
+            radius=float(people.radius[i]) * world.scale,
+            role=f"person-{shade}",
+            about=_about(people, i),
+        )
+    for i in range(len(people)):
+        x, y, speed = float(people.x[i]), float(people.y[i]), float(people.speed[i])
+        if speed > 0.0:
+            yield from _arrow(world, x, y, _heading(content, i), speed)
+
+
+def _arrow(world: Map, x: float, y: float, heading: float, length: float) -> Iterator[Shape]:
+    """From a centre to where it is after ``length`` m; the head is never longer than the arrow."""
+    c, s = math.cos(heading), math.sin(heading)
+    tip = (x + length * c, y + length * s)
+    head = min(6.0 / world.scale, 0.4 * length)
+    wings = [
+        (tip[0] - head * (c + k * 0.55 * s), tip[1] - head * (s - k * 0.55 * c)) for k in (-1, 1)
+    ]
+    yield world.path([(x, y), tip], "arrow")
+    yield world.path([wings[0], tip, wings[1]], "arrow")
+
+
+def _heading(content: MapContent, i: int) -> float:
+    """Where an agent sets out to: its exit, its first goal, else where it looks."""
+    people = content.people
+    x, y = float(people.x[i]), float(people.y[i])
+    out = content.parts.portals.get(people.portals[i][1])
+    if people.at_goal[i] == "portal" and out is not None:
+        to = (min(max(x, out[0]), out[1]), min(max(y, out[2]), out[3]))
+    elif people.goals[i] and math.dist(people.goals[i][0], (x, y)) > 0:
+        to = people.goals[i][0]
+    else:
+        return float(people.heading[i])
+    return math.atan2(to[1] - y, to[0] - x)
+
+
+def _about(people: Realisation, i: int) -> str:
+    words = [f"agent {people.id[i]}", f"{people.speed[i]:.2f} m/s"]
+    words += [f"group {people.group[i]}"] if people.group[i] >= 0 else []
+    words += [f"from t = {people.start_time[i]:g} s"] if people.start_time[i] > 0 else []
+    words += [f"policy {people.policy[i]}"] if people.policy[i] else []
+    return ", ".join([*words, f"then {people.at_goal[i]}"])
+
+
+def _sensors(robots: Iterable[RobotView], world: Map) -> Iterator[Shape]:
+    for robot in robots:
+        for sensor in robot.sensors:
+            yield world.path(_sector(sensor), "sensor", closed=True)
+
+
+def _sector(sensor: Sector) -> list[Point]:
+    width = min(sensor.end - sensor.start, math.tau)
+    count = max(2, math.ceil(_ARC * width / math.tau))
+    angles = np.linspace(sensor.start, sensor.start + width, count + 1).tolist()
+    arc = [
+        (sensor.x + sensor.reach * math.cos(a), sensor.y + sensor.reach * math.sin(a))
+        for a in angles
+    ]
+    return arc if width >= math.tau else [(sensor.x, sensor.y), *arc]
+
+
+def _robots(content: MapContent, world: Map) -> Iterator[Shape]:
+    for robot in content.robots:
+        zone = content.parts.zones.get(robot.goal)
+        if zone is not None:
+            centre = zone.mean(axis=0)
+            yield Disc(centre=world.at(*centre.tolist()), radius=5.0, role="robot-goal")
+        at, r = world.at(robot.x, robot.y), robot.radius
+        if robot.outline:
+            yield world.path(robot.outline, "robot", closed=True)
+        else:
+            yield Disc(centre=at, radius=r * world.scale, role="robot", about=robot.name)
+        nose = (robot.x + r * math.cos(robot.yaw), robot.y + r * math.sin(robot.yaw))
+        yield world.path([(robot.x, robot.y), nose], "robot-nose")
+
+
+def _names(content: MapContent, world: Map) -> Iterator[Shape]:
+    goals = {robot.goal for robot in content.robots}
+    for name, polygon in content.parts.zones.items():
+        role = "text-goal" if name in goals else "text-zone"
+        yield _name(f"{name} (goal)" if name in goals else name, polygon.tolist(), role, world)
+    for name, box in content.parts.portals.items():
+        yield _name(f"portal {name}", _corners(box), "text-portal", world)
+    for role, named in content.areas.items():
+        for name, corners in named.items():
+            yield _name(name, corners, "text-route" if role == "goal-area" else "text-muted", world)
+    for robot in content.robots:
+        x, y = world.at(robot.x, robot.y)
+        up = robot.radius * world.scale + 8.0
+        yield Text(at=(x, y - up), text=robot.name, role="text-robot", anchor="middle")
+
+
+def _name(name: str, corners: Iterable[Point], role: str, world: Map) -> Text:
+    """A name in the upper left corner of an area; along its left side where it is narrow."""
+    paper = [world.at(x, y) for x, y in corners]
+    left, top = min(p[0] for p in paper), min(p[1] for p in paper)
+    width = max(p[0] for p in paper) - left
+    height = max(p[1] for p in paper) - top
+    if width < 7.0 * len(name) + 10.0 and height > _TALL * width:
+        at = (left + 0.5 * width + 4.0, top + 0.5 * height)
+        return Text(at=at, text=name, role=role, anchor="middle", turned=90.0)
+    return Text(at=(left + 6.0, top + 16.0), text=name, role=role)
+
+
+def _corners(box: tuple[float, float, float, float]) -> tuple[Point, ...]:
+    x0, x1, y0, y1 = box
+    return ((x0, y0), (x1, y0), (x1, y1), (x0, y1))

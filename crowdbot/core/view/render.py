@@ -1,0 +1,133 @@
+"""The content of a map as a drawing: the map itself, its legend and its heading."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from crowdbot.core.view.map_content import MapContent, extent, fastest, shapes
+from crowdbot.core.view.shapes import SPEEDS, Disc, Drawing, Path, Shape, Text
+from crowdbot.core.view.world import LEFT, TOP, Map
+
+_RIGHT, _HEAD, _LINE = 26.0, 62.0, 24.0
+_SWATCH = 13.0
+_LEAST_WIDTH = 720.0
+
+
+def render(content: MapContent, title: str, facts: Mapping[str, str], *, heading: bool) -> Drawing:
+    """The drawing of a map.
+
+    Args:
+        content: from `build_map_content`.
+        title: the scenario's name.
+        facts: name -> text, written below the title.
+        heading: whether title and facts are painted, for a picture that stands alone.
+    """
+    top = _HEAD + _LINE * (len(_lines(facts)) - 1) if heading else TOP
+    world = Map.around(extent(content), top)
+    x, y, width, height = world.box
+    paper = max(x + width + _RIGHT, _LEAST_WIDTH)
+    legend, bottom = _legend(content, world, x, y + height + 46.0, paper - _RIGHT)
+    head = _heading(title, facts) if heading else iter(())
+    ground = ((0.0, 0.0), (paper, 0.0), (paper, bottom), (0.0, bottom))
+    return Drawing(
+        width=paper,
+        height=bottom,
+        map_box=world.box,
+        title=title,
+        facts=dict(facts),
+        shapes=(
+            Path(points=ground, role="page", closed=True, inside=False),
+            *head,
+            *shapes(content, world),
+            *legend,
+        ),
+    )
+
+
+def _lines(facts: Mapping[str, str]) -> list[str]:
+    """Short facts on one line, the hash on its own."""
+    long = [f"{k}: {v}" for k, v in facts.items() if len(v) > 40]
+    short = " · ".join(f"{k}: {v}" for k, v in facts.items() if len(v) <= 40)
+    return [line for line in (short, *long) if line]
+
+
+def _heading(title: str, facts: Mapping[str, str]) -> Iterator[Shape]:
+    yield Text(at=(LEFT, 30.0), text=title, role="text-strong", size=18)
+    for i, line in enumerate(_lines(facts)):
+        yield Text(at=(LEFT, 50.0 + 17.0 * i), text=line, role="text-muted", size=12)
+
+
+def _legend(
+    content: MapContent, world: Map, left: float, top: float, right: float
+) -> tuple[list[Shape], float]:
+    """Swatch and label of everything that the map has; and where the paper ends, px."""
+    made: list[Shape] = []
+    x, y = left, top
+    ruler = list(world.ruler(right, top + 4.0))
+    limit = min(p[0] for s in ruler if isinstance(s, Path) for p in s.points) - 20.0
+    for role, label in _entries(content):
+        width = _SWATCH + 8.0 + 6.6 * len(label) + 20.0
+        if x + width > limit and x > left:
+            x, y = left, y + _LINE
+        made += [*_swatch(role, x, y), _label(label, x + 2.0 * _SWATCH, y)]
+        x += width + _SWATCH
+    return [*made, *ruler], y + 22.0
+
+
+def _entries(content: MapContent) -> Iterator[tuple[str, str]]:
+    parts = content.parts
+    if len(content.people):
+        yield "ramp", f"people, 0–{fastest(content.people):g} m/s"
+        yield "arrow", "way of 1 s at preferred speed"
+    if (content.people.group >= 0).any():
+        yield "group", "group"
+    if any(content.people.goals):
+        yield "route", "their routes"
+    if content.robots:
+        yield "robot", "robot"
+        yield "goal", "its goal"
+    if any(robot.sensors for robot in content.robots):
+        yield "sensor", "what its sensors reach"
+    pairs = list(zip(parts.stops_robot.tolist(), parts.stops_crowd.tolist(), strict=True))
+    for role, pair, label in (
+        ("wall", (True, True), "wall"),
+        ("wall-robot", (True, False), "wall for robots only"),
+        ("wall-crowd", (False, True), "wall for people only"),
+    ):
+        if pair in pairs:
+            yield role, label
+    if len(parts.portals):
+        yield "portal", "portal"
+    if parts.periodic_boundary is not None:
+        yield "torus", "border that leads to the other side"
+    for role, label in (("spawn", "spawn area"), ("goal-area", "goal area")):
+        if content.areas.get(role):
+            yield role, label
+
+
+def _swatch(role: str, x: float, y: float) -> Iterator[Shape]:
+    low, high = y - 9.0, y + 1.0
+    middle, end = 0.5 * (low + high), x + _SWATCH + 4.0
+    if role == "ramp":
+        step = (end - x) / len(SPEEDS)
+        for i in range(len(SPEEDS)):
+            box = _box(x + i * step, low, x + (i + 1) * step, high)
+            yield Path(points=box, role=f"ramp-{i}", closed=True, inside=False)
+    elif role == "robot":
+        yield Disc(centre=(x + 8.0, middle), radius=6.0, role=role, inside=False)
+    elif role == "arrow":
+        yield Path(points=((x, middle), (end, middle)), role=role, inside=False)
+        wings = ((end - 5.0, middle - 3.0), (end, middle), (end - 5.0, middle + 3.0))
+        yield Path(points=wings, role=role, inside=False)
+    elif role.startswith("wall") or role in ("group", "route", "torus"):
+        yield Path(points=((x, middle), (end, middle)), role=role, inside=False)
+    else:
+        yield Path(points=_box(x, low, end, high), role=role, closed=True, inside=False)
+
+
+def _label(label: str, x: float, y: float) -> Text:
+    return Text(at=(x, y), text=label, role="text", size=12)
+
+
+def _box(x0: float, y0: float, x1: float, y1: float) -> tuple[tuple[float, float], ...]:
+    return ((x0, y0), (x1, y0), (x1, y1), (x0, y1))

@@ -1,0 +1,30 @@
+"""FOEAvoidance: the focus of expansion of the optical flow.
+
+Source: López, Chaumette, Marchand, Pettré, "Character navigation in dynamic environments
+based on optical flow", CGF 2019, in the form of van Toll et al., I3D 2020.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge
+from pydantic import Field
+
+from crowdbot.dsl import Component, CostFunctionSpec, Range
+
+
+class FoeAvoidanceSpec(CostFunctionSpec):
+    """Turns and brakes so that nobody stays in the focus of expansion."""
+
+    kind: Literal["foe_avoidance"] = "foe_avoidance"
+    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
+    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
+
+
+FOE_AVOIDANCE = Component(
+    spec=FoeAvoidanceSpec,
+    build="crowdbot.plugins.crowd.cost_functions.foe_avoidance_build:build",
+    summary="focus of expansion of the optical flow (López et al. 2019)",
+    exceptions={"check_gradient": "the model has a rule of its own for turning and braking"},
+)

@@ -1,0 +1,29 @@
+"""GoalReachingForce: the driving term of the social forces.
+
+Source: Helbing, Molnár, "Social force model for pedestrian dynamics", PRE 51 (1995), in the
+form of van Toll et al., I3D 2020.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge
+from pydantic import Field
+
+from crowdbot.dsl import Component, CostFunctionSpec, Range
+
+
+class GoalReachingForceSpec(CostFunctionSpec):
+    """Pulls to the preferred velocity within the relaxation time of the policy."""
+
+    kind: Literal["goal_reaching_force"] = "goal_reaching_force"
+    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
+    range: Range = Field(default=Range(), description="Has no effect: no neighbour counts.")
+
+
+GOAL_REACHING_FORCE = Component(
+    spec=GoalReachingForceSpec,
+    build="crowdbot.plugins.crowd.cost_functions.goal_reaching_force_build:build",
+    summary="driving force to the preferred velocity (Helbing and Molnár 1995)",
+)

@@ -1,0 +1,42 @@
+"""Karamouzas: the predicted collision decides which velocities are thought of.
+
+Source: Karamouzas, Overmars, "A velocity-based approach for simulating human collision
+avoidance", IVA 2010, in the form of van Toll et al., I3D 2020.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge
+from pydantic import Field
+
+from crowdbot.dsl import Component, CostFunctionSpec, PositiveDuration, Range
+
+
+class KaramouzasSpec(CostFunctionSpec):
+    """Least effort among velocities whose deviation fits the time that is left."""
+
+    kind: Literal["karamouzas"] = "karamouzas"
+    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
+    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
+    alpha: Annotated[float, Ge(0)] = Field(
+        default=5.0, description="Weight of the deviation in heading."
+    )
+    beta: Annotated[float, Ge(0)] = Field(default=0.5, description="Weight of the change of speed.")
+    gamma: Annotated[float, Ge(0)] = Field(
+        default=1.0, description="Weight of the deviation in velocity."
+    )
+    delta: Annotated[float, Ge(0)] = Field(
+        default=1.0, description="Weight of the time to collision."
+    )
+    t_max: PositiveDuration = Field(
+        default=8.0, description="Collisions later than this cost nothing, s."
+    )
+
+
+KARAMOUZAS = Component(
+    spec=KaramouzasSpec,
+    build="crowdbot.plugins.crowd.cost_functions.karamouzas_build:build",
+    summary="least effort within allowed deviations (Karamouzas and Overmars 2010)",
+)

@@ -1,0 +1,90 @@
+"""Moussaid as a compiled cost.
+
+With the free way c in direction e (at most d_max) and the safe speed S = min(s, c / tau):
+cost K (1 + ((S - |u|) / S)^2), K = d_max^2 + c^2 - 2 d_max c cos(e, v_preferred) + 1. The base is
+the least K of any c.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from crowdbot.core.interfaces import (
+    BASE,
+    EXCESS,
+    PREFERRED,
+    PREPARE,
+    PVX,
+    PVY,
+    RELAXATION,
+    CompiledCost,
+    Pointer,
+    first_contact,
+    list_obstacles,
+)
+from crowdbot.plugins.crowd.cost_functions.moussaid import MoussaidSpec
+
+_D_MAX = 2  # entry of params
+
+
+@njit(cache=True, error_model="numpy")
+def _least_course(ahead: float, d_max: float) -> float:
+    ahead = max(0.0, ahead)
+    return 1.0 + d_max * d_max * (1.0 - ahead * ahead)
+
+
+@njit(BASE, cache=True, error_model="numpy")
+def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
+    speed = math.hypot(ux, uy)
+    return float(_least_course(ux / speed if speed > 0.0 else 0.0, params[_D_MAX]))
+
+
+@njit(PREPARE, cache=True, error_model="numpy")
+def _prepare(
+    agent: Pointer,
+    near: Pointer,
+    near_count: int,
+    walls: Pointer,
+    wall_count: int,
+    params: Pointer,
+    work: Pointer,
+) -> int:
+    fastest = agent[PREFERRED]
+    list_obstacles(agent, near, near_count, walls, wall_count, params, work, fastest)
+    return 1
+
+
+@njit(EXCESS, cache=True, error_model="numpy")
+def _excess(
+    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+) -> float:
+    speed, preferred, d_max = math.hypot(ux, uy), agent[PREFERRED], params[_D_MAX]
+    ahead, scale = 0.0, 0.0
+    if speed > 0.0:
+        scale = preferred / speed
+        if preferred > 0.0:
+            ahead = (ux * agent[PVX] + uy * agent[PVY]) / (speed * preferred)
+    t = first_contact(ux * scale, uy * scale, agent, work)
+    free = min(d_max, t * preferred) if preferred > 0.0 else d_max
+    course = d_max * d_max + free * free - 2.0 * d_max * free * ahead + 1.0
+    least = _least_course(ahead, d_max)
+    safe = preferred if free >= preferred * agent[RELAXATION] else free / agent[RELAXATION]
+    if safe <= 0.0:
+        return math.inf if speed > 0.0 else max(0.0, course - least)
+    slower = (safe - speed) / safe
+    return float(max(0.0, course * (1.0 + slower * slower) - least))
+
+
+def build(spec: MoussaidSpec) -> CompiledCost:
+    """Compiled functions with this spec's parameters."""
+    surface = 1.0 if spec.range.measure == "surface" else 0.0
+    return CompiledCost(
+        base=_base,
+        prepare=_prepare,
+        excess=_excess,
+        params=np.array([spec.range.value, surface, spec.d_max]),
+        weight=spec.weight,
+    )

@@ -1,0 +1,31 @@
+"""ORCA: optimal reciprocal collision avoidance.
+
+Source: van den Berg, Guy, Lin, Manocha, "Reciprocal n-body collision avoidance", ISRR 2009.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge
+from pydantic import Field
+
+from crowdbot.dsl import Component, CostFunctionSpec, PositiveDuration, Range
+
+
+class OrcaSpec(CostFunctionSpec):
+    """The velocity nearest to the preferred one that is safe for a while."""
+
+    kind: Literal["orca"] = "orca"
+    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
+    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
+    time_horizon: PositiveDuration = Field(
+        default=5.0, description="How long the velocity has to be safe, s."
+    )
+
+
+ORCA = Component(
+    spec=OrcaSpec,
+    build="crowdbot.plugins.crowd.cost_functions.orca_build:build",
+    summary="optimal reciprocal collision avoidance (van den Berg et al. 2009)",
+)

@@ -1,0 +1,172 @@
+"""ORCA as a compiled cost, with its optimum; formulas in docs/reference/crowd/orca.md."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from crowdbot.core.interfaces import (
+    BASE,
+    D2,
+    EXCESS,
+    MAX_SPEED,
+    NVX,
+    NVY,
+    NX,
+    NY,
+    OPTIMUM,
+    PARITY,
+    PREPARE,
+    PVX,
+    PVY,
+    RADIUS,
+    REACH,
+    RX,
+    RY,
+    STATIC,
+    TIME_STEP,
+    VX,
+    VY,
+    WALL_D2,
+    CompiledCost,
+    Pointer,
+    in_range,
+    near_table,
+    wall_table,
+)
+from crowdbot.plugins.crowd.cost_functions.half_planes_build import best_velocity, put, violation
+from crowdbot.plugins.crowd.cost_functions.orca import OrcaSpec
+
+_HORIZON = 2  # entry of params
+_BRAKING = 0.5  # s in which the gap to a wall may be used up
+
+
+@njit(BASE, cache=True, error_model="numpy")
+def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
+    return min(math.hypot(ux - preferred, uy), 2.0 * max_speed)
+
+
+@njit(cache=True, error_model="numpy")
+def _change(
+    rx: float,
+    ry: float,
+    wx: float,
+    wy: float,
+    reach: float,
+    horizon: float,
+    dt: float,
+    parity: bool,
+) -> tuple[float, float, float]:
+    """Unit vector out of the velocity obstacle, and the way to its border along it.
+
+    Args:
+        rx, ry: centre of the other disc minus own centre.
+        wx, wy: own velocity minus the other's.
+        horizon, dt: time for which discs apart are kept apart, and in which others separate.
+    """  # fmt: skip
+    d2 = rx * rx + ry * ry
+    gap2 = d2 - reach * reach
+    time = horizon if gap2 > 0.0 else dt
+    ox, oy = wx - rx / time, wy - ry / time  # from the centre of the cut-off disc
+    out2, towards = ox * ox + oy * oy, ox * rx + oy * ry
+    if gap2 <= 0.0 or (towards < 0.0 and towards * towards > reach * reach * out2):
+        out = math.sqrt(out2)
+        if out == 0.0:
+            distance = math.sqrt(d2)
+            return (-rx / distance, -ry / distance, reach / time) if d2 > 0.0 else (0.0, 0.0, 0.0)
+        if parity and gap2 <= 0.0:  # divided by the square: a vector that is not a unit vector
+            return ox / out2, oy / out2, reach / time - out2
+        return ox / out, oy / out, reach / time - out
+    leg, side = math.sqrt(gap2), 1.0 if rx * oy - ry * ox > 0.0 else -1.0
+    nx, ny = -(side * rx * reach + ry * leg) / d2, (rx * leg - side * ry * reach) / d2
+    nx, ny = side * nx, side * ny
+    return nx, ny, -(wx * nx + wy * ny)
+
+
+@njit(cache=True, error_model="numpy")
+def _put_walls(
+    agent: Pointer, walls: Pointer, wall_count: int, params: Pointer, work: Pointer, count: int
+) -> int:
+    """Two half-planes for each wall: braking, and going round its nearest point."""
+    walls = wall_table(walls)
+    vx, vy, radius = agent[VX], agent[VY], agent[RADIUS]
+    for s in range(wall_count):
+        d2, rx, ry = walls[s, WALL_D2], walls[s, NX], walls[s, NY]
+        if d2 == 0.0 or not in_range(d2, radius, params):
+            continue
+        distance = math.sqrt(d2)
+        put(work, count, -rx / distance, -ry / distance, (radius - distance) / _BRAKING)
+        count += 1
+        if distance > radius:
+            nx, ny, way = _change(rx, ry, vx, vy, radius, params[_HORIZON], 1.0, False)
+            put(work, count, nx, ny, nx * vx + ny * vy + way)
+            count += 1
+    return count
+
+
+@njit(PREPARE, cache=True, error_model="numpy")
+def _prepare(
+    agent: Pointer,
+    near: Pointer,
+    near_count: int,
+    walls: Pointer,
+    wall_count: int,
+    params: Pointer,
+    work: Pointer,
+) -> int:
+    """Row 0: number of half-planes; these follow."""
+    near, count = near_table(near), 0
+    vx, vy, horizon, dt = agent[VX], agent[VY], params[_HORIZON], agent[TIME_STEP]
+    parity = agent[PARITY] != 0.0
+    for j in range(near_count):
+        if not in_range(near[j, D2], near[j, REACH], params):
+            continue
+        wx, wy = vx - near[j, NVX], vy - near[j, NVY]
+        nx, ny, way = _change(
+            near[j, RX], near[j, RY], wx, wy, near[j, REACH], horizon, dt, parity
+        )  # fmt: skip
+        if nx == 0.0 and ny == 0.0:
+            continue
+        share = 1.0 if near[j, STATIC] != 0.0 else 0.5  # people do half of it each
+        c = nx * (vx + share * way * nx) + ny * (vy + share * way * ny)
+        put(work, count, nx, ny, c)
+        count += 1
+    if not parity:
+        count = _put_walls(agent, walls, wall_count, params, work, count)
+    work[0] = count
+    return max(count, 1)  # base alone may be less than the cost of a candidate that is too fast
+
+
+@njit(EXCESS, cache=True, error_model="numpy")
+def _excess(
+    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+) -> float:
+    most, worst = 2.0 * agent[MAX_SPEED], 0.0
+    wanted = math.hypot(ux - agent[PVX], uy - agent[PVY])
+    base = min(wanted, most)
+    for k in range(int(work[0])):
+        worst = max(worst, violation(work, k, ux, uy))
+        if worst > 0.0 and most + worst - base > budget:
+            break
+    return float(most + worst - base if worst > 0.0 else wanted - base)
+
+
+@njit(OPTIMUM, cache=True, error_model="numpy")
+def _optimum(agent: Pointer, work: Pointer, params: Pointer, out: Pointer) -> int:
+    out[0], out[1] = best_velocity(work, int(work[0]), agent[MAX_SPEED], agent[PVX], agent[PVY])
+    return 1
+
+
+def build(spec: OrcaSpec) -> CompiledCost:
+    """Compiled functions with this spec's parameters."""
+    surface = 1.0 if spec.range.measure == "surface" else 0.0
+    return CompiledCost(
+        base=_base,
+        prepare=_prepare,
+        excess=_excess,
+        optimum=_optimum,
+        params=np.array([spec.range.value, surface, spec.time_horizon]),
+        weight=spec.weight,
+    )

@@ -1,0 +1,38 @@
+"""Paris: passing before or behind each neighbour.
+
+Source: Paris, Pettré, Donikian, "Pedestrian reactive navigation for crowd simulation: a
+predictive approach", CGF 26 (2007), in the interpretation of van Toll et al., I3D 2020.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Le
+from pydantic import Field
+
+from crowdbot.dsl import Component, CostFunctionSpec, NonNegativeDuration, PositiveDuration, Range
+
+
+class ParisSpec(CostFunctionSpec):
+    """Weighs for each direction the speeds that pass before or behind others."""
+
+    kind: Literal["paris"] = "paris"
+    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
+    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
+    w_a: Annotated[float, Ge(0), Le(1)] = Field(
+        default=0.5, description="Share of others in the cost; the rest is the heading."
+    )
+    w_b: NonNegativeDuration = Field(
+        default=0.0, description="Time added to the horizon in the urgency, s."
+    )
+    t_max: PositiveDuration = Field(
+        default=8.0, description="Crossings later than this do not count, s."
+    )
+
+
+PARIS = Component(
+    spec=ParisSpec,
+    build="crowdbot.plugins.crowd.cost_functions.paris_build:build",
+    summary="passing before or behind others (Paris et al. 2007)",
+)

@@ -1,0 +1,39 @@
+"""PLEdestrians: the principle of least effort.
+
+Source: Guy, Chhugani, Curtis, Dubey, Lin, Manocha, "PLEdestrians: a least-effort approach to
+crowd simulation", SCA 2010, in the form of van Toll et al., I3D 2020.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt
+from pydantic import Field
+
+from crowdbot.dsl import Component, CostFunctionSpec, NonNegativeDuration, PositiveDuration, Range
+
+
+class PledestriansSpec(CostFunctionSpec):
+    """Least metabolic energy to the goal, without a collision soon."""
+
+    kind: Literal["pledestrians"] = "pledestrians"
+    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
+    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
+    w_a: Annotated[float, Gt(0)] = Field(default=2.23, description="Power of standing, W/kg.")
+    w_b: Annotated[float, Gt(0)] = Field(
+        default=1.26, description="Power of walking per squared speed, W s^2/(kg m^2)."
+    )
+    t_min: NonNegativeDuration = Field(
+        default=0.5, description="Collisions sooner than this are forbidden, s."
+    )
+    t_max: PositiveDuration = Field(
+        default=3.0, description="How long the velocity is kept in the plan, s."
+    )
+
+
+PLEDESTRIANS = Component(
+    spec=PledestriansSpec,
+    build="crowdbot.plugins.crowd.cost_functions.pledestrians_build:build",
+    summary="least effort to the goal (Guy et al. 2010)",
+)

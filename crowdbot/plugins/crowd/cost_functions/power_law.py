@@ -1,0 +1,33 @@
+"""PowerLaw: a force that follows the measured law of interaction.
+
+Source: Karamouzas, Skinner, Guy, "Universal power law governing pedestrian interactions",
+PRL 113 (2014), in the form of van Toll et al., I3D 2020.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge
+from pydantic import Field
+
+from crowdbot.dsl import Component, CostFunctionSpec, PositiveDuration, Range
+
+
+class PowerLawSpec(CostFunctionSpec):
+    """Pushes away from collisions, by a power law of the time that is left."""
+
+    kind: Literal["power_law"] = "power_law"
+    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
+    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
+    k: Annotated[float, Ge(0)] = Field(default=1.5, description="Strength, m^2.")
+    tau0: PositiveDuration = Field(
+        default=3.0, description="Collisions later than this do not count, s."
+    )
+
+
+POWER_LAW = Component(
+    spec=PowerLawSpec,
+    build="crowdbot.plugins.crowd.cost_functions.power_law_build:build",
+    summary="power law of the time to collision (Karamouzas et al. 2014)",
+)

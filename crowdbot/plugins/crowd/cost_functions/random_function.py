@@ -1,0 +1,30 @@
+"""RandomFunction: noise, for tests and for breaking ties.
+
+Source: van Toll et al., "Generalized Microscopic Crowd Simulation using Costs in Velocity
+Space", I3D 2020.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge
+from pydantic import Field
+
+from crowdbot.dsl import Component, CostFunctionSpec, Range
+
+
+class RandomFunctionSpec(CostFunctionSpec):
+    """A random cost between 0 and 2; from a generator that each agent has of its own."""
+
+    kind: Literal["random_function"] = "random_function"
+    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
+    range: Range = Field(default=Range(), description="Has no effect: no neighbour counts.")
+
+
+RANDOM_FUNCTION = Component(
+    spec=RandomFunctionSpec,
+    build="crowdbot.plugins.crowd.cost_functions.random_function_build:build",
+    summary="random cost between 0 and 2",
+    exceptions={"check_gradient": "what is drawn anew for each candidate has no slope"},
+)

@@ -1,0 +1,60 @@
+"""RandomFunction as a compiled cost: uniform between 0 and 2, from the agent's own generator.
+
+The original draws between -1 and 1; adding 1 to every candidate changes no choice.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from crowdbot.core.crowd.velocity_search.minstd import draw
+from crowdbot.core.interfaces import BASE, EXCESS, GRADIENT, PREPARE, CompiledCost, Pointer
+from crowdbot.plugins.crowd.cost_functions.random_function import RandomFunctionSpec
+
+
+@njit(BASE, cache=True, error_model="numpy")
+def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
+    return 0.0
+
+
+@njit(PREPARE, cache=True, error_model="numpy")
+def _prepare(
+    agent: Pointer,
+    near: Pointer,
+    near_count: int,
+    walls: Pointer,
+    wall_count: int,
+    params: Pointer,
+    work: Pointer,
+) -> int:
+    return 1
+
+
+@njit(EXCESS, cache=True, error_model="numpy")
+def _excess(
+    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+) -> float:
+    return float(draw(agent, -1.0, 1.0) + 1.0)
+
+
+@njit(GRADIENT, cache=True, error_model="numpy")
+def _gradient(
+    ux: float, uy: float, agent: Pointer, work: Pointer, params: Pointer, out: Pointer
+) -> int:
+    out[1] = draw(agent, -1.0, 1.0)  # y first, as in the original
+    out[0] = draw(agent, -1.0, 1.0)
+    return 1
+
+
+def build(spec: RandomFunctionSpec) -> CompiledCost:
+    """Compiled functions; there are no parameters."""
+    return CompiledCost(
+        base=_base,
+        prepare=_prepare,
+        excess=_excess,
+        gradient=_gradient,
+        params=np.array([spec.range.value, 0.0]),
+        weight=spec.weight,
+        ordered=True,
+    )

@@ -1,0 +1,30 @@
+"""RVO: reciprocal velocity obstacles as a cost.
+
+Source: van den Berg, Lin, Manocha, "Reciprocal velocity obstacles for real-time multi-agent
+navigation", ICRA 2008, in the form of van Toll et al., I3D 2020.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge
+from pydantic import Field
+
+from crowdbot.dsl import Component, CostFunctionSpec, Range
+
+
+class RvoSpec(CostFunctionSpec):
+    """Reflex against imminent collisions with people and walls."""
+
+    kind: Literal["rvo"] = "rvo"
+    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
+    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
+    w: Annotated[float, Ge(0)] = Field(default=1.0, description="Weight of the collision term, m.")
+
+
+RVO = Component(
+    spec=RvoSpec,
+    build="crowdbot.plugins.crowd.cost_functions.rvo_build:build",
+    summary="reciprocal velocity obstacles (van den Berg et al. 2008)",
+)

@@ -1,0 +1,86 @@
+"""The gradient that goes with TtcaDca: turning and speeding up, as in Dutra et al.
+
+It is not the derivative of the cost: the paper follows the derivatives along heading and speed of
+the velocity relative to each neighbour, and this does the same, as the original engine does.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from crowdbot.core.interfaces import GRADIENT, PREFERRED, PVX, PVY, Pointer, work_table
+from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
+    INV_DCA2,
+    INV_TTCA2,
+    NEGLIGIBLE,
+    SIGMA_ANGLE,
+    SIGMA_SPEED,
+    WEIGHT,
+)
+
+_STILL = 1e-3  # relative speeds squared (m^2/s^2), times (s), distances (m) that count as zero
+
+
+@njit(cache=True, error_model="numpy")
+def _by_neighbours(ux: float, uy: float, work: Pointer, params: Pointer) -> tuple[float, float]:
+    work = work_table(work)
+    by_time, by_distance = params[INV_TTCA2], params[INV_DCA2]
+    turning = speeding = total = 0.0
+    for j in range(1, int(work[0, 0]) + 1):
+        dx, dy, qx, qy = work[j, 0], work[j, 1], work[j, 2], work[j, 3]
+        wx, wy = work[j, 4] - ux, work[j, 5] - uy
+        across = dx * wy - dy * wx
+        wx, wy = wx - dy * across, wy + dx * across
+        speed2 = wx * wx + wy * wy
+        if speed2 <= _STILL:
+            continue
+        total += work[j, WEIGHT]
+        t = max(0.0, -(qx * wx + qy * wy) / speed2)
+        cx, cy = qx + t * wx, qy + t * wy
+        distance2 = cx * cx + cy * cy
+        exponent = t * t * by_time + distance2 * by_distance
+        if exponent >= NEGLIGIBLE:
+            continue
+        rate = 1.0 / math.sqrt(speed2)
+        ex, ey = wx * rate, wy * rate
+        t_turn = t_speed = d_turn = d_speed = 0.0
+        if t > _STILL:
+            fx, fy = qx + 2.0 * t * wx, qy + 2.0 * t * wy
+            t_turn = -(fx * wy - fy * wx) / speed2
+            t_speed = (fx * ex + fy * ey) / speed2
+        if distance2 > _STILL * _STILL:  # times the distance, which cancels
+            d_turn = cx * (t_turn * wx + t * wy) + cy * (t_turn * wy - t * wx)
+            d_speed = cx * (t_speed * wx - t * ex) + cy * (t_speed * wy - t * ey)
+        factor = work[j, WEIGHT] * math.exp(-0.5 * exponent)
+        turning -= factor * (t_turn * t * by_time + d_turn * by_distance)
+        speeding -= factor * (t_speed * t * by_time + d_speed * by_distance)
+    if total > 0.0:
+        turning, speeding = turning / total, speeding / total
+    return turning, speeding
+
+
+@njit(GRADIENT, cache=True, error_model="numpy")
+def gradient(
+    ux: float, uy: float, agent: Pointer, work: Pointer, params: Pointer, out: Pointer
+) -> int:
+    """Derivatives along heading and speed, then along x and y."""
+    turning, speeding = _by_neighbours(ux, uy, work, params)
+    preferred, speed = agent[PREFERRED], math.sqrt(ux * ux + uy * uy)
+    angle = 0.0
+    if speed > 0.0:
+        across = ux * agent[PVY] - uy * agent[PVX]
+        angle = math.atan2(across, ux * agent[PVX] + uy * agent[PVY])
+    inv = 1.0 / params[SIGMA_ANGLE] ** 2
+    turning += 0.5 * angle * inv * math.exp(-0.5 * angle * angle * inv)
+    faster, inv = speed - preferred, 1.0 / params[SIGMA_SPEED] ** 2
+    speeding += 0.5 * faster * inv * math.exp(-0.5 * faster * faster * inv)
+    if speed * speed < 0.01:
+        ex, ey, speed = agent[PVX] / preferred, agent[PVY] / preferred, preferred
+    else:
+        ex, ey = ux / speed, uy / speed
+    a = speed * math.sin(turning)
+    b = speed * (1.0 - math.cos(turning)) + speeding
+    out[0], out[1] = ey * a + ex * b, ey * b - ex * a
+    return 1

@@ -1,0 +1,32 @@
+"""VanToll: free way, deviation and inertia in one sum.
+
+Source: van Toll, Pettré, the synthesis used in van Toll et al., "Generalized Microscopic
+Crowd Simulation using Costs in Velocity Space", I3D 2020.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge
+from pydantic import Field
+
+from crowdbot.dsl import Component, CostFunctionSpec, PositiveLength, Range
+
+
+class VanTollSpec(CostFunctionSpec):
+    """Weighs the free way against turning from the goal and from the present velocity."""
+
+    kind: Literal["van_toll"] = "van_toll"
+    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
+    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
+    max_distance: PositiveLength = Field(
+        default=8.0, description="How far the way is looked at, m."
+    )
+
+
+VAN_TOLL = Component(
+    spec=VanTollSpec,
+    build="crowdbot.plugins.crowd.cost_functions.van_toll_build:build",
+    summary="free way, deviation and inertia (van Toll et al. 2020)",
+)

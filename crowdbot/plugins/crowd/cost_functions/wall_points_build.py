@@ -1,0 +1,22 @@
+"""Walls as points: the nearest one of each segment, corners once."""
+
+from __future__ import annotations
+
+from numba import njit
+
+from crowdbot.core.interfaces import NX, NY, RADIUS, WALL_D2, Pointer, in_range, wall_table
+
+_SAME = 1e-9  # m
+
+
+@njit(cache=True, error_model="numpy")
+def counts(s: int, agent: Pointer, walls: Pointer, params: Pointer) -> bool:
+    """Whether wall s is in range and its nearest point is not that of a wall before it."""
+    walls = wall_table(walls)
+    if not in_range(walls[s, WALL_D2], agent[RADIUS], params):
+        return False
+    for earlier in range(s):
+        dx, dy = walls[s, NX] - walls[earlier, NX], walls[s, NY] - walls[earlier, NY]
+        if abs(dx) <= _SAME and abs(dy) <= _SAME:
+            return False
+    return True

@@ -1,0 +1,1 @@
+"""Crowd policies: how people decide where to walk."""

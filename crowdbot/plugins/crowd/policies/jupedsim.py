@@ -1,0 +1,52 @@
+"""JuPedSim: two models of the library of that name, as a crowd policy.
+
+Sources: Tordeux, Chraibi, Seyfried, "Collision-free speed model for pedestrian dynamics", Traffic
+and Granular Flow 2015; Xu, Chraibi, Seyfried, "Anticipation in a velocity-based model for
+pedestrian dynamics", Transportation Research C 133, 2021.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from crowdbot.dsl import (
+    Component,
+    CrowdPolicySpec,
+    NonNegativeSteeringStiffness,
+    PositiveDuration,
+    PositiveLength,
+)
+
+
+class JuPedSimSpec(CrowdPolicySpec):
+    """People decide as in JuPedSim; needs ``crowdbot[jupedsim]``. Takes no cost functions.
+
+    What is not a field here has the library's default.
+    """
+
+    kind: Literal["jupedsim"] = "jupedsim"
+    model: Literal["collision_free_speed", "anticipation_velocity"] = Field(
+        default="collision_free_speed", description="Which of the library's models."
+    )
+    time_gap: PositiveDuration = Field(
+        default=1.06, description="Time to the person in front that people keep, s."
+    )
+    time_step: PositiveDuration = Field(
+        default=0.015625, description="Step of the library within a decision, s."
+    )
+    sight: PositiveLength = Field(
+        default=10.0, description="On a torus: how far people see across the border, m."
+    )
+    contact_stiffness: NonNegativeSteeringStiffness = Field(
+        default=62.5, description="Push between overlapping people and walls, 1/s^2."
+    )
+
+
+JUPEDSIM = Component(
+    spec=JuPedSimSpec,
+    build="crowdbot.plugins.crowd.policies.jupedsim_build:build",
+    summary="collision-free-speed and anticipation-velocity models of JuPedSim",
+    examples=({}, {"model": "anticipation_velocity"}),
+)

@@ -1,0 +1,123 @@
+"""Velocity-space policy: minimise weighted costs by the method that its spec names."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from crowdbot.core.crowd.contact.geometry import is_clearly_longer, is_clearly_shorter
+from crowdbot.core.crowd.velocity_search.candidates import Sampling
+from crowdbot.core.crowd.velocity_search.gradient import Descent
+from crowdbot.core.crowd.velocity_search.optimum import Optimum
+from crowdbot.core.crowd.velocity_search.sampling import Sampler
+from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
+from crowdbot.core.interfaces import Agents, Array, CompiledCost, CrowdView, NumpyCost, kernel
+from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
+
+_BASES = ("zero", "current_velocity")
+_DIRECTIONS = ("unit", "current_velocity", "preferred_velocity")
+_RADII = ("preferred_speed", "maximum_speed", "maximum_acceleration")
+
+
+def sampling_of(spec: VelocitySpaceSpec) -> Sampling:
+    """Which candidates a spec asks for."""
+    return Sampling(
+        speeds=spec.speeds,
+        angles=spec.angles,
+        opening=spec.angle,
+        include_base=spec.include_base,
+        base=_BASES.index(spec.base),
+        direction=_DIRECTIONS.index(spec.direction),
+        radius=_RADII.index(spec.radius),
+        random=spec.random_samples if spec.samples == "random" else 0,
+    )
+
+
+class VelocitySpace:
+    """Weighted cost functions for one set of agents.
+
+    Args:
+        parity, weight: see `crowdbot.core.crowd.velocity_search.weighted_costs.WeightedCosts`.
+    """
+
+    def __init__(
+        self,
+        spec: VelocitySpaceSpec,
+        costs: Sequence[CompiledCost | NumpyCost],
+        agents: Agents,
+        *,
+        parity: bool = False,
+        weight: Array | None = None,
+    ) -> None:
+        self.contact_stiffness = spec.contact_stiffness
+        self.costs = WeightedCosts(
+            costs, agents, relaxation_time=spec.relaxation_time, parity=parity, weight=weight
+        )
+        self.minimiser: Sampler | Optimum | Descent
+        if spec.method == "gradient":
+            self.minimiser = Descent(self.costs)
+        elif spec.method == "global":
+            self.minimiser = Optimum(self.costs)
+        else:
+            self.minimiser = Sampler(sampling_of(spec), self.costs)
+
+    def accelerations(self, view: CrowdView) -> Array:
+        """Towards the chosen velocity or down the gradient, within each agent's limit, m/s^2."""
+        if isinstance(self.minimiser, Descent):
+            return self._limited(self.minimiser.accelerations(view), view, descend=True)
+        return self._limited(self.minimiser.choose(view), view, descend=False)
+
+    def towards(self, velocities: Array, view: CrowdView) -> Array:
+        """Accelerations (N, 2) towards given velocities, m/s^2."""
+        return self._limited(velocities.copy(), view, descend=False)
+
+    def _limited(self, found: Array, view: CrowdView, *, descend: bool) -> Array:
+        agents = view.agents
+        _accelerate(
+            found, descend, view.position, view.velocity, view.goal, agents.radius,
+            agents.preferred_speed, agents.max_acceleration,
+            max(self.costs.relaxation_time, view.dt), view.dt,
+        )  # fmt: skip
+        return found
+
+
+@kernel
+def _accelerate(
+    found: Array,
+    descend: bool,
+    position: Array,
+    velocity: Array,
+    goal: Array,
+    radius: Array,
+    preferred: Array,
+    limit: Array,
+    relaxation: float,
+    dt: float,
+) -> None:
+    """Turn what was found into accelerations, in place; who has arrived stops at once."""
+    for i in range(found.shape[0]):
+        gx, gy = goal[i, 0] - position[i, 0], goal[i, 1] - position[i, 1]
+        arrived = not is_clearly_longer(gx, gy, radius[i]) and math.hypot(gx, gy) <= radius[i]
+        ax, ay = found[i, 0], found[i, 1]
+        if arrived or preferred[i] == 0.0:
+            ax, ay = -velocity[i, 0] / dt, -velocity[i, 1] / dt
+        elif not descend:
+            ax, ay = (ax - velocity[i, 0]) / relaxation, (ay - velocity[i, 1]) / relaxation
+        elif math.isinf(ax) or math.isinf(ay):  # away from what is forbidden, as fast as possible
+            ax = math.copysign(limit[i], ax) if math.isinf(ax) else 0.0
+            ay = math.copysign(limit[i], ay) if math.isinf(ay) else 0.0
+        scale = 1.0
+        if not is_clearly_shorter(ax, ay, limit[i]):
+            norm = math.hypot(ax, ay)
+            scale = limit[i] / norm if norm > limit[i] else 1.0
+        found[i, 0], found[i, 1] = ax * scale, ay * scale
+
+
+def build(
+    spec: VelocitySpaceSpec, costs: Sequence[CompiledCost | NumpyCost], agents: Agents
+) -> VelocitySpace:
+    """The policy for one set of agents."""
+    return VelocitySpace(spec, costs, agents)
+
+
+__all__ = ["VelocitySpace", "build", "sampling_of"]

@@ -1,0 +1,1 @@
+"""Tools of those who work on crowdbot; none is part of the package."""

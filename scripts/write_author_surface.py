@@ -1,0 +1,154 @@
+"""Writes docs/reference/author_surface.md from the two modules that plugins import.
+
+Example: .venv/bin/python scripts/write_author_surface.py
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import ModuleType
+from typing import Annotated, Any, get_args, get_origin
+
+from crowdbot import dsl
+from crowdbot.core import interfaces
+from crowdbot.dsl.quantities import UNITS, Quantity
+
+PAGE = Path(__file__).parent.parent / "docs" / "reference" / "author_surface.md"
+
+_HEAD = """\
+# What plugins import
+
+<!-- Written by scripts/write_author_surface.py: change the modules, not this page. -->
+
+Two modules hold all that a package of components needs: `crowdbot.dsl` for the modules with specs,
+which are imported to list and to validate, and `crowdbot.core.interfaces` for the modules with
+build functions. Beside them there are `crowdbot` (the [Python API](../howto/score_own_data.md)),
+`crowdbot.errors`, `crowdbot.hookspecs` and `crowdbot.testing`. Everything else may change from one
+version to the next. crowdbot's own components import from here, too.
+
+`crowdbot.dsl` imports no numpy. Names of `crowdbot.core.interfaces` are imported when they are
+first used: who asks for `Command` does not wait for numba. What a component is, and what its
+methods are called with, is on the page [plugins](plugins.md).
+"""
+#: What has no docstring of its own.
+_SAID = {
+    "Better": "Which scores are better: `higher`, `lower`, those near the `reference`, or `none`.",
+    "Incidence": "Angle between a ray and a surface's normal, above 0, at most a right angle.",
+    "MOST_RAYS": "Rays that one reading of a sensor may take.",
+    "LOOP": "`Agents.at_goal`: walk back to the first point of the route.",
+    "PORTAL": "`Agents.at_goal`: leave through a portal and come in by its entrance.",
+    "REMOVE": "`Agents.at_goal`: leave the world.",
+    "STOP": "`Agents.at_goal`: stand there.",
+    "CONTACT_STIFFNESS": "Push between overlapping people where a policy does not say, 1/s².",
+    "CrowdPolicy": "A `VelocityPolicy` or an `AcceleratingPolicy`.",
+    "PolicyFactory": "Makes the policy of some agents.",
+    "Pointer": "What a compiled cost function is handed instead of an array; indexed like one.",
+    "Array": "float64 array.",
+    "Indices": "int64 array.",
+    "Mask": "bool array.",
+}
+#: Names that say what they mean together.
+_TOGETHER: Mapping[str, str] = {
+    "BASE EXCESS GRADIENT LOWER_BOUND OPTIMUM PREPARE": (
+        "Signatures of the functions of a `CompiledCost`."
+    ),
+    "PX PY VX VY RADIUS PREFERRED FASTEST TIME_STEP GX GY PVX PVY MAX_SPEED MAX_ACCELERATION "
+    "RELAXATION WEIGHT PARITY RANDOM DESCENDS AGENT_SIZE": (
+        "Entries of the vector `agent`: position, velocity, radius, preferred speed, greatest "
+        "speed that is searched, time between decisions; goal, preferred velocity, largest speed "
+        "and acceleration, relaxation time; weight, parity with the original, random numbers, "
+        "whether the search descends; and how many there are."
+    ),
+    "D2 RX RY NVX NVY REACH NPX NPY STATIC NEAR_COLUMNS": (
+        "Columns of `near`: squared distance, relative position, velocity, sum of radii, preferred "
+        "velocity, 1 for a pillar; and how many there are."
+    ),
+    "AX AY BX BY NX NY WALL_D2 WALL_COLUMNS": (
+        "Columns of `walls`: both ends and the nearest point, relative; squared distance; and how "
+        "many there are."
+    ),
+    "RANGE FROM_SURFACE": "First two entries of `params`.",
+    "WORK_COLUMNS": "Columns of `work`.",
+}
+#: Heading -> modules below crowdbot.core from which its names come.
+_GROUPS: Mapping[str, tuple[str, ...]] = {
+    "Build functions": ("interfaces",),
+    "Planners": ("planning", "types.motion", "sensing.points"),
+    "Sensors and noise": ("sensing", "types.sensor"),
+    "Robots": ("robots", "types.robot", "geometry"),
+    "Environments": ("types.environment",),
+    "Metrics": ("scoring", "types.score", "trajectories"),
+    "Recordings": ("recording",),
+    "Crowd": ("crowd.agents", "crowd.desired", "crowd.engine", "crowd.from", "crowd.policy",
+              "crowd.recorded", "crowd.world"),
+    "Cost functions": ("crowd.velocity_search", "crowd.contact"),
+    "Arrays and compiled code": ("types.arrays", "support"),
+}  # fmt: skip
+
+
+def author_surface_page() -> str:
+    """The whole page as Markdown."""
+    parts = [_HEAD, "## crowdbot.dsl\n", _table(_specs())]
+    parts.append("### Quantities\n\nNumbers in the unit given; documents may use others.\n")
+    parts += [_table(_quantities()), "## crowdbot.core.interfaces\n"]
+    for title in _GROUPS:
+        parts += [f"### {title}\n", _table(_group(title))]
+    return "\n".join(parts).rstrip() + "\n"
+
+
+def _table(rows: Iterator[tuple[str, str]]) -> str:
+    return "\n".join(["| name | |", "|---|---|", *(f"| {n} | {t} |" for n, t in rows), ""])
+
+
+def _specs() -> Iterator[tuple[str, str]]:
+    for name in dsl.__all__:
+        if name in _SAID or not _is_quantity(getattr(dsl, name)):
+            yield f"`{name}`", _line(dsl, name)
+
+
+def _quantities() -> Iterator[tuple[str, str]]:
+    for name in dsl.__all__:
+        value = getattr(dsl, name)
+        if name not in _SAID and _is_quantity(value):
+            (quantity,) = (m for m in get_args(value) if isinstance(m, Quantity))
+            yield f"`{name}`", f"{quantity.dimension}, {next(iter(UNITS[quantity.dimension]))}"
+
+
+def _is_quantity(value: object) -> bool:
+    return get_origin(value) is Annotated
+
+
+def _group(title: str) -> Iterator[tuple[str, str]]:
+    names = [n for n in interfaces.__all__ if _title(n) == title]
+    together = {n: words for words in _TOGETHER for n in words.split()}
+    for words, text in _TOGETHER.items():
+        if words.split()[0] in names:
+            yield ", ".join(f"`{n}`" for n in words.split()), text
+    for name in names:
+        if name not in together:
+            yield f"`{name}`", _line(interfaces, name)
+
+
+def _title(name: str) -> str:
+    home = _home(name).removeprefix("crowdbot.core.")
+    fitting = [(len(m), t) for t, modules in _GROUPS.items() for m in modules if home.startswith(m)]
+    return max(fitting)[1]
+
+
+def _home(name: str) -> str:
+    return next(m for m, names in interfaces._HOMES.items() if name in names.split())
+
+
+def _line(module: ModuleType, name: str) -> str:
+    """The first paragraph of a docstring, in one line."""
+    if name in _SAID:
+        return _SAID[name]
+    value: Any = getattr(module, name)
+    text = inspect.getdoc(getattr(value, "py_func", value)) or ""
+    return " ".join(text.partition("\n\n")[0].replace("``", "`").replace("|", "\\|").split())
+
+
+if __name__ == "__main__":
+    PAGE.write_text(author_surface_page(), encoding="utf-8")

@@ -1,0 +1,273 @@
+"""From runs to the leaderboard through the command line, with real simulations."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from crowdbot import cli
+from crowdbot.core.bundle import entries as entries_module
+from crowdbot.core.bundle.entries import load_entries
+from crowdbot.core.scenarios.library import open_spec
+from tests.core.bundle.made_up_runs import make_bundle, registry, rewrite, write_suite
+from tests.waiting import AT_MOST
+
+pytestmark = pytest.mark.slow
+
+PLANNER = """\
+class Steady:
+    needs = ()
+    def __init__(self, speed=0.3):
+        self.speed = speed
+    def reset(self, task, limits, sensors, seed):
+        pass
+    def step(self, obs):
+        return (self.speed, 0.1)
+class Other(Steady):
+    pass
+"""
+
+EMPTY = """\
+crowdbot: 1
+suite: {id: empty}
+base:
+  extends: ["builtin:parts/corridor_50x10.yaml", "builtin:parts/turtlebot2.yaml"]
+  robots.robot.task: {start: [2.5 m, 0 m, 0 deg], goal: {zone: robot_goal}, time_limit: 2 s}
+matrix:
+  limit:
+    slow: {robots.robot.task.time_limit: 1 s}
+    fast: {robots.robot.task.time_limit: 2 s}
+"""
+
+Verify = Callable[..., tuple[int, dict[str, Any]]]
+
+
+@pytest.fixture(scope="module")
+def world(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A suite of two scenarios of one second, and a planner of our own that has run them."""
+    folder = tmp_path_factory.mktemp("world")
+    suite = write_suite(folder)
+    text = suite.read_text(encoding="utf-8")
+    suite.write_text(text.replace("flow: in,", "flow: in, speed: slow,"), encoding="utf-8")
+    assert cli.main(["lock", str(suite)]) == 0
+    (folder / "mine.py").write_text(PLANNER, encoding="utf-8")
+    for scenario in open_spec(str(suite), registry()).scenarios:
+        assert cli.main([
+            "-q", "simulate", str(suite), scenario.id, "--planner", f"{folder / 'mine.py'}:Steady",
+            "--planner-set", "speed=0.4", "--record", "none", "--out", str(folder / "runs"),
+        ]) == 0  # fmt: skip
+    label = next((folder / "runs" / "tiny").glob("*/*")).name
+    assert cli.main([
+        "bundle", str(folder / "runs"), "--suite", str(suite), "--planner", label,
+        "--out", str(folder / "team.cbz"), "--team", "Us", "--recordings",
+    ]) == 0  # fmt: skip
+    return folder
+
+
+@pytest.fixture
+def verify(world: Path, capsys: pytest.CaptureFixture[str]) -> Verify:
+    def call(bundle: Path, *more: str, planner: bool = True) -> tuple[int, dict[str, Any]]:
+        own = ["--planner", f"{world / 'mine.py'}:Steady"] if planner else []
+        capsys.readouterr()
+        code = cli.main(["verify", str(bundle), "--suite", str(world / "tiny.yaml"), "--json",
+                         *own, *more])  # fmt: skip
+        said = capsys.readouterr()
+        assert "Traceback" not in said.err
+        return code, json.loads(said.out) if said.out else {"err": said.err}
+
+    return call
+
+
+def test_an_honest_bundle_is_verified(world: Path, verify: Verify) -> None:
+    code, found = verify(world / "team.cbz", "--all", "--save")
+    assert (code, found["outcome"], found["findings"]) == (0, "verified", [])
+    assert set(found["runs"].values()) == {"identical"}
+    assert len(found["runs"]) == 2
+    saved = json.loads((world / "team.verified.json").read_text())
+    assert saved["sha256"] == found["sha256"]
+
+
+def test_the_seed_names_the_sample(world: Path, verify: Verify) -> None:
+    chosen = [
+        [*verify(world / "team.cbz", "--sample", "1", "--seed", "1")[1]["runs"]] for _ in range(2)
+    ]
+    assert chosen[0] == chosen[1]
+    assert len(chosen[0]) == 1
+
+
+def forged(world: Path) -> Path:
+    """A forger improves one score of each run and lets every hash follow."""
+
+    def improve(content: bytes) -> bytes:
+        rows = content.split(b"\r\n")
+        better = [r.replace(b",0.0,", b",1.0,", 1) if b",spl," in r else r for r in rows]
+        return b"\r\n".join(better)
+
+    names = zipfile.ZipFile(world / "team.cbz").namelist()
+    return rewrite_stored(world, {n: improve for n in names if n.endswith("scores.csv")})
+
+
+def rewrite_stored(world: Path, change: Any) -> Path:
+    """`rewrite` without the recordings, which a bundle need not have."""
+    bundle = world / "team.cbz"
+    drop = {n: (lambda _: None) for n in zipfile.ZipFile(bundle).namelist()
+            if "/references/" in n or n.endswith(".mcap")}  # fmt: skip
+    return rewrite(bundle, {**drop, **change}, honest=True)
+
+
+def test_a_forged_score_is_suspicious(world: Path, verify: Verify) -> None:
+    code, found = verify(forged(world), "--all")
+    assert (code, found["outcome"]) == (1, "suspicious")
+    assert "is claimed to be 1.0, but the same trajectory gives 0.0" in found["findings"][0]
+
+
+def test_a_forged_record_is_suspicious(world: Path, verify: Verify) -> None:
+    names = zipfile.ZipFile(world / "team.cbz").namelist()
+
+    def forge(**changes: Any) -> Path:
+        def change(content: bytes) -> bytes:
+            return json.dumps(json.loads(content) | changes).encode()
+
+        return rewrite_stored(world, {n: change for n in names if n.endswith("run.json")})
+
+    code, found = verify(forge(status="arrived", goal_time=0.5), "--sample", "0")
+    assert (code, found["outcome"]) == (1, "invalid")  # success says something else
+    code, found = verify(forge(status="planner_failed"))
+    assert (code, found["outcome"]) == (1, "suspicious")
+    assert "status is claimed to be 'planner_failed', but is 'timeout'" in found["findings"][0]
+
+
+def test_a_tampered_member_is_invalid_and_nothing_is_simulated(world: Path, verify: Verify) -> None:
+    name = next(n for n in zipfile.ZipFile(world / "team.cbz").namelist() if "scores.csv" in n)
+    plain = rewrite_stored(world, {})
+    changed = rewrite(plain, {name: lambda c: c + b"\r\n"})
+    code, found = verify(changed)
+    assert (code, found["outcome"], found["runs"]) == (1, "invalid", {})
+    assert f"{name} is not what the manifest says; it was changed" in found["findings"]
+
+
+def test_a_planner_that_is_not_here_cannot_be_re_run(world: Path, verify: Verify) -> None:
+    code, found = verify(world / "team.cbz", planner=False)
+    assert (code, found["outcome"]) == (1, "cannot be re-run")
+    assert "get the file from the team" in found["findings"][0]
+    (world / "other").mkdir(exist_ok=True)
+    (world / "other" / "mine.py").write_text(PLANNER.replace("0.1", "0.2"), encoding="utf-8")
+    other = f"{world / 'other' / 'mine.py'}:Steady"
+    code, found = verify(world / "team.cbz", "--planner", other, planner=False)
+    assert "is not the file that the bundle was made with" in found["findings"][0]
+    code, found = verify(
+        world / "team.cbz", "--planner", f"{world / 'mine.py'}:Other", planner=False
+    )
+    assert (code, found["outcome"]) == (1, "cannot be re-run")
+    assert "is not the class that the bundle was made with: Steady" in found["findings"][0]
+
+
+def test_nothing_need_be_simulated(world: Path, verify: Verify) -> None:
+    code, found = verify(world / "team.cbz", "--sample", "0", planner=False)
+    assert (code, found["outcome"]) == (0, "not re-run")
+
+
+def test_foreign_versions_are_compared_within_tolerance(world: Path, verify: Verify) -> None:
+    """A bundle of another release whose trajectories differ: nobody is accused of that."""
+    from crowdbot.core.runs import provenance
+
+    versions = {**provenance.versions(), "numpy": "9.9.9"}
+
+    def foreign(content: bytes) -> bytes:
+        record = json.loads(content) | {"versions": versions}
+        identity = {k: record[k] for k in ("scenario", "suite", "planner", "seed", "versions",
+                                           "plugins")}  # fmt: skip
+        hashes = {k: v for k, v in record["hashes"].items() if k != "trajectory"}
+        record["hashes"]["trajectory"] = "cb1-sha256:0"
+        record["run_id"] = provenance.digest({**identity, "hashes": hashes})
+        return json.dumps(record).encode()
+
+    def manifest(content: bytes) -> bytes:
+        document = json.loads(content) | {"versions": versions}
+        for run in document["runs"]:
+            run["trajectory"] = "cb1-sha256:0"
+            run["run_id"] = json.loads(foreign(records[f"{run['directory']}/run.json"]))["run_id"]
+        return json.dumps(document).encode()
+
+    with zipfile.ZipFile(world / "team.cbz") as file:
+        records = {n: file.read(n) for n in file.namelist() if n.endswith("/run.json")}
+    own = {n: foreign for n in records if "/references/" not in n}
+    bundle = rewrite_stored(world, {**own, "bundle.json": manifest})
+    code, found = verify(bundle, "--all")
+    assert (code, found["outcome"]) == (0, "within tolerance")
+    assert set(found["runs"].values()) == {"different_platform"}
+
+
+@pytest.fixture(scope="module")
+def empty(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A bundle of two runs without people: nothing to compile for another processor."""
+    folder = tmp_path_factory.mktemp("empty")
+    suite = folder / "empty.yaml"
+    suite.write_text(EMPTY, encoding="utf-8")
+    (folder / "mine.py").write_text(PLANNER, encoding="utf-8")
+    for speed in ("slow", "fast"):
+        assert cli.main([
+            "-q", "simulate", str(suite), speed, "--planner", f"{folder / 'mine.py'}:Steady",
+            "--record", "none", "--out", str(folder / "runs"),
+        ]) == 0  # fmt: skip
+    assert cli.main(["bundle", str(folder / "runs"), "--suite", str(suite), "--planner", "Steady",
+                     "--out", str(folder / "team.cbz")]) == 0  # fmt: skip
+    return folder
+
+
+@pytest.mark.parametrize("libraries", [
+    {},
+    {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX2_Usable,-FMA_Usable",
+     "NPY_DISABLE_CPU_FEATURES": "AVX2 FMA3"},
+])  # fmt: skip
+def test_two_processors(empty: Path, libraries: dict[str, str]) -> None:
+    """The same bundle on a plain processor: never suspicious, whatever rounding does."""
+    plain = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", **libraries}
+    done = subprocess.run(
+        [sys.executable, "-m", "crowdbot", "-q", "verify", str(empty / "team.cbz"), "--suite",
+         str(empty / "empty.yaml"), "--planner", f"{empty / 'mine.py'}:Steady", "--all", "--json"],
+        capture_output=True, text=True, env=os.environ | plain, timeout=AT_MOST,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["machine"]["processor"] == "generic"
+    assert found["outcome"] in ("verified", "within tolerance")
+    assert found["findings"] == []
+    assert len(found["runs"]) == 2
+
+
+def test_changed_metrics_are_scored_again_from_recordings(
+    world: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = tmp_path / "own"
+    own.mkdir()
+    (own / "team.cbz").write_bytes((world / "team.cbz").read_bytes())
+    ((known,), _) = load_entries(own, registry())
+    before = {(s.metric, s.variant): s for s in known.runs[0].scores}
+    monkeypatch.setattr(entries_module, "old_metrics", lambda *_: {"risk", "relative_path_length"})
+    ((entry,), _) = load_entries(own, registry())
+    assert entry.rescored == ("relative_path_length", "risk")
+    assert entry.outdated == ()
+    after = {(s.metric, s.variant): s for s in entry.runs[0].scores}
+    assert after.keys() == before.keys()
+    for name, score in after.items():
+        assert (score.status, score.value) == (before[name].status, before[name].value), name
+
+
+def test_suites_that_are_not_installed_must_be_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bundle = make_bundle(tmp_path)
+    assert cli.main(["verify", str(bundle)]) == 1
+    assert "name its file with --suite" in capsys.readouterr().err
+    assert cli.main(["verify", str(bundle), "--suite", "challenge-2020"]) == 1
+    assert "is of suite 'tiny', not of 'challenge-2020'" in capsys.readouterr().err
+    assert cli.main(["verify", str(tmp_path / "none.cbz")]) == 1

@@ -1,0 +1,146 @@
+"""Run directories of a tiny suite that was never simulated, and archives to tamper with."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.bundle.manifest import MANIFEST
+from crowdbot.core.bundle.pack import Submission, pack
+from crowdbot.core.planning.resolve import resolve_planner
+from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.core.runs import provenance
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.scenarios.library import open_suite
+from crowdbot.core.scenarios.lock import make_lock, write_lock
+from crowdbot.core.scenarios.lock_check import spec_of
+from crowdbot.core.scoring.scores_csv import write_scores_csv
+from crowdbot.core.types.score import Score
+from crowdbot.dsl.canonical import dump_scenario_yaml
+
+TINY = """\
+crowdbot: 1
+extends: builtin:challenge-2020.yaml
+suite: {id: tiny, title: A tiny suite}
+base:
+  robots.robot.task.time_limit: 1 s
+only: {flow: in, density: d0125, coeff: [c01, c20], range: r02}
+"""
+METRICS = ("risk", "spl")
+
+
+@cache
+def registry() -> Registry:
+    return discover(allow=())
+
+
+def write_suite(folder: Path) -> Path:
+    """The suite with its lock; six scenarios, three draws."""
+    path = folder / "tiny.yaml"
+    path.write_text(TINY, encoding="utf-8")
+    expansion, lock = open_suite(str(path), registry())
+    write_lock(lock, make_lock(expansion, registry(), None))
+    return path
+
+
+def scores(*values: float) -> list[Score]:
+    return [
+        Score(metric=m, symbol=m, category="task", variant="corrected", unit="1",
+              better="higher", value=v)
+        for m, v in zip(METRICS, values, strict=True)
+    ]  # fmt: skip
+
+
+def make_runs(
+    root: Path,
+    suite: Path,
+    planner: str = "dwa",
+    value: Callable[[int], float] = float,
+    seeds: tuple[int, ...] = (0,),
+    **more: Any,
+) -> None:
+    """A complete set of runs; ``value`` of the scenario's number is each score."""
+    expansion, lock = open_suite(str(suite), registry())
+    choice = resolve_planner(planner, registry())
+    for number, scenario in enumerate(expansion.scenarios):
+        for seed in seeds:
+            folder = root / "tiny" / scenario.id / choice.label / f"seed-{seed}"
+            folder.mkdir(parents=True)
+            spec = spec_of(scenario, registry())
+            identity: dict[str, Any] = {
+                "scenario": scenario.id, "suite": "tiny",
+                "planner": {**choice.spec_dump, "name": choice.name, "label": choice.label},
+                "seed": seed,
+                "hashes": {"spec": spec,
+                           "realisation": lock.lock.scenarios[scenario.id].realisation},
+                "versions": provenance.versions(), "plugins": [],
+            }  # fmt: skip
+            record = {
+                "run_id": provenance.digest(identity), **identity,
+                "hashes": {**identity["hashes"], "trajectory": f"cb1-sha256:{number}{seed}"},
+                "pinned": choice.pinned, "privileged": choice.privileged, "status": "arrived",
+                "goal_time": 0.5,
+                "metrics": {m: {"spec_version": 1} for m in METRICS}, "density": 0.1,
+                "machine": provenance.machine(), "references": {}, **more,
+            }  # fmt: skip
+            files.write_json(folder / files.RECORD, record)
+            text = dump_scenario_yaml(scenario, registry().spec_versions(scenario))
+            (folder / files.SCENARIO).write_text(text, encoding="utf-8")
+            write_scores_csv(
+                folder / files.SCORES, scores(value(number), value(number)), scenario.id,
+                choice.label, seed,
+            )  # fmt: skip
+
+
+def make_bundle(folder: Path, planner: str = "dwa", name: str = "team.cbz", **more: Any) -> Path:
+    """A bundle of made-up runs."""
+    suite = folder / "tiny.yaml"
+    suite = suite if suite.exists() else write_suite(folder)
+    root = folder / f"runs-{name}"
+    options = {k: more.pop(k) for k in ("team", "partial", "recordings") if k in more}
+    make_runs(root, suite, planner, **more)
+    expansion, lock = open_suite(str(suite), registry())
+    label = resolve_planner(planner, registry()).label
+    pack(Submission(root=root, planner=label, **options), expansion, lock, registry(),
+         folder / name)  # fmt: skip
+    return folder / name
+
+
+def rewrite(
+    bundle: Path,
+    change: Mapping[str, Callable[[bytes], bytes | None]],
+    more: Mapping[str, bytes] | None = None,
+    *,
+    honest: bool = False,
+) -> Path:
+    """The same archive with other members; ``honest`` lets the manifest follow, as a forger would.
+
+    A change that gives None removes the member.
+    """
+    import hashlib
+
+    with zipfile.ZipFile(bundle) as file:
+        members = {n: file.read(n) for n in file.namelist()}
+    for name, function in change.items():
+        changed = function(members[name])
+        if changed is None:
+            del members[name]
+        else:
+            members[name] = changed
+    members |= more or {}
+    if honest:
+        manifest = json.loads(members[MANIFEST])
+        manifest["members"] = {
+            n: {"sha256": hashlib.sha256(c).hexdigest(), "size": len(c)}
+            for n, c in members.items() if n != MANIFEST
+        }  # fmt: skip
+        members[MANIFEST] = json.dumps(manifest).encode()
+    target = bundle.with_name(f"changed-{bundle.name}")
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as file:
+        for name, content in members.items():
+            file.writestr(name, content)
+    return target

@@ -1,0 +1,179 @@
+"""The leaderboard: classes, ties, states of verification, metrics of older versions."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from html import unescape
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from crowdbot import cli
+from crowdbot.core.bundle.entries import load_entries, old_metrics
+from crowdbot.core.bundle.standings import standings
+from crowdbot.core.bundle.verification import content_hash, record_path, save_verification
+from crowdbot.errors import InputError
+from tests.core.bundle.made_up_runs import make_bundle, registry, rewrite
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("board")
+    make_bundle(folder, "dwa", "one.cbz", team="One <b>team</b>", value=lambda i: i + 0.5)
+    make_bundle(folder, "goal_seek", "two.cbz", team="Two", value=lambda i: i + 0.6)
+    make_bundle(folder, "stop_and_go", "three.cbz", team="Three", privileged=True)
+    return folder
+
+
+class Page(HTMLParser):
+    """Everything that a page could ask the network for, and its text."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.addresses: list[str] = []
+        self.tags: list[str] = []
+        self.words: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.addresses += [v or "" for k, v in attrs if k in ("src", "href", "action", "style")]
+
+    def handle_data(self, data: str) -> None:
+        self.words.append(data)
+
+
+def board(folder: Path, out: Path, *more: str) -> tuple[int, Page]:
+    code = cli.main(["leaderboard", str(folder), "--out", str(out), "--by", "spl", *more])
+    return code, Page(out.read_text(encoding="utf-8") if out.exists() else "")
+
+
+def test_one_offline_page(folder: Path, tmp_path: Path) -> None:
+    code, page = board(folder, tmp_path / "page.html")
+    text = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert code == 0
+    assert page.addresses == []
+    assert not {"script", "link", "img", "b"} & set(page.tags)
+    assert re.search(
+        r"default-src 'none'; style-src 'sha256-[^']+'; base-uri 'none'", unescape(text)
+    )
+    assert "One <b>team</b>" in "".join(page.words)
+    assert "prefers-color-scheme: dark" in text
+    assert "@media print" in text
+    assert text.count('tabindex="0"') == text.count('role="region"') == 4
+
+
+def test_the_same_bundles_give_the_same_page(folder: Path, tmp_path: Path) -> None:
+    for name in ("a.html", "b.html"):
+        board(folder, tmp_path / name)
+    assert (tmp_path / "a.html").read_bytes() == (tmp_path / "b.html").read_bytes()
+
+
+def test_classes_stand_apart_and_noise_is_not_ranked(folder: Path) -> None:
+    entries, left_out = load_entries(folder, registry())
+    assert left_out == {}
+    tables = standings(entries, "spl", ())
+    assert [t.classed for t in tables] == ["sensors only", "privileged"]
+    first = tables[0]
+    assert [e.manifest.team for e in first.entries] == ["Two", "One <b>team</b>"]
+    assert [first.rank("spl", e) for e in first.entries] == [1, 1]  # three draws prove nothing
+    assert first.shares_rank("spl", first.entries[0])
+
+
+def test_verification_is_shown_for_the_very_bundle(folder: Path, tmp_path: Path) -> None:
+    path = folder / "one.cbz"
+    record = {"outcome": "verified", "sha256": content_hash(path), "runs": {"a": "identical"}}
+    save_verification(path, record)
+    try:
+        _, page = board(folder, tmp_path / "page.html")
+        assert "verified, 1 of 6 runs made again" in page.words
+        save_verification(path, {**record, "sha256": "another one"})
+        _, page = board(folder, tmp_path / "page.html")
+        assert page.words.count("not verified") == 3
+    finally:
+        record_path(path).unlink()
+
+
+def test_broken_bundles_are_left_out_and_told(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own = tmp_path / "own"
+    own.mkdir()
+    (own / "good.cbz").write_bytes((folder / "one.cbz").read_bytes())
+    (own / "bad.cbz").write_bytes(b"no zip")
+    code, page = board(own, tmp_path / "page.html", "--json")
+    said = capsys.readouterr()
+    assert code == 0
+    assert "bad.cbz is left out" in said.err
+    assert list(json.loads(said.out)["left_out"]) == ["bad.cbz"]
+    assert "bad.cbz" in page.words
+
+
+def test_partial_bundles_are_shown_but_not_ranked(folder: Path) -> None:
+    entries, _ = load_entries(folder, registry())
+    partial = [
+        replace(e, manifest=e.manifest.model_copy(update={"missing": ["x seed-0"]}))
+        if e.manifest.team == "Two" else e
+        for e in entries
+    ]  # fmt: skip
+    first = standings(partial, "spl", ())[0]
+    assert [e.manifest.team for e in first.entries] == ["One <b>team</b>", "Two"]
+    assert [first.rank("spl", e) for e in first.entries] == [None, None]
+
+
+def changed_records(bundle: Path, **changes: Any) -> bytes:
+    import zipfile
+
+    names = [n for n in zipfile.ZipFile(bundle).namelist() if n.endswith("run.json")]
+    change = {n: lambda c: json.dumps(json.loads(c) | changes).encode() for n in names}
+    return rewrite(bundle, change, honest=True).read_bytes()
+
+
+def test_confounds_are_refused_unless_they_are_accepted(folder: Path, tmp_path: Path) -> None:
+    own = tmp_path / "own"
+    own.mkdir()
+    (own / "one.cbz").write_bytes((folder / "one.cbz").read_bytes())
+    content = changed_records(folder / "two.cbz", conditions={"rates.log": "8 Hz"})
+    (own / "two.cbz").write_bytes(content)
+    assert board(own, tmp_path / "page.html")[0] == 1
+    assert not (tmp_path / "page.html").exists()
+    code, page = board(own, tmp_path / "page.html", "--accept", "rates")
+    assert code == 0
+    assert any("rates.log" in w and "accepted" in w for w in page.words)
+
+
+def test_metrics_of_older_versions_are_left_out_without_recordings(
+    folder: Path, tmp_path: Path
+) -> None:
+    own = tmp_path / "own"
+    own.mkdir()
+    (own / "one.cbz").write_bytes((folder / "one.cbz").read_bytes())
+    older = {"risk": {"spec_version": 0}, "spl": {"spec_version": 1}}
+    (own / "two.cbz").write_bytes(changed_records(folder / "two.cbz", metrics=older))
+    entries, _ = load_entries(own, registry())
+    assert old_metrics(entries[0].runs[0], registry()) == set()
+    assert (entries[1].outdated, entries[1].rescored) == (("risk",), ())
+    (table,) = standings(entries, "spl", ())
+    assert table.rank("risk", entries[1]) is None
+    assert table.rank("spl", entries[1]) == 1
+
+
+def test_a_folder_without_bundles(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(InputError, match="no bundles"):
+        load_entries(tmp_path, registry())
+    assert cli.main(["leaderboard", str(tmp_path)]) == 1
+    assert cli.main(["leaderboard", str(tmp_path), "--by", "splx"]) == 1
+    assert "did you mean 'spl'" in capsys.readouterr().err
+
+
+def test_names_of_two_entries_of_one_team_differ(folder: Path, tmp_path: Path) -> None:
+    own = tmp_path / "own"
+    own.mkdir()
+    for name in ("a.cbz", "b.cbz"):
+        (own / name).write_bytes((folder / "two.cbz").read_bytes())
+    entries, _ = load_entries(own, registry())
+    assert [e.name for e in entries] == ["Two · goal_seek (a)", "Two · goal_seek (b)"]

@@ -1,0 +1,161 @@
+"""What follows from runs that were made again; no honest team is accused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from crowdbot.core.bundle.check import ClaimedRun
+from crowdbot.core.bundle.manifest import BundledRun
+from crowdbot.core.bundle.rerun_verdict import Rerun, verdict_of
+from crowdbot.core.bundle.tolerances import SPREADS
+from crowdbot.core.types.score import Score
+
+HERE = {"processor": "znver3", "rounding": "aa"}
+VERSIONS = {"crowdbot": "0.1.0"}
+
+
+def scored(metric: str = "risk", value: float | None = 1.0, **more: Any) -> Score:
+    status = "ok" if value is not None else "undefined"
+    values: dict[str, Any] = {"symbol": "R", "category": "c", "variant": "corrected", "unit": "s",
+                              "better": "lower", "status": status, **more}  # fmt: skip
+    return Score(metric=metric, value=value, **values)
+
+
+def record(trajectory: str = "t", **more: Any) -> dict[str, Any]:
+    return {"hashes": {"trajectory": trajectory}, "machine": HERE, "versions": VERSIONS,
+            "metrics": {"risk": {"spec_version": 1}}, **more}  # fmt: skip
+
+
+def claimed(*scores: Score, number: int = 0, **more: Any) -> ClaimedRun:
+    entry = BundledRun(scenario=f"s{number}", seed=0, directory="d", run_id="r", trajectory="t")
+    return ClaimedRun(entry=entry, record=record(**more), scores=scores or (scored(),))
+
+
+def rerun(run: ClaimedRun, *scores: Score, **more: Any) -> Rerun:
+    repeated = more.pop("repeated", None)
+    found = Rerun(claimed=run, record=record(**more), scores=scores or (scored(),))
+    return replace(found, repeated=repeated)
+
+
+def test_the_same_trajectory_and_scores_are_verified() -> None:
+    found = verdict_of([rerun(claimed())])
+    assert (found.outcome, found.findings) == ("verified", ())
+    assert found.relations == {"s0 seed-0": "identical"}
+
+
+@pytest.mark.parametrize(("claim", "why"), [
+    ({"status": "timeout"}, "status is claimed to be 'timeout', but is 'planner_failed'"),
+    ({"goal_time": 3.0}, "goal_time is claimed to be 3.0, but is None"),
+    ({"sim_time": 4.0}, "sim_time is claimed to be 4.0, but is 2.0"),
+    ({"privileged": False}, "privileged is claimed to be False"),
+    ({"conditions": {"rates.log": "8 Hz"}}, "conditions differ from those of the suite: rates.log"),
+    ({"metrics": {"risk": {"spec_version": 1, "horizon": 9.0}}}, "metrics differ from those"),
+])  # fmt: skip
+def test_records_that_the_trajectory_does_not_bear_out(claim: dict[str, Any], why: str) -> None:
+    true: dict[str, Any] = {
+        "status": "planner_failed", "goal_time": None, "sim_time": 2.0, "privileged": True,
+        "conditions": {"rates.log": "16 Hz"},
+    }  # fmt: skip
+    found = verdict_of([rerun(claimed(**{**true, **claim}), **true)])
+    assert found.outcome == "suspicious"
+    assert why in found.findings[0]
+    assert verdict_of([rerun(claimed(**true), **true)]).outcome == "verified"
+
+
+@pytest.mark.parametrize(("claim", "why"), [
+    (scored(value=0.5), "risk.corrected is claimed to be 0.5, but the same trajectory gives 1.0"),
+    (scored(value=None, reason="no_agents"), "is claimed to be undefined"),
+    (scored(unit="ms"), "is claimed"),
+    (scored(variant="better"), "there is no such score"),
+])  # fmt: skip
+def test_scores_that_the_trajectory_does_not_give(claim: Score, why: str) -> None:
+    found = verdict_of([rerun(claimed(claim))])
+    assert found.outcome == "suspicious"
+    assert why in found.findings[0]
+
+
+def test_a_score_that_was_left_out() -> None:
+    run = claimed(scored("risk"))
+    found = verdict_of([rerun(run, scored("risk"), scored("spl"))])
+    assert found.findings == ("s0 seed-0: spl.corrected was left out",)
+
+
+def test_times_of_the_wall_clock_are_nobodys_fault() -> None:
+    run = claimed(scored("mean_planner_time", 1.0))
+    assert verdict_of([rerun(run, scored("mean_planner_time", 9.0))]).outcome == "verified"
+
+
+def test_other_versions_of_a_metric_are_not_compared() -> None:
+    run = claimed(scored(value=0.5), metrics={"risk": {"spec_version": 2}})
+    assert verdict_of([rerun(run)]).outcome == "verified"
+
+
+def test_another_trajectory_on_the_same_platform_is_suspicious() -> None:
+    found = verdict_of([rerun(claimed(), trajectory="x", repeated="x")])
+    assert found.outcome == "suspicious"
+    assert "another one on the same processor (znver3)" in found.findings[0]
+
+
+@pytest.mark.parametrize("there", [
+    {"machine": {"processor": "skylake", "rounding": "aa"}},
+    {"machine": {"processor": "znver3", "rounding": "bb"}},
+    {"machine": {"processor": "znver3"}},
+    {"machine": None},
+    {"versions": {"crowdbot": "0.2.0"}},
+])  # fmt: skip
+def test_another_trajectory_on_another_platform_is_not(there: dict[str, Any]) -> None:
+    found = verdict_of([rerun(claimed(), trajectory="x", **there)])
+    assert found.outcome == "within tolerance"
+    assert found.relations == {"s0 seed-0": "different_platform"}
+
+
+def test_planners_that_do_not_repeat_themselves_are_not_accused() -> None:
+    found = verdict_of([rerun(claimed(), trajectory="x", repeated="y")])
+    assert (found.outcome, found.relations) == (
+        "within tolerance",
+        {"s0 seed-0": "nondeterministic"},
+    )
+
+
+def test_equal_trajectories_on_another_platform_still_bear_out_their_scores() -> None:
+    run = claimed(scored(value=0.5), scored("spl", 0.5))
+    there = rerun(run, scored(), scored("spl", 0.6), machine={"processor": "skylake"})
+    own = replace(there, own=frozenset({("risk", "corrected")}))
+    assert verdict_of([own]).findings == (
+        "s0 seed-0: risk.corrected is claimed to be 0.5, but the same trajectory gives 1.0",
+    )
+    assert verdict_of([replace(there, own=frozenset())]).outcome == "verified"
+
+
+def on_different_platform(gaps: np.ndarray[Any, Any]) -> list[Rerun]:
+    return [
+        rerun(claimed(scored(value=10.0 + gap), number=i), scored(value=10.0), trajectory="x",
+              machine={"processor": "skylake"})
+        for i, gap in enumerate(gaps.tolist())
+    ]  # fmt: skip
+
+
+def test_honest_scatter_is_never_accused() -> None:
+    rng = np.random.default_rng(8)
+    spread = SPREADS["risk"]
+    for _ in range(500):
+        # published spreads are twice what was measured; heavy tails as of chaos
+        gaps = spread / 2 * rng.standard_t(5, size=20) * (3 / 5) ** 0.5
+        assert verdict_of(on_different_platform(gaps)).outcome == "within tolerance"
+
+
+def test_scores_that_are_all_too_good_are_noticed() -> None:
+    gaps = np.random.default_rng(9).normal(-2.0 * SPREADS["risk"], SPREADS["risk"] / 2, size=20)
+    found = verdict_of(on_different_platform(gaps))
+    assert found.outcome == "suspicious"
+    assert "risk is off by" in found.findings[-1]
+    assert "on the mean of 20 runs" in found.findings[-1]
+
+
+def test_one_impossible_score_is_noticed() -> None:
+    found = verdict_of(on_different_platform(np.array([0.0, -11.0 * SPREADS["risk"], 0.0])))
+    assert found.findings[0].startswith("s1 seed-0: risk is off by -")

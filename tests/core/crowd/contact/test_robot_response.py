@@ -1,0 +1,120 @@
+"""How people take the robot: all yield, nobody does, or some."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from pydantic import ValidationError
+
+from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld
+from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.velocity_search.counter_rng import chosen
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.population.realise import realise
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.scenarios.library import open_spec, pick
+from crowdbot.core.sim.build_crowd import build_crowd
+from crowdbot.dsl.scenario import RobotResponse
+from tests.core.crowd.crowd_reference import Array
+from tests.core.crowd.crowd_worlds import TICKS, Straight, rows, walkers
+
+PARKED = np.array([[20.0, 0.0, 0.0, 0.0, 0.178, 0.428]])
+
+
+def _stream(ignores: object) -> Agents:
+    x = np.arange(10) * 1.5
+    return Agents.of(
+        x=x, y=np.linspace(-0.5, 0.5, 10), preferred_speed=1.2, routes=[[(60.0, 0.0)]] * 10,
+        ignores_robot=ignores,  # type: ignore[arg-type]
+    )  # fmt: skip
+
+
+def _touched(ignores: object) -> NDArray[np.bool_]:
+    engine = walkers(_stream(ignores))
+    flat = engine.initial_state()
+    for _ in range(25 * TICKS):
+        engine.advance(flat, PARKED)
+    return np.asarray(rows(flat)[:, s.TOUCHES] > 0.0, np.bool_)
+
+
+def test_who_yields_never_touches_a_parked_robot_who_ignores_it_does() -> None:
+    assert not np.any(_touched(False))
+    assert np.mean(_touched(True)) > 0.5
+    some = np.arange(10) % 2 == 1
+    assert not np.any(_touched(some)[~some])
+    assert np.any(_touched(some)[some])
+
+
+class Spy(Straight):
+    def __init__(self) -> None:
+        self.calls: list[tuple[int, list[bool]]] = []
+
+    def accelerations(self, view: CrowdView) -> Array:
+        assert view.decides is not None
+        self.calls.append((len(view.robot), view.decides.tolist()))
+        return np.zeros_like(view.position)
+
+
+def test_the_robot_is_shown_to_those_who_heed_it() -> None:
+    spy = Spy()
+    agents = Agents.of(x=[0.0, 3.0, 6.0], y=0.0, ignores_robot=[True, False, True],
+                       routes=[[(9.0, 0.0)]] * 3)  # fmt: skip
+    engine = CrowdEngine(agents, CrowdWorld(), spy)
+    engine.advance(engine.initial_state(), PARKED)
+    assert sorted(spy.calls) == [(0, [True, False, True]), (1, [False, True, False])]
+
+
+def test_people_who_ignore_the_robot_walk_as_without_it() -> None:
+    far = PARKED + np.array([0.0, 3.0, 0.0, 0.0, 0.0, 2.0])  # seen as a giant, touched by nobody
+    here, alone = walkers(_stream(True)), walkers(_stream(True))
+    flat, other = here.initial_state(), alone.initial_state()
+    for _ in range(10 * TICKS):
+        here.advance(flat, far)
+        alone.advance(other)
+    assert np.array_equal(rows(flat), rows(other))
+
+
+def test_who_ignores_it_is_drawn_by_id() -> None:
+    """About the declared fraction; the same whoever else is there, and in any order."""
+    ids = np.arange(4000)
+    found = chosen(2020, ids, 0.3)
+    assert np.mean(found) == pytest.approx(0.3, abs=0.03)
+    assert np.array_equal(chosen(2020, ids[::-1], 0.3), found[::-1])
+    assert np.array_equal(chosen(2020, ids[100:200], 0.3), found[100:200])
+    assert not np.array_equal(chosen(2021, ids, 0.3), found)
+    assert np.all(chosen(2020, ids, 0.6)[found])  # more are drawn beside, not instead
+    assert not np.any(chosen(1, ids, 0.0))
+    assert np.all(chosen(1, ids, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("overrides", "share"),
+    [
+        ([], 0.0),
+        (["crowd.robot_response.reaction=ignore"], 1.0),
+        (["crowd.robot_response={reaction: mixed, ignoring_fraction: 0.4}"], 0.4),
+    ],
+)
+def test_the_scenario_says_it(overrides: list[str], share: float) -> None:
+    registry = discover()
+    suite = open_spec("challenge-2020", registry, overrides)
+    scenario = pick(suite, "in-d0500-slow-c01-r02")
+    parts = build_environment(registry, scenario.environment)
+    engine = build_crowd(scenario, realise(scenario), parts, registry)
+    assert engine is not None
+    assert np.mean(engine.agents.ignores_robot) == pytest.approx(share, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"reaction": "mixed"},
+        {"reaction": "yield", "ignoring_fraction": 0.5},
+        {"reaction": "mixed", "ignoring_fraction": 1.0},
+        {"reaction": "flee"},
+    ],
+)
+def test_a_mixture_needs_its_fraction_and_nothing_else_has_one(given: dict[str, object]) -> None:
+    with pytest.raises(ValidationError):
+        RobotResponse(**given)  # type: ignore[arg-type]

@@ -1,0 +1,94 @@
+"""Packed motion comes back bit by bit, in few bytes where people walk as the simulation does."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import zstandard
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from crowdbot.core.recording.motion_codec import GAINS, MotionCodec, Packed
+from crowdbot.core.types.arrays import Array
+
+ANY = st.floats(width=64, allow_nan=True, allow_infinity=True, allow_subnormal=True)
+TICK = 1.0 / 128.0
+
+
+def there_and_back(t: Array, motion: Array, block: int) -> tuple[Array, list[Packed]]:
+    """What comes back of samples that are packed in blocks."""
+    packs, unpacks = MotionCodec(motion.shape[2]), MotionCodec(motion.shape[2])
+    starts = range(0, len(t), block)
+    packed = [packs.pack(t[k : k + block], motion[k : k + block]) for k in starts]
+    back = [unpacks.unpack(t[k : k + block], one) for k, one in zip(starts, packed, strict=True)]
+    return np.concatenate(back), packed
+
+
+def walkers(samples: int, people: int, ticks: int = 8) -> tuple[Array, Array]:
+    """People who turn now and then, and come closer to what they want by an eighth in each step."""
+    rng = np.random.default_rng(7)
+    x, v = rng.uniform(-20.0, 20.0, (2, people)), rng.normal(0.0, 1.0, (2, people))
+    speed = rng.uniform(0.8, 1.6, people)
+    rows, angle = [], np.zeros(people)
+    for _ in range(samples):
+        rows.append(np.concatenate([x, v]))
+        turns = rng.random(people) < 0.3
+        angle = np.where(turns, rng.uniform(-math.pi, math.pi, people), angle)
+        a = (speed * np.array([np.cos(angle), np.sin(angle)]) - v) / 0.5
+        for _ in range(ticks):
+            v = v + a * TICK
+            x = x + v * TICK
+    return np.arange(samples, dtype=np.float64) * ticks * TICK, np.array(rows, np.float64)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    data=st.data(),
+    n=st.integers(1, 6),
+    m=st.integers(0, 3),
+    block=st.integers(1, 6),
+    gaps=st.sampled_from([1 / 128, 1 / 16, 0.1, 1.0, 7.0]),
+)
+def test_any_numbers_come_back(
+    data: st.DataObject, n: int, m: int, block: int, gaps: float
+) -> None:
+    motion = data.draw(arrays(np.float64, (n, 4, m), elements=ANY))
+    back, _ = there_and_back(np.arange(n, dtype=np.float64) * gaps, motion, block)
+    assert back.tobytes() == motion.tobytes()
+
+
+@pytest.mark.parametrize("block", [1, 16, 200])
+def test_walkers_come_back_in_few_bytes(block: int) -> None:
+    t, motion = walkers(200, 50)
+    back, packed = there_and_back(t, motion, block)
+    assert back.tobytes() == motion.tobytes()
+    if block == 16:
+        assert {one.gain for one in packed[1:]} == {8.0}
+        squeezed = sum(len(zstandard.compress(one.data)) for one in packed)
+        assert squeezed < motion.nbytes / 4  # a third turns, and then one number of four is new
+
+
+def test_positions_follow_from_velocities() -> None:
+    t, motion = walkers(64, 20)
+    _, packed = there_and_back(t, motion, 64)
+    planes = np.frombuffer(packed[0].data, np.uint8)[64 * 20 :].reshape(4, 8, 64, 20)
+    assert not planes[:2, 1:, 1:].any()  # the lowest byte tells all
+    assert planes[2:, 1:, 1:].any()
+
+
+def test_absent_people_and_other_rates() -> None:
+    for ticks in (1, 2, 4, 16):
+        t, motion = walkers(40, 6, ticks)
+        motion[10:20, :, 2] = np.nan
+        motion[30, :2, 4] += 50.0
+        back, _ = there_and_back(t, motion, 16)
+        assert back.tobytes() == motion.tobytes()
+
+
+def test_data_of_another_size_are_refused() -> None:
+    codec = MotionCodec(3)
+    with pytest.raises(ValueError, match="2 samples of 3 people"):
+        codec.unpack(np.array([0.0, 0.1]), Packed(GAINS[0], bytes(10)))

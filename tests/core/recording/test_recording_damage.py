@@ -1,0 +1,218 @@
+"""Recordings that were cut off, damaged, or made to do harm."""
+
+from __future__ import annotations
+
+import io
+import os
+import resource
+import signal
+import struct
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+import pytest
+import zstandard
+from mcap.data_stream import RecordBuilder
+from mcap.records import Chunk, Header
+from mcap.writer import MCAP0_MAGIC, Writer
+
+from crowdbot.core.recording import RecordingWriter, read_scans, read_trajectories, recording_info
+from crowdbot.core.recording.records import MAX_CHUNK
+from crowdbot.errors import InputError
+from tests.core.recording.recording_cases import (
+    bits,
+    header_of,
+    random_run,
+    write_run,
+    write_samples,
+)
+from tests.paths import ROOT
+
+pytestmark = pytest.mark.slow
+
+RUN = random_run(n=160, m=40)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    path = tmp_path_factory.mktemp("whole") / "run.mcap"
+    writer = RecordingWriter(path, header_of(RUN))
+    write_samples(writer, RUN, flush_at=50)
+    writer.close(9.0, True, "arrived")
+    return path.read_bytes()
+
+
+def chunk_ends(data: bytes) -> list[int]:
+    """Offsets behind each chunk record, found by walking over the records."""
+    ends, at = [], len(MCAP0_MAGIC)
+    while at + 9 <= len(data):
+        opcode, length = struct.unpack_from("<BQ", data, at)
+        at += 9 + length
+        if opcode == 0x06:
+            ends.append(at)
+        if opcode == 0x02:
+            break
+    return ends
+
+
+def test_a_file_cut_anywhere_reads_up_to_its_last_whole_chunk(whole: bytes, tmp_path: Path) -> None:
+    path, ends = tmp_path / "run.mcap", chunk_ends(whole)
+    assert len(ends) >= 2
+    cuts = {*range(ends[0], len(whole), 997), *(e + d for e in ends for d in (-1, 0, 1, 5, 9, 20))}
+    cuts |= {len(whole) - d for d in (1, 8, 9, 20, 36, 37)}
+    lengths = {}
+    for cut in sorted(c for c in cuts if ends[0] <= c < len(whole)):
+        path.write_bytes(whole[:cut])
+        run = read_trajectories(path)
+        n = lengths[cut] = len(run.t)
+        assert run.robot is not None
+        assert np.array_equal(run.t, RUN.t[:n])
+        assert RUN.robot is not None
+        assert run.robot.x.tobytes() == RUN.robot[:n, 0].tobytes()
+        assert not recording_info(path).complete
+    assert list(lengths.values()) == sorted(lengths.values())
+    assert lengths[ends[0]] == 51  # samples are written before all else of their second
+    assert {51, 160} <= set(lengths.values())
+
+
+def test_a_cut_before_the_first_chunk_ends_leaves_no_recording(
+    whole: bytes, tmp_path: Path
+) -> None:
+    path = tmp_path / "run.mcap"
+    for cut in (0, 1, 7, 8, 20, 40, 200, chunk_ends(whole)[0] - 1):
+        path.write_bytes(whole[:cut])
+        for read in (read_trajectories, read_scans, recording_info):
+            with pytest.raises(InputError, match=r"run\.mcap: no (MCAP file|recording)"):
+                read(path)
+
+
+def test_a_tail_of_zeros_is_a_cut(whole: bytes, tmp_path: Path) -> None:
+    path, ends = tmp_path / "run.mcap", chunk_ends(whole)
+    path.write_bytes(whole[: ends[1] - 300] + bytes(300))
+    assert 51 <= len(read_trajectories(path).t) < 160
+    assert not recording_info(path).complete
+
+
+def test_damage_in_the_middle_is_an_error(whole: bytes, tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    at = chunk_ends(whole)[0] - 1000
+    path.write_bytes(whole[:at] + bytes([whole[at] ^ 0x55]) + whole[at + 1 :])
+    for read in (read_trajectories, read_scans, recording_info):
+        with pytest.raises(InputError, match="damaged"):
+            read(path)
+
+
+def test_any_flipped_byte_is_no_traceback(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    small = random_run(n=6, m=2)
+    write_run(path, small)
+    data, good = path.read_bytes(), bits(read_trajectories(path))
+    start, survived = chunk_ends(data)[-1], 0
+    for at in range(0, start, 7):
+        path.write_bytes(data[:at] + bytes([data[at] ^ 0xFF]) + data[at + 1 :])
+        with suppress(InputError):  # anything else fails the test
+            assert bits(read_trajectories(path)) == good
+            survived += 1
+    assert survived < start // 70  # only bytes that carry nothing
+
+
+def test_a_killed_process_leaves_all_it_flushed(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    script = (
+        "import os, sys; from pathlib import Path\n"
+        "from tests.core.recording.recording_cases import *\n"
+        "run = random_run(n=160, m=40)\n"
+        "writer = RecordingWriter(Path(sys.argv[1]), header_of(run))\n"
+        "write_samples(writer, run, flush_at=99)\n"
+        f"os.kill(os.getpid(), {int(signal.SIGKILL)})\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-c", script, str(path)], env=environment, check=False)
+    assert done.returncode == -signal.SIGKILL
+    run, info = read_trajectories(path), recording_info(path)
+    assert 100 <= len(run.t) < 160
+    assert (info.complete, info.status, info.goal_time) == (False, "", None)
+    assert len(read_scans(path)[0].t) >= 99
+
+
+def test_an_interrupted_run_is_not_complete(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    writer = RecordingWriter(path, header_of(RUN))
+    write_samples(writer, RUN)
+    writer.close(None, False, "interrupted")
+    info = recording_info(path)
+    assert (info.complete, info.status) == (False, "interrupted")
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\x03\x04 something else entirely", b"\x89MCAP0"])
+def test_other_files_are_refused(content: bytes, tmp_path: Path) -> None:
+    path = tmp_path / "x.mcap"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match="no MCAP file"):
+        read_trajectories(path)
+
+
+def test_missing_files_and_folders_are_refused(tmp_path: Path) -> None:
+    for path in (tmp_path / "nothing", tmp_path):
+        with pytest.raises(InputError, match="cannot be read"):
+            read_trajectories(path)
+
+
+def foreign() -> bytes:
+    """Somebody else's ROS 2 recording."""
+    stream = io.BytesIO()
+    writer = Writer(stream)
+    writer.start(profile="ros2")
+    schema = writer.register_schema("std_msgs/msg/String", "ros2msg", b"string data")
+    channel = writer.register_channel("/chatter", "cdr", schema)
+    writer.add_message(channel, 0, b"\0\1\0\0\2\0\0\0a\0", 0)
+    writer.finish()  # type: ignore[no-untyped-call]
+    return stream.getvalue()
+
+
+def test_a_foreign_recording_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "x.mcap"
+    path.write_bytes(foreign())
+    for read in (read_trajectories, read_scans, recording_info):
+        with pytest.raises(InputError, match="no recording of crowdbot"):
+            read(path)
+
+
+def bomb(frame: bytes, announced: int) -> bytes:
+    """A file with one chunk."""
+    builder = RecordBuilder()
+    builder.write(MCAP0_MAGIC)
+    Header("ros2", "x").write(builder)
+    Chunk("zstd", frame, 0, 0, 0, announced).write(builder)
+    return builder.end()  # type: ignore[no-any-return, no-untyped-call]
+
+
+def test_a_bomb_is_refused_without_unpacking_it(tmp_path: Path) -> None:
+    path, size = tmp_path / "x.mcap", 600 * 2**20
+    frame = zstandard.compress(bytes(size))
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    path.write_bytes(bomb(frame, size))
+    with pytest.raises(InputError, match="refused"):
+        read_trajectories(path)
+    path.write_bytes(bomb(frame, 1000))  # it lies about its size
+    with pytest.raises(InputError, match="no recording"):
+        read_trajectories(path)
+    grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
+    assert grown * 1024 < 2 * MAX_CHUNK
+
+
+def test_a_message_that_does_not_decode_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "x.mcap"
+    stream = io.BytesIO()
+    writer = Writer(stream)
+    writer.start(profile="ros2")
+    schema = writer.register_schema("crowdbot_msgs/msg/RunHeader", "ros2msg", b"")
+    channel = writer.register_channel("/crowdbot/header", "cdr", schema)
+    writer.add_message(channel, 0, b"\0\1\0\0\2\0\0\0\xff", 0)
+    writer.finish()  # type: ignore[no-untyped-call]
+    path.write_bytes(stream.getvalue())
+    with pytest.raises(InputError, match=r"/crowdbot/header: .* cannot be decoded"):
+        recording_info(path)

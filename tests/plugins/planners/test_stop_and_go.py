@@ -1,0 +1,86 @@
+"""Stop and go: never touches what stands, waits, goes on."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from crowdbot.core.registry.build_reference import load_build
+from crowdbot.plugins.planners.stop_and_go import STOP_AND_GO, StopAndGoSpec
+from crowdbot.plugins.planners.stop_and_go_build import build, safe_speed
+from tests.plugins.planners.world import LIMITS, PERSON, RADIUS, Outcome, World
+
+SPEC = StopAndGoSpec()
+
+
+def test_component() -> None:
+    assert load_build(STOP_AND_GO) is build
+    assert StopAndGoSpec.needs == ("lidar",)
+
+
+def test_alone_it_is_goal_seek() -> None:
+    out = World().run(build(SPEC))
+    assert out.arrived
+    assert max(abs(p.y) for p in out.path) == 0.0
+    assert out.t < 66.5
+
+
+def test_stands_before_a_standing_person() -> None:
+    world = World([[20, 0.1, 0, 0]])
+    out = world.run(build(SPEC), time_limit=40.0)
+    assert not out.contacts
+    assert world.twist[0] == pytest.approx(0.0, abs=1e-3)
+    # The nearest point of the person before the robot is PERSON before its centre line.
+    assert 0.3 < out.least_gap < SPEC.front_margin + 0.03
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.floats(-0.6, 0.6), st.floats(0.1, 1.0))
+def test_never_touches_what_stands(y: float, speed: float) -> None:
+    out = World([[5, y, 0, 0]]).run(build(StopAndGoSpec(speed=speed)), time_limit=12.0, stop_at=7.0)
+    assert not out.contacts
+    assert out.arrived == (abs(y) > RADIUS + SPEC.side_margin + PERSON) or speed < 0.7
+
+
+def test_brakes_smoothly() -> None:
+    out = World([[10, 0, 0, 0]]).run(build(SPEC), time_limit=20.0)
+    assert commanded_jerks(out) <= LIMITS.a_max / 16 + 0.03
+
+
+def commanded_jerks(out: Outcome) -> float:
+    """Largest fall of the commanded speed from one step to the next, m/s."""
+    v = np.array([c.v for c in out.commands])
+    return float(np.max(v[:-1] - v[1:]))
+
+
+def test_goes_on_when_the_way_is_free() -> None:
+    """Somebody walks across, slowly, and does not look."""
+    out = World([[8.0, -2.0, 0.0, 0.25]]).run(build(SPEC), time_limit=40.0, stop_at=12.0)
+    speed = np.diff([p.x for p in out.path]) * 128
+    assert not out.contacts
+    assert out.arrived
+    assert speed[len(speed) // 4 :].min() == pytest.approx(0.0, abs=1e-6)  # it did stand
+
+
+def test_walls_beside_it_do_not_count() -> None:
+    walls = np.array([[-1.0, -0.4, 20.0, -0.4], [-1.0, 0.4, 20.0, 0.4]])
+    assert World(walls=walls).run(build(SPEC), time_limit=20.0, stop_at=10.0).arrived
+
+
+def test_logs_its_room() -> None:
+    out = World([[6, 0, 0, 0]]).run(build(SPEC), time_limit=1.0)
+    assert out.logged["stop_and_go/room"][0] == pytest.approx(
+        3.5 - PERSON - RADIUS - SPEC.front_margin, abs=0.02
+    )
+
+
+@given(st.floats(-5, 100), st.floats(0.1, 5), st.floats(0, 1))
+def test_safe_speed_is_the_largest_that_stops_in_time(room: float, a: float, lag: float) -> None:
+    v = safe_speed(room, a, lag)
+    if room <= 0:
+        assert v == 0.0
+    else:
+        assert v * lag + v * v / (2 * a) == pytest.approx(room, abs=1e-9)
+    assert safe_speed(math.inf, a, lag) == math.inf
