@@ -16,16 +16,25 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 JS := scripts/js
 JS_READY := $(JS)/node_modules/.package-lock.json
 
-.PHONY: demo check test lint coverage changelog check-js js-where-node-is setup lock clean
+.PHONY: demo check test lint kernels coverage changelog check-js js-where-node-is setup lock clean
 
 demo: setup
 	$(BIN)/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
 
-check: lint
+check: setup
+	@$(MAKE) --no-print-directory -j2 --output-sync lint kernels
 	$(BIN)/pytest -n auto -q -m "not slow and not jupedsim"
 
-test: lint js-where-node-is
+test: setup
+	@$(MAKE) --no-print-directory -j2 --output-sync lint kernels
+	@$(MAKE) --no-print-directory js-where-node-is
 	$(BIN)/pytest -n auto
+
+# What numba compiles, while mypy has the other core: or else each test process would compile it.
+kernels: setup
+	@out=$$(mktemp -d) && $(BIN)/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 \
+		--planner dwa --set robots.robot.task.time_limit=1 --out $$out > $$out/printed 2>&1 \
+		|| { cat $$out/printed; exit 1; }; rm -rf $$out
 
 lint: setup
 	$(BIN)/ruff check .

@@ -101,6 +101,7 @@ def test_tests_mirror_the_code(part: str) -> None:
     assert [f for f in folders if not (PACKAGE / f / "__init__.py").is_file()] == []
 
 
+@pytest.mark.slow
 def test_tests_are_packages_and_import_one_another_by_their_whole_path() -> None:
     """Otherwise two helpers of one name are one module, and where pytest starts matters."""
     for file in TESTS.rglob("*.py"):

@@ -58,6 +58,7 @@ def test_the_exit_code_and_the_message(tmp_path: Path, capsys: pytest.CaptureFix
     assert capsys.readouterr().out == f"{bad}:2: workshop -> executor, execute\n"
 
 
+@pytest.mark.slow
 def test_the_repository_has_none() -> None:
     assert vocabulary.main([]) == 0
 

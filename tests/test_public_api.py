@@ -124,6 +124,7 @@ def test_import_loads_nothing_heavy() -> None:
     assert not loaded & {"numpy", "numba", "pydrake", "pydantic", "typer", "rich", "pluggy"}
 
 
+@pytest.mark.slow
 def test_loading_a_suite_needs_neither_numbers_nor_drake() -> None:
     loaded = _loaded_by("import crowdbot; assert crowdbot.load('challenge-2020').scenarios")
     assert "pydantic" in loaded

@@ -31,6 +31,7 @@ def test_two_scenarios(capsys: Captured) -> None:
     assert row.split() == ["crowd.costs.mid_term.weight", "1.0", "20.0"]
 
 
+@pytest.mark.slow
 def test_equal_ones(capsys: Captured) -> None:
     file = ROOT / "scenario_specs" / "challenge-2020.yaml"
     assert main(["diff", A, f"{file}#in-d0125-slow-c01-r02"]) == 0
@@ -83,6 +84,7 @@ def run(folder: Path, capsys: Captured, value: str, trajectory: str) -> str:
     return str(folder)
 
 
+@pytest.mark.slow
 def test_two_runs(tmp_path: Path, capsys: Captured) -> None:
     first = run(tmp_path / "a", capsys, "1.5", "x")
     again = run(tmp_path / "b", capsys, "1.50000", "x")

@@ -175,6 +175,7 @@ def campaign(tmp_path: Path) -> Path:
     return root
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_a_bad_run_stops_no_other(jobs: str, campaign: Path, capsys: Captured) -> None:
     argv = ["evaluate", str(campaign), "--metrics", "success", "--json", "--jobs", jobs]

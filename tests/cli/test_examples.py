@@ -15,6 +15,7 @@ from tests.paths import ROOT
 EXAMPLES = ROOT / "scenario_specs" / "examples"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "which", "people"),
     [

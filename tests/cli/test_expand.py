@@ -24,6 +24,7 @@ def test_only_and_count(capsys: Captured) -> None:
     assert main(["expand", "challenge-2020", "--only", "sideways-*"]) == 1
 
 
+@pytest.mark.slow
 def test_json(capsys: Captured) -> None:
     assert main(["expand", "challenge-2020", "--only", ONE, "--json"]) == 0
     (row,) = json.loads(capsys.readouterr().out)
@@ -59,6 +60,7 @@ def test_explain(capsys: Captured) -> None:
     assert main(["expand", "challenge-2020", "--explain"]) == 2
 
 
+@pytest.mark.slow
 def test_set(capsys: Captured) -> None:
     argv = ["expand", "challenge-2020", "--only", ONE, "--set"]
     assert main([*argv, "crowd.speed.mean=1 m/s"]) == 0

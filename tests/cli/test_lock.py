@@ -69,6 +69,7 @@ def test_an_installed_suite_is_not_changed(suite: Path, capsys: Captured) -> Non
     assert not list(folder.glob("*.json"))
 
 
+@pytest.mark.slow
 def test_simulate_reads_locked_agents(
     suite: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -102,6 +102,7 @@ def run(*code: str, **env: str) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "argv", [["validate", "challenge-2020"], ["expand", "challenge-2020"], ["plugins"], ["--help"]]
 )
@@ -119,6 +120,7 @@ def test_module_can_be_run() -> None:
     assert run("-m", "crowdbot", "--version").stdout.startswith("crowdbot ")
 
 
+@pytest.mark.slow
 def test_a_closed_pipe_is_no_error() -> None:
     command = f"set -o pipefail; {sys.executable} -m crowdbot expand challenge-2020 | head -1"
     done = subprocess.run(
@@ -128,6 +130,7 @@ def test_a_closed_pipe_is_no_error() -> None:
     assert done.stderr == ""
 
 
+@pytest.mark.slow
 def test_no_colours_without_a_terminal() -> None:
     for env in ({}, {"NO_COLOR": "1"}):
         assert "\x1b" not in run("-m", "crowdbot", "--help", **env).stdout

@@ -35,6 +35,7 @@ def test_a_suite_has_no_canonical_form(capsys: Captured) -> None:
     assert main(["schema", "robot"]) == 2
 
 
+@pytest.mark.slow
 def test_components_of_plugins_are_in_it(tmp_path: Path) -> None:
     """The schema is made from the live registry, so that a plugin's kinds complete too."""
     (tmp_path / "plugins").mkdir()
@@ -68,6 +69,7 @@ def test_components_of_plugins_are_in_it(tmp_path: Path) -> None:
     assert set(words) == {"acme_rooms.room", "corridor", "floor"}
 
 
+@pytest.mark.slow
 def test_nothing_heavy_is_imported() -> None:
     code = (
         "import sys\nfrom crowdbot.cli import main\nmain(['schema', 'suite'])\n"

@@ -37,6 +37,7 @@ def crowdbot_metrics():
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("option", [[], ["--no-plugins"]])
 def test_evaluate(option: list[str], tmp_path: Path) -> None:
     site = Site(tmp_path)

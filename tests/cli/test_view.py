@@ -104,6 +104,7 @@ def test_every_format_shows_the_same_twice(tmp_path: Path) -> None:
     assert {p.suffix for p in tmp_path.iterdir()} == {".svg", ".html", ".png"}
 
 
+@pytest.mark.slow
 def test_png_has_the_colours_of_what_it_shows(tmp_path: Path) -> None:
     file = tmp_path / "one.png"
     assert main([*ONE, "--out", str(file)]) == 0
@@ -154,6 +155,7 @@ def test_names_are_escaped(tmp_path: Path, capsys: Captured) -> None:
         assert "&lt;script&gt;" in out.read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_without_people_or_robots(tmp_path: Path) -> None:
     for change in ("crowd=null", "robots={}"):
         for suffix in ("png", "html"):
@@ -275,6 +277,7 @@ def test_steps_are_round(least: float, step: float) -> None:
     assert nice(least) == pytest.approx(step)
 
 
+@pytest.mark.slow
 def test_nothing_heavy_is_imported(tmp_path: Path) -> None:
     code = (
         "import sys\nfrom crowdbot.cli import main\n"

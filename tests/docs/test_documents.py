@@ -131,6 +131,7 @@ def test_the_suite_of_the_howto_expands() -> None:
     assert [s.id for s in suite.scenarios] == ["in-few", "in-many", "counter-few", "counter-many"]
 
 
+@pytest.mark.slow
 def test_own_arrays_print_what_the_page_shows() -> None:
     page = ROOT / "docs" / "howto" / "score_own_data.md"
     (shown,) = (b.text for b in blocks(page) if b.language == "text")

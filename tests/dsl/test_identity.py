@@ -180,6 +180,7 @@ def test_what_is_outside_does_not(path: str) -> None:
     assert hash_of(ONE.model_copy(update={path: value})) == hash_of(ONE)
 
 
+@pytest.mark.slow
 def test_parts_validated_once_give_the_same_hashes(monkeypatch: pytest.MonkeyPatch) -> None:
     """`ValidParts` is a shortcut and nothing else."""
     from crowdbot.dsl.validation_cache import ValidParts

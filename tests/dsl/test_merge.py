@@ -84,6 +84,7 @@ def leaves(data: Any, path: tuple[str, ...] = ()) -> dict[tuple[str, ...], Any]:
     return {k: v for key, child in data.items() for k, v in leaves(child, (*path, key)).items()}
 
 
+@pytest.mark.slow
 @given(maps, maps)
 def test_later_wins_and_the_rest_stays(a: Any, b: Any) -> None:
     old, new = leaves(a), leaves(b)
@@ -100,6 +101,7 @@ def test_merge_is_idempotent_and_has_a_neutral_element(a: Any) -> None:
     assert to_data(merge(x, Node(x.mark, {}, implied=True))) == a
 
 
+@pytest.mark.slow
 @given(maps, maps)
 def test_merge_changes_neither_side(a: Any, b: Any) -> None:
     x, y = of(a), of(b)
@@ -107,6 +109,7 @@ def test_merge_changes_neither_side(a: Any, b: Any) -> None:
     assert (to_data(x), to_data(y)) == (a, b)
 
 
+@pytest.mark.slow
 @given(maps, maps)
 def test_a_difference_laid_over_the_old_gives_the_new(a: Any, b: Any) -> None:
     change = difference(a, b)

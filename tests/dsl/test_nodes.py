@@ -115,6 +115,7 @@ def same(a: Any, b: Any) -> bool:
     return json.dumps(a, sort_keys=True) == json.dumps(b, sort_keys=True)
 
 
+@pytest.mark.slow
 @given(json_values)
 @example({"x": "\u2028"})
 @example({"x": "\x85"})

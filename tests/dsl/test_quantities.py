@@ -140,6 +140,7 @@ def test_degrees_are_fractions_of_pi(times: int, parts: int) -> None:
     assert value == float(exact)
 
 
+@pytest.mark.slow
 @given(st.from_regex(r"[-+]?[0-9.eE+-]{1,6} {0,2}[a-zµ°²^/0-9]{0,5}", fullmatch=True))
 def test_the_pattern_takes_what_the_parser_takes(text: str) -> None:
     for dimension in UNITS:

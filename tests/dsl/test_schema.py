@@ -100,6 +100,7 @@ def _is_json(document: Any) -> bool:
     return not isinstance(document, list) or all(map(_is_json, document))
 
 
+@pytest.mark.slow
 def test_schemas_are_schemas() -> None:
     for document in ("suite", "scenario", "part", "planner"):
         schema = validator(document).schema
@@ -139,11 +140,13 @@ BROKEN = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("file", BROKEN, ids=lambda f: f.stem)
 def test_broken_files_do_not_fit(file: Path) -> None:
     assert not fits(read(file))
 
 
+@pytest.mark.slow
 def test_the_list_of_what_schemas_cannot_say_is_not_too_long() -> None:
     files = list(GOLDEN.glob("E*.yaml"))
     codes = {name for f in files for name in (f.stem, f.stem.partition("_")[0])}
@@ -240,6 +243,7 @@ def test_the_document_is_valid_both_ways(tmp_path: Path) -> None:
     assert fits(DOCUMENT)
 
 
+@pytest.mark.slow
 def test_what_the_schema_refuses_validate_refuses(tmp_path: Path) -> None:
     """An editor never underlines what works; and mistakes of type it underlines all."""
     refused, missed = 0, []
@@ -257,6 +261,7 @@ def test_what_the_schema_refuses_validate_refuses(tmp_path: Path) -> None:
     assert missed == []
 
 
+@pytest.mark.slow
 def test_random_pairs_of_mutations(tmp_path: Path) -> None:
     rng, listed = random.Random(7), list(mutations())
     for _ in range(60):
@@ -338,6 +343,7 @@ def test_every_planner_with_its_defaults_fits(kind: str) -> None:
 
 
 # ------------------------------------------------------------------------------- canonical form
+@pytest.mark.slow
 def test_resolved_scenarios_fit_the_canonical_schema() -> None:
     for scenario in open_spec("challenge-2020", REGISTRY).scenarios[::20]:
         text = dump_scenario_yaml(scenario, REGISTRY.spec_versions(scenario))

@@ -252,6 +252,7 @@ def test_any_text_is_a_table_or_an_error_with_a_place(text: str) -> None:
     render(problems)
 
 
+@pytest.mark.slow
 def test_ten_thousand_agents_in_one_place_are_checked_in_time(folder: Path) -> None:
     """Overlaps are found through a grid, and each agent is named once at most."""
     rows = "".join(f"{i},{1 + 0.0001 * (i % 7)},0,9 0\n" for i in range(10_000))
@@ -306,6 +307,7 @@ def test_json_schema_knows_the_short_forms() -> None:
     assert files == ["#/$defs/AgentsFile"]
 
 
+@pytest.mark.slow
 def test_validating_spawns_needs_no_numpy() -> None:
     code = (
         "import json, sys; from crowdbot.cli import main\n"

@@ -207,6 +207,7 @@ def test_missing_plugin_is_named(expand: Expand) -> None:
     assert ":4:9:" in shown
 
 
+@pytest.mark.slow
 def test_many_errors_in_many_combinations_end_soon(expand: Expand) -> None:
     axis = ", ".join(f"x{i}: {{}}" for i in range(100))
     fields = "".join(f"  foo{i}: 1\n" for i in range(800))

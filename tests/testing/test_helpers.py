@@ -70,6 +70,7 @@ def test_the_fixture_of_a_run(run_directory: Path) -> None:
     assert {"run.json", "scores.csv"} <= {f.name for f in run_directory.iterdir()}
 
 
+@pytest.mark.slow
 def test_the_list_of_checks_needs_neither_pytest_nor_hypothesis() -> None:
     code = (
         "import sys; sys.modules['pytest'] = sys.modules['hypothesis'] = None\n"

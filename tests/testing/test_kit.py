@@ -83,6 +83,7 @@ def build(monkeypatch: pytest.MonkeyPatch) -> Any:
     return use
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("check", "changes"),
     [
@@ -225,6 +226,7 @@ def _as_listed() -> list[tuple[Any, ...]]:
     return [all_kinds.CHECKS, *(BY_CATEGORY[c] for c in order)]
 
 
+@pytest.mark.slow
 def test_what_cannot_be_built_fails_once() -> None:
     """The other checks would fail for its reason, with advice that does not help."""
     broken = component(build="acme_x_nowhere:build")

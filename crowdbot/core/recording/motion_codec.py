@@ -119,8 +119,8 @@ class MotionCodec:
     def _best_gain(self, values: Array) -> float:
         """The gain whose predictions of velocities are nearest in most places."""
         before = np.concatenate([self._last[::-1, _VX:], values[:_SAMPLES_FOR_GAIN, _VX:]])
-        change = np.diff(before, axis=0)
         with np.errstate(all="ignore"):
+            change = np.diff(before, axis=0)
             off = [
                 np.abs(change[1:] - change[:-1] * ((gain - 1.0) / gain)) + 1e-18 for gain in GAINS
             ]

@@ -21,6 +21,7 @@ def bundle(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make_bundle(tmp_path_factory.mktemp("bundle"))
 
 
+@pytest.mark.slow
 def test_the_same_runs_give_the_same_bytes(tmp_path: Path) -> None:
     one = make_bundle(tmp_path, name="one.cbz").read_bytes()
     assert make_bundle(tmp_path, name="two.cbz").read_bytes() == one

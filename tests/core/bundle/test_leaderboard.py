@@ -52,6 +52,7 @@ def board(folder: Path, out: Path, *more: str) -> tuple[int, Page]:
     return code, Page(out.read_text(encoding="utf-8") if out.exists() else "")
 
 
+@pytest.mark.slow
 def test_one_offline_page(folder: Path, tmp_path: Path) -> None:
     code, page = board(folder, tmp_path / "page.html")
     text = (tmp_path / "page.html").read_text(encoding="utf-8")

@@ -39,6 +39,7 @@ def problems(bundle: Path) -> list[str]:
         return [*check_members(archive), *wrong, *check_suite(archive, expansion, registry())]
 
 
+@pytest.mark.slow
 def test_a_whole_set_is_packed_and_fits(tmp_path: Path) -> None:
     bundle = make_bundle(tmp_path, team="Us", seeds=(0, 1))
     assert problems(bundle) == []
@@ -153,6 +154,7 @@ def test_a_changed_score_is_noticed(bundle: Path) -> None:
     assert any("was changed" in text for text in found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("change", "why"), [
     ({"seed": 5}, "its run_id is not the hash"),
     ({"planner": {"kind": "dwa", "label": "dwa"}}, "its planner is not that of the manifest"),

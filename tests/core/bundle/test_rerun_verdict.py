@@ -139,6 +139,7 @@ def on_different_platform(gaps: np.ndarray[Any, Any]) -> list[Rerun]:
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_honest_scatter_is_never_accused() -> None:
     rng = np.random.default_rng(8)
     spread = SPREADS["risk"]

@@ -141,6 +141,7 @@ def test_same_bytes_twice_and_in_another_process() -> None:
     assert {*here, there.stdout.strip()} == {here[0]}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "id_",
     [

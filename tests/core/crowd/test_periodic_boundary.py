@@ -82,6 +82,7 @@ def _route(route: list[tuple[float, float]], seconds: float, **changes: object) 
     return last
 
 
+@pytest.mark.slow
 def test_goals_are_points_of_the_endless_plane() -> None:
     """A goal beyond the border is reached on the other side; one on the floor by no short cut."""
     assert _route([(25.0, 0.0)], 6.9)[s.ARRIVALS] == 1.0
@@ -93,11 +94,13 @@ def test_goals_are_points_of_the_endless_plane() -> None:
     assert there[[s.X, s.Y]] == pytest.approx([5.0, 3.0], abs=0.4)
 
 
+@pytest.mark.slow
 def test_laps_around_a_periodic_floor() -> None:
     """One point beyond the border, again and again: 20 m a lap after the first 7 m."""
     assert _route([(25.0, 0.0)], 60.0, at_goal=3)[s.ARRIVALS] == 3.0
 
 
+@pytest.mark.slow
 def test_the_original_does_not_move_goals() -> None:
     agents = Agents.of(x=18.0, y=0.0, preferred_speed=1.0, routes=[[(25.0, 0.0)]])
     engine = CrowdEngine(agents, CrowdWorld(periodic_boundary=BOX, parity=True), ToGoal())

@@ -95,6 +95,7 @@ def test_translation(shift: tuple[float, float]) -> None:
     assert _share(same) >= 0.9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angle", [0.3, np.pi / 2, 2.0, np.pi])
 def test_rotation(angle: float) -> None:
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
@@ -118,6 +119,7 @@ def test_mirror() -> None:
     assert _share(same) >= 0.9
 
 
+@pytest.mark.slow
 def test_deciding_twice_as_often_changes_little() -> None:
     """The median walker ends within a hand's breadth after 3 s, most within a body."""
     apart = []

@@ -70,6 +70,7 @@ def test_entry_matches_sampling(name: str, a: tuple[float, float], b: tuple[floa
     assert distance_to(zone, x, y) < 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", list(POLYGONS))
 @given(p=POINT)
 @settings(deadline=None, max_examples=100)

@@ -319,23 +319,28 @@ def run(
     return done.returncode, done.stdout, done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("body", [SPIN, SLEEP, LATE], ids=["spin", "sleep", "swallowed once"])
 def test_a_hanging_step_is_interrupted(body: str) -> None:
     assert run(body) == (0, HUNG, "")
 
 
+@pytest.mark.slow
 def test_a_stubborn_step_ends_the_process() -> None:
     assert run(STUBBORN) == (3, "", "gone\n")  # stdout is still the planner's
 
 
+@pytest.mark.slow
 def test_in_another_thread_python_code_is_interrupted() -> None:
     assert run(SPIN, IN_THREAD) == (0, HUNG, "")
 
 
+@pytest.mark.slow
 def test_in_another_thread_a_sleep_ends_the_process() -> None:
     assert run(SLEEP, IN_THREAD) == (3, "", "gone\n")
 
 
+@pytest.mark.slow
 def test_a_step_under_the_debugger_may_take_its_time() -> None:
     stops = "        breakpoint()\n        return (0.0, 0.0)"
     words = ["import time", "time.sleep(2.0)", "p obs.t", "c"]
@@ -345,6 +350,7 @@ def test_a_step_under_the_debugger_may_take_its_time() -> None:
     assert "(Pdb) 0.0\n" in out + err
 
 
+@pytest.mark.slow
 def test_the_watchdog_leaves_quick_steps_alone() -> None:
     quick = "        return (0.0, 0.0)"
     many = "[(host.step(obs), time.sleep(0.15)) for _ in range(8)]; print('fine')"
@@ -390,6 +396,7 @@ def test_a_stray_signal_between_steps_does_nothing() -> None:
         watchdog.close()
 
 
+@pytest.mark.slow
 def test_patience_holds_inside_only() -> None:
     watchdog = Watchdog(limit=0.2, grace=5.0)
     try:

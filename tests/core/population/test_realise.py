@@ -59,6 +59,7 @@ def test_the_same_scenario_is_the_same_crowd() -> None:
     assert one.x.tobytes() == two.x.tobytes()
 
 
+@pytest.mark.slow
 def test_which_axes_draw_other_people() -> None:
     """Cost parameters share the crowd; flow, density and speed do not: 18 draws of 162."""
     hashes: dict[tuple[str, ...], set[str]] = {}
@@ -77,6 +78,7 @@ def test_another_seed_is_another_crowd() -> None:
     assert not np.any(other.x == base.x)
 
 
+@pytest.mark.slow
 def test_streams_are_independent() -> None:
     """A wider spread of speeds leaves everybody where he was."""
     base, other = _drawn(), _drawn("in-d0125-slow-c01-r02", "crowd.speed.std=0.2 m/s")

@@ -44,6 +44,7 @@ def walkers(samples: int, people: int, ticks: int = 8) -> tuple[Array, Array]:
     return np.arange(samples, dtype=np.float64) * ticks * TICK, np.array(rows, np.float64)
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(
     data=st.data(),
@@ -57,6 +58,13 @@ def test_any_numbers_come_back(
 ) -> None:
     motion = data.draw(arrays(np.float64, (n, 4, m), elements=ANY))
     back, _ = there_and_back(np.arange(n, dtype=np.float64) * gaps, motion, block)
+    assert back.tobytes() == motion.tobytes()
+
+
+@pytest.mark.parametrize("value", [np.inf, -np.inf, np.nan, 1.7e308])
+def test_what_is_beyond_all_numbers_comes_back(value: float) -> None:
+    motion = np.full((4, 4, 2), value)
+    back, _ = there_and_back(np.arange(4) / 16.0, motion, 2)
     assert back.tobytes() == motion.tobytes()
 
 

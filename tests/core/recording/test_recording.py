@@ -100,6 +100,7 @@ def test_trajectories_come_back_bit_by_bit(run: Run, record: Any, tmp_path: Path
 FLOATS = st.floats(width=64, allow_nan=True, allow_infinity=True, allow_subnormal=True)
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(data=st.data(), n=st.integers(1, 4), m=st.integers(0, 3))
 def test_any_numbers_come_back_bit_by_bit(

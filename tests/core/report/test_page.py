@@ -119,6 +119,7 @@ def test_failures_of_the_campaign_are_attempts_like_others() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_nothing_comes_from_outside() -> None:
     text = render(full())
     page = Page(text)

@@ -122,6 +122,7 @@ def _work(final: Path, text: str, rounds: int, failures: Any) -> None:
         raise
 
 
+@pytest.mark.slow
 def test_many_processes_at_once(tmp_path: Path) -> None:
     """Whatever they do at the same time, what is left is one whole run."""
     final = tmp_path / "seed-0"

@@ -49,12 +49,14 @@ def counted(
     return counting.built, Counter(f"{spec.category} {spec.kind}" for spec in named)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("record", ["all", "used", "none"])
 def test_one_recording_is_built_once(tmp_path: Path, record: str) -> None:
     built, named = counted(scenario(SHORT), tmp_path, record, references=False)
     assert built == named
 
 
+@pytest.mark.slow
 def test_calibration_runs_are_recordings_of_their_own(tmp_path: Path) -> None:
     world = scenario(SHORT)
     built, named = counted(world, tmp_path, "used", references=True)
@@ -63,6 +65,7 @@ def test_calibration_runs_are_recordings_of_their_own(tmp_path: Path) -> None:
     assert built == Counter({kind: 2 * n for kind, n in named.items() if kind != place})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("record", ["all", "used", "none"])
 def test_sensors_are_those_that_are_simulated(record: Any) -> None:
     world = scenario(SHORT)
@@ -78,6 +81,7 @@ def test_sensors_are_those_that_are_simulated(record: Any) -> None:
     )
 
 
+@pytest.mark.slow
 def test_frames_are_checked_before_anything_is_written(tmp_path: Path) -> None:
     world = scenario(SHORT)
     sensors = world.robots["robot"].sensors

@@ -149,6 +149,7 @@ def test_what_one_gains_the_other_loses(
     assert header[s.ROBOT_TORQUE] == 0.0
 
 
+@pytest.mark.slow
 @given(offset=st.floats(-0.3, 0.3), closing=st.floats(0.3, 2.0), dissipation=st.floats(0.0, 0.6))
 @settings(deadline=None, max_examples=25)
 def test_lost_energy_is_what_the_law_dissipates(

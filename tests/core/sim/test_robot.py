@@ -26,6 +26,7 @@ def test_the_robot_moves() -> None:
     assert abs(robot.y) < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_full_speed_and_yaw_rate_settle_without_overshoot(sign: float) -> None:
     """From rest to (0.65 m/s, 3.14 rad/s), limited by the slew of 1 m/s^2 and 2 rad/s^2."""
@@ -73,6 +74,7 @@ WALLS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("wall", list(WALLS))
 def test_a_wall_stops_the_robot(wall: str) -> None:
     x, y, yaw, axis, expected = WALLS[wall]

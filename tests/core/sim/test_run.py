@@ -35,6 +35,7 @@ def _whole(world: Scenario, planner: object, **options: object) -> tuple[Rig, ob
     return made, outcome
 
 
+@pytest.mark.slow
 def test_the_log_is_on_its_grid() -> None:
     made, outcome = _whole(scenario("robots.robot.task.time_limit=2"), constant(0.3))
     assert [t for t, *_ in made.memory.states] == [n / 16.0 for n in range(33)]
@@ -50,12 +51,14 @@ def test_the_log_is_on_its_grid() -> None:
     assert made.memory.flushes >= 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [1.0, 64.0, 128.0])
 def test_other_log_rates(rate: float) -> None:
     made, _ = _whole(alone("robots.robot.task.time_limit=1", f"rates.log={rate}"), constant(0.3))
     assert [t for t, *_ in made.memory.states] == [n / rate for n in range(int(rate) + 1)]
 
 
+@pytest.mark.slow
 def test_arrival_is_interpolated() -> None:
     """At 0.65 m/s into the zone at x = 45 m; the run ends on the next tick."""
     world = alone("robots.robot.task.start=[43.9, 0.5, 0]")
@@ -77,6 +80,7 @@ def test_a_start_inside_the_goal_arrives_at_once() -> None:
     assert (outcome.status, outcome.goal_time) == ("arrived", 0.0)  # type: ignore[attr-defined]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("limit", ["0.001", "0.33", "0.0625"])
 def test_any_time_limit(limit: str) -> None:
     """The run ends on the first tick at or after it."""
@@ -85,6 +89,7 @@ def test_any_time_limit(limit: str) -> None:
     assert outcome.sim_time == math.ceil(float(limit) * 128) / 128  # type: ignore[attr-defined]
 
 
+@pytest.mark.slow
 def test_one_advance_equals_many() -> None:
     """Bit by bit, state and log; with people, noise and contacts."""
     id_ = "counter-d0500-fast-c50-r10"
@@ -109,6 +114,7 @@ def test_one_advance_equals_many() -> None:
                 assert (x.stamp, x.values.tobytes()) == (y.stamp, y.values.tobytes())
 
 
+@pytest.mark.slow
 def test_trips_and_jumps_of_one_person() -> None:
     """Out at x = 0 after 2 m at 1 m/s, back in at once: one trip done, one begun."""
     made = rig(scenario("robots.robot.task.start=[25, 3, 0]"), constant(0.0), person(2.0, 0.0, 1.0))
@@ -125,6 +131,7 @@ def test_trips_and_jumps_of_one_person() -> None:
     assert positions[2.5] > 49.0
 
 
+@pytest.mark.slow
 def test_waiting_people_are_logged_as_absent() -> None:
     """A robot in the only place where one may enter keeps a person outside."""
     engine = person(2.0, 0.0, 1.0)

@@ -86,6 +86,7 @@ def test_a_robot_on_a_person() -> None:
     check_start(_parts(), _model(footprint=BOX), start, person(10.0 + 0.3 + 0.33), "r")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "outline",
     [
@@ -140,6 +141,7 @@ def _built(setup: RunSetup) -> BuiltRun:
     return build_run(setup.scenario, setup.registry, setup.choice, setup.record)
 
 
+@pytest.mark.slow
 def test_the_outline_is_recorded(tmp_path: Path) -> None:
     world = scenario("robots.robot.task.time_limit=0.25")
     setup = RunSetup(

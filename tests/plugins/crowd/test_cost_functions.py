@@ -225,6 +225,7 @@ def test_formula(kind: str) -> None:
     check()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", FORMULAS)
 def test_budget(kind: str) -> None:
     """Stopping early never makes a candidate look affordable, nor changes one that is."""
@@ -304,6 +305,7 @@ def test_foe_gradient(s: Scene, u: complex, parity: bool) -> None:
     assert min(abs(ours - x) for x in theirs) <= 1e-5 * max(1.0, abs(ours))
 
 
+@pytest.mark.slow
 @QUICK
 @given(FULL, st.integers(0, 2**32))
 def test_orca_optimum(s: Scene, seed: int) -> None:

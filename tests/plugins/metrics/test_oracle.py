@@ -80,6 +80,7 @@ def test_collisions(seed: int) -> None:
         assert_agrees(severity[variant].value, expected[name])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("world", [crowded, stream])
 @given(seed=SEEDS)
 @some

@@ -115,6 +115,7 @@ def test_dropout_rate(share: float) -> None:
     assert lost.mean() == pytest.approx(share, abs=4 * math.sqrt(share * (1 - share) / BEAMS))
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(st.integers(1, 16), st.floats(0.0, 1.0), st.floats(1.5, 20.0), st.floats(0.0, 1.0))
 def test_readings_are_whole_steps(bits: int, low: float, high: float, share: float) -> None:

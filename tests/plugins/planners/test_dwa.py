@@ -41,6 +41,7 @@ def test_component() -> None:
     assert DwaSpec.needs == ("lidar",)
 
 
+@pytest.mark.slow
 def test_alone_it_drives_dead_straight() -> None:
     out = run()
     assert out.arrived
@@ -70,6 +71,7 @@ STATIC = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("people", STATIC.values(), ids=STATIC)
 def test_static_obstacles_without_any_contact(people: list[list[float]]) -> None:
     out = run(people)
@@ -79,6 +81,7 @@ def test_static_obstacles_without_any_contact(people: list[list[float]]) -> None
     assert out.t < 95.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [50, 100])
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_standing_crowd(seed: int, count: int) -> None:
@@ -90,6 +93,7 @@ def test_standing_crowd(seed: int, count: int) -> None:
     assert out.t < 130.0  # seed 1 with 100 people has a dead end in its middle
 
 
+@pytest.mark.slow
 def test_a_door_in_a_wall() -> None:
     door = np.array([[20.0, -5.0, 20.0, 1.0], [20.0, 1.9, 20.0, 5.0]])
     out = run(walls=np.vstack([CORRIDOR, door]))
@@ -97,12 +101,14 @@ def test_a_door_in_a_wall() -> None:
     assert out.least_wall_gap > 0.05
 
 
+@pytest.mark.slow
 def test_gets_out_of_the_way_of_somebody_who_does_not() -> None:
     out = run([[20.0, 0.0, -1.4, 0.0]])
     assert out.arrived
     assert not out.contacts
 
 
+@pytest.mark.slow
 def test_lets_somebody_cross() -> None:
     for start in np.linspace(-9.0, -3.0, 7):
         world = World([[10.0, start, 0.0, 0.6]], walls=np.empty((0, 4)))
@@ -111,6 +117,7 @@ def test_lets_somebody_cross() -> None:
         assert not out.contacts
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_through_fifty_who_avoid_nobody(seed: int) -> None:
     """Both flows, 0.8 to 1.6 m/s; a robot of 0.65 m/s cannot evade all of them."""
@@ -123,6 +130,7 @@ def test_through_fifty_who_avoid_nobody(seed: int) -> None:
     assert out.least_wall_gap > 0.0
 
 
+@pytest.mark.slow
 def test_fewer_contacts_than_blind_driving() -> None:
     contacts = {"dwa": 0, "blind": 0}
     for seed in range(4):
@@ -133,6 +141,7 @@ def test_fewer_contacts_than_blind_driving() -> None:
     assert contacts["dwa"] < 0.7 * contacts["blind"]
 
 
+@pytest.mark.slow
 def test_a_dense_crowd_does_not_freeze_it() -> None:
     out = run(crowd(7, 100, (0.8, 1.6), (1, -1)), seed=7)
     assert out.arrived
@@ -147,6 +156,7 @@ def test_boxed_in_it_stands_and_touches_nobody() -> None:
     assert math.dist(world.pose[:2], (5.0, 0.0)) < 0.3
 
 
+@pytest.mark.slow
 def test_touched_it_moves_away() -> None:
     """Somebody stands against its front: it backs out or turns away, and arrives."""
     out = run(standing((2.5 + 0.178 + 0.33 + 0.01, 0.0)))
@@ -163,6 +173,7 @@ def test_same_run_twice() -> None:
     assert first.commands == again.commands
 
 
+@pytest.mark.slow
 def test_commands_keep_to_the_limits() -> None:
     out = run(crowd(5, 100, (0.8, 1.6), (1, -1)), seed=5)
     assert all(-0.2 <= c.v <= LIMITS.v_max and abs(c.w) <= LIMITS.w_max for c in out.commands)

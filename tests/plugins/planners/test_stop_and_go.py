@@ -36,6 +36,7 @@ def test_stands_before_a_standing_person() -> None:
     assert 0.3 < out.least_gap < SPEC.front_margin + 0.03
 
 
+@pytest.mark.slow
 @settings(max_examples=15, deadline=None)
 @given(st.floats(-0.6, 0.6), st.floats(0.1, 1.0))
 def test_never_touches_what_stands(y: float, speed: float) -> None:

@@ -96,6 +96,7 @@ def _nearest_in_zone(hit: Array, angle: Array, length: float, radius: float) -> 
     return float(np.min(hit[seen], initial=math.inf))
 
 
+@pytest.mark.slow
 @settings(max_examples=100, deadline=None)
 @example((2.0, 1.5), 1.0, 2.0, 0.0, 1.0)
 @given(SHAPES, st.floats(-1.5, 1.5), st.floats(0.3, 4.6), st.floats(-3.0, 3.0), st.floats(0, 3))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -64,6 +65,7 @@ def test_time_to_disc(rx: float, ry: float, vx: float, vy: float, reach: float) 
         assert t >= HORIZON or np.min(distance) < reach + speed * HORIZON / STEPS
 
 
+@pytest.mark.slow
 @given(COORDINATE, COORDINATE, COORDINATE, COORDINATE, SPEED, SPEED, st.floats(0.05, 0.5))
 @settings(deadline=None, max_examples=400)
 def test_time_to_segment(

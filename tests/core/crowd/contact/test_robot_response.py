@@ -88,6 +88,7 @@ def test_who_ignores_it_is_drawn_by_id() -> None:
     assert np.all(chosen(1, ids, 1.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("overrides", "share"),
     [
