@@ -78,8 +78,8 @@ def reacts(
         agents[i, NOTICED] = UNAWARE
     elif found:
         agents[i, NOTICED] = now
-    noticed = agents[i, NOTICED]
-    return noticed != UNAWARE and now - noticed >= response[REACTION_TIME]
+    noticed: float = agents[i, NOTICED]
+    return noticed != UNAWARE and now - noticed >= float(response[REACTION_TIME])
 
 
 @kernel
@@ -101,4 +101,4 @@ def _sees(
     closing = (agents[i, VX] - robot[RVX]) * nx + (agents[i, VY] - robot[RVY]) * ny
     share = stands(robot, 0.0, response[SEEN_STANDING], response[SEEN_MOVING])
     time = response[LATE_TIME] + share * (response[LATE_TIME_STANDING] - response[LATE_TIME])
-    return gap < response[LATE_GAP] or gap < time * closing
+    return gap < max(float(response[LATE_GAP]), float(time * closing))

@@ -74,7 +74,8 @@ def stands(robot: Array, extent: float, standing: float, moving: float) -> float
         standing, moving: speeds below and above which it does, m/s.
     """
     speed = math.hypot(robot[RVX], robot[RVY]) + abs(robot[R_W]) * extent
-    return min(1.0, max(0.0, (moving - speed) / (moving - standing)))
+    share: float = (moving - speed) / (moving - standing)
+    return min(1.0, max(0.0, share))
 
 
 @kernel
@@ -86,4 +87,5 @@ def _away(agents: Array, i: int, nx: float, ny: float, gap: float, response: Arr
     brake = 0.5 * closing * closing / max(room, _ROOM) if closing > 0.0 else 0.0
     if brake <= response[LEAST_BRAKING] or room < _ROOM:
         brake = 0.0
-    return max(lean, brake)
+    away: float = max(lean, brake)
+    return away
