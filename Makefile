@@ -9,6 +9,8 @@
 #   make lock    rewrite requirements.lock (needs uv)
 
 PYTHON ?= python3
+# Tests start hundreds of processes: without byte code each would translate all our files again.
+export PYTHONDONTWRITEBYTECODE :=
 BIN := .venv/bin
 READY := .venv/ready-$(shell cat requirements.lock pyproject.toml | cksum | cut -d' ' -f1)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
