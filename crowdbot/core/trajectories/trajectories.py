@@ -37,7 +37,8 @@ class RobotTrack:
     """One robot: x, y, theta, v, w are (N,); m, rad, m/s signed forward, rad/s.
 
     ``vx``, ``vy`` (N,) are the world velocity (m/s) of a robot that also moves sideways; without
-    them it is ``v`` along ``theta``.
+    them it is ``v`` along ``theta``. ``speed_limit`` (m/s) is the fastest that it can go; None:
+    unknown.
     """
 
     x: Array
@@ -52,6 +53,7 @@ class RobotTrack:
     goal_radius: float
     vx: Array | None = None
     vy: Array | None = None
+    speed_limit: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -147,6 +149,7 @@ class Trajectories:
         robot_goal_time: float | None = None,
         robot_goal: tuple[float, float] | None = None,
         robot_goal_radius: float = 0.0,
+        robot_speed_limit: float | None = None,
         goal_zone: ArrayLike | None = None,
         walls: ArrayLike | None = None,
         planner_step_time: ArrayLike | None = None,
@@ -168,6 +171,7 @@ class Trajectories:
             robot_radius, robot_mass: m, kg; needed with a robot.
             robot_goal_time: when it arrived, s; None: it did not.
             robot_goal, robot_goal_radius: middle and radius of the goal, m.
+            robot_speed_limit: the fastest that the robot can go, m/s.
             goal_zone, walls, planner_step_time, robot_footprint, signals: as in `Trajectories`.
 
         Raises:
@@ -190,6 +194,7 @@ class Trajectories:
             robot_goal_time=robot_goal_time,
             robot_goal=robot_goal,
             robot_goal_radius=robot_goal_radius,
+            robot_speed_limit=robot_speed_limit,
             goal_zone=goal_zone,
             walls=walls,
             planner_step_time=planner_step_time,
@@ -220,6 +225,7 @@ class Trajectories:
         robot_goal_time: float | None = None,
         robot_goal: tuple[float, float] | None = None,
         robot_goal_radius: float = 0.0,
+        robot_speed_limit: float | None = None,
         agent_id: ArrayLike | None = None,
         agent_x: ArrayLike | None = None,
         agent_y: ArrayLike | None = None,
@@ -296,7 +302,19 @@ def _robot(arguments: Mapping[str, Any]) -> RobotTrack:
         goal_time=None if goal_time is None else float(goal_time),
         goal=None if goal is None else (float(goal[0]), float(goal[1])),
         goal_radius=float(arguments["robot_goal_radius"]),
+        speed_limit=_speed_limit(arguments["robot_speed_limit"]),
     )
+
+
+def _speed_limit(value: float | None) -> float | None:
+    """As a number.
+
+    Raises:
+        InputError: it is not positive.
+    """
+    if value is not None and not (np.isfinite(value) and value > 0):
+        raise InputError(f"trajectories: robot_speed_limit is {value}, not a positive speed in m/s")
+    return None if value is None else float(value)
 
 
 def _forward(rows: Mapping[str, Array]) -> Array:
