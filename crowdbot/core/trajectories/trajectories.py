@@ -37,8 +37,7 @@ class RobotTrack:
     """One robot: x, y, theta, v, w are (N,); m, rad, m/s signed forward, rad/s.
 
     ``vx``, ``vy`` (N,) are the world velocity (m/s) of a robot that also moves sideways; without
-    them it is ``v`` along ``theta``. ``speed_limit`` (m/s) is the fastest that it can go; None:
-    unknown.
+    them it is ``v`` along ``theta``.
     """
 
     x: Array
@@ -53,7 +52,6 @@ class RobotTrack:
     goal_radius: float
     vx: Array | None = None
     vy: Array | None = None
-    speed_limit: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,6 +108,7 @@ class Trajectories:
         robot_footprint: outline of the robot in its own frame (x forward), m: the (K, 2) corners
             of a polygon in either sense, K >= 3; or the (2, 2) ends of the axis of a capsule,
             whose radius is ``robot.radius``. None: a disc of ``robot.radius``.
+        robot_speed_limit: the fastest that the robot can go, m/s; None: unknown.
         signals: name -> (P, 2) time (s) and value.
     """
 
@@ -122,6 +121,7 @@ class Trajectories:
     walls: Array | None = None
     planner_step_time: Array | None = None
     robot_footprint: Array | None = None
+    robot_speed_limit: float | None = None
     signals: Mapping[str, Array] = field(default_factory=dict)
     _cache: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -267,6 +267,7 @@ class Trajectories:
             walls=None if walls is None else _read_only(walls),
             planner_step_time=None if planner_step_time is None else _read_only(planner_step_time),
             robot_footprint=None if robot_footprint is None else _read_only(robot_footprint),
+            robot_speed_limit=_speed_limit(robot_speed_limit),
             signals={k: _read_only(v) for k, v in (signals or {}).items()},
         )
         _check(run)
@@ -302,7 +303,6 @@ def _robot(arguments: Mapping[str, Any]) -> RobotTrack:
         goal_time=None if goal_time is None else float(goal_time),
         goal=None if goal is None else (float(goal[0]), float(goal[1])),
         goal_radius=float(arguments["robot_goal_radius"]),
-        speed_limit=_speed_limit(arguments["robot_speed_limit"]),
     )
 
 

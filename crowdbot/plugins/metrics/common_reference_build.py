@@ -82,7 +82,7 @@ def shortest_time(
     way = shortest_way(factory, run, variants)
     if isinstance(way, list):
         return way
-    fastest = robot_of(run).speed_limit
+    fastest = run.robot_speed_limit
     if fastest is None:
         return factory.all_undefined("invalid_no_speed_limit", variants)
     return way / fastest

@@ -167,7 +167,7 @@ def test_contacts_after_the_arrival_do_not_count() -> None:
 def test_what_is_needed() -> None:
     run = arriving(10.0)
     assert run.robot is not None
-    unknown = dataclasses.replace(run, robot=dataclasses.replace(run.robot, speed_limit=None))
+    unknown = dataclasses.replace(run, robot_speed_limit=None)
     assert why(scores_of("safe_efficiency", unknown)) == {("undefined", "invalid_no_speed_limit")}
     there = dataclasses.replace(run, robot=dataclasses.replace(run.robot, goal=(0.0, 0.0)))
     assert why(scores_of("safe_efficiency", there)) == {("undefined", "zero_denominator")}
@@ -179,8 +179,8 @@ def test_slowness_never_helps(seed: int, slower: float) -> None:
     """The same run on a slower clock is worth as much less as it is slower, or nothing."""
     run = random_scene(seed)
     assert run.robot is not None
-    robot = dataclasses.replace(run.robot, goal=(30.0, 0.0), speed_limit=1.0)
-    run = dataclasses.replace(run, robot=robot)
+    robot = dataclasses.replace(run.robot, goal=(30.0, 0.0))
+    run = dataclasses.replace(run, robot=robot, robot_speed_limit=1.0)
     stretched = dataclasses.replace(
         robot,
         goal_time=None if robot.goal_time is None else robot.goal_time * slower,
