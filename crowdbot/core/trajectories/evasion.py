@@ -46,8 +46,7 @@ class Evasion:
     @property
     def met(self) -> Mask:
         """People (M,) who are near on some step."""
-        found: Mask = self.near.any(axis=0)
-        return found
+        return np.asarray(self.near.any(axis=0))
 
     def work(self, mass: Array) -> float:
         """Work that the robot's advance does against people who accelerate away from it, J."""

@@ -99,7 +99,7 @@ def _paired(
 
 
 def _ways(run: Trajectories, jump_speed: float) -> dict[tuple[int, int], _Way]:
-    """Person and number of the trip -> where it went; trips of fewer than two samples are none."""
+    """Person and number of the trip -> where it went; trips of fewer than two samples are left out."""
     agents, trips = people(run), run.trips
     if trips is None or not agents.x.size:
         return {}

@@ -144,7 +144,6 @@ def test_work_is_never_negative_and_needs_advance(seed: int) -> None:
     assert value_of(found) >= 0
     assert run.robot is not None
     still = np.zeros(len(run.t))
-    names = ("x", "y", "theta", "v", "w")
-    parked = dataclasses.replace(run.robot, **dict.fromkeys(names, still))
+    parked = dataclasses.replace(run.robot, x=still, y=still, theta=still, v=still, w=still)
     again = scores_of("push_work", dataclasses.replace(run, robot=parked))
     assert again["corrected"].value in (0.0, None)

@@ -93,7 +93,7 @@ def test_the_rate_per_way_made_good() -> None:
 
 
 def test_circles_do_not_lower_the_rate() -> None:
-    """Nothing is gained by driving to and fro far from everybody."""
+    """Nothing is gained by driving back and forth far from everybody."""
     x = np.interp(T, [0, 4, 5, 6, 7, 8, 10], [0, 4, 2, 4, 2, 4, 5])
     body = Body(x, np.zeros(len(T)), np.gradient(x, T), np.zeros(len(T)))
     found = scores_of(
