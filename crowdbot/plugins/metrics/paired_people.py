@@ -6,16 +6,25 @@ from functools import partial
 from typing import Literal
 
 from crowdbot.dsl import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import JumpSpeed, MuchDelay, MuchDisplacement, SameStart
+from crowdbot.plugins.metrics.parameters import (
+    AfterMeeting,
+    JumpSpeed,
+    MuchDelay,
+    MuchDisplacement,
+    NeighbourRadius,
+    SameStart,
+)
 
 declare = partial(declare_metric, category="burden")
 
 
 class DisplacementSpec(MetricSpec):
-    """Largest distance of people from the way that they walk without the robot."""
+    """How far people who meet the robot are moved off the way that they walk without it."""
 
     kind: Literal["displacement"] = "displacement"
     much_displacement: MuchDisplacement
+    neighbour_radius: NeighbourRadius
+    after_meeting: AfterMeeting
     same_start: SameStart
     jump_speed: JumpSpeed
 
@@ -31,15 +40,18 @@ DISPLACEMENT = declare(
         "worst": {"minimum": 0.0},
         "count": {"unit": "1", "minimum": 0.0, "integer": True, "more_people": "up"},
         "slope": {"unit": "s", "better": "none"},
+        "whole": {"better": "none", "minimum": 0.0},
     },
 )
 
 
 class DelaySpec(MetricSpec):
-    """Time that people lose against their trips without the robot."""
+    """Time that people who meet the robot lose against their trips without it."""
 
     kind: Literal["delay"] = "delay"
     much_delay: MuchDelay
+    neighbour_radius: NeighbourRadius
+    after_meeting: AfterMeeting
     same_start: SameStart
     jump_speed: JumpSpeed
 
@@ -55,6 +67,7 @@ DELAY = declare(
         "worst": {},
         "count": {"unit": "1", "minimum": 0.0, "integer": True, "more_people": "up"},
         "slope": {"unit": "s²/m", "better": "none"},
+        "whole": {"better": "none"},
     },
 )
 

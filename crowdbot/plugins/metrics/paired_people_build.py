@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,12 @@ from crowdbot.core.interfaces import (
     Trajectories,
     truncate_at_arrival,
 )
-from crowdbot.core.trajectories.paired_people import PairedPeople, paired_people
+from crowdbot.core.trajectories.paired_people import (
+    Effects,
+    Pairing,
+    meeting_effects,
+    whole_effects,
+)
 from crowdbot.plugins.metrics.paired_people import (
     DELAY,
     DISPLACEMENT,
@@ -32,6 +37,9 @@ SAME_SPEED = 1e-6
 TOLERANCE = 1e-9
 
 
+_Spec = DisplacementSpec | DelaySpec
+
+
 @dataclass(frozen=True, slots=True)
 class Displacement:
     """Needs ``crowd_alone`` with the same people."""
@@ -39,12 +47,9 @@ class Displacement:
     spec: DisplacementSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Mean over people, mean of the worst 5 %, how many by much, slope against speed."""
-        factory = ScoreFactory(DISPLACEMENT)
-        found = _paired(factory, run, refs, self.spec)
-        if isinstance(found, list):
-            return found
-        return _told(factory, found, found.displacement, self.spec.much_displacement)
+        """Mean over people met, of the worst 5 %, how many by much, slope, mean over everybody."""
+        factory, much = ScoreFactory(DISPLACEMENT), self.spec.much_displacement
+        return _scores(factory, run, refs, self.spec, lambda found: found.displacement, much)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,37 +59,55 @@ class Delay:
     spec: DelaySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Mean over people, mean of the worst 5 %, how many by much, slope against speed."""
-        factory = ScoreFactory(DELAY)
-        found = _paired(factory, run, refs, self.spec)
-        if isinstance(found, list):
-            return found
-        return _told(factory, found, found.delay, self.spec.much_delay)
+        """Mean over people met, of the worst 5 %, how many by much, slope, mean over everybody."""
+        factory, much = ScoreFactory(DELAY), self.spec.much_delay
+        return _scores(factory, run, refs, self.spec, lambda found: found.delay, much)
 
 
-def _paired(
-    factory: ScoreFactory, run: Trajectories, refs: References, spec: DisplacementSpec | DelaySpec
-) -> PairedPeople | list[Score]:
-    """People who make the same trips in both runs; or why there are none."""
+def _scores(
+    factory: ScoreFactory,
+    run: Trajectories,
+    refs: References,
+    spec: _Spec,
+    each: Callable[[Effects], Array],
+    much: float,
+) -> list[Score]:
+    """All variants of what each person pays (P,)."""
     alone = refs.crowd_alone
     if alone is None or alone.agents is None:
         return factory.all_undefined("no_reference")
     if run.trips is None or alone.trips is None:
         return factory.all_undefined("no_trips")
     run, alone = truncate_at_arrival(run), truncate_at_arrival(alone)
-    found = paired_people(run, alone, spec.same_start, spec.jump_speed)
-    return found if len(found.id) else factory.all_undefined("no_trips")
+    pairing = Pairing(
+        same_start=spec.same_start,
+        reach=spec.neighbour_radius,
+        after=spec.after_meeting,
+        jump_speed=spec.jump_speed,
+    )
+    everybody = whole_effects(run, alone, pairing)
+    whole = factory.undefined("whole", "no_trips")
+    if len(everybody):
+        extras = {"people": float(len(everybody)), "left_out": float(everybody.left_out)}
+        whole = factory.ok("whole", each(everybody).mean(), extras)
+    names = factory.variants[:-1]
+    if run.robot is None:
+        return [*factory.all_undefined("invalid_no_robot", names), whole]
+    met = meeting_effects(run, alone, pairing)
+    if not len(met):
+        return [*factory.all_undefined("no_neighbours", names), whole]
+    return [*_of_met(factory, met, each(met), much), whole]
 
 
-def _told(factory: ScoreFactory, found: PairedPeople, each: Array, much: float) -> list[Score]:
-    """All variants of what each person pays (P,)."""
+def _of_met(factory: ScoreFactory, met: Effects, each: Array, much: float) -> list[Score]:
+    """Mean, worst, count and slope."""
     worst = np.sort(each)[-max(1, math.ceil(WORST * len(each))) :]
-    extras = {"people": float(len(each)), "unpaired_trips": float(found.unpaired)}
+    extras = {"people": float(len(each)), "left_out": float(met.left_out)}
     return [
         factory.ok("corrected", each.mean(), extras),
         factory.ok("worst", worst.mean()),
         factory.ok("count", (each > much + TOLERANCE).sum()),
-        _slope(factory, found.speed, each),
+        _slope(factory, met.speed, each),
     ]
 
 

@@ -135,7 +135,11 @@ LeastWay = Annotated[
 ]
 SameStart = Annotated[
     NonNegativeLength,
-    Field(default=0.1, description="Trips that begin farther apart are not compared, m."),
+    Field(default=0.1, description="Who is farther from where he would be is left out, m."),
+]
+AfterMeeting = Annotated[
+    NonNegativeDuration,
+    Field(default=2.0, description="A meeting goes on so long after the robot is out of reach, s."),
 ]
 MuchDisplacement = Annotated[
     NonNegativeLength, Field(default=0.5, description="Who is displaced by more is counted, m.")
