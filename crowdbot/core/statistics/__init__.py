@@ -11,6 +11,7 @@ from crowdbot.core.statistics.comparison import Comparison, Verdict
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts, Estimate, Outcome
 from crowdbot.core.statistics.summary import PlannerScore, Summary, headline_names, summarise
 from crowdbot.core.statistics.table import Name, Table
+from crowdbot.core.statistics.variance import VarianceParts
 
 __all__ = [
     "OUTCOMES",
@@ -25,6 +26,7 @@ __all__ = [
     "PlannerScore",
     "Summary",
     "Table",
+    "VarianceParts",
     "Verdict",
     "headline_names",
     "summarise",
