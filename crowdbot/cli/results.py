@@ -40,7 +40,7 @@ def show(
         str | None, typer.Option(metavar="GLOB", help="Metrics; default: a few headlines.")
     ] = None,
     variant: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Variant; default: corrected.")
+        str | None, typer.Option(metavar="NAME", help="Variant; default: rate, or else corrected.")
     ] = None,
     by: Annotated[
         str, typer.Option(metavar="AXIS,AXIS", help="Groups: axes, planner, seed, status.")
@@ -172,6 +172,8 @@ def _line(summary: GroupSummary) -> dict[str, Any]:
         "variant": summary.variant,
         "unit": summary.unit,
         "mean": summary.mean,
+        "low": summary.low,
+        "high": summary.high,
         "median": summary.median,
         "n": summary.count,
         "undefined": summary.undefined,
