@@ -6,6 +6,7 @@ docs/explanation/statistics.md says what is computed and how to read it.
 
 from __future__ import annotations
 
+from crowdbot.core.statistics.atlas import AtlasEntry, atlas
 from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, Level
 from crowdbot.core.statistics.comparison import Comparison, Verdict
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts, Estimate, Outcome
@@ -14,6 +15,7 @@ from crowdbot.core.statistics.table import Name, Table
 
 __all__ = [
     "OUTCOMES",
+    "AtlasEntry",
     "AxisEffect",
     "Comparison",
     "Counts",
@@ -26,6 +28,7 @@ __all__ = [
     "Summary",
     "Table",
     "Verdict",
+    "atlas",
     "headline_names",
     "summarise",
 ]
