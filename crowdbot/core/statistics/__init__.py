@@ -6,6 +6,7 @@ docs/explanation/statistics.md says what is computed and how to read it.
 
 from __future__ import annotations
 
+from crowdbot.core.statistics.atlas import AtlasEntry, atlas
 from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, Level
 from crowdbot.core.statistics.comparison import Comparison, Verdict
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts, Estimate, Outcome
@@ -15,6 +16,7 @@ from crowdbot.core.statistics.variance import VarianceParts
 
 __all__ = [
     "OUTCOMES",
+    "AtlasEntry",
     "AxisEffect",
     "Comparison",
     "Counts",
@@ -28,6 +30,7 @@ __all__ = [
     "Table",
     "VarianceParts",
     "Verdict",
+    "atlas",
     "headline_names",
     "summarise",
 ]

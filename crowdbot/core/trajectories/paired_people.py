@@ -85,6 +85,17 @@ class _Way:
     reached: bool
 
 
+@dataclass(frozen=True, slots=True)
+class _Pair:
+    """One trip of a person with and without the robot; ``beside``, ``late`` as of `follow`."""
+
+    who: int
+    one: _Way
+    two: _Way
+    beside: Array
+    late: Array
+
+
 def whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
     """All people over all trips that both runs have and that begin alike.
 
@@ -95,13 +106,12 @@ def whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> E
     """
     found: dict[int, list[tuple[float, float, float, float]]] = {}
     left_out = 0
-    for (who, _), one, two in _pairs(run, alone, pairing):
-        if _starts_apart(one, two, pairing):
+    for pair in _pairs(run, alone, pairing.jump_speed):
+        if _starts_apart(pair, pairing):
             left_out += 1
             continue
-        beside, late = _laid_over(one, two)
-        effect = float(beside.max()), _delay(one, two, float(late[-1]))
-        found.setdefault(who, []).append((*effect, *_walked(two)))
+        effect = float(pair.beside.max()), _delay(pair)
+        found.setdefault(pair.who, []).append((*effect, *_walked(pair.two)))
     people = [np.array(trips) for trips in found.values()]
     return Effects(
         displacement=np.array([trips[:, 0].max() for trips in people]),
@@ -119,17 +129,17 @@ def meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) ->
     """
     distance = encounter(run, pairing.jump_speed).distance
     rows, met, left_out = [], set[int](), 0
-    for (who, _), one, two in _pairs(run, alone, pairing):
+    for pair in _pairs(run, alone, pairing.jump_speed):
+        one, beside, late = pair.one, pair.beside, pair.late
         first, last = _meeting(distance[one.rows, one.column], run.t[one.rows], pairing)
-        if who in met or first < 0:
+        if pair.who in met or first < 0:
             continue
-        met.add(who)
-        beside, late = _laid_over(one, two)
+        met.add(pair.who)
         moved = beside[first] > pairing.same_start + _TOLERANCE
-        if _starts_apart(one, two, pairing) or moved or abs(late[first]) > SAME_PACE + _TOLERANCE:
+        if _starts_apart(pair, pairing) or moved or abs(late[first]) > SAME_PACE + _TOLERANCE:
             left_out += 1
             continue
-        length, seconds = _walked(two)
+        length, seconds = _walked(pair.two)
         most = float(beside[first : last + 1].max() - beside[first])
         rows.append((most, float(late[last] - late[first]), length / seconds))
     table = np.array(rows).reshape(-1, 3)
@@ -138,19 +148,20 @@ def meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) ->
     )
 
 
-def _pairs(
-    run: Trajectories, alone: Trajectories, pairing: Pairing
-) -> list[tuple[tuple[int, int], _Way, _Way]]:
-    """Trips that both runs have: person and number, with and without the robot."""
-    ways, others = (
-        r.cached(("ways", pairing.jump_speed), lambda r=r: _ways(r, pairing.jump_speed))  # type: ignore[misc]
-        for r in (run, alone)
-    )
-    return [(key, ways[key], others[key]) for key in sorted(ways.keys() & others.keys())]
+def _pairs(run: Trajectories, alone: Trajectories, jump_speed: float) -> list[_Pair]:
+    """Trips that both runs have, by person and number; laid over one another once."""
+    done: dict[tuple[int, float], tuple[Trajectories, list[_Pair]]] = run.cached("pairs", dict)
+    key = id(alone), jump_speed
+    if key not in done:  # the run that is kept beside the pairs keeps its id
+        ways, others = _ways(run, jump_speed), _ways(alone, jump_speed)
+        both = sorted(ways.keys() & others.keys())
+        pairs = [_Pair(k[0], ways[k], others[k], *_laid_over(ways[k], others[k])) for k in both]
+        done[key] = alone, pairs
+    return done[key][1]
 
 
-def _starts_apart(one: _Way, two: _Way, pairing: Pairing) -> bool:
-    apart = math.hypot(one.x[0] - two.x[0], one.y[0] - two.y[0])
+def _starts_apart(pair: _Pair, pairing: Pairing) -> bool:
+    apart = math.hypot(pair.one.x[0] - pair.two.x[0], pair.one.y[0] - pair.two.y[0])
     return apart > pairing.same_start + _TOLERANCE
 
 
@@ -165,13 +176,14 @@ def _meeting(distance: Array, t: Array, pairing: Pairing) -> tuple[int, int]:
     return int(near[0]), last
 
 
-def _delay(one: _Way, two: _Way, late: float) -> float:
-    """Time lost on a trip (s), of which ``late`` at its last sample."""
+def _delay(pair: _Pair) -> float:
+    """Time lost on a whole trip, s."""
+    one, two = pair.one, pair.two
     if one.reached and two.reached:
         return one.seconds - two.seconds
     if one.reached:  # only the other one was cut
         return -float(_laid_over(two, one)[1][-1])
-    return late
+    return float(pair.late[-1])
 
 
 def _laid_over(one: _Way, two: _Way) -> tuple[Array, Array]:
