@@ -9,16 +9,20 @@ from __future__ import annotations
 from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, Level
 from crowdbot.core.statistics.comparison import Comparison, Verdict
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts, Estimate, Outcome
+from crowdbot.core.statistics.floors import PRIMARY, FloorCheck, Lead, check_floors
 from crowdbot.core.statistics.summary import PlannerScore, Summary, headline_names, summarise
 from crowdbot.core.statistics.table import Name, Table
 
 __all__ = [
     "OUTCOMES",
+    "PRIMARY",
     "AxisEffect",
     "Comparison",
     "Counts",
     "DensityLevel",
     "Estimate",
+    "FloorCheck",
+    "Lead",
     "Level",
     "Name",
     "Outcome",
@@ -26,6 +30,7 @@ __all__ = [
     "Summary",
     "Table",
     "Verdict",
+    "check_floors",
     "headline_names",
     "summarise",
 ]

@@ -18,6 +18,7 @@ from crowdbot.dsl import (
     NonNegativeDuration,
     NonNegativeLength,
     NonNegativeSpeed,
+    PlannerRole,
     PlannerSpec,
     PositiveDuration,
     PositiveLength,
@@ -30,6 +31,7 @@ Weight = Annotated[float, Ge(0)]
 class DwaSpec(PlannerSpec):
     """Sees lidar points and odometry, nothing else."""
 
+    role: ClassVar[PlannerRole] = "baseline"
     needs: ClassVar[tuple[str, ...]] = ("lidar",)
 
     kind: Literal["dwa"] = "dwa"
