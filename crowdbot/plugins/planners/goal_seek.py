@@ -18,7 +18,7 @@ from crowdbot.dsl import (
 
 
 class GoalSeekSpec(PlannerSpec):
-    """Heads for the centre of the goal and sees nothing on the way: the baseline of collisions."""
+    """Heads for the centre of the goal and sees nothing on the way: the floor of collisions."""
 
     role: ClassVar[PlannerRole] = "floor"
     needs: ClassVar[tuple[str, ...]] = ()

@@ -13,7 +13,6 @@ from crowdbot.core.statistics.audit import Audit, audit
 from tests.core.report.report_cases import AXES, DRAWN, campaign, contents
 from tests.core.report.test_page import EVIL, METRICS, Page
 
-
 CROWDS = {name: AXES[name] for name in DRAWN}
 
 
