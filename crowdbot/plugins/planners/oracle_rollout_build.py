@@ -49,8 +49,8 @@ def roll(
     goal: tuple[float, float],
     vt: float,
     wt: float,
-) -> tuple[float, float, float, float, float]:
-    """One candidate: slew to (vt, wt), keep it for the turning time, then turn to the goal.
+) -> tuple[float, float, float, float]:
+    """One candidate: slew to (vt, wt), keep it for the turning time, turn to the goal, brake there.
 
     Args:
         people: (N, 5) x, y, vx, vy, radius; world frame.
@@ -58,19 +58,20 @@ def roll(
         state: x, y, yaw, v, w of the robot.
 
     Returns:
-        x, y (m) at the end or at the hit; time of the hit (s, the horizon if there is none); speed
-        then (m/s); closeness, 0 (farther than comfort) to 1 (touching).
+        mean distance to the goal (m), which it keeps after a hit; time of the hit (s, the horizon
+        if there is none); speed then (m/s); closeness, 0 (farther than comfort) to 1 (touching).
     """
     x, y, yaw, v, w = state
     need = min(p[MARGIN], gap_at(people, walls, x, y, 0.0) - p[RADIUS] - _SLACK)
-    close, t, target = 0.0, 0.0, wt
+    close, t, target, total = 0.0, 0.0, wt, 0.0
     while t < p[HORIZON] - 0.5 * STEP:
         t += STEP
         if t > p[TURN_TIME]:
             off = math.atan2(goal[1] - y, goal[0] - x) - yaw
             off -= 2.0 * math.pi * round(off / (2.0 * math.pi))
             target = max(-p[W_MAX], min(p[W_MAX], _GAIN * off)) if vt > 0.0 else 0.0
-        v_next = _slewed(v, vt, p[A_MAX] * STEP)
+        away = math.hypot(goal[0] - x, goal[1] - y)
+        v_next = _slewed(v, min(vt, math.sqrt(2.0 * p[A_MAX] * away)), p[A_MAX] * STEP)
         w_next = _slewed(w, target, p[ALPHA_MAX] * STEP)
         middle = yaw + (w + w_next) / 4.0 * STEP
         x += (v + v_next) / 2.0 * STEP * math.cos(middle)
@@ -78,11 +79,13 @@ def roll(
         yaw += (w + w_next) / 2.0 * STEP
         v, w = v_next, w_next
         gap = gap_at(people, walls, x, y, t) - p[RADIUS]
+        away = math.hypot(goal[0] - x, goal[1] - y)
         if gap < need:
-            return x, y, t, v, 1.0
+            return (total + away * (p[HORIZON] - t + STEP)) / p[HORIZON], t, v, 1.0
+        total += away * STEP
         need = min(p[MARGIN], max(need, gap))
         close = max(close, (1.0 - gap / p[COMFORT]) * (1.0 - 0.5 * t / p[HORIZON]))
-    return x, y, p[HORIZON], v, close
+    return total / p[HORIZON], p[HORIZON], v, close
 
 
 @kernel
@@ -108,10 +111,10 @@ def best(
     away = math.hypot(goal[0] - state[0], goal[1] - state[1])
     for k in range(candidates.shape[0]):
         vt, wt = candidates[k, 0], candidates[k, 1]
-        x, y, hit, speed, close = roll(people, walls, p, state, goal, vt, wt)
+        mean, hit, speed, close = roll(people, walls, p, state, goal, vt, wt)
         if vt != 0.0 and hit < max(abs(state[3]), vt) / p[A_MAX] + STEP:
             continue
-        made = (away - math.hypot(goal[0] - x, goal[1] - y)) / (p[V_MAX] * p[HORIZON])
+        made = (away - mean) / (0.5 * p[V_MAX] * p[HORIZON])  # soon is better than late
         blow = (1.0 - hit / p[HORIZON]) * (_STANDING + speed / p[V_MAX])
         change = abs(vt - last[0]) / p[V_MAX] + abs(wt - last[1]) / p[W_MAX]
         cost = (

@@ -95,7 +95,7 @@ def test_a_hit_is_where_discs_meet(seed: int) -> None:
         rng.uniform(-3, 3, (4, 2)), rng.uniform(-1.5, 1.5, (4, 2)), np.full(4, PERSON),
     ])  # fmt: skip
     p = rollout_parameters()
-    x, _, hit, speed, _ = rollout.roll(
+    mean, hit, speed, _ = rollout.roll(
         people, np.empty((0, 2)), p, (0.0, 0.0, 0.0, 0.5, 0.0), (50.0, 0.0), 0.5, 0.0
     )
     times = rollout.STEP * np.arange(0, round(p[rollout.HORIZON] / rollout.STEP) + 1)
@@ -106,7 +106,8 @@ def test_a_hit_is_where_discs_meet(seed: int) -> None:
     if gap[0] - 1e-3 >= p[rollout.MARGIN]:  # what is too near already may come apart first
         expected = times[1:][near[0]] if len(near) else p[rollout.HORIZON]
         assert hit == pytest.approx(expected)
-        assert x == pytest.approx(0.5 * hit)
+        made = 0.5 * np.minimum(times[1:], hit)
+        assert mean == pytest.approx(50.0 - made.mean())
     assert speed == pytest.approx(0.5)
 
 
