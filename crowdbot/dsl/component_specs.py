@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 
 #: What a planner is there for. ``floor``: every planner worth the name beats it; ``ceiling``: it
-#: knows more than any other may; ``baseline``: an honest one to measure against; else ``entrant``.
-PlannerRole = Literal["floor", "baseline", "ceiling", "entrant"]
+#: knows more than any other may; ``baseline``: an honest one to measure against; else ``candidate``.
+PlannerRole = Literal["floor", "baseline", "ceiling", "candidate"]
 
 
 class EnvironmentSpec(ComponentSpec):
@@ -52,7 +52,7 @@ class PlannerSpec(ComponentSpec):
     """Abstract: the thing under test. Never part of a scenario."""
 
     category: ClassVar[str] = "planner"
-    role: ClassVar[PlannerRole] = "entrant"
+    role: ClassVar[PlannerRole] = "candidate"
 
 
 class CrowdPolicySpec(ComponentSpec):

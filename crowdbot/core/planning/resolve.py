@@ -43,8 +43,8 @@ class PlannerChoice:
         label: ``name``, with ``+`` and four hex digits when parameters are not the defaults, and
             with ``+privileged`` where that holds: scores carry it.
         privileged: whether it may read what no sensor of a real robot could tell.
-        role: what it is there for: floor, baseline, ceiling or entrant. One with other
-            parameters than its defaults is an entrant.
+        role: what it is there for: floor, baseline, ceiling or candidate. One with other
+            parameters than its defaults is a candidate.
         origin: the distribution, or the file, that it comes from.
     """
 
@@ -55,7 +55,7 @@ class PlannerChoice:
     needs: tuple[str, ...] | None
     label: str
     privileged: bool = False
-    role: PlannerRole = "entrant"
+    role: PlannerRole = "candidate"
     origin: str = ""
 
 
@@ -163,7 +163,7 @@ def _from_kind(
         needs=_needs(component.spec),
         label=_label(kind if as_given else f"{kind}+{_digest(spec)}", spec),
         privileged=_is_privileged(spec),
-        role=role_of(component.spec) if as_given else "entrant",
+        role=role_of(component.spec) if as_given else "candidate",
     )
 
 
@@ -223,7 +223,7 @@ def role_of(holder: type) -> PlannerRole:
     Raises:
         InputError: there is no such role.
     """
-    role = getattr(holder, "role", "entrant")
+    role = getattr(holder, "role", "candidate")
     if role not in get_args(PlannerRole):
         known = get_args(PlannerRole)
         near = did_you_mean(nearest(str(role), known)) or f"; there are {', '.join(known)}"
@@ -300,7 +300,7 @@ def _from_class(path: Path, name: str, parameters: Mapping[str, Any]) -> Planner
         needs=_needs(kind),
         label=_label(f"{name}+{_digest(dict(parameters))}" if parameters else name, kind),
         privileged=_is_privileged(kind),
-        role="entrant" if parameters else role_of(kind),
+        role="candidate" if parameters else role_of(kind),
     )
 
 

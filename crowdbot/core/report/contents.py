@@ -52,7 +52,7 @@ class Contents:
         axes: ``name`` and ``labels`` of each axis.
         cards: metric -> what its card says.
         replays: run id -> address of its replay page, relative to the report.
-        floors: what each planner is told first: whether it beats those that are no good.
+        floors: what each planner is told first: whether it beats the floors.
         suspicion: why nothing here may mean anything; empty without a reason to think so.
     """
 
@@ -94,7 +94,7 @@ class Contents:
     def role(self, planner: str) -> str:
         """What a planner is there for."""
         roles = (a.role for a in self.of(planner) if isinstance(a, RunRow))
-        return next(roles, "entrant")
+        return next(roles, "candidate")
 
     def is_pinned(self, planner: str) -> bool:
         """Whether everything came from installed distributions, in all its runs."""

@@ -194,7 +194,7 @@ def read_audit(path: Path) -> Audit:
     """An audit from its file.
 
     Raises:
-        InputError: it cannot be read, or is none.
+        InputError: it cannot be read, or holds something else.
     """
     try:
         text = path.read_text(encoding="utf-8")

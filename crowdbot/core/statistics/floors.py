@@ -1,4 +1,4 @@
-"""Floors: whether a planner beats those that are no good, in the score that counts first.
+"""Floors: whether a planner beats those that any should, in the score that counts first.
 
 A planner has to beat every floor. All of these tests must succeed at once, so that none needs a
 correction for the others (Berger 1982, intersection-union test).
@@ -78,7 +78,7 @@ class FloorCheck:
 
 
 def check_floors(results: Results, *, level: float = 0.95) -> tuple[FloorCheck, ...]:
-    """Each planner that is no floor against each that is, by name.
+    """Each planner against every floor, by name; floors themselves are not checked.
 
     Args:
         results: runs that may be compared.

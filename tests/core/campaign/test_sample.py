@@ -65,6 +65,6 @@ def test_another_suite_has_another_sample() -> None:
 
 
 def test_without_people_every_scenario_is_different() -> None:
-    """All of them have the hash of an empty table, which is no crowd that they share."""
+    """All of them have the hash of an empty table, which nobody shares."""
     everything = suite([0, 0, 1, 1], people=0)
     assert len(sample(everything, 3, "a")) == 3

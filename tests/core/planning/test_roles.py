@@ -33,9 +33,9 @@ def test_the_ceiling_says_that_it_knows() -> None:
     assert resolve_planner("oracle", REGISTRY).label == "oracle+privileged"
 
 
-def test_with_other_parameters_it_is_an_entrant_like_any_other() -> None:
+def test_with_other_parameters_it_is_an_candidate_like_any_other() -> None:
     assert resolve_planner("goal_seek", REGISTRY).role == "floor"
-    assert resolve_planner("goal_seek", REGISTRY, ["speed=0.5"]).role == "entrant"
+    assert resolve_planner("goal_seek", REGISTRY, ["speed=0.5"]).role == "candidate"
     assert resolve_planner("goal_seek", REGISTRY, ["speed=1"]).role == "floor"
 
 
@@ -43,11 +43,11 @@ def test_a_file_may_declare_one(tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
     file.write_text(PLANNER.format(role="floor"))
     assert resolve_planner(f"{file}:Mine", REGISTRY).role == "floor"
-    assert resolve_planner(f"{file}:Mine", REGISTRY, ["gain=2"]).role == "entrant"
+    assert resolve_planner(f"{file}:Mine", REGISTRY, ["gain=2"]).role == "candidate"
 
 
 def test_a_wrong_role_is_named_with_the_nearest(tmp_path: Path) -> None:
     file = tmp_path / "wrong.py"
-    file.write_text(PLANNER.format(role="flor"))
-    with pytest.raises(InputError, match=r"no role 'flor'; did you mean 'floor'"):
+    file.write_text(PLANNER.format(role="flooor"))
+    with pytest.raises(InputError, match=r"no role 'flooor'; did you mean 'floor'"):
         resolve_planner(f"{file}:Mine", REGISTRY)

@@ -61,7 +61,7 @@ def test_without_a_score_that_could_decide() -> None:
     assert "no score that could decide" in found.text
 
 
-def test_runs_of_entrants_alone_cannot_be_audited() -> None:
+def test_runs_of_candidates_alone_cannot_be_audited() -> None:
     with pytest.raises(InputError, match="no run of a floor"):
         audit(results({"mine": [1.0] * 8}))
 

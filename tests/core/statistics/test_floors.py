@@ -30,7 +30,7 @@ def results(
     for planner, found in values.items():
         for i, value in enumerate(found):
             draw = f"d{i}" if draws is None else draws[i]
-            role = ROLES.get(planner, "entrant")
+            role = ROLES.get(planner, "candidate")
             runs.append(run(planner, f"s{i}", draw, role=role, privileged=role == "ceiling"))
             scores.append(score(runs[-1], value, metric=metric, better=better))
     return Results(runs=tuple(runs), scores=tuple(scores))
