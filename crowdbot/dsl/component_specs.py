@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 
 #: What a planner is there for. ``floor``: every planner worth the name beats it; ``ceiling``: it
-#: knows more than any other may; ``baseline``: an honest one to measure against; else ``candidate``.
+#: knows more than any other may; ``baseline``: an honest one to measure against; ``candidate``:
+#: all others.
 PlannerRole = Literal["floor", "baseline", "ceiling", "candidate"]
 
 

@@ -20,6 +20,7 @@ from crowdbot.dsl import (
     NonNegativeSpeed,
     PlannerRole,
     PlannerSpec,
+    PositiveAngle,
     PositiveDuration,
     PositiveLength,
     PositiveSpeed,
@@ -54,6 +55,9 @@ class DwaSpec(PlannerSpec):
     margin: NonNegativeLength = Field(
         default=0.06, description="Clearance that is never given up, m."
     )
+    reserve: NonNegativeDuration = Field(
+        default=0.125, description="It stands at least so long before a predicted hit, s."
+    )
     comfort: PositiveLength = Field(
         default=0.4, description="Clearance above which more is no better, m."
     )
@@ -63,6 +67,11 @@ class DwaSpec(PlannerSpec):
     look_ahead: PositiveDuration = Field(
         default=4.0, description="Time for which a direction should stay free, s."
     )
+    swerve: PositiveAngle = Field(
+        default=1.3,
+        description="Largest angle from the goal's bearing, or from the map's way, rad.",
+    )
+    hold: Weight = Field(default=0.3, description="Weight of keeping to the last direction.")
     look_back: NonNegativeDuration = Field(
         default=0.3, description="Age of the scan that shows what moves; 0 takes all as still, s."
     )

@@ -42,6 +42,12 @@ _LEEWAY = 0.05
 _MAP_PERIOD = 0.5
 #: People in that map have this share of their radius.
 _MAPPED = 0.5
+#: Legs of a person who walks are so near to the middle, m.
+_LEGS = 0.4
+#: Somebody who walks within this distance is what the robot waits for, m.
+_NEARBY = 2.0
+#: Share of that time that does not count as time without progress.
+_WAITING = 0.8
 #: Speed and duration of the way back out of a dead end: m/s, s.
 _REVERSE, _ESCAPE = -0.2, 2.0
 
@@ -60,6 +66,7 @@ class Dwa:
         self._scans: deque[tuple[float, Array, Array]] = deque(maxlen=64)
         self._map: Array = np.empty((0, 2))
         self._around = (np.empty((0, 2)), np.empty((0, 2)))
+        self._walking = False
         self._mapped_at = -math.inf
         self._way: float | None = None
         self._last = (0.0, 0.0)
@@ -107,6 +114,7 @@ class Dwa:
         if distance <= _ARRIVED:
             return Command(0.0, 0.0)
         points, velocities = self._see(obs)
+        self._wait(period)
         escaping = self._is_stuck(obs)
         room = distance
         if self._is_lost(distance):
@@ -138,6 +146,7 @@ class Dwa:
         people, rest = people_in(seen, _REACH if radius else 0.0)
         points = nearest_per_sector(with_discs(rest, people, radius), _SECTORS, _REACH)
         self._around = rest, people
+        self._walking = False
         c, s = math.cos(obs.pose.yaw), math.sin(obs.pose.yaw)
         to_world = np.array([[c, s], [-s, c]])  # for row vectors
         now = [p @ to_world + (obs.pose.x, obs.pose.y) for p in (points, people)]
@@ -153,8 +162,17 @@ class Dwa:
                     for new, old in zip(now, before, strict=True)
                 )
                 carry(points, velocities, people, going, radius)
+                self._stand_apart(rest, people, going)
         self._scans.append((obs.t, now[0], now[1]))
         return points, velocities
+
+    def _stand_apart(self, rest: Array, people: Array, going: Array) -> None:
+        """Keep for the map what stands; note whether somebody walks nearby."""
+        walk = np.hypot(going[:, 0], going[:, 1]) > 0.0
+        legs = np.hypot(*(rest[:, None] - people[walk]).T).T.min(axis=1, initial=math.inf) < _LEGS
+        self._around = rest[~legs], people[~walk]
+        near = np.hypot(people[walk, 0], people[walk, 1])
+        self._walking = bool(np.any(near < _NEARBY))
 
     def _choose(
         self,
@@ -178,6 +196,8 @@ class Dwa:
             spec.robot_radius + spec.margin + (_LEEWAY if self._way is None else 0.0),
             min(spec.look_ahead, room / speed + 0.1),
             0.2 if escaping else 1.0,
+            math.pi if escaping else spec.swerve,
+            spec.hold,
         )
         self._heading = direction + pose.yaw
         return direction, free
@@ -196,6 +216,16 @@ class Dwa:
         left, right = max(w - dw, -limits.w_max), min(w + dw, limits.w_max)
         wish = max(left, min(right, 1.5 * direction_error(direction)))
         return rollout.candidates(low, high, spec.speeds, left, right, spec.yaw_rates, wish)
+
+    def _wait(self, period: float) -> None:
+        """Let time without progress count less while somebody walks nearby, who will be gone."""
+        if not self._walking:
+            return
+        if self._moved_at is not None:
+            x, y, since = self._moved_at
+            self._moved_at = (x, y, since + _WAITING * period)
+        if self._nearest is not None:
+            self._nearest = (self._nearest[0], self._nearest[1] + _WAITING * period)
 
     def _is_lost(self, distance: float) -> bool:
         """Whether the robot has come no nearer to the goal for long: it needs a map."""
@@ -248,7 +278,7 @@ def _parameters(spec: DwaSpec, limits: RobotLimits) -> Array:
     p[rollout.COMFORT], p[rollout.GROWTH] = spec.comfort, spec.margin_growth
     p[rollout.PROGRESS], p[rollout.HEADING] = spec.progress, spec.heading
     p[rollout.CLEARANCE], p[rollout.IMPACT] = spec.clearance, spec.impact
-    p[rollout.SMOOTHNESS] = spec.smoothness
+    p[rollout.SMOOTHNESS], p[rollout.RESERVE] = spec.smoothness, spec.reserve
     return p
 
 
