@@ -56,7 +56,7 @@ class Visits:
     peaks: list[float] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self._peak = np.zeros(self.count)
+        self._peak, self._touches = np.zeros(self.count), np.zeros(self.count)
         self._last = np.full((self.count, 4), np.nan)
 
     def add(self, people: Array, robot: Array) -> None:
@@ -68,10 +68,12 @@ class Visits:
         beside = (away < NEAR) & ~jumped
         acceleration = np.hypot(moved[:, 2], moved[:, 3]) * TICKS_PER_SECOND / STEP
         self._peak[beside] = np.maximum(self._peak, acceleration)[beside]
-        self._peak[people[:, s.TOUCHING] > 0.0] = -math.inf
+        touches = people[:, s.TOUCHES] + people[:, s.TOUCHING]
+        self._peak[touches > self._touches] = -math.inf
         ended = (away > GONE) | jumped
         self.peaks += self._peak[ended & (self._peak > 0.0)].tolist()
         self._peak[ended] = 0.0
+        self._touches[ended] = touches[ended]
         self._last = now
 
     def percentile(self, q: float) -> float:
@@ -87,6 +89,11 @@ class Outcome:
     seconds: float
     gap: float
     visits: Visits
+
+
+def name_of(scenario: Scenario) -> str:
+    """Labels of the matrix, without the suite and what ``--set`` appends."""
+    return scenario.id.rpartition("/")[2].partition("+")[0]
 
 
 def engine_of(scenario: Scenario) -> CrowdEngine:
@@ -160,7 +167,7 @@ def costs(name: str, overrides: list[str], seconds: float) -> None:
         told = ["reaction=ignore"] if how == "ignore" else [f"kind={how}"]
         words = [*overrides, *(f"crowd.robot_response.{word}" for word in told)]
         suite = open_spec("challenge-2020", registry, words)
-        engines[how] = engine_of(next(x for x in suite.scenarios if x.id.endswith(name)))
+        engines[how] = engine_of(next(x for x in suite.scenarios if name_of(x) == name))
         cost(engines[how], 1.0, 0.25)
     for _ in range(5):
         for how, engine in engines.items():
@@ -183,7 +190,7 @@ def main() -> None:
     places = [tuple(map(float, text.split(","))) for text in given.at or ["2.5,0"]]
     total: dict[str, list[Outcome]] = {how: [] for how in given.robot or ["parked"]}
     for scenario in open_spec(given.suite, discover(), given.set).scenarios:
-        name = scenario.id.rpartition("/")[2]
+        name = name_of(scenario)
         if not any(fnmatch(name, pattern) for pattern in given.only or ["*"]):
             continue
         if given.cost:

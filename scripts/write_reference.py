@@ -96,7 +96,7 @@ def _scenario(registry: Registry) -> Iterator[str]:
         yield f"### {path}\n\n{_prose(model)}\n"
         for kind in kinds:
             name = kind.model_fields["kind"].default
-            usual = ", where none is named" if name == model.usual else ""
+            usual = ", where none is named" if name == vars(model)["usual"] else ""
             yield _section(f"#### {path}: {name}", kind, f"`kind: {name}`{usual}.")
 
 

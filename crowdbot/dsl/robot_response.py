@@ -86,7 +86,10 @@ class HumanResponse(RobotResponse):
         "attentive ones.",
     )
     late_time: NonNegativeDuration = Field(
-        default=0.6, description="Time to contact at which late people notice the robot, s."
+        default=0.7, description="Time to contact at which late people notice the robot, s."
+    )
+    late_time_standing: NonNegativeDuration = Field(
+        default=1.5, description="The same where the robot stands, s."
     )
     late_gap: NonNegativeLength = Field(
         default=0.3, description="Surface gap at which late people notice it in any case, m."
@@ -104,7 +107,7 @@ class HumanResponse(RobotResponse):
         default=0.3, description="From noticing to doing something, s."
     )
     horizon: PositiveDuration = Field(
-        default=2.0, description="How far ahead in time people look, s."
+        default=3.0, description="How far ahead in time people look, s."
     )
     clearance: NonNegativeLength = Field(
         default=0.25, description="Surface gap that people want when they pass, m."
@@ -120,7 +123,7 @@ class HumanResponse(RobotResponse):
         description="Largest acceleration by own will and evasion together, m/s^2.",
     )
     stop_gap: NonNegativeLength = Field(
-        default=0.15, description="Surface gap at which those who brake come to rest, m."
+        default=0.25, description="Surface gap at which those who brake come to rest, m."
     )
     standing_speed: NonNegativeSpeed = Field(
         default=0.05, description="A robot that is not faster stands, m/s."
@@ -129,10 +132,15 @@ class HumanResponse(RobotResponse):
         default=0.3, description="A robot that is not slower moves, m/s."
     )
     standing_gap: NonNegativeLength = Field(
-        default=0.1, description="Surface gap that people keep to a robot that stands, m."
+        default=0.2, description="Surface gap that people keep to a robot that stands, m."
     )
     standing_stiffness: NonNegativeSteeringStiffness = Field(
-        default=62.5, description="How firmly people who are pushed keep that gap, 1/s^2."
+        default=100.0, description="How firmly people who are pushed keep that gap, 1/s^2."
+    )
+    shown_to_policies: bool = Field(
+        default=False,
+        description="Whether the crowd policies of attentive people are shown the robot, too, as "
+        "a disc `margin` larger than what holds it.",
     )
 
     @model_validator(mode="after")

@@ -50,7 +50,9 @@ SEMANTIC = [
     ("crowd.costs.reflex.range", {"value": 0.3, "measure": "surface"}),
     ("crowd.costs.second", {"kind": "rvo"}),
     ("crowd.seed", {"root": 1}),
-    ("crowd.robot_response.velocity", "hidden"),
+    ("crowd.robot_response", {"velocity": "hidden"}),
+    ("crowd.robot_response", {"kind": "keep_off"}),
+    ("crowd.robot_response", {"late_fraction": 0.41}),
     ("crowd", None),
     ("robots", {}),
     ("robots.robot.task.start", [5, 0, 0.1]),
@@ -192,7 +194,7 @@ def test_stream_seeds() -> None:
 
 SEED = 5666247128274042229
 GOLDEN = (
-    "cb1-sha256:91c15360e1797fb1de4ff9105827c1d6c90017209c4c840326d1a1b17f85de22",
-    "cb1-sha256:d097de27a5897e7f17fb13cb7dd8760d25563a618b8b39f48b0decb8b9b42709",
-    "cb1-sha256:20b2b91bb6484cdecd0d5b2a0759609386a7fb3dc254ded2c8947e52f89eeea4",
+    "cb1-sha256:3fc8f89f2fd5a5fee821cab34c7b24ba5d6cd39fbb12b179283df952f9a7ecaa",
+    "cb1-sha256:0f30813325451848d8e8951cd0d2668bffa429fad62891a74b95cf619214ab90",
+    "cb1-sha256:7a5f0f3a5343898cd8c3c182a0b310589b23a58356a768c63a177e6d7c19704b",
 )

@@ -228,8 +228,10 @@ class CrowdEngine:
 
 def _who_plans(agents: Agents, world: CrowdWorld) -> NDArray[np.bool_]:
     """Whose policy is shown the robots: who notices late has other things in mind."""
-    unaware = agents.late if isinstance(world.response, Human) else False
-    return ~(agents.ignores_robot | unaware)
+    response = world.response
+    if not isinstance(response, Human):
+        return ~agents.ignores_robot
+    return ~(agents.ignores_robot | agents.late) & response.shown_to_policies
 
 
 def _groups(

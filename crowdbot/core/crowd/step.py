@@ -24,6 +24,7 @@ from crowdbot.core.crowd.state import (
     AT_PORTAL,
     AX,
     AY,
+    BESIDE,
     DIR_X,
     DIR_Y,
     GOAL_X,
@@ -119,11 +120,10 @@ def _advance(
     """Move agent i, and let it arrive, leave or wrap."""
     x, y, arrivals = agents[i, X], agents[i, Y], agents[i, ARRIVALS]
     ax, ay = 0.0, 0.0
-    if people.heeds_robot[i] and robots.shape[0] > 0:
-        if world.response[KIND] == KEEP_OFF:
-            ax, ay = keep_off(agents, i, people.radius, robots, world.response)
-        else:
-            ax, ay = stop_short(agents, i, people.radius, robots, outline, world.response)
+    if agents[i, BESIDE] != 0.0:
+        ax, ay = stop_short(agents, i, people.radius, robots, outline, world.response)
+    elif world.response[KIND] == KEEP_OFF and people.heeds_robot[i]:
+        ax, ay = keep_off(agents, i, people.radius, robots, world.response)
     ax += agents[i, PUSH_X] + reaction[i, 0] / people.mass[i]
     ay += agents[i, PUSH_Y] + reaction[i, 1] / people.mass[i]
     _move(agents, i, people.max_speed[i], ax, ay, dt)

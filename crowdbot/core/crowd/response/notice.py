@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from crowdbot.core.crowd.contact.robot_contact import R_BODY, RVX, RVY, RX, RY, extent_of, overlap
 from crowdbot.core.crowd.response.parameters import (
+    DECISION,
     LATE_GAP,
     LATE_TIME,
+    LATE_TIME_STANDING,
     REACTION_TIME,
+    SEEN_MOVING,
+    SEEN_STANDING,
     SIGHT,
     VIEW_COSINE,
 )
+from crowdbot.core.crowd.response.standing import FAR, stands
 from crowdbot.core.crowd.state import (
+    BESIDE,
     DIR_X,
     DIR_Y,
     NOTICED,
@@ -24,6 +30,9 @@ from crowdbot.core.crowd.state import (
 )
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array
+
+#: Nobody comes nearer to a robot faster than this, m/s.
+_FASTEST = 5.0
 
 
 @kernel
@@ -49,12 +58,15 @@ def reacts(
         now: time since the start, s.
     """
     near, found, extent = False, False, extent_of(outline)
+    agents[i, BESIDE] = 0.0
     if agents[i, WAITING] == PRESENT:
         for r in range(robots.shape[0]):
             dx, dy = robots[r, RX] - agents[i, X], robots[r, RY] - agents[i, Y]
             reach = robots[r, R_BODY] + radius
-            far = response[SIGHT] + extent + reach
-            if dx * dx + dy * dy > far * far:
+            away2, around = dx * dx + dy * dy, extent + reach
+            if away2 < (FAR + _FASTEST * response[DECISION] + around) ** 2:
+                agents[i, BESIDE] = 1.0
+            if away2 > (response[SIGHT] + around) ** 2:
                 continue
             depth, nx, ny, _, _ = overlap(robots[r], outline, dx, dy, reach)
             if depth < -response[SIGHT]:
@@ -66,8 +78,8 @@ def reacts(
         agents[i, NOTICED] = UNAWARE
     elif found:
         agents[i, NOTICED] = now
-    noticed = agents[i, NOTICED]
-    return noticed != UNAWARE and now - noticed >= response[REACTION_TIME]
+    noticed: float = agents[i, NOTICED]
+    return noticed != UNAWARE and now - noticed >= float(response[REACTION_TIME])
 
 
 @kernel
@@ -87,4 +99,6 @@ def _sees(
     if not late:
         return True
     closing = (agents[i, VX] - robot[RVX]) * nx + (agents[i, VY] - robot[RVY]) * ny
-    return gap < response[LATE_GAP] or gap < response[LATE_TIME] * closing
+    share = stands(robot, 0.0, response[SEEN_STANDING], response[SEEN_MOVING])
+    time = response[LATE_TIME] + share * (response[LATE_TIME_STANDING] - response[LATE_TIME])
+    return gap < max(float(response[LATE_GAP]), float(time * closing))

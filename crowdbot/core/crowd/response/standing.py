@@ -30,7 +30,7 @@ from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array
 
 #: Farther from the outline nobody has to brake yet, m: 2.4 m/s at 3 m/s^2.
-_FAR = 1.0
+FAR = 1.0
 #: The gap in which somebody has to stop is never taken for less than this, m.
 _ROOM = 0.02
 
@@ -50,27 +50,32 @@ def stop_short(
         dx, dy = robots[r, RX] - agents[i, X], robots[r, RY] - agents[i, Y]
         reach = robots[r, R_BODY] + radius[i]
         extent = extent_of(outline)
-        far = _FAR + extent + reach
+        far = FAR + extent + reach
         if dx * dx + dy * dy > far * far:
             continue
-        stands = _stands(robots[r], extent, response)
-        if stands == 0.0:
+        share = stands(robots[r], extent, response[STANDING_SPEED], response[MOVING_SPEED])
+        if share == 0.0:
             continue
         depth, nx, ny, _, _ = overlap(robots[r], outline, dx, dy, reach)
         away = _away(agents, i, nx, ny, -depth, response)
         if away > 0.0:  # what own will does in the same direction counts, what it undoes does not
-            away = stands * max(0.0, away + agents[i, AX] * nx + agents[i, AY] * ny)
+            away = share * max(0.0, away + agents[i, AX] * nx + agents[i, AY] * ny)
             ax -= away * nx
             ay -= away * ny
     return ax, ay
 
 
 @kernel
-def _stands(robot: Array, extent: float, response: Array) -> float:
-    """1 for a robot that stands, 0 for one that moves, between the two in between."""
+def stands(robot: Array, extent: float, standing: float, moving: float) -> float:
+    """1 for a robot that stands, 0 for one that moves, between the two in between.
+
+    Args:
+        extent: distance of its farthest corner from the base, m.
+        standing, moving: speeds below and above which it does, m/s.
+    """
     speed = math.hypot(robot[RVX], robot[RVY]) + abs(robot[R_W]) * extent
-    moving, standing = response[MOVING_SPEED], response[STANDING_SPEED]
-    return min(1.0, max(0.0, (moving - speed) / (moving - standing)))
+    share: float = (moving - speed) / (moving - standing)
+    return min(1.0, max(0.0, share))
 
 
 @kernel
@@ -82,4 +87,5 @@ def _away(agents: Array, i: int, nx: float, ny: float, gap: float, response: Arr
     brake = 0.5 * closing * closing / max(room, _ROOM) if closing > 0.0 else 0.0
     if brake <= response[LEAST_BRAKING] or room < _ROOM:
         brake = 0.0
-    return max(lean, brake)
+    away: float = max(lean, brake)
+    return away

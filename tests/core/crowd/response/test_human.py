@@ -221,7 +221,7 @@ def test_who_has_noticed_one_robot_looks_out_for_another() -> None:
 
 # ----------------------------------------------------------------------- hidden motion
 def test_who_does_not_see_how_the_robot_moves_takes_it_for_standing() -> None:
-    meeting = Meeting([(-5.0, 0.05)], [(1.4, 0.0)], [robot(0.0, 0.0, -0.5)])
-    hidden = Meeting([(-5.0, 0.05)], [(1.4, 0.0)], [robot(0.0, 0.0, -0.5)])
+    meeting = Meeting([(-7.5, 0.05)], [(1.4, 0.0)], [robot(0.0, 0.0, -0.5)])
+    hidden = Meeting([(-7.5, 0.05)], [(1.4, 0.0)], [robot(0.0, 0.0, -0.5)])
     object.__setattr__(hidden.engine.world, "robot_visible", False)
     assert _first_reaction(hidden) > _first_reaction(meeting) + 0.2

@@ -9,6 +9,7 @@ from pydantic import ValidationError
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld
 from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.response.parameters import Human, KeepOff, Response
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
@@ -55,13 +56,27 @@ class Spy(Straight):
         return np.zeros_like(view.position)
 
 
-def test_the_robot_is_shown_to_those_who_heed_it() -> None:
+@pytest.mark.parametrize(
+    ("response", "shown"),
+    [
+        (Human(), [False, False, False]),
+        (Human(shown_to_policies=True), [False, True, False]),
+        (KeepOff(), [False, True, True]),
+    ],
+)
+def test_policies_are_shown_the_robot_for_those_who_plan_around_it(
+    response: Response, shown: list[bool]
+) -> None:
+    """Of somebody who ignores it, somebody attentive and somebody late."""
     spy = Spy()
-    agents = Agents.of(x=[0.0, 3.0, 6.0], y=0.0, ignores_robot=[True, False, True],
-                       routes=[[(9.0, 0.0)]] * 3)  # fmt: skip
-    engine = CrowdEngine(agents, CrowdWorld(), spy)
+    agents = Agents.of(x=[0.0, 3.0, 6.0], y=0.0, ignores_robot=[True, False, False],
+                       late=[False, False, True], routes=[[(9.0, 0.0)]] * 3)  # fmt: skip
+    engine = CrowdEngine(agents, CrowdWorld(response=response), spy)
     engine.advance(engine.initial_state(), PARKED)
-    assert sorted(spy.calls) == [(0, [True, False, True]), (1, [False, True, False])]
+    groups = [(1, shown), (0, [not one for one in shown])]
+    assert spy.calls == [(count, who) for count, who in groups if any(who)]
+    engine.advance_alone(engine.initial_state(), 1)
+    assert spy.calls[-1] == (0, [True, True, True])
 
 
 def test_people_who_ignore_the_robot_walk_as_without_it() -> None:
