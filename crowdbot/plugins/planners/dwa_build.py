@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
 from crowdbot.plugins.planners.dwa import DwaSpec
+from crowdbot.plugins.planners.dwa_heading_build import Heading
 from crowdbot.plugins.planners.dwa_map_build import AIM, remembered, way_out
 from crowdbot.plugins.planners.dwa_points_build import (
     apparent_velocity,
@@ -67,6 +69,7 @@ class Dwa:
         self._map: Array = np.empty((0, 2))
         self._around = (np.empty((0, 2)), np.empty((0, 2)))
         self._walking = False
+        self._heading_by_walls = Heading()
         self._mapped_at = -math.inf
         self._way: float | None = None
         self._last = (0.0, 0.0)
@@ -107,13 +110,15 @@ class Dwa:
     def step(self, obs: Observation) -> Command:
         """The next command; zero at the goal."""
         assert self._limits is not None
+        seen = self._lidars(obs.readings, obs.t, obs.twist)
+        obs = replace(obs, pose=self._heading_by_walls.pose(obs.pose, seen))
         distance, goal = bearing(obs.pose, obs.goal)
         period = 1.0 / 16.0 if self._time is None else max(1e-3, obs.t - self._time)
         self._time = obs.t
         self._p[rollout.PERIOD] = period
         if distance <= _ARRIVED:
             return Command(0.0, 0.0)
-        points, velocities = self._see(obs)
+        points, velocities = self._see(obs, seen)
         self._wait(period)
         escaping = self._is_stuck(obs)
         room = distance
@@ -139,10 +144,9 @@ class Dwa:
         obs.log("dwa/free_time", free)
         return Command(*self._last)
 
-    def _see(self, obs: Observation) -> tuple[Array, Array]:
+    def _see(self, obs: Observation, seen: Array) -> tuple[Array, Array]:
         """Thinned points and their velocities (K, 2), base frame."""
         radius = self._spec.person_radius
-        seen = self._lidars(obs.readings, obs.t, obs.twist)
         people, rest = people_in(seen, _REACH if radius else 0.0)
         points = nearest_per_sector(with_discs(rest, people, radius), _SECTORS, _REACH)
         self._around = rest, people
