@@ -55,9 +55,6 @@ class DwaSpec(PlannerSpec):
     margin: NonNegativeLength = Field(
         default=0.06, description="Clearance that is never given up, m."
     )
-    reserve: NonNegativeDuration = Field(
-        default=0.125, description="It stands at least so long before a predicted hit, s."
-    )
     comfort: PositiveLength = Field(
         default=0.4, description="Clearance above which more is no better, m."
     )

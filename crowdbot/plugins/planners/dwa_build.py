@@ -282,7 +282,7 @@ def _parameters(spec: DwaSpec, limits: RobotLimits) -> Array:
     p[rollout.COMFORT], p[rollout.GROWTH] = spec.comfort, spec.margin_growth
     p[rollout.PROGRESS], p[rollout.HEADING] = spec.progress, spec.heading
     p[rollout.CLEARANCE], p[rollout.IMPACT] = spec.clearance, spec.impact
-    p[rollout.SMOOTHNESS], p[rollout.RESERVE] = spec.smoothness, spec.reserve
+    p[rollout.SMOOTHNESS] = spec.smoothness
     return p
 
 

@@ -16,8 +16,8 @@ STEP = 0.125
 
 #: Indices into the vector of parameters that the kernel takes.
 A_MAX, ALPHA_MAX, HORIZON, TURN_TIME, RADIUS, MARGIN, COMFORT, GROWTH, PERIOD = range(9)
-PROGRESS, HEADING, CLEARANCE, IMPACT, SMOOTHNESS, V_MAX, W_MAX, RESERVE = range(9, 17)
-PARAMETERS = 17
+PROGRESS, HEADING, CLEARANCE, IMPACT, SMOOTHNESS, V_MAX, W_MAX = range(9, 16)
+PARAMETERS = 16
 
 #: A rollout may come this much closer to a point that is within the margin already, m.
 _SLACK = 1e-3
@@ -185,7 +185,7 @@ def evaluate(
     Args:
         points: (K, 2) base frame, m.
         velocities: (K, 2) base frame, m/s.
-        p: (17,) parameters, in the order of the constants above.
+        p: (16,) parameters, in the order of the constants above.
         v: present speed, m/s.
         w: present yaw rate, rad/s.
         candidates: (C, 2) target v and w.
@@ -203,7 +203,7 @@ def evaluate(
         vt, wt = candidates[k, 0], candidates[k, 1]
         x, y, angle, hit, close = roll(ahead, p, v, w, vt, wt, known, scratch)
         speed = max(abs(v), abs(vt))
-        if vt != 0.0 and hit < speed / p[A_MAX] + max(2.0 * p[PERIOD], p[RESERVE]):
+        if vt != 0.0 and hit < speed / p[A_MAX] + 2.0 * p[PERIOD]:
             continue
         made = (x * ux + y * uy) / (p[V_MAX] * p[HORIZON])
         off = unsigned(angle - direction) / math.pi
