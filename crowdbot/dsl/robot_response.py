@@ -46,8 +46,8 @@ class RobotResponse(Spec):
     )
     margin: NonNegativeLength = Field(
         default=0.25,
-        description="Perceived radius minus real radius of the robot, m; crowd policies are shown "
-        "the perceived one.",
+        description="Perceived radius minus real radius of the robot, m: of the disc that crowd "
+        "policies are shown, and in which `keep_off` acts.",
     )
     velocity: Literal["visible", "hidden"] = Field(
         default="visible", description="Whether people see how the robot moves."
@@ -89,7 +89,7 @@ class HumanResponse(RobotResponse):
         default=0.7, description="Time to contact at which late people notice the robot, s."
     )
     late_time_standing: NonNegativeDuration = Field(
-        default=1.5, description="The same where the robot stands, s."
+        default=2.5, description="The same where the robot stands, s."
     )
     late_gap: NonNegativeLength = Field(
         default=0.3, description="Surface gap at which late people notice it in any case, m."
@@ -139,8 +139,7 @@ class HumanResponse(RobotResponse):
     )
     shown_to_policies: bool = Field(
         default=False,
-        description="Whether the crowd policies of attentive people are shown the robot, too, as "
-        "a disc `margin` larger than what holds it.",
+        description="Whether the crowd policies of attentive people are shown the robot, too.",
     )
 
     @model_validator(mode="after")

@@ -154,10 +154,11 @@ def _of_another_kind(parent: Place, name: str) -> str:
     """A hint where a kind that is not the one chosen has the field."""
     tag = kind_of(parent.node)
     kinds = [k for t in parent.types if _is_model(t) for k in _kinds(t) if name in t.model_fields]
-    others = [k for k in kinds if k != tag]
-    if not others or tag in kinds or not any(hasattr(t, "usual") for t in parent.types):
+    usual = next((t.usual for t in parent.types if hasattr(t, "usual")), None)
+    chosen = tag or usual
+    if usual is None or not kinds or chosen in kinds:
         return ""
-    return f"a field of kind {' or '.join(others)}; this is {tag or 'the usual one'}"
+    return f"a field of kind '{kinds[0]}', and this is '{chosen}'"
 
 
 def missing_field(tree: Node, place: Place, name: str) -> Diagnostic:
