@@ -16,7 +16,7 @@ def leaderboard(
     out: Annotated[Path, typer.Option(metavar="FILE", help="The page.")] = Path("leaderboard.html"),
     by: Annotated[
         str, typer.Option(metavar="METRIC", help="Which metric decides the order.")
-    ] = "success_no_collision",
+    ] = "safe_efficiency",
     title: Annotated[str, typer.Option(metavar="TEXT", help="Heading.")] = "Leaderboard",
     accept: Annotated[
         list[str] | None,

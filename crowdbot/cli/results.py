@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from crowdbot.core.scoring.four_scores import MAIN_SCORES
+
 if TYPE_CHECKING:
     from crowdbot.core.results.rows import Results
     from crowdbot.core.results.tables import GroupSummary
@@ -24,8 +26,9 @@ _ROOT = Path("runs")
 _WIDTH = 240
 #: What is shown of every planner when nobody asks for more.
 _HEADLINES = (
-    "success", "collision_count", "min_clearance", "path_efficiency", "relative_time_to_goal",
-    "proximity", "risk",
+    *(s.metric for s in MAIN_SCORES),
+    "success", "collision_count", "min_clearance", "relative_time_to_goal", "delay",
+    "evasive_acceleration",
 )  # fmt: skip
 
 
@@ -37,7 +40,7 @@ def show(
         str | None, typer.Option(metavar="GLOB", help="Metrics; default: a few headlines.")
     ] = None,
     variant: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Variant; default: corrected.")
+        str | None, typer.Option(metavar="NAME", help="Variant; default: rate, or else corrected.")
     ] = None,
     by: Annotated[
         str, typer.Option(metavar="AXIS,AXIS", help="Groups: axes, planner, seed, status.")
@@ -169,6 +172,8 @@ def _line(summary: GroupSummary) -> dict[str, Any]:
         "variant": summary.variant,
         "unit": summary.unit,
         "mean": summary.mean,
+        "low": summary.low,
+        "high": summary.high,
         "median": summary.median,
         "n": summary.count,
         "undefined": summary.undefined,

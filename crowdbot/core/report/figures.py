@@ -46,8 +46,8 @@ class Figures:
     """Statistics of a report.
 
     Attributes:
-        headline: of the scores that stand for their metrics, one family of tests; the other
-            variants are another.
+        headline: of the scores that stand for their metrics: the four are one family of tests,
+            the others another; all other variants are a third.
         selections: ``""`` for all runs, ``axis=label`` for a part.
         intervals: (selection, series, planner, 3): interquartile mean, low, high.
         pairs: (series, pair, field).

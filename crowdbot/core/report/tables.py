@@ -9,7 +9,8 @@ from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import Attempt, status_of
 from crowdbot.core.report.provenance import short
 from crowdbot.core.results.rows import FailureRow, RunRow, ScoreRow
-from crowdbot.core.statistics import Comparison, Counts, Estimate, Summary
+from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main
+from crowdbot.core.statistics import Comparison, Estimate, PlannerScore, Summary
 
 _RUN = ("suite", "scenario", "planner", "seed", "run_status", "run_id", "realisation", "density")
 _SCORE = (
@@ -92,9 +93,16 @@ def _meaning(summary: Summary) -> str:
 
 def _family(summary: Summary) -> str:
     return (
-        f"Pairs of the same scenario and seed. {summary.tests} tests share the chance "
-        f"{summary.alpha:g} of any false verdict (Holm)."
+        f"Pairs of the same scenario and seed. {summary.tests} tests of {family(summary)} share "
+        f"the chance {summary.alpha:g} of any false verdict (Holm); all other scores are detail, "
+        "and share it among themselves."
     )
+
+
+def family(summary: Summary) -> str:
+    """What the scores that share the chance of a false verdict are called."""
+    main = any(is_main(s.metric, s.variant) for s in summary.scores)
+    return FOUR_SCORES if main else "the headline scores"
 
 
 def _endings(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
@@ -113,13 +121,14 @@ def _scores(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
         here = [scores[metric, variant, planner] for planner in summary.planners]
         unit = "" if here[0].unit == "1" else here[0].unit
         intervals = contents.figures.intervals[0, places[metric, variant]].tolist()
-        cells = [_score_cell(s.counts, found) for s, found in zip(here, intervals, strict=True)]
+        cells = [_score_cell(s, found) for s, found in zip(here, intervals, strict=True)]
         head = map(_plain, (f"{metric} {variant}".removesuffix(" corrected"), here[0].symbol, unit))
         rows.append((*head, here[0].better, *cells))
     return ("score", "symbol", "unit", "better", *map(_plain, summary.planners)), rows
 
 
-def _score_cell(counts: Counts, centre: Sequence[float]) -> str:
+def _score_cell(score: PlannerScore, centre: Sequence[float]) -> str:
+    counts = score.counts
     missing = [
         f"{count} {name}"
         for name, count in (
@@ -129,7 +138,15 @@ def _score_cell(counts: Counts, centre: Sequence[float]) -> str:
         )
         if count
     ]
-    return "; ".join([_numbers(*centre), *missing])
+    return "; ".join([_numbers(*centre), *missing, *_whole(score)])
+
+
+def _whole(score: PlannerScore) -> list[str]:
+    """Between which bounds the mean of all runs lies, where that of some says too little."""
+    if not score.counts.censored:
+        return []
+    low, high = ("?" if x is None else f"{x:.4g}" for x in score.bounds)
+    return [f"mean of all in [{low}, {high}]"]
 
 
 def _estimate(found: Estimate) -> str:

@@ -12,7 +12,11 @@ from typing import Any
 #: Status of a run whose planner failed.
 PLANNER_FAILED = "planner_failed"
 #: What is known of an attempt that left no run: its robot did not arrive.
-WITHOUT_RUN: Mapping[str, float] = {"success": 0.0, "success_no_collision": 0.0}
+WITHOUT_RUN: Mapping[str, float] = {
+    "success": 0.0,
+    "success_no_collision": 0.0,
+    "safe_efficiency": 0.0,
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
