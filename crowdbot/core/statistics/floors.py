@@ -13,14 +13,15 @@ from typing import Literal
 import numpy as np
 
 from crowdbot.core.results.rows import Results
+from crowdbot.core.scoring import four_scores
 from crowdbot.core.statistics.comparison import Comparison, compare
 from crowdbot.core.statistics.estimate import NOTHING, Estimate
 from crowdbot.core.statistics.signed_rank import least_p
 from crowdbot.core.statistics.summary import headline_names
 from crowdbot.core.statistics.table import MISSING, Name, Table
 
-#: The score that decides, the first of these that the runs have.
-PRIMARY = ("safe_efficiency", "success_no_collision", "success")
+#: The score that decides, the first of these that the runs have: older ones lack the first.
+PRIMARY = (four_scores.PRIMARY.metric, "success_no_collision", "success")
 
 LeadVerdict = Literal["ahead", "behind", "not distinguishable"]
 

@@ -66,9 +66,11 @@ class DwaSpec(PlannerSpec):
     )
     swerve: PositiveAngle = Field(
         default=1.3,
-        description="Largest angle from the goal's bearing, or from the map's way, rad.",
+        description="Largest angle from the goal's bearing where people walk, rad.",
     )
-    hold: Weight = Field(default=0.3, description="Weight of keeping to the last direction.")
+    hold: Weight = Field(
+        default=0.3, description="Weight of keeping to the last direction; half where people stand."
+    )
     look_back: NonNegativeDuration = Field(
         default=0.3, description="Age of the scan that shows what moves; 0 takes all as still, s."
     )

@@ -22,7 +22,7 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
 from crowdbot.plugins.planners.dwa import DwaSpec
-from crowdbot.plugins.planners.dwa_heading_build import Heading
+from crowdbot.plugins.planners.dwa_heading_build import Heading, compile_heading
 from crowdbot.plugins.planners.dwa_map_build import AIM, remembered, way_out
 from crowdbot.plugins.planners.dwa_points_build import (
     apparent_velocity,
@@ -47,7 +47,9 @@ _MAPPED = 0.5
 #: Legs of a person who walks are so near to the middle, m.
 _LEGS = 0.4
 #: Somebody who walks within this distance is what the robot waits for, m.
-_NEARBY = 2.0
+_NEARBY = 4.0
+#: Who is faster walks (m/s); so long (s) and such a share of those nearby make it a flow.
+_WALKS, _SETTLES, _MOST = 0.5, 1.0, 0.4
 #: Share of that time that does not count as time without progress.
 _WAITING = 0.8
 #: Speed and duration of the way back out of a dead end: m/s, s.
@@ -68,7 +70,7 @@ class Dwa:
         self._scans: deque[tuple[float, Array, Array]] = deque(maxlen=64)
         self._map: Array = np.empty((0, 2))
         self._around = (np.empty((0, 2)), np.empty((0, 2)))
-        self._walking = False
+        self._walking, self._flow = False, 0.0
         self._heading_by_walls = Heading()
         self._mapped_at = -math.inf
         self._way: float | None = None
@@ -94,6 +96,7 @@ class Dwa:
     def _warm_up(self, task: Task, sensors: Mapping[str, SensorInfo]) -> None:
         """Two steps in a made-up world, so that no step of the run waits for a compiler."""
         way_out(np.ones((1, 2)), 0.0, 0.0, 9.0, 0.0, self._spec.robot_radius)
+        compile_heading()
         for t in (0.0, self._spec.look_back):
             readings = {n: Reading(t, np.full(s.shape, 1.0 + t)) for n, s in sensors.items()}
             self.step(
@@ -150,7 +153,6 @@ class Dwa:
         people, rest = people_in(seen, _REACH if radius else 0.0)
         points = nearest_per_sector(with_discs(rest, people, radius), _SECTORS, _REACH)
         self._around = rest, people
-        self._walking = False
         c, s = math.cos(obs.pose.yaw), math.sin(obs.pose.yaw)
         to_world = np.array([[c, s], [-s, c]])  # for row vectors
         now = [p @ to_world + (obs.pose.x, obs.pose.y) for p in (points, people)]
@@ -171,12 +173,19 @@ class Dwa:
         return points, velocities
 
     def _stand_apart(self, rest: Array, people: Array, going: Array) -> None:
-        """Keep for the map what stands; note whether somebody walks nearby."""
-        walk = np.hypot(going[:, 0], going[:, 1]) > 0.0
-        legs = np.hypot(*(rest[:, None] - people[walk]).T).T.min(axis=1, initial=math.inf) < _LEGS
-        self._around = rest[~legs], people[~walk]
-        near = np.hypot(people[walk, 0], people[walk, 1])
-        self._walking = bool(np.any(near < _NEARBY))
+        """Note whether those nearby walk; while they do, keep for the map only what stands.
+
+        Legs that are paired now one way, now another, seem to move: one step proves nothing.
+        """
+        speed = np.hypot(going[:, 0], going[:, 1])
+        near = np.hypot(people[:, 0], people[:, 1]) < _NEARBY
+        share = float(np.mean(speed[near] > _WALKS)) if near.any() else self._flow
+        self._flow += min(1.0, float(self._p[rollout.PERIOD]) / _SETTLES) * (share - self._flow)
+        self._walking = self._flow > _MOST
+        if self._walking:
+            walk = speed > 0.0
+            apart = np.hypot(*(rest[:, None] - people[walk]).T).T.min(axis=1, initial=math.inf)
+            self._around = rest[apart > _LEGS], people[~walk]
 
     def _choose(
         self,
@@ -200,8 +209,8 @@ class Dwa:
             spec.robot_radius + spec.margin + (_LEEWAY if self._way is None else 0.0),
             min(spec.look_ahead, room / speed + 0.1),
             0.2 if escaping else 1.0,
-            math.pi if escaping else spec.swerve,
-            spec.hold,
+            spec.swerve if self._walking and not escaping else math.pi,
+            spec.hold if self._walking else 0.5 * spec.hold,
         )
         self._heading = direction + pose.yaw
         return direction, free

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core.results.rows import FailureRow, Results
-from crowdbot.core.statistics import check_floors
+from crowdbot.core.statistics import check_floors, summarise
 from crowdbot.core.statistics.floors import FloorCheck
 from tests.core.statistics.made_up_results import run, score
 
@@ -140,6 +140,20 @@ def test_exchanging_the_planners_turns_the_lead(seed: int) -> None:
     assert there.by.value == pytest.approx(-(back.by.value or 0.0))
     assert there.by.low == pytest.approx(-(back.by.high or 0.0))
     assert (there.verdict == "ahead") == (back.verdict == "behind")
+
+
+def test_floors_do_not_make_it_harder_to_tell_others_apart() -> None:
+    rng = np.random.default_rng(8)
+    two = {p: (rng.random(10) + shift).tolist() for p, shift in (("mine", 0.3), ("known", 0.0))}
+    floors = {p: rng.random(10).tolist() for p in ("blind", "still")}
+    alone, among = summarise(results(two)), summarise(results({**two, **floors}))
+    (there,) = alone.comparisons
+    (again,) = (c for c in among.comparisons if {c.a, c.b} == {"mine", "known"})
+    assert again.p_holm == there.p_holm
+    assert among.tests == alone.tests == 1
+    others = [c for c in among.comparisons if {c.a, c.b} & floors.keys()]
+    assert len(others) == 5
+    assert any(c.p_holm != c.p for c in others)  # which are corrected for each other
 
 
 def test_equal_planners_are_seldom_told_apart() -> None:
