@@ -74,6 +74,7 @@ def _planner(contents: Contents, planner: str) -> dict[str, Any]:
         "privileged": contents.is_privileged(planner),
         "pinned": contents.is_pinned(planner),
         "reference": planner in contents.heading.references,
+        "role": contents.role(planner),
         "facts": provenance.planner_facts([a for a in tried if isinstance(a, RunRow)]),
     }
 

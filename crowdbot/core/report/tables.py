@@ -67,6 +67,10 @@ def markdown(contents: Contents) -> str:
     summary, heading = contents.figures.headline, contents.heading
     lines = [f"# {_plain(heading.suite)}", ""]
     lines += [f"Made {_plain(heading.made)}.", ""] if heading.made else []
+    lines += [f"**{_plain(contents.suspicion)}.**", ""] if contents.suspicion else []
+    for check in contents.floors:
+        mark = "**" if check.leads and not check.beats_all else ""
+        lines += [f"{mark}{_plain(check.text)}.{mark}", ""]
     for text in heading.accepted:
         lines += [f"**Accepted: {_plain(text)}**", ""]
     for text in heading.warnings:

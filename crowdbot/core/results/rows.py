@@ -42,6 +42,7 @@ class RunRow:
         conditions: what must be equal in runs that are compared: rates, perceived radius, whether
             people see the robot, versions of software, parameters of metrics. Name -> text.
         record: the whole ``run.json``.
+        role: what the planner is there for: floor, baseline, ceiling or candidate.
     """
 
     run_id: str
@@ -64,6 +65,7 @@ class RunRow:
     directory: str
     conditions: Mapping[str, str]
     record: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    role: str = "candidate"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

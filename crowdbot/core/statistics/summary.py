@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 
@@ -130,7 +130,7 @@ def summarise(
         results: from a store.
         names: (metric, variant) to look at; default `headline_names`. The four scores among them
             are the family that Holm's correction is for, together with all pairs of planners; all
-            others are a family of their own.
+            others are a family of their own, and so are comparisons with floors and ceilings.
         level: of intervals.
         alpha: chance of any false verdict in a family.
     """
@@ -138,7 +138,8 @@ def summarise(
     chosen = headline_names(table) if names is None else tuple(names)
     pairs = list(combinations(table.planners, 2))
     found = [compare(table, name, a, b, level=level) for name in chosen for a, b in pairs]
-    families = list(_families([x for x, _ in found]))
+    marks = {run.planner for run in results.runs if run.role in ("floor", "ceiling")}
+    families = list(_families([x for x, _ in found], marks))
     p_holm = {place: p for family in families for place, p in family.items()}
     everybody = [(name, planner) for name in chosen for planner in table.planners]
     return Summary(
@@ -157,13 +158,19 @@ def summarise(
     )
 
 
-def _families(found: Sequence[Comparison]) -> Iterator[dict[int, float]]:
-    """Place of a comparison -> corrected p: first for the four scores, then for all others."""
-    for main in (True, False):
+def _families(found: Sequence[Comparison], marks: Set[str]) -> Iterator[dict[int, float]]:
+    """Place of a comparison -> corrected p: first for the four scores, then for all others.
+
+    Comparisons with floors and ceilings (``marks``) are families of their own: that they are run
+    besides must not make it harder to tell other planners apart.
+    """
+    for marked, main in product((False, True), (True, False)):
         here = {
             place: x.p
             for place, x in enumerate(found)
-            if x.p is not None and is_main(x.metric, x.variant) is main
+            if x.p is not None
+            and is_main(x.metric, x.variant) is main
+            and bool({x.a, x.b} & marks) is marked
         }
         adjusted = holm(np.array(list(here.values()), dtype=float))
         yield dict(zip(here, adjusted.tolist(), strict=True))
