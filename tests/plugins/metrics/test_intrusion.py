@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -18,7 +20,7 @@ def following(gap: float, speed: float = 0.5) -> Trajectories:
     return scene(T, line(T, (0, 0), (speed, 0)), [person])
 
 
-def intrusion(run: Trajectories, **fields: str) -> float:
+def intrusion(run: Trajectories, **fields: Any) -> float:
     return value_of(scores_of("intrusion", run, **fields))
 
 
