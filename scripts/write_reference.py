@@ -89,7 +89,20 @@ def _documents() -> Iterator[str]:
 def _scenario(registry: Registry) -> Iterator[str]:
     yield _section("## A scenario", registry.scenario_model, extends=True)
     for path, model in _nested(registry.scenario_model, ""):
-        yield _section(f"### {path}", model)
+        kinds = _kinds_of(model)
+        if not kinds:
+            yield _section(f"### {path}", model)
+            continue
+        yield f"### {path}\n\n{_prose(model)}\n"
+        for kind in kinds:
+            name = kind.model_fields["kind"].default
+            usual = ", where none is named" if name == vars(model)["usual"] else ""
+            yield _section(f"#### {path}: {name}", kind, f"`kind: {name}`{usual}.")
+
+
+def _kinds_of(model: Any) -> list[Any]:
+    """The models that a choice between them stands for; none for a plain model."""
+    return model.__subclasses__() if "usual" in vars(model) else []
 
 
 def _components(registry: Registry) -> Iterator[str]:
@@ -116,6 +129,7 @@ def _nested(model: type[BaseModel], prefix: str) -> Iterator[tuple[str, type[Bas
         inner, named = _model_of(info.annotation)
         if info.exclude or inner is None or issubclass(inner, ComponentSpec) or inner in _SHARED:
             continue
+        inner = next((base for base in inner.__bases__ if "usual" in vars(base)), inner)
         path = f"{prefix}{name}.NAME" if named else f"{prefix}{name}"
         yield path, inner
         yield from _nested(inner, f"{path}.")

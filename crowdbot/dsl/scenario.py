@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Le, Lt
+from annotated_types import Ge, Le
 from pydantic import (
     Field,
     PrivateAttr,
@@ -35,8 +35,6 @@ from crowdbot.dsl.quantities import (
     Angle,
     Length,
     NonNegativeDamping,
-    NonNegativeLength,
-    NonNegativeSteeringStiffness,
     PositiveAcceleration,
     PositiveDensity,
     PositiveDuration,
@@ -46,6 +44,7 @@ from crowdbot.dsl.quantities import (
     PositiveSpeed,
     PositiveStiffness,
 )
+from crowdbot.dsl.robot_response import HumanResponse, RobotResponseChoice
 from crowdbot.dsl.spawning import Agents, RouteEnd, Spawn
 from crowdbot.dsl.spec import Spec
 
@@ -85,50 +84,6 @@ class Body(Spec):
     height: PositiveLength = Field(default=1.7, description="Height, m.")
 
 
-class RobotResponse(Spec):
-    """How people take the robot: behaviour, not contact.
-
-    Those who yield see it, and inside the perceived disc they feel a one-sided steering force,
-    ``stiffness × overlap``. Those who ignore it walk as if it were not there, until they touch it.
-    """
-
-    reaction: Literal["yield", "ignore", "mixed"] = Field(
-        default="yield", description="Who takes notice of the robot: all, nobody, or some."
-    )
-    ignoring_fraction: Annotated[float, Gt(0), Lt(1)] | None = Field(
-        default=None,
-        description="With `mixed`: the fraction of people who ignore the robot, drawn by id.",
-    )
-    margin: NonNegativeLength = Field(
-        default=0.25, description="Perceived radius minus real radius of the robot, m."
-    )
-    stiffness_moving: NonNegativeSteeringStiffness = Field(
-        default=62.5, description="Steering stiffness beside a moving robot, 1/s^2."
-    )
-    stiffness_stopped: NonNegativeSteeringStiffness = Field(
-        default=125.0, description="Steering stiffness beside a stopped robot, 1/s^2."
-    )
-    slow_speed: PositiveSpeed = Field(
-        default=0.2, description="Below this robot speed the stiffness rises linearly, m/s."
-    )
-    velocity: Literal["visible", "hidden"] = Field(
-        default="visible", description="Whether people see how the robot moves."
-    )
-
-    @model_validator(mode="after")
-    def _fraction_of_a_mixture(self) -> RobotResponse:
-        if (self.reaction == "mixed") != (self.ignoring_fraction is not None):
-            raise ValueError("reaction 'mixed' and ignoring_fraction belong together")
-        return self
-
-    @property
-    def ignoring(self) -> float:
-        """Fraction of people who ignore the robot."""
-        if self.ignoring_fraction is not None:
-            return self.ignoring_fraction
-        return 1.0 if self.reaction == "ignore" else 0.0
-
-
 class NamedPolicy(Spec):
     """A policy that some agents follow instead of the crowd's own."""
 
@@ -163,8 +118,8 @@ class Crowd(Spec):
         description="Where people come out of a portal: anywhere in it, or opposite to where "
         "they went in.",
     )
-    robot_response: RobotResponse = Field(
-        default=RobotResponse(), description="How people take the robot."
+    robot_response: RobotResponseChoice = Field(
+        default=HumanResponse(), description="How people take the robot."
     )
     seed: CrowdSeed = Field(default=CrowdSeed(), description="Draws the crowd.")
 
@@ -301,7 +256,6 @@ __all__ = [
     "NamedPolicy",
     "Rates",
     "Robot",
-    "RobotResponse",
     "Scenario",
     "SpeedDistribution",
     "TaskSpec",

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from annotated_types import Ge, Le, MinLen
+from annotated_types import Ge, Le, Lt, MinLen
 from pydantic import (
     BeforeValidator,
     Discriminator,
@@ -186,6 +186,11 @@ class Agent(Spec):
     )
     policy: str = Field(
         default="", description="Name in `crowd.policies`; without it the crowd's own."
+    )
+    attention: Annotated[float, Ge(0), Lt(1)] | None = Field(
+        default=None,
+        description="How attentive it is compared with others: the least attentive ignore robots, "
+        "the next notice them late, see `robot_response`; without it drawn.",
     )
     goals: tuple[Point, ...] = Field(
         default=(), strict=False, description="Points of its route, m; these or `portals`."

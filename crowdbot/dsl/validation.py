@@ -81,6 +81,8 @@ def locate(tree: Node, loc: Iterable[str | int], model: type[BaseModel] | None =
     types: tuple[Any, ...] = (model,) if model else ()
     while rest:
         tag = kind_of(node)
+        if tag is None and len(rest) > 1 and _is_usual_kind(types, rest[0]):
+            tag = rest[0]  # a kind that nobody wrote
         chosen = rest[0] == tag and (len(rest) > 1 or node.child(rest[0]) is None)
         if chosen or str(rest[0]).startswith("<"):  # a member of a union, no name
             rest.pop(0)
@@ -140,11 +142,23 @@ def _unknown_field(parent: Place, name: str) -> Diagnostic:
     if entry and " " in name and entry.node.value is None:
         hint = "inside {} a comma ends a text; quote text that holds one"
     hint = _ELSEWHERE.get(name, hint)
+    hint = _of_another_kind(parent, name) or hint
     where = f" in {parent.name}" if parent.path else ""
     if entry and entry.dotted:
         text = f"'{entry.dotted}' overrides nothing: no field '{name}'{where}"
         return Diagnostic("E204", text, mark, hint)
     return Diagnostic("E102", f"unknown field '{name}'{where}", mark, hint)
+
+
+def _of_another_kind(parent: Place, name: str) -> str:
+    """A hint where a kind that is not the one chosen has the field."""
+    tag = kind_of(parent.node)
+    kinds = [k for t in parent.types if _is_model(t) for k in _kinds(t) if name in t.model_fields]
+    usual = next((t.usual for t in parent.types if hasattr(t, "usual")), None)
+    chosen = tag or usual
+    if usual is None or not kinds or chosen in kinds:
+        return ""
+    return f"a field of kind '{kinds[0]}', and this is '{chosen}'"
 
 
 def missing_field(tree: Node, place: Place, name: str) -> Diagnostic:
@@ -291,7 +305,17 @@ def _is_model(annotation: Any) -> bool:
 
 
 def _has_kind(model: Any, tag: object) -> bool:
+    kinds = _kinds(model)
+    return not kinds or tag is None or tag in kinds
+
+
+def _kinds(model: Any) -> tuple[str, ...]:
+    """The kinds that a model is told apart by; none for one that is not."""
     field = model.model_fields.get("kind")
-    if field is None or tag is None or get_origin(field.annotation) is not Literal:
-        return True
-    return tag in get_args(field.annotation)
+    named = field is not None and get_origin(field.annotation) is Literal
+    return get_args(field.annotation) if field is not None and named else ()
+
+
+def _is_usual_kind(types: Iterable[Any], tag: object) -> bool:
+    """Whether a place takes models of several kinds, and this is the one that need not be named."""
+    return any(_is_model(t) and getattr(t, "usual", None) == tag for t in types)

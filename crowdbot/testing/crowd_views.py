@@ -88,7 +88,7 @@ def permuted(view: CrowdView, order: NDArray[np.int64]) -> CrowdView:
     a = view.agents
     routes = [a.route[a.first[i] : a.first[i + 1]].tolist() for i in order]
     names = ("x", "y", "preferred_speed", "id", "radius", "max_speed", "max_acceleration", "mass",
-             "start_time", "at_goal", "flow", "policy", "ignores_robot")  # fmt: skip
+             "start_time", "at_goal", "flow", "policy", "ignores_robot", "late")  # fmt: skip
     agents = Agents.of(**{n: getattr(a, n)[order] for n in names}, routes=routes)
     rows = {n: getattr(view, n)[order] for n in ("position", "velocity", "goal", "present")}
     return replace(view, agents=agents, **rows)

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from crowdbot import cli
-from crowdbot.cli.campaign import read_seeds
+from crowdbot.cli._campaign_run import read_seeds
 from crowdbot.core.results.rows import FailureRow, Results, RunRow, ScoreRow
 from crowdbot.core.results.store import INDEX, load
 from crowdbot.core.results.tables import summarise

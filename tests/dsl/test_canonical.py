@@ -50,7 +50,9 @@ SEMANTIC = [
     ("crowd.costs.reflex.range", {"value": 0.3, "measure": "surface"}),
     ("crowd.costs.second", {"kind": "rvo"}),
     ("crowd.seed", {"root": 1}),
-    ("crowd.robot_response.velocity", "hidden"),
+    ("crowd.robot_response", {"velocity": "hidden"}),
+    ("crowd.robot_response", {"kind": "keep_off"}),
+    ("crowd.robot_response", {"late_fraction": 0.41}),
     ("crowd", None),
     ("robots", {}),
     ("robots.robot.task.start", [5, 0, 0.1]),
@@ -192,7 +194,7 @@ def test_stream_seeds() -> None:
 
 SEED = 5666247128274042229
 GOLDEN = (
-    "cb1-sha256:91c15360e1797fb1de4ff9105827c1d6c90017209c4c840326d1a1b17f85de22",
-    "cb1-sha256:d097de27a5897e7f17fb13cb7dd8760d25563a618b8b39f48b0decb8b9b42709",
-    "cb1-sha256:20b2b91bb6484cdecd0d5b2a0759609386a7fb3dc254ded2c8947e52f89eeea4",
+    "cb1-sha256:677b5dcc0b8486f91c25061f37d7607b9ffd8f127b9da855529d7b5c50611a6c",
+    "cb1-sha256:a5e7ba4925e6507beaf71fa3d11bc22be3fbab38fcc1a6945f53f3b5fa0268b3",
+    "cb1-sha256:7a71fbcea5d609d8d17bde353d83e8d19508255f4797a15587e5be0c9ed7a7f5",
 )

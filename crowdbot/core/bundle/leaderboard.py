@@ -50,6 +50,8 @@ def _table(table: Standings) -> dict[str, Any]:
         "groups": _groups(table),
         "findings": [(f.severity, str(f), f.accepted) for f in table.findings],
         "tests": table.summary.tests,
+        "suspicion": table.suspicion,
+        "audit": table.audit.text if table.audit else "nobody has audited this suite",
         "level": f"{table.summary.level:.0%}",
     }
 

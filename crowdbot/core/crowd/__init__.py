@@ -6,6 +6,7 @@
 - `policy`: the contract of crowd policies; `build` builds and checks them,
   `desired_acceleration` asks them, `from_spec` makes one from fields as in a scenario.
 - `contact/`: forces between people, walls, pillars and robots.
+- `response/`: how people take robots.
 - `velocity_search/`: policies that minimise costs over candidate velocities.
 - `recorded`: trajectories of real people, from a CSV file.
 """

@@ -29,6 +29,7 @@ class Agents:
         route: (W, 2) points of all routes in the agents' order, m; for all but ``PORTAL``.
         first: (N + 1,) rows of ``route`` that belong to agent i: first[i] to first[i + 1].
         ignores_robot: (N,) whether the agent takes no notice of robots until they touch.
+        late: (N,) whether the agent notices robots late, where people notice them at all.
     """
 
     id: NDArray[np.int64]
@@ -46,10 +47,12 @@ class Agents:
     route: Array
     first: NDArray[np.int64]
     ignores_robot: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
+    late: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
 
     def __post_init__(self) -> None:
-        if len(self.ignores_robot) != len(self.id):
-            object.__setattr__(self, "ignores_robot", np.zeros(len(self.id), np.bool_))
+        for name in ("ignores_robot", "late"):
+            if len(getattr(self, name)) != len(self.id):
+                object.__setattr__(self, name, np.zeros(len(self.id), np.bool_))
 
     def __len__(self) -> int:
         return len(self.id)
@@ -72,6 +75,7 @@ class Agents:
         policy: ArrayLike = 0,
         routes: Sequence[Sequence[tuple[float, float]]] | None = None,
         ignores_robot: ArrayLike = False,
+        late: ArrayLike = False,
     ) -> Agents:
         """Agents from rows or single numbers; with routes they stop at the end, else portals.
 
@@ -104,6 +108,7 @@ class Agents:
             route=np.array(points, dtype=np.float64).reshape(-1, 2),
             first=np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]),
             ignores_robot=row(ignores_robot, np.bool_),
+            late=row(late, np.bool_),
         )
         made.check()
         return made

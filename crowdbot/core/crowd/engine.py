@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.agents import PORTAL, Agents
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS
-from crowdbot.core.crowd.contact.robot_contact import DISC
+from crowdbot.core.crowd.contact.robot_contact import DISC, R_W, RVX, RVY
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration
 from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdPolicy, CrowdView
 from crowdbot.core.crowd.portals import draw_goal, enter
+from crowdbot.core.crowd.response.evasion import evade_robots
+from crowdbot.core.crowd.response.parameters import Human
 from crowdbot.core.crowd.routes import head_for
 from crowdbot.core.crowd.step import tick, ticks_without_robots
 from crowdbot.core.crowd.world import CrowdWorld
@@ -27,7 +29,8 @@ from crowdbot.core.types.arrays import Array
 PolicyFactory = Callable[[Agents], CrowdPolicy]
 
 NOBODY = np.zeros((0, 8))
-_SEEN = np.array([0, 1, 2, 3, 5])  # columns of a robot that people know: all but its true radius
+_SEEN = np.array([0, 1, 2, 3, 5])  # columns of a robot that policies know
+_MOTION = np.isin(np.arange(8), [RVX, RVY, R_W])  # those that say how it moves
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +39,7 @@ class _Group:
 
     policy: CrowdPolicy
     members: NDArray[np.bool_]
-    heeds_robot: bool
+    sees_robot: bool
 
 
 class CrowdEngine:
@@ -64,11 +67,15 @@ class CrowdEngine:
         made = [p(agents) if callable(p) else p for p in given]
         if len(agents) and not 0 <= agents.policy.min() <= agents.policy.max() < len(made):
             raise ValueError(f"agents follow policy {agents.policy.max()} of {len(made)}")
-        self._groups = _groups(made, agents)
+        self._groups = _groups(made, agents, _who_plans(agents, world))
+        self._groups_alone = _groups(made, agents, np.zeros(len(agents), np.bool_))
         strength = [getattr(p, "contact_stiffness", CONTACT_STIFFNESS) for p in made]
         self._ticks_per_decision = ticks(world.decision_rate)
         self._people = AgentParameters.of(agents, np.array(strength, np.float64)[agents.policy])
         self._place = WorldParameters.of(world)
+        response = world.response
+        dt = self._ticks_per_decision * TICK
+        self._evades = response.by_decision(dt) if isinstance(response, Human) else None
         n = len(agents)
         self._scratch = Scratch(np.zeros((n, 2)), np.zeros((n, PLACED_COLUMNS)), np.arange(n))
 
@@ -93,6 +100,7 @@ class CrowdEngine:
         facing = np.divide(to_goal, distance, out=np.zeros_like(to_goal), where=distance > 0.0)
         facing[distance[:, 0] == 0.0] = 1.0, 0.0
         rows[:, s.DIR_X : s.DIR_Y + 1] = facing
+        rows[:, s.NOTICED] = s.UNAWARE
         return flat
 
     def advance(
@@ -111,7 +119,7 @@ class CrowdEngine:
         if robots.shape[1] < 8:
             robots = np.pad(robots, ((0, 0), (0, 8 - robots.shape[1])))
         if int(flat[s.TICK]) % self._ticks_per_decision == 0:
-            self._decide(flat, robots)
+            self._decide(flat, robots, outline)
         tick(*self._given(flat, robots, outline, dt))
 
     def advance_alone(self, flat: Array, most: int) -> int:
@@ -128,7 +136,7 @@ class CrowdEngine:
         """
         since = int(flat[s.TICK]) % self._ticks_per_decision
         if since == 0:
-            self._decide(flat, NOBODY)
+            self._decide(flat, NOBODY, DISC)
         # What pushes from across a border moves with every tick.
         count = min(most, self._ticks_per_decision - since)
         count = count if self.world.periodic_boundary is None else 1
@@ -163,18 +171,29 @@ class CrowdEngine:
                 positions.append(np.where(here[:, None], rows[:, s.X : s.Y + 1], np.nan))
         return np.array(times), np.array(positions)
 
-    def _decide(self, flat: Array, robots: Array) -> None:
+    def _decide(self, flat: Array, robots: Array, outline: Array) -> None:
         _, rows = s.view(flat)
-        seen = robots[:, _SEEN]
         if not self.world.robot_visible:
-            seen[:, 2:4] = 0.0
+            robots = np.where(_MOTION, 0.0, robots)
+        seen = robots[:, _SEEN]
         nobody = seen[:0]
-        for group in self._groups:
-            view = self._view(flat, rows, group.members, seen if group.heeds_robot else nobody)
+        for group in self._groups if len(robots) else self._groups_alone:
+            view = self._view(flat, rows, group.members, seen if group.sees_robot else nobody)
             decides = np.asarray(view.decides)[:, np.newaxis]
             np.copyto(
                 rows[:, s.AX : s.AY + 1], desired_acceleration(group.policy, view), where=decides
             )
+        self._evade(flat, rows, robots, outline)
+
+    def _evade(self, flat: Array, rows: Array, robots: Array, outline: Array) -> None:
+        """Those who have noticed robots change what they want, whatever their policy is."""
+        if self._evades is None or not len(robots):
+            return
+        people, now = self._people, float(flat[s.TICK]) * TICK
+        evade_robots(
+            rows, people.radius, people.heeds_robot, self.agents.late, robots, outline,
+            self._evades, now,
+        )  # fmt: skip
 
     def _view(
         self, flat: Array, rows: Array, members: NDArray[np.bool_], robots: Array
@@ -207,12 +226,22 @@ class CrowdEngine:
         return np.ascontiguousarray(view.others(reach)[:, [0, 1, 4]])
 
 
-def _groups(policies: Sequence[CrowdPolicy], agents: Agents) -> list[_Group]:
-    """Everybody, by policy and by whether they heed robots."""
+def _who_plans(agents: Agents, world: CrowdWorld) -> NDArray[np.bool_]:
+    """Whose policy is shown the robots: who notices late has other things in mind."""
+    response = world.response
+    if not isinstance(response, Human):
+        return ~agents.ignores_robot
+    return ~(agents.ignores_robot | agents.late) & response.shown_to_policies
+
+
+def _groups(
+    policies: Sequence[CrowdPolicy], agents: Agents, sees_robot: NDArray[np.bool_]
+) -> list[_Group]:
+    """Everybody, by policy and by whether it is shown robots."""
     found = []
     for number, policy in enumerate(policies):
-        for ignores in (False, True):
-            members = (agents.policy == number) & (agents.ignores_robot == ignores)
+        for sees in (True, False):
+            members = (agents.policy == number) & (sees_robot == sees)
             if np.any(members):
-                found.append(_Group(policy, members, not ignores))
+                found.append(_Group(policy, members, sees))
     return found

@@ -55,10 +55,12 @@ class WorldParameters(NamedTuple):
     """Fields of `CrowdWorld`; units are those of `CrowdWorld`.
 
     Attributes:
-        walls, entrance, out, response, stiffness, dissipation: as there.
+        walls, entrance, out, stiffness, dissipation: as there.
         keep_offset: whether people come out of the in-portal opposite to where they went in.
         boundary: (4,) x0, x1, y0, y1, m, infinite where the world has no border.
         goals_wrap: whether goals wrap with their agents.
+        response: what people do about robots tick by tick, see
+            `crowdbot.core.crowd.response.parameters`.
         goal_key: key of the counter-based random numbers of goals and entries.
     """
 
@@ -80,7 +82,7 @@ class WorldParameters(NamedTuple):
         return cls(
             w.walls, w.entrance, w.out, w.exit_point == "offset",
             ENDLESS if boundary is None else np.array(boundary, np.float64), not w.parity,
-            w.response, w.stiffness, w.dissipation, np.uint64(w.goal_key),
+            w.response.by_tick, w.stiffness, w.dissipation, np.uint64(w.goal_key),
         )  # fmt: skip
 
 

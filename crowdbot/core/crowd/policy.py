@@ -25,12 +25,13 @@ class CrowdView:
         agents: what agents keep for the whole run.
         position, velocity, goal: (N, 2), m, m/s, m.
         present: (N,) False for agents that are outside the world.
-        robot: (K, 5) x, y, vx, vy and perceived radius of each robot that these agents heed.
+        robot: (K, 5) x, y, vx, vy and perceived radius of each robot that these agents are shown;
+            by default none, since what people do about robots is laid over what they want.
         walls: (S, 4) segments, m.
         dt: time between decisions, s.
         t: time of the decision, s.
-        decides: (N,) whose answer is used: those present who follow this policy and heed the
-            robots shown; None is all who are present. What is returned for others is ignored.
+        decides: (N,) whose answer is used: those present who follow this policy and are shown
+            these robots; None is all who are present. What is returned for others is ignored.
         pillars: (P, 3) x, y and radius of round obstacles, m.
         periodic_boundary: (x0, x1, y0, y1) of a floor whose opposite borders are one, m.
         diagonal: whether people see across the corners of the floor, too; in the original engine

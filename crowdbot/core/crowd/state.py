@@ -23,19 +23,23 @@ HEADER_SIZE = 10
 # trip (s), finished trips, next point of the route, jumps through portals and across the border,
 # how far wraps at a periodic boundary have moved the agent (m); way walked (m) and the unit vector
 # of the way faced, which sensors show; bearing of the contact as the robot sees it, at its start
-# (rad).
+# (rad); since when the agent has been aware of robots (s, below); 1 while one may come so near
+# before the next decision that the agent has to stop short of it.
 (
     X, Y, VX, VY, AX, AY, PUSH_X, PUSH_Y, GOAL_X, GOAL_Y,
     TRIP, WAITING, ATTEMPT, TRIP_START, ARRIVED,
     TOUCHING, TOUCH_START, TOUCH_END, TOUCH_IMPULSE, TOUCH_PEAK, TOUCH_SPEED, TOUCHES,
     ON_TRIP, LAST_START, ARRIVALS, WAYPOINT, JUMPS, LAP_X, LAP_Y,
-    WALKED, DIR_X, DIR_Y, TOUCH_SIDE,
-) = range(33)  # fmt: skip
-AGENT_COLUMNS = 33
+    WALKED, DIR_X, DIR_Y, TOUCH_SIDE, NOTICED, BESIDE,
+) = range(35)  # fmt: skip
+AGENT_COLUMNS = 35
 
 #: Values of ``WAITING``: in the world; outside, in front of the in-portal; outside, to start
 #: later; gone for good.
 PRESENT, AT_PORTAL, NOT_YET, GONE = 0.0, 1.0, 2.0, 3.0
+
+#: Value of ``NOTICED`` of an agent who is not aware of any robot.
+UNAWARE = -1.0
 
 
 def size(agents: int) -> int:

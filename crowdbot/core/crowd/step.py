@@ -10,10 +10,13 @@ import numpy as np
 from crowdbot.core.crowd.agents import PORTAL
 from crowdbot.core.crowd.contact.geometry import is_clearly_shorter
 from crowdbot.core.crowd.contact.pedestrian_contact import push_apart
-from crowdbot.core.crowd.contact.robot_contact import keep_off, robot_contact
+from crowdbot.core.crowd.contact.robot_contact import robot_contact
 from crowdbot.core.crowd.parameters import AgentParameters, WorldParameters
 from crowdbot.core.crowd.periodic_boundary import wrap
 from crowdbot.core.crowd.portals import enter, entry_fraction, is_free, leave, try_to_re_enter
+from crowdbot.core.crowd.response.keep_off import keep_off
+from crowdbot.core.crowd.response.parameters import KEEP_OFF, KIND
+from crowdbot.core.crowd.response.standing import stop_short
 from crowdbot.core.crowd.routes import end_trip, next_goal, reach_fraction
 from crowdbot.core.crowd.state import (
     AGENT_COLUMNS,
@@ -21,6 +24,7 @@ from crowdbot.core.crowd.state import (
     AT_PORTAL,
     AX,
     AY,
+    BESIDE,
     DIR_X,
     DIR_Y,
     GOAL_X,
@@ -91,7 +95,7 @@ def tick(
         reaction[:] = 0.0
     for i in range(agents.shape[0]):
         if agents[i, WAITING] == PRESENT:
-            _advance(header, agents, i, people, world, robots, reaction, now, dt)
+            _advance(header, agents, i, people, world, robots, outline, reaction, now, dt)
     for i in entry_order:
         if agents[i, WAITING] == AT_PORTAL:
             try_to_re_enter(agents, i, people, world, robots, now + dt)
@@ -108,6 +112,7 @@ def _advance(
     people: AgentParameters,
     world: WorldParameters,
     robots: Array,
+    outline: Array,
     reaction: Array,
     now: float,
     dt: float,
@@ -115,7 +120,9 @@ def _advance(
     """Move agent i, and let it arrive, leave or wrap."""
     x, y, arrivals = agents[i, X], agents[i, Y], agents[i, ARRIVALS]
     ax, ay = 0.0, 0.0
-    if people.heeds_robot[i]:
+    if agents[i, BESIDE] != 0.0:
+        ax, ay = stop_short(agents, i, people.radius, robots, outline, world.response)
+    elif world.response[KIND] == KEEP_OFF and people.heeds_robot[i]:
         ax, ay = keep_off(agents, i, people.radius, robots, world.response)
     ax += agents[i, PUSH_X] + reaction[i, 0] / people.mass[i]
     ay += agents[i, PUSH_Y] + reaction[i, 1] / people.mass[i]

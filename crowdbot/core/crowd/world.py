@@ -9,6 +9,7 @@ import numpy as np
 
 from crowdbot.core.crowd.agents import PORTAL, Agents
 from crowdbot.core.crowd.periodic_boundary import Box
+from crowdbot.core.crowd.response.parameters import Human, Response
 from crowdbot.core.types.arrays import Array
 
 _COLUMNS = {"walls": 4, "pillars": 3, "entrance": 4, "out": 4}
@@ -28,7 +29,7 @@ class CrowdWorld:
         entrance, out: (F, 4) boxes x0, x1, y0, y1 of each flow's portals, m.
         exit_point: where people come out of the in-portal: at a random point, or opposite to
             where they went into the out-portal, ``offset`` kept.
-        response: (3,) see `crowdbot.core.crowd.contact.robot_contact.keep_off`.
+        response: what people do about robots.
         robot_visible: whether people see the robot's velocity.
         stiffness, dissipation: contact with the robot, N/m and s/m.
         goal_key: key of the counter-based draws of goals and entries.
@@ -43,7 +44,7 @@ class CrowdWorld:
     entrance: Array = field(default_factory=lambda: np.zeros((0, 4)))
     out: Array = field(default_factory=lambda: np.zeros((0, 4)))
     exit_point: Literal["random", "offset"] = "random"
-    response: Array = field(default_factory=lambda: np.array([62.5, 125.0, 0.2]))
+    response: Response = field(default_factory=Human)
     robot_visible: bool = True
     stiffness: float = 30000.0
     dissipation: float = 0.3

@@ -20,6 +20,7 @@ Route = tuple[tuple[float, float], ...]
 
 _NUMBERS = (
     "x", "y", "heading", "speed", "radius", "mass", "max_speed", "max_acceleration", "start_time",
+    "attention",
 )  # fmt: skip
 COLUMNS = ("id", *_NUMBERS, "group", "policy", "at_goal", "portals", "goals", "goal_key")
 
@@ -35,6 +36,9 @@ class Realisation:
         radius, mass: (N,) disc, m and kg.
         max_speed, max_acceleration: (N,) m/s and m/s^2.
         start_time: (N,) when the agent enters, s.
+        attention: (N,) how attentive the agent is compared with others, 0 to 1. The least
+            attentive ignore robots, the next notice them late; ``crowd.robot_response`` says how
+            many do.
         group: (N,) agents with equal numbers belong together; -1: alone.
         policy: (N,) name in ``crowd.policies``; empty: the crowd's own policy.
         at_goal: (N,) what happens at the end of the route: ``portal``, ``stop``, ``remove``,
@@ -54,6 +58,7 @@ class Realisation:
     max_speed: Array
     max_acceleration: Array
     start_time: Array
+    attention: Array
     group: NDArray[np.int64]
     policy: tuple[str, ...]
     at_goal: tuple[AtGoal, ...]

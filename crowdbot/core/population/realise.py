@@ -5,7 +5,7 @@ First explicit agents, then the flow, then the spawns by name: each keeps clear 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import count
 from typing import Any
 
@@ -41,7 +41,7 @@ def realise(scenario: Scenario) -> Realisation:
     streams = Streams(crowd.seed.root, crowd.seed.key)
     occupancy = Occupancy([robot.task.start[:2] for robot in scenario.robots.values()])
     if crowd.names_nobody and crowd.policy.record is not None:
-        return Realisation.from_rows(list(_recorded(crowd, crowd.policy.record, streams)))
+        return _table(_recorded(crowd, crowd.policy.record), streams)
     explicit = [_agent_row(a, scenario, crowd, streams) for a in crowd.agents]
     for row in explicit:
         occupancy.add(row["x"], row["y"], row["radius"])
@@ -53,12 +53,25 @@ def realise(scenario: Scenario) -> Realisation:
         rows = SpawnSampler(name, spawn, scenario, crowd, streams).rows(occupancy, group)
         group = max(group, *(row["group"] + 1 for row in rows))
         drawn += rows
-    key = {"goal_key": streams.seed("crowd.goal")}
     numbered = [*explicit, *_numbered(drawn, {agent.id for agent in crowd.agents})]
-    return Realisation.from_rows(sorted((row | key for row in numbered), key=lambda r: r["id"]))
+    return _table(numbered, streams)
 
 
-def _recorded(crowd: Crowd, record: Asset, streams: Streams) -> Iterator[Row]:
+def _table(rows: Iterable[Row], streams: Streams) -> Realisation:
+    """The table of rows that lack what depends on nothing but the agent's id, in its order."""
+    key = {"goal_key": streams.seed("crowd.goal")}
+    listed = sorted(rows, key=lambda row: row["id"])
+    return Realisation.from_rows([row | _attention(row, streams) | key for row in listed])
+
+
+def _attention(row: Row, streams: Streams) -> Row:
+    """Drawn for each by id, whoever else is there, where it is not given."""
+    given = row.get("attention")
+    drawn = streams.rng("crowd.attention", row["id"]).random() if given is None else given
+    return {"attention": float(drawn)}
+
+
+def _recorded(crowd: Crowd, record: Asset) -> Iterator[Row]:
     """The people of a record: each enters where and when it begins and goes where it ends."""
     from crowdbot.core.crowd.recorded import read_record  # with the engine, which takes its time
 
@@ -79,7 +92,6 @@ def _recorded(crowd: Crowd, record: Asset, streams: Streams) -> Iterator[Row]:
             "at_goal": "remove",
             "portals": ("", ""),
             "goals": (goal,),
-            "goal_key": streams.seed("crowd.goal"),
         }
 
 

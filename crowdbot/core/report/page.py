@@ -11,7 +11,7 @@ from crowdbot.core.report.cards import reference
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import encode_runs, encode_scores, pack
 from crowdbot.core.report.figures import FIELDS, VERDICTS
-from crowdbot.core.report.tables import family
+from crowdbot.core.report.tables import chance, family
 from crowdbot.core.results.rows import RunRow
 from crowdbot.core.scoring.scores_csv import write_table
 from crowdbot.core.support.atomic_write import atomic_write
@@ -59,6 +59,7 @@ def render(contents: Contents) -> str:
         facts=provenance.facts(runs),
         scenarios=provenance.scenarios(runs),
         summary=figures.headline,
+        chance=chance(figures.headline),
         meta={**_meta(contents), "states": states},
         blobs=blobs,
     )
@@ -73,6 +74,7 @@ def _planner(contents: Contents, planner: str) -> dict[str, Any]:
         "privileged": contents.is_privileged(planner),
         "pinned": contents.is_pinned(planner),
         "reference": planner in contents.heading.references,
+        "role": contents.role(planner),
         "facts": provenance.planner_facts([a for a in tried if isinstance(a, RunRow)]),
     }
 

@@ -16,6 +16,7 @@ from crowdbot.core.scoring.evaluate import Scores
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.canonical import dump_scenario_yaml
+from crowdbot.dsl.robot_response import RobotResponse
 from crowdbot.dsl.scenario import Scenario
 
 
@@ -41,6 +42,7 @@ def run_record(
         "hashes": hashes,
         "pinned": request.pinned,
         "privileged": request.choice.privileged,
+        "role": request.choice.role,
         "allowed_plugins": request.registry.allowed,
         "recorded": request.record,
         **ending(outcome),
@@ -82,8 +84,18 @@ def _conditions(scenario: Scenario, run: Trajectories) -> dict[str, str]:
         response = scenario.crowd.robot_response
         found["perceived_radius"] = f"{run.robot.radius + response.margin:.10g} m"
         share = f" {response.ignoring:g}" if response.reaction == "mixed" else ""
-        found["people_and_robot"] = f"{response.reaction}{share}, velocity {response.velocity}"
+        words = _own_words(response), f"{response.reaction}{share}", f"velocity {response.velocity}"
+        found["people_and_robot"] = ", ".join(words)
     return found
+
+
+def _own_words(response: RobotResponse) -> str:
+    """The kind of a response, and what of it is not as usual."""
+    told = {"kind", "reaction", "ignoring_fraction", "velocity", "margin"}  # elsewhere
+    fields = {n: f for n, f in type(response).model_fields.items() if n not in told}
+    given = {n: getattr(response, n) for n, f in fields.items()}
+    changed = [f"{n} {value:g}" for n, value in given.items() if value != fields[n].default]
+    return ", ".join([response.kind, *changed])
 
 
 def _metrics(registry: Registry, scores: Scores) -> dict[str, Any]:

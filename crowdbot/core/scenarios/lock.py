@@ -73,7 +73,9 @@ def population(scenario: Scenario, registry: Registry) -> Population:
     try:
         return Population(Realisation.from_csv(text), "locked")
     except InputError as error:
-        raise InputError(f"{files.agents_path.name}: table '{name}': {error}") from None
+        raise InputError(
+            f"{files.agents_path.name}: table '{name}': {error}; run {files.command}"
+        ) from None
 
 
 def make_lock(expansion: Expansion, registry: Registry, old: LockFiles | None) -> Made:
@@ -141,14 +143,16 @@ def write_lock(files: LockFiles, made: Made) -> None:
 
 
 def _kept(old: LockFiles | None, inputs: str) -> str | None:
-    """The table that was drawn from these inputs before, if it is there and whole."""
+    """The table that was drawn from these inputs before, if it is there, whole and up to date."""
     name = old.lock.table_of(inputs) if old else None
     if old is None or name is None:
         return None
     try:
-        return old.table(name)
-    except InputError:
+        table = old.table(name)
+        Realisation.from_csv(table)
+    except InputError:  # changed by hand, or written by a release whose tables had other columns
         return None
+    return table
 
 
 def _with_crowd(expansion: Expansion) -> Iterator[Scenario]:

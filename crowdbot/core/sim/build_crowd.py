@@ -11,12 +11,11 @@ from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
 from crowdbot.core.crowd.build import build_cost, build_policy
 from crowdbot.core.crowd.engine import PolicyFactory
 from crowdbot.core.crowd.policy import LOOP, PORTAL, REMOVE, STOP
-from crowdbot.core.crowd.velocity_search.counter_rng import chosen
+from crowdbot.core.crowd.response.from_spec import response_of
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.scenario import Crowd, NamedPolicy, Scenario
-from crowdbot.dsl.seeds import stream_seed
 
 #: Names of the portals of a stream, from and to.
 Flow = tuple[str, str]
@@ -64,6 +63,7 @@ def _policies(crowd: Crowd, drawn: Realisation) -> dict[str, Crowd | NamedPolicy
 def _agents(
     crowd: Crowd, drawn: Realisation, flows: Sequence[Flow], policies: Sequence[str]
 ) -> Agents:
+    response = crowd.robot_response  # the least attentive ignore robots, the next are late
     return Agents.of(
         id=drawn.id,
         x=drawn.x,
@@ -78,11 +78,8 @@ def _agents(
         flow=[flows.index(pair) if any(pair) else 0 for pair in drawn.portals],
         policy=[policies.index(name) for name in drawn.policy],
         routes=drawn.goals,
-        ignores_robot=chosen(
-            stream_seed(crowd.seed.root, crowd.seed.key, "crowd.reaction"),
-            drawn.id,
-            crowd.robot_response.ignoring,
-        ),
+        ignores_robot=drawn.attention < response.ignoring,
+        late=drawn.attention < response.ignoring + (1.0 - response.ignoring) * response.late,
     )
 
 
@@ -101,9 +98,7 @@ def _world(
         entrance=boxes[:, 0],
         out=boxes[:, 1],
         exit_point=crowd.exit_point,
-        response=np.array(
-            [response.stiffness_moving, response.stiffness_stopped, response.slow_speed]
-        ),
+        response=response_of(response),
         robot_visible=response.velocity == "visible",
         stiffness=scenario.contact.stiffness,
         dissipation=scenario.contact.dissipation,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 
@@ -12,11 +12,11 @@ from crowdbot.core.results.rows import Results
 from crowdbot.core.scoring.four_scores import is_main, main_first
 from crowdbot.core.statistics import clusters as c
 from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, axis_effects, densities
-from crowdbot.core.statistics.clusters import Clusters
 from crowdbot.core.statistics.comparison import Comparison, compare, with_verdict
 from crowdbot.core.statistics.estimate import Counts, Estimate
 from crowdbot.core.statistics.signed_rank import holm
 from crowdbot.core.statistics.table import MISSING, Column, Name, Table
+from crowdbot.core.statistics.variance import VarianceParts, variance_parts
 
 #: Reasons of scores whose data no simulated run has; they are left out where all runs say so.
 _NOT_ASKED = {"no_command", "no_answers", "no_formula_in_seed"}
@@ -63,9 +63,12 @@ class Summary:
         scores: by metric, variant and planner.
         comparisons: of each pair of planners in each score.
         axes: effect of each axis on each score of each planner.
+        variances: parts of conditions, draws and seeds in each score of each planner.
         densities: how dense the crowds really were.
         level: of all intervals.
         alpha: chance of any false verdict among the four scores, and among all others.
+        conditions_fixed: whether intervals leave only people to chance; else, with one draw a
+            condition, conditions are chance as well.
         tests: how many comparisons of the four scores share `alpha` (Holm); where none of the
             four is looked at, of all scores.
     """
@@ -74,10 +77,12 @@ class Summary:
     scores: tuple[PlannerScore, ...]
     comparisons: tuple[Comparison, ...]
     axes: tuple[AxisEffect, ...]
+    variances: tuple[VarianceParts, ...]
     densities: tuple[DensityLevel, ...]
     level: float
     alpha: float
     tests: int
+    conditions_fixed: bool = False
 
     def comparison(self, metric: str, a: str, b: str) -> Comparison | None:
         """The comparison of two planners in a metric as it was computed, a before b."""
@@ -125,7 +130,7 @@ def summarise(
         results: from a store.
         names: (metric, variant) to look at; default `headline_names`. The four scores among them
             are the family that Holm's correction is for, together with all pairs of planners; all
-            others are a family of their own.
+            others are a family of their own, and so are comparisons with floors and ceilings.
         level: of intervals.
         alpha: chance of any false verdict in a family.
     """
@@ -133,7 +138,8 @@ def summarise(
     chosen = headline_names(table) if names is None else tuple(names)
     pairs = list(combinations(table.planners, 2))
     found = [compare(table, name, a, b, level=level) for name in chosen for a, b in pairs]
-    families = list(_families([x for x, _ in found]))
+    marks = {run.planner for run in results.runs if run.role in ("floor", "ceiling")}
+    families = list(_families([x for x, _ in found], marks))
     p_holm = {place: p for family in families for place, p in family.items()}
     everybody = [(name, planner) for name in chosen for planner in table.planners]
     return Summary(
@@ -143,20 +149,28 @@ def summarise(
             with_verdict(x, d, p_holm.get(i), alpha) for i, (x, d) in enumerate(found)
         ),
         axes=tuple(e for name, p in everybody for e in axis_effects(table, name, p)),
+        variances=tuple(variance_parts(table, name, p) for name, p in everybody),
         densities=densities(table),
         level=level,
         alpha=alpha,
         tests=len(next(filter(None, families), {})),
+        conditions_fixed=table.clusters.strata > 1,
     )
 
 
-def _families(found: Sequence[Comparison]) -> Iterator[dict[int, float]]:
-    """Place of a comparison -> corrected p: first for the four scores, then for all others."""
-    for main in (True, False):
+def _families(found: Sequence[Comparison], marks: Set[str]) -> Iterator[dict[int, float]]:
+    """Place of a comparison -> corrected p: first for the four scores, then for all others.
+
+    Comparisons with floors and ceilings (``marks``) are families of their own: that they are run
+    besides must not make it harder to tell other planners apart.
+    """
+    for marked, main in product((False, True), (True, False)):
         here = {
             place: x.p
             for place, x in enumerate(found)
-            if x.p is not None and is_main(x.metric, x.variant) is main
+            if x.p is not None
+            and is_main(x.metric, x.variant) is main
+            and bool({x.a, x.b} & marks) is marked
         }
         adjusted = holm(np.array(list(here.values()), dtype=float))
         yield dict(zip(here, adjusted.tolist(), strict=True))
@@ -165,7 +179,7 @@ def _families(found: Sequence[Comparison]) -> Iterator[dict[int, float]]:
 def _planner_score(table: Table, name: Name, planner: str, level: float) -> PlannerScore:
     column, label = table.column(name, planner), table.label(name)
     values = column.low[column.known]
-    groups = Clusters.of(table.draws).part(column.known)
+    groups = table.clusters.part(column.known)
     quartiles = np.quantile(values, [0.25, 0.5, 0.75]).tolist() if len(values) else None
     nothing = Estimate(reason=c.NO_RUNS)
     return PlannerScore(

@@ -53,7 +53,7 @@ class ToGoal:
 def world(**changes: object) -> CrowdWorld:
     """The challenge's corridor."""
     given: dict[str, object] = {
-        "walls": WALLS, "entrance": ENTRANCE, "out": OUT, "response": np.array([62.5, 125.0, 0.2]),
+        "walls": WALLS, "entrance": ENTRANCE, "out": OUT,
         "robot_visible": True, "stiffness": 30000.0, "dissipation": 0.3, "goal_key": 2020,
         "decision_rate": 16.0,
     }  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any, cast
@@ -14,6 +14,7 @@ from pydrake.systems.analysis import Simulator
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld
 from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.response.parameters import KeepOff, Response
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.interfaces import CameraFrame, Command, Observation, Planner, Reading, RobotState
 from crowdbot.core.planning.host import PlannerHost
@@ -208,6 +209,10 @@ def rig(
     return Rig(blocks, simulator, memory, log)
 
 
+#: People who do nothing about robots, though they see them.
+UNMOVED = KeepOff(0.0, 0.0)
+
+
 class _Straight:
     contact_stiffness = 0.0
 
@@ -216,7 +221,7 @@ class _Straight:
 
 
 def person(
-    x: float, y: float = 0.0, speed: float = 1.2, response: Sequence[float] = (0.0, 0.0, 0.2)
+    x: float, y: float = 0.0, speed: float = 1.2, response: Response = UNMOVED
 ) -> CrowdEngine:
     """One person who walks straight in -x along y = 0, come what may."""
     agents = Agents.of(
@@ -226,7 +231,7 @@ def person(
     )  # fmt: skip
     world = CrowdWorld(
         walls=np.zeros((0, 4)), entrance=np.array([50.0, 51.0, -5.0, 5.0]),
-        out=np.array([-1.0, 0.0, y - 0.33, y + 0.33]), response=np.array(response),
+        out=np.array([-1.0, 0.0, y - 0.33, y + 0.33]), response=response,
         robot_visible=True, stiffness=30000.0, dissipation=0.3, goal_key=1, decision_rate=16.0,
     )  # fmt: skip
     return CrowdEngine(agents, world, lambda _: _Straight())

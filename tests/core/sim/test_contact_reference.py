@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld
 from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.response.parameters import KeepOff
 from tests.core.sim.contact_reference import PERSON_RADIUS, ROBOT_RADIUS, Array, Meeting, contact
 
 PHASES = np.linspace(0.0, 1.0, 17)[:-1]
@@ -47,7 +48,7 @@ class Collision:
             preferred_speed=1.0, max_acceleration=5.0, routes=[[(-90.0, 0.0)]], ignores_robot=True,
         )  # fmt: skip
         world = CrowdWorld(
-            response=np.array([0.0, 0.0, 0.2]), stiffness=m.stiffness, dissipation=m.dissipation
+            response=KeepOff(0.0, 0.0), stiffness=m.stiffness, dissipation=m.dissipation
         )
         self.engine = CrowdEngine(agents, world, _Coasting())
         self.flat = self.engine.initial_state()

@@ -69,7 +69,7 @@ def robot_contact(
             the corners of a convex polygon, counter-clockwise.
     """
     header[ROBOT_FX] = header[ROBOT_FY] = header[ROBOT_TORQUE] = 0.0
-    extent = _extent(outline)
+    extent = extent_of(outline)
     for i in range(agents.shape[0]):
         reaction[i, 0] = reaction[i, 1] = 0.0
         if agents[i, WAITING] != 0.0:
@@ -159,7 +159,7 @@ def from_outline(outline: Array, x: float, y: float) -> tuple[float, float, floa
 
 
 @kernel
-def _extent(outline: Array) -> float:
+def extent_of(outline: Array) -> float:
     """Distance of the farthest corner from the base, m."""
     farthest = 0.0
     for k in range(outline.shape[0]):
@@ -196,28 +196,3 @@ def _end_touch(header: Array, agents: Array, i: int) -> None:
     agents[i, TOUCHING] = 0.0
     agents[i, TOUCHES] += 1.0
     header[CONTACTS] += 1.0
-
-
-@kernel
-def keep_off(
-    agents: Array, i: int, radius: Array, robots: Array, response: Array
-) -> tuple[float, float]:
-    """Steering away from robots (m/s^2): behaviour of people who heed them, felt by them alone.
-
-    Args:
-        response: stiffness beside a moving and beside a stopped robot (1/s^2), and the robot
-            speed below which the first rises linearly to the second (m/s).
-    """
-    ax = ay = 0.0
-    for r in range(robots.shape[0]):
-        dx, dy = agents[i, X] - robots[r, RX], agents[i, Y] - robots[r, RY]
-        reach = robots[r, R_SEEN] + radius[i]
-        d2 = dx * dx + dy * dy
-        if d2 >= reach * reach or d2 == 0.0:
-            continue
-        distance = math.sqrt(d2)
-        moving = min(1.0, math.hypot(robots[r, RVX], robots[r, RVY]) / response[2])
-        push = (response[1] + (response[0] - response[1]) * moving) * (reach - distance)
-        ax += push * dx / distance
-        ay += push * dy / distance
-    return ax, ay

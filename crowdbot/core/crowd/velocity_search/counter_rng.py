@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 from numba import uint64
-from numpy.typing import NDArray
 
 from crowdbot.core.support.compile import kernel
 
 #: What a draw is for; keeps draws with equal counters apart.
-GOAL, ENTRY, REACTION = 0, 1, 2
+GOAL, ENTRY = 0, 1
 
 
 @kernel
@@ -30,9 +29,3 @@ def uniform(key: np.uint64, agent: int, trip: int, purpose: int, counter: int) -
     for word in (agent, trip, purpose, counter):
         state = _mix(state + uint64(0x9E3779B97F4A7C15) * (uint64(word) + uint64(1)))
     return float(state >> uint64(11)) / 9007199254740992.0  # 2 ** 53
-
-
-def chosen(key: int, ids: NDArray[np.int64], share: float) -> NDArray[np.bool_]:
-    """Who belongs to a share of the people, (N,): drawn for each by id, whoever else is there."""
-    drawn = [uniform(np.uint64(key), i, 0, REACTION, 0) < share for i in ids.tolist()]
-    return np.array(drawn, np.bool_)

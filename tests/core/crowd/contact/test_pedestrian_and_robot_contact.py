@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS, push_apart
-from crowdbot.core.crowd.contact.robot_contact import keep_off
+from crowdbot.core.crowd.response.keep_off import keep_off
+from crowdbot.core.crowd.response.parameters import KeepOff
 from tests.core.crowd.crowd_reference import Array, agents_of
 from tests.core.crowd.crowd_worlds import TICKS, rows, straight, walkers
 
@@ -90,7 +91,7 @@ def _robot(x: float, y: float, vx: float = 0.0, vy: float = 0.0) -> Array:
 
 def test_impulses_balance_and_people_take_theirs() -> None:
     """A robot at rest, run over by a person: momentum lost by one is what the other got."""
-    engine = straight(np.array([[10.0, 0.1]]), 1.2, response=np.array([0.0, 0.0, 0.2]))
+    engine = straight(np.array([[10.0, 0.1]]), 1.2, response=KeepOff(0.0, 0.0))
     flat = engine.initial_state()
     before = rows(flat)[0, s.VX : s.VY + 1].copy()
     robot = _robot(10.6, 0.0)
@@ -116,7 +117,7 @@ def _touch(engine: CrowdEngine, robot: Array, ticks: int) -> Array:
 
 def test_the_book_of_one_contact() -> None:
     """An immovable robot and a person who walks into it and bounces off."""
-    engine = straight(np.array([[10.0, 0.0]]), 1.0, response=np.array([0.0, 0.0, 0.2]))
+    engine = straight(np.array([[10.0, 0.0]]), 1.0, response=KeepOff(0.0, 0.0))
     flat = engine.initial_state()
     x0, (vx, vy) = rows(flat)[0, s.X], rows(flat)[0, s.VX : s.VY + 1]
     reach = 0.33 + 0.178
@@ -136,7 +137,7 @@ def test_the_book_of_one_contact() -> None:
 
 def test_one_contact_is_counted_once_while_bodies_stay_close() -> None:
     """Gaps below the release gap do not end a contact."""
-    engine = straight(np.array([[10.0, 0.0]]), 1e-9, response=np.array([0.0, 0.0, 0.2]))
+    engine = straight(np.array([[10.0, 0.0]]), 1e-9, response=KeepOff(0.0, 0.0))
     flat = engine.initial_state()
     reach = 0.33 + 0.178
     for k in range(64):
@@ -150,7 +151,7 @@ def test_one_contact_is_counted_once_while_bodies_stay_close() -> None:
 
 
 def test_forces_never_pull() -> None:
-    engine = straight(np.array([[10.0, 0.0]]), 1e-9, response=np.array([0.0, 0.0, 0.2]))
+    engine = straight(np.array([[10.0, 0.0]]), 1e-9, response=KeepOff(0.0, 0.0))
     flat = engine.initial_state()
     rows(flat)[0, s.VX] = -6.0  # apart, fast enough to turn the damping over
     engine.advance(flat, _robot(10.5, 0.0))
@@ -169,7 +170,7 @@ def test_coincident_centres_are_finite() -> None:
 def test_people_keep_off_the_robot(speed: float, stiffness: float) -> None:
     people = _people([(0.5, 0.0)])
     robots = _robot(0.0, 0.0, speed)
-    ax, ay = keep_off(people, 0, np.array([0.33]), robots, np.array([62.5, 125.0, 0.2]))
+    ax, ay = keep_off(people, 0, np.array([0.33]), robots, KeepOff().by_tick)
     assert (ax, ay) == pytest.approx((stiffness * (0.428 + 0.33 - 0.5), 0.0))
     far = _people([(0.76, 0.0)])
-    assert keep_off(far, 0, np.array([0.33]), robots, np.array([62.5, 125.0, 0.2])) == (0.0, 0.0)
+    assert keep_off(far, 0, np.array([0.33]), robots, KeepOff().by_tick) == (0.0, 0.0)

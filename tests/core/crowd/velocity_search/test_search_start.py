@@ -25,7 +25,7 @@ def test_where_a_search_begins_changes_no_choice() -> None:
     agents = population(world, known).agents
     engine = build_crowd(world, agents, build_environment(known, world.environment), known)
     assert engine is not None
-    (group,) = engine._groups
+    (group,) = engine._groups_alone
     policy: Any = group.policy
     sampler = policy.minimiser
     assert isinstance(sampler, Sampler)

@@ -9,13 +9,13 @@ from pydantic import ValidationError
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.velocity_search.counter_rng import chosen
+from crowdbot.core.crowd.response.parameters import Human, KeepOff, Response
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sim.build_crowd import build_crowd
-from crowdbot.dsl.scenario import RobotResponse
+from crowdbot.dsl.robot_response import HumanResponse
 from tests.core.crowd.crowd_reference import Array
 from tests.core.crowd.crowd_worlds import TICKS, Straight, rows, walkers
 
@@ -56,13 +56,27 @@ class Spy(Straight):
         return np.zeros_like(view.position)
 
 
-def test_the_robot_is_shown_to_those_who_heed_it() -> None:
+@pytest.mark.parametrize(
+    ("response", "shown"),
+    [
+        (Human(), [False, False, False]),
+        (Human(shown_to_policies=True), [False, True, False]),
+        (KeepOff(), [False, True, True]),
+    ],
+)
+def test_policies_are_shown_the_robot_for_those_who_plan_around_it(
+    response: Response, shown: list[bool]
+) -> None:
+    """Of somebody who ignores it, somebody attentive and somebody late."""
     spy = Spy()
-    agents = Agents.of(x=[0.0, 3.0, 6.0], y=0.0, ignores_robot=[True, False, True],
-                       routes=[[(9.0, 0.0)]] * 3)  # fmt: skip
-    engine = CrowdEngine(agents, CrowdWorld(), spy)
+    agents = Agents.of(x=[0.0, 3.0, 6.0], y=0.0, ignores_robot=[True, False, False],
+                       late=[False, False, True], routes=[[(9.0, 0.0)]] * 3)  # fmt: skip
+    engine = CrowdEngine(agents, CrowdWorld(response=response), spy)
     engine.advance(engine.initial_state(), PARKED)
-    assert sorted(spy.calls) == [(0, [True, False, True]), (1, [False, True, False])]
+    groups = [(1, shown), (0, [not one for one in shown])]
+    assert spy.calls == [(count, who) for count, who in groups if any(who)]
+    engine.advance_alone(engine.initial_state(), 1)
+    assert spy.calls[-1] == (0, [True, True, True])
 
 
 def test_people_who_ignore_the_robot_walk_as_without_it() -> None:
@@ -75,36 +89,27 @@ def test_people_who_ignore_the_robot_walk_as_without_it() -> None:
     assert np.array_equal(rows(flat), rows(other))
 
 
-def test_who_ignores_it_is_drawn_by_id() -> None:
-    """About the declared fraction; the same whoever else is there, and in any order."""
-    ids = np.arange(4000)
-    found = chosen(2020, ids, 0.3)
-    assert np.mean(found) == pytest.approx(0.3, abs=0.03)
-    assert np.array_equal(chosen(2020, ids[::-1], 0.3), found[::-1])
-    assert np.array_equal(chosen(2020, ids[100:200], 0.3), found[100:200])
-    assert not np.array_equal(chosen(2021, ids, 0.3), found)
-    assert np.all(chosen(2020, ids, 0.6)[found])  # more are drawn beside, not instead
-    assert not np.any(chosen(1, ids, 0.0))
-    assert np.all(chosen(1, ids, 1.0))
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("overrides", "share"),
+    ("words", "ignoring", "late"),
     [
-        ([], 0.0),
-        (["crowd.robot_response.reaction=ignore"], 1.0),
-        (["crowd.robot_response={reaction: mixed, ignoring_fraction: 0.4}"], 0.4),
+        ("{}", 0.0, 0.4),
+        ("{late_fraction: 0.1}", 0.0, 0.1),
+        ("{reaction: ignore}", 1.0, 0.0),
+        ("{reaction: mixed, ignoring_fraction: 0.4}", 0.4, 0.24),
+        ("{kind: keep_off, reaction: mixed, ignoring_fraction: 0.4}", 0.4, 0.0),
     ],
 )
-def test_the_scenario_says_it(overrides: list[str], share: float) -> None:
+def test_the_scenario_says_it(words: str, ignoring: float, late: float) -> None:
     registry = discover()
-    suite = open_spec("challenge-2020", registry, overrides)
+    suite = open_spec("challenge-2020", registry, [f"crowd.robot_response={words}"])
     scenario = pick(suite, "in-d0500-slow-c01-r02")
     parts = build_environment(registry, scenario.environment)
     engine = build_crowd(scenario, realise(scenario), parts, registry)
     assert engine is not None
-    assert np.mean(engine.agents.ignores_robot) == pytest.approx(share, abs=0.1)
+    ignores = engine.agents.ignores_robot
+    assert np.mean(ignores) == pytest.approx(ignoring, abs=0.1)
+    assert np.mean(engine.agents.late & ~ignores) == pytest.approx(late, abs=0.1)
 
 
 @pytest.mark.parametrize(
@@ -114,8 +119,11 @@ def test_the_scenario_says_it(overrides: list[str], share: float) -> None:
         {"reaction": "yield", "ignoring_fraction": 0.5},
         {"reaction": "mixed", "ignoring_fraction": 1.0},
         {"reaction": "flee"},
+        {"late_fraction": 1.5},
+        {"standing_speed": 0.3},
+        {"field_of_view": 7.0},
     ],
 )
-def test_a_mixture_needs_its_fraction_and_nothing_else_has_one(given: dict[str, object]) -> None:
+def test_what_makes_no_sense_is_refused(given: dict[str, object]) -> None:
     with pytest.raises(ValidationError):
-        RobotResponse(**given)  # type: ignore[arg-type]
+        HumanResponse(**given)  # type: ignore[arg-type]

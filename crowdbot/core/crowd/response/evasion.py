@@ -1,0 +1,183 @@
+"""How people who have noticed a robot evade it: sideways in time, and by braking.
+
+Decided with their way, so that own will and evasion together stay within what legs can do.
+"""
+
+from __future__ import annotations
+
+import math
+
+from crowdbot.core.crowd.contact.robot_contact import (
+    R_BODY,
+    R_YAW,
+    RVX,
+    RVY,
+    RX,
+    RY,
+    overlap,
+)
+from crowdbot.core.crowd.response.notice import reacts
+from crowdbot.core.crowd.response.parameters import (
+    BRAKING,
+    CLEARANCE,
+    DECISION,
+    HORIZON,
+    LATERAL,
+    STOP_GAP,
+    TOTAL,
+)
+from crowdbot.core.crowd.state import AX, AY, VX, VY, X, Y
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array, Mask
+
+#: Nobody expects to be clear in less than this, s: one step.
+_SOONEST = 0.25
+#: Relative speed below which nothing happens, m/s.
+_STILL = 1e-3
+#: The gap in which somebody has to stop is never taken for less than this, m.
+_ROOM = 0.05
+
+
+@kernel
+def evade_robots(
+    agents: Array,
+    radius: Array,
+    heeds: Mask,
+    late: Mask,
+    robots: Array,
+    outline: Array,
+    response: Array,
+    now: float,
+) -> None:
+    """Change the accelerations that people desire to those that evade robots, in place.
+
+    Args:
+        agents: (N, C) rows of the state; ``AX`` and ``AY`` hold what each wants without robots.
+        radius: (N,) of the agents, m.
+        heeds, late: (N,) who takes notice of robots at all, and who does late.
+        robots, outline: as people see them, see `crowdbot.core.crowd.contact.robot_contact`.
+        response: `crowdbot.core.crowd.response.parameters.Human.by_decision`.
+        now: time since the start, s.
+    """
+    for i in range(agents.shape[0]):
+        if not heeds[i]:
+            continue
+        if not reacts(agents, i, radius[i], late[i], robots, outline, response, now):
+            continue
+        ex = ey = 0.0
+        for r in range(robots.shape[0]):
+            x, y = evasion(agents, i, radius[i], robots[r], outline, response)
+            ex += x
+            ey += y
+        if ex != 0.0 or ey != 0.0:
+            _put_first(agents, i, ex, ey, response[TOTAL])
+
+
+@kernel
+def _put_first(agents: Array, i: int, ex: float, ey: float, most: float) -> None:
+    """Lay evasion over own will: what opposes it is dropped, and both keep within ``most``."""
+    wx, wy = agents[i, AX], agents[i, AY]
+    against = min(0.0, wx * ex + wy * ey) / (ex * ex + ey * ey)
+    wx += ex - against * ex
+    wy += ey - against * ey
+    size = math.hypot(wx, wy)
+    share = most / size if size > most else 1.0
+    agents[i, AX], agents[i, AY] = wx * share, wy * share
+
+
+@kernel
+def evasion(
+    agents: Array,
+    i: int,
+    radius: float,
+    robot: Array,
+    outline: Array,
+    response: Array,
+) -> tuple[float, float]:
+    """Acceleration with which agent i evades one robot that keeps its course, m/s^2.
+
+    The way of the agent relative to the robot is a ray. Each corner of the outline (a disc: its
+    centre) lies at some place along it and across it. The agent has to shift by so much that the
+    outline, grown by both radii and the clearance, lies beside the ray; it takes the shorter side.
+    """
+    wx, wy = agents[i, VX] - robot[RVX], agents[i, VY] - robot[RVY]
+    speed = math.hypot(wx, wy)
+    if speed < _STILL:
+        return 0.0, 0.0
+    ux, uy = wx / speed, wy / speed
+    wanted = robot[R_BODY] + radius + response[CLEARANCE]
+    shift, along, first, last, left = _way_round(agents, i, robot, outline, ux, uy, wanted)
+    if shift <= 0.0 or last <= 0.0 or first >= response[HORIZON] * speed:
+        return 0.0, 0.0
+    time = max(along / speed, _SOONEST)
+    need = 2.0 * shift / (time * time)
+    sideways = min(need, response[LATERAL]) * (1.0 if left else -1.0)
+    ex, ey = -sideways * uy, sideways * ux
+    if need > response[LATERAL]:
+        bx, by = _braking(agents, i, radius, robot, outline, response)
+        ex += bx
+        ey += by
+    return ex, ey
+
+
+@kernel
+def _way_round(
+    agents: Array,
+    i: int,
+    robot: Array,
+    outline: Array,
+    ux: float,
+    uy: float,
+    wanted: float,
+) -> tuple[float, float, float, float, bool]:
+    """Where an outline lies beside the ray of agent i.
+
+    Args:
+        ux, uy: direction of the ray.
+        wanted: distance that the outline's corners are to have from the ray, m.
+
+    Returns:
+        by how much the agent has to shift; the place along the ray of the corner that decides;
+        where the grown outline begins and where its last corner lies; whether to the left. m.
+    """
+    c, s = math.cos(robot[R_YAW]), math.sin(robot[R_YAW])
+    dx, dy = robot[RX] - agents[i, X], robot[RY] - agents[i, Y]
+    left = right = last = -math.inf
+    first = math.inf
+    abreast_left = abreast_right = 0.0
+    for k in range(max(1, outline.shape[0])):
+        qx, qy = dx, dy
+        if outline.shape[0] > 0:
+            qx += c * outline[k, 0] - s * outline[k, 1]
+            qy += s * outline[k, 0] + c * outline[k, 1]
+        along, across = qx * ux + qy * uy, ux * qy - uy * qx
+        if across > left:
+            left, abreast_left = across, along
+        if -across > right:
+            right, abreast_right = -across, along
+        first = min(first, along - math.sqrt(max(0.0, wanted * wanted - across * across)))
+        last = max(last, along)
+    if left < right:
+        return left + wanted, abreast_left, first, last, True
+    return right + wanted, abreast_right, first, last, False
+
+
+@kernel
+def _braking(
+    agents: Array,
+    i: int,
+    radius: float,
+    robot: Array,
+    outline: Array,
+    response: Array,
+) -> tuple[float, float]:
+    """What stops agent i in front of a robot that it walks towards, m/s^2; never a step back."""
+    dx, dy = robot[RX] - agents[i, X], robot[RY] - agents[i, Y]
+    depth, nx, ny, _, _ = overlap(robot, outline, dx, dy, robot[R_BODY] + radius)
+    own = agents[i, VX] * nx + agents[i, VY] * ny
+    if own <= 0.0:
+        return 0.0, 0.0
+    closing = own + max(0.0, -(robot[RVX] * nx + robot[RVY] * ny))
+    need = 0.5 * closing * closing / max(-depth - response[STOP_GAP], _ROOM)
+    brake = min(response[BRAKING], need, own / response[DECISION])
+    return -brake * nx, -brake * ny
