@@ -132,6 +132,34 @@ def failures(
         typer.echo("no failures")
 
 
+@results.command()
+def atlas(
+    out: _Out = _ROOT,
+    floor: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="A planner that others ought to beat; repeatable."),
+    ] = None,
+    md: Annotated[Path | None, typer.Option(metavar="FILE", help="Write Markdown.")] = None,
+    as_json: _Json = False,
+) -> None:
+    """Tell what moves each score, whether it tells floors from planners, and what repeats it.
+
+    Example: crowdbot results atlas --out runs --floor goal_seek --md atlas.md
+    """
+    from crowdbot.cli._atlas_page import atlas_page
+    from crowdbot.core.results.store import load
+    from crowdbot.core.statistics import atlas as entries_of
+    from crowdbot.core.support.atomic_write import atomic_write
+
+    entries = entries_of(load(out), floor or ())
+    if md is not None:
+        atomic_write(md, atlas_page(entries))
+    if as_json:
+        typer.echo(json.dumps([asdict(e) for e in entries], indent=2))
+    elif md is None:
+        typer.echo(atlas_page(entries), nl=False)
+
+
 def _only(found: Results, planners: list[str] | None, status: str | None) -> Results:
     """Runs of some planners that ended in some way, with their scores and failures.
 

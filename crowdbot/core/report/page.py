@@ -11,7 +11,7 @@ from crowdbot.core.report.cards import reference
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import encode_runs, encode_scores, pack
 from crowdbot.core.report.figures import FIELDS, VERDICTS
-from crowdbot.core.report.tables import family
+from crowdbot.core.report.tables import chance, family
 from crowdbot.core.results.rows import RunRow
 from crowdbot.core.scoring.scores_csv import write_table
 from crowdbot.core.support.atomic_write import atomic_write
@@ -59,6 +59,7 @@ def render(contents: Contents) -> str:
         facts=provenance.facts(runs),
         scenarios=provenance.scenarios(runs),
         summary=figures.headline,
+        chance=chance(figures.headline),
         meta={**_meta(contents), "states": states},
         blobs=blobs,
     )

@@ -77,6 +77,8 @@ def markdown(contents: Contents) -> str:
         lines += [f"Warning: {_plain(text)}", ""]
     lines += [*_table(*_endings(contents)), "", "## Scores", "", _meaning(summary), ""]
     lines += [*_table(*_scores(contents)), ""]
+    if any(not v.reason for v in summary.variances):
+        lines += ["## What varies with which", "", *_table(*_variances(summary)), ""]
     if summary.comparisons:
         lines += ["## Planner against planner", "", _family(summary), ""]
         lines += [*_table(*_comparisons(summary)), ""]
@@ -87,8 +89,30 @@ def _meaning(summary: Summary) -> str:
     return (
         "Interquartile mean over all runs with a value (of counts and rare events the mean, of "
         f"yes or no the share), and its {100 * summary.level:g} % interval; whole crowd draws "
-        "were resampled. Runs without a value are counted, not dropped."
+        f"were resampled. {chance(summary)} Runs without a value are counted, not dropped."
     )
+
+
+def chance(summary: Summary) -> str:
+    """What intervals leave to chance."""
+    if summary.conditions_fixed:
+        return "Intervals tell what other people would change; conditions are those of the suite."
+    return (
+        "Intervals take people and conditions for chance: with one crowd draw a condition they "
+        "cannot be told apart."
+    )
+
+
+def _variances(summary: Summary) -> tuple[Sequence[str], list[Sequence[str]]]:
+    """Shares of the variance of the main scores; of all scores where there are none."""
+    known = [v for v in summary.variances if not v.reason]
+    main = [v for v in known if is_main(v.metric, v.variant)] or known
+    rows: list[Sequence[str]] = [
+        (v.metric, _plain(v.planner), *(f"{100.0 * share:.0f} %" for share in v.shares[:2]),
+         "" if v.seed is None else f"{100.0 * v.shares[2]:.0f} %")
+        for v in main
+    ]  # fmt: skip
+    return ("metric", "planner", "condition", "crowd draw", "seed"), rows
 
 
 def _family(summary: Summary) -> str:

@@ -28,7 +28,7 @@ class RunRow:
         suite, scenario, planner, seed: planner is the label, with a digest of its parameters
             where they are not the defaults.
         axes: axis of the suite -> label, such as ``{"flow": "counter", "density": "d0250"}``,
-            in the suite's order; ``replicate`` among them where there are several.
+            in the suite's order; ``draw`` among them where a condition has several.
         status: ``arrived``, ``timeout`` or ``planner_failed``; ``reason`` says why it ended.
         goal_time: s, None when the robot did not arrive.
         sim_time, wall_time: s.

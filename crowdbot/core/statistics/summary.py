@@ -12,11 +12,11 @@ from crowdbot.core.results.rows import Results
 from crowdbot.core.scoring.four_scores import is_main, main_first
 from crowdbot.core.statistics import clusters as c
 from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, axis_effects, densities
-from crowdbot.core.statistics.clusters import Clusters
 from crowdbot.core.statistics.comparison import Comparison, compare, with_verdict
 from crowdbot.core.statistics.estimate import Counts, Estimate
 from crowdbot.core.statistics.signed_rank import holm
 from crowdbot.core.statistics.table import MISSING, Column, Name, Table
+from crowdbot.core.statistics.variance import VarianceParts, variance_parts
 
 #: Reasons of scores whose data no simulated run has; they are left out where all runs say so.
 _NOT_ASKED = {"no_command", "no_answers", "no_formula_in_seed"}
@@ -63,9 +63,12 @@ class Summary:
         scores: by metric, variant and planner.
         comparisons: of each pair of planners in each score.
         axes: effect of each axis on each score of each planner.
+        variances: parts of conditions, draws and seeds in each score of each planner.
         densities: how dense the crowds really were.
         level: of all intervals.
         alpha: chance of any false verdict among the four scores, and among all others.
+        conditions_fixed: whether intervals leave only people to chance; else, with one draw a
+            condition, conditions are chance as well.
         tests: how many comparisons of the four scores share `alpha` (Holm); where none of the
             four is looked at, of all scores.
     """
@@ -74,10 +77,12 @@ class Summary:
     scores: tuple[PlannerScore, ...]
     comparisons: tuple[Comparison, ...]
     axes: tuple[AxisEffect, ...]
+    variances: tuple[VarianceParts, ...]
     densities: tuple[DensityLevel, ...]
     level: float
     alpha: float
     tests: int
+    conditions_fixed: bool = False
 
     def comparison(self, metric: str, a: str, b: str) -> Comparison | None:
         """The comparison of two planners in a metric as it was computed, a before b."""
@@ -144,10 +149,12 @@ def summarise(
             with_verdict(x, d, p_holm.get(i), alpha) for i, (x, d) in enumerate(found)
         ),
         axes=tuple(e for name, p in everybody for e in axis_effects(table, name, p)),
+        variances=tuple(variance_parts(table, name, p) for name, p in everybody),
         densities=densities(table),
         level=level,
         alpha=alpha,
         tests=len(next(filter(None, families), {})),
+        conditions_fixed=table.clusters.strata > 1,
     )
 
 
@@ -172,7 +179,7 @@ def _families(found: Sequence[Comparison], marks: Set[str]) -> Iterator[dict[int
 def _planner_score(table: Table, name: Name, planner: str, level: float) -> PlannerScore:
     column, label = table.column(name, planner), table.label(name)
     values = column.low[column.known]
-    groups = Clusters.of(table.draws).part(column.known)
+    groups = table.clusters.part(column.known)
     quartiles = np.quantile(values, [0.25, 0.5, 0.75]).tolist() if len(values) else None
     nothing = Estimate(reason=c.NO_RUNS)
     return PlannerScore(

@@ -216,6 +216,7 @@ def test_csv_has_every_score_and_every_failure(tmp_path: Path) -> None:
         assert (float(row["value"]) if row["value"] else None) == value
 
 
+@pytest.mark.slow
 def test_markdown_says_what_the_page_says() -> None:
     report = full()
     text = markdown(report)
