@@ -22,7 +22,7 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
 from crowdbot.plugins.planners.dwa import DwaSpec
-from crowdbot.plugins.planners.dwa_heading_build import Heading, compile_heading
+from crowdbot.plugins.planners.dwa_heading_build import HeadingByWalls, compile_heading
 from crowdbot.plugins.planners.dwa_map_build import AIM, remembered, way_out
 from crowdbot.plugins.planners.dwa_points_build import (
     apparent_velocity,
@@ -71,7 +71,7 @@ class Dwa:
         self._map: Array = np.empty((0, 2))
         self._around = (np.empty((0, 2)), np.empty((0, 2)))
         self._walking, self._flow = False, 0.0
-        self._heading_by_walls = Heading()
+        self._heading_by_walls = HeadingByWalls()
         self._mapped_at = -math.inf
         self._way: float | None = None
         self._last = (0.0, 0.0)

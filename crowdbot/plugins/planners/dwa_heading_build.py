@@ -102,7 +102,7 @@ def learn(memory: Array, seen: Array, yaw: float, share: float) -> None:
                 memory[(k + shift + b) % BINS] += share * weight * seen[k]
 
 
-class Heading:
+class HeadingByWalls:
     """Follows odometry, but turns as the walls say."""
 
     def __init__(self) -> None:
@@ -141,6 +141,6 @@ class Heading:
 def compile_heading() -> None:
     """Compile what is not compiled yet: a made-up wall, seen twice."""
     wall = np.column_stack([np.linspace(0.0, 2.0, 40), np.ones(40)])
-    heading = Heading()
+    heading = HeadingByWalls()
     for _ in range(2):
         heading.pose(Pose(0.0, 0.0, 0.0), wall)

@@ -47,6 +47,7 @@ class OracleSpec(PlannerSpec):
         default=0.6, description="Clearance above which more is no better, m."
     )
     progress: Weight = Field(default=1.0, description="Weight of way made to the goal.")
+    heading: Weight = Field(default=0.4, description="Weight of the heading after the arc.")
     clearance: Weight = Field(default=0.4, description="Weight of the closest approach.")
     impact: Weight = Field(default=2.0, description="Weight of an early and fast predicted hit.")
     smoothness: Weight = Field(default=0.05, description="Weight of a change of command.")

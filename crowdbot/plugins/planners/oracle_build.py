@@ -116,7 +116,7 @@ def _parameters(spec: OracleSpec, limits: RobotLimits) -> Array:
     p[rollout.RADIUS], p[rollout.MARGIN] = spec.robot_radius, spec.margin
     p[rollout.COMFORT], p[rollout.PROGRESS] = spec.comfort, spec.progress
     p[rollout.CLEARANCE], p[rollout.IMPACT] = spec.clearance, spec.impact
-    p[rollout.SMOOTHNESS] = spec.smoothness
+    p[rollout.SMOOTHNESS], p[rollout.HEADING] = spec.smoothness, spec.heading
     return p
 
 

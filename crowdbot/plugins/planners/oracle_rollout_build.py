@@ -10,8 +10,8 @@ from crowdbot.core.interfaces import Array, kernel
 STEP = 0.125
 #: Indices into the vector of parameters that the kernels take.
 A_MAX, ALPHA_MAX, V_MAX, W_MAX, HORIZON, TURN_TIME, RADIUS, MARGIN, COMFORT = range(9)
-PROGRESS, CLEARANCE, IMPACT, SMOOTHNESS = range(9, 13)
-PARAMETERS = 13
+PROGRESS, CLEARANCE, IMPACT, SMOOTHNESS, HEADING = range(9, 14)
+PARAMETERS = 14
 
 #: After the arc a rollout turns to the goal with this gain, 1/s.
 _GAIN = 2.0
@@ -49,7 +49,7 @@ def roll(
     goal: tuple[float, float],
     vt: float,
     wt: float,
-) -> tuple[float, float, float, float]:
+) -> tuple[float, float, float, float, float]:
     """One candidate: slew to (vt, wt), keep it for the turning time, turn to the goal, brake there.
 
     Args:
@@ -59,16 +59,19 @@ def roll(
 
     Returns:
         mean distance to the goal (m), which it keeps after a hit; time of the hit (s, the horizon
-        if there is none); speed then (m/s); closeness, 0 (farther than comfort) to 1 (touching).
+        if there is none); speed then (m/s); closeness, 0 (farther than comfort) to 1 (touching);
+        angle between heading and goal after the arc (rad).
     """
     x, y, yaw, v, w = state
     need = min(p[MARGIN], gap_at(people, walls, x, y, 0.0) - p[RADIUS] - _SLACK)
-    close, t, target, total = 0.0, 0.0, wt, 0.0
+    close, t, target, total, aside = 0.0, 0.0, wt, 0.0, 0.0
     while t < p[HORIZON] - 0.5 * STEP:
         t += STEP
-        if t > p[TURN_TIME]:
-            off = math.atan2(goal[1] - y, goal[0] - x) - yaw
-            off -= 2.0 * math.pi * round(off / (2.0 * math.pi))
+        off = math.atan2(goal[1] - y, goal[0] - x) - yaw
+        off -= 2.0 * math.pi * round(off / (2.0 * math.pi))
+        if t <= p[TURN_TIME] + STEP:
+            aside = abs(off)
+        else:
             target = max(-p[W_MAX], min(p[W_MAX], _GAIN * off)) if vt > 0.0 else 0.0
         away = math.hypot(goal[0] - x, goal[1] - y)
         v_next = _slewed(v, min(vt, math.sqrt(2.0 * p[A_MAX] * away)), p[A_MAX] * STEP)
@@ -81,11 +84,11 @@ def roll(
         gap = gap_at(people, walls, x, y, t) - p[RADIUS]
         away = math.hypot(goal[0] - x, goal[1] - y)
         if gap < need:
-            return (total + away * (p[HORIZON] - t + STEP)) / p[HORIZON], t, v, 1.0
+            return (total + away * (p[HORIZON] - t + STEP)) / p[HORIZON], t, v, 1.0, aside
         total += away * STEP
         need = min(p[MARGIN], max(need, gap))
         close = max(close, (1.0 - gap / p[COMFORT]) * (1.0 - 0.5 * t / p[HORIZON]))
-    return total / p[HORIZON], p[HORIZON], v, close
+    return total / p[HORIZON], p[HORIZON], v, close, aside
 
 
 @kernel
@@ -111,7 +114,7 @@ def best(
     away = math.hypot(goal[0] - state[0], goal[1] - state[1])
     for k in range(candidates.shape[0]):
         vt, wt = candidates[k, 0], candidates[k, 1]
-        mean, hit, speed, close = roll(people, walls, p, state, goal, vt, wt)
+        mean, hit, speed, close, aside = roll(people, walls, p, state, goal, vt, wt)
         if vt != 0.0 and hit < max(abs(state[3]), vt) / p[A_MAX] + STEP:
             continue
         made = (away - mean) / (0.5 * p[V_MAX] * p[HORIZON])  # soon is better than late
@@ -121,6 +124,7 @@ def best(
             p[PROGRESS] * (1.0 - made)
             + p[CLEARANCE] * close
             + p[IMPACT] * blow
+            + p[HEADING] * aside / math.pi
             + p[SMOOTHNESS] * change
         )
         if cost < least:

@@ -8,7 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core.interfaces import Array, LidarPoints, Pose
-from crowdbot.plugins.planners.dwa_heading_build import BINS, Heading, directions
+from crowdbot.plugins.planners.dwa_heading_build import BINS, HeadingByWalls, directions
 from tests.plugins.planners.world import World, crowd
 
 LIDARS = LidarPoints({n: s.info() for n, s in World().sensors.items()})
@@ -31,7 +31,7 @@ def off(a: float, b: float) -> float:
 @given(st.floats(-3.0, 3.0), st.floats(-0.65, 0.65), st.floats(5.0, 40.0), st.floats(-3.5, 3.5))
 @example(0.0, 0.5, 20.0, 0.0)
 def test_a_turn_that_nobody_told_is_noticed(yaw: float, push: float, x: float, y: float) -> None:
-    heading = Heading()
+    heading = HeadingByWalls()
     told = Pose(x, y, yaw)
     assert off(heading.pose(told, seen_from(told)).yaw, yaw) == 0.0
     found = heading.pose(told, seen_from(Pose(x, y, yaw + push)))
@@ -40,7 +40,7 @@ def test_a_turn_that_nobody_told_is_noticed(yaw: float, push: float, x: float, y
 
 
 def test_nobody_touches_it_and_it_heads_as_odometry_says() -> None:
-    heading = Heading()
+    heading = HeadingByWalls()
     for k in range(50):
         told = Pose(5.0 + 0.04 * k, 0.0, 0.01 * k)
         assert heading.pose(told, seen_from(told)) == pytest.approx(told)
@@ -49,7 +49,7 @@ def test_nobody_touches_it_and_it_heads_as_odometry_says() -> None:
 def test_many_bumps_among_people() -> None:
     """Thirty bumps of up to 30 degrees: odometry is lost, the walls are not."""
     rng = np.random.default_rng(3)
-    heading, yaw, told = Heading(), 0.0, 0.0
+    heading, yaw, told = HeadingByWalls(), 0.0, 0.0
     worst = 0.0
     for k in range(300):
         x = 5.0 + 0.04 * k
@@ -63,7 +63,7 @@ def test_many_bumps_among_people() -> None:
 
 
 def test_where_no_wall_is_seen_odometry_is_believed() -> None:
-    heading = Heading()
+    heading = HeadingByWalls()
     nothing = np.empty((0, 2))
     for k in range(5):
         told = Pose(0.1 * k, 0.0, 0.3 * k)
@@ -79,7 +79,7 @@ def test_legs_are_no_walls() -> None:
 
 def test_the_way_is_laid_along_the_true_heading() -> None:
     """After an unnoticed turn to the left, 1 m forward by the wheels is 1 m to the left."""
-    heading = Heading()
+    heading = HeadingByWalls()
     heading.pose(Pose(20.0, 0.0, 0.0), seen_from(Pose(20.0, 0.0, 0.0)))
     heading.pose(Pose(20.0, 0.0, 0.0), seen_from(Pose(20.0, 0.0, 0.6)))
     found = heading.pose(Pose(21.0, 0.0, 0.0), seen_from(Pose(20.8, 0.56, 0.6)))

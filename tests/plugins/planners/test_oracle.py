@@ -86,6 +86,14 @@ def test_same_run_twice() -> None:
     assert first.commands == again.commands
 
 
+def test_it_turns_to_the_goal_before_it_drives() -> None:
+    """A robot that looks away has nothing to gain by standing as it is."""
+    world = KnownWorld(start=Pose(10.0, 0.0, math.pi))
+    out = world.run(build(OracleSpec()), stop_at=12.0, time_limit=12.0)
+    assert out.arrived
+    assert min(p.x for p in out.path) > 9.5
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_a_hit_is_where_discs_meet(seed: int) -> None:
@@ -95,7 +103,7 @@ def test_a_hit_is_where_discs_meet(seed: int) -> None:
         rng.uniform(-3, 3, (4, 2)), rng.uniform(-1.5, 1.5, (4, 2)), np.full(4, PERSON),
     ])  # fmt: skip
     p = rollout_parameters()
-    mean, hit, speed, _ = rollout.roll(
+    mean, hit, speed, _, aside = rollout.roll(
         people, np.empty((0, 2)), p, (0.0, 0.0, 0.0, 0.5, 0.0), (50.0, 0.0), 0.5, 0.0
     )
     times = rollout.STEP * np.arange(0, round(p[rollout.HORIZON] / rollout.STEP) + 1)
@@ -109,6 +117,7 @@ def test_a_hit_is_where_discs_meet(seed: int) -> None:
         made = 0.5 * np.minimum(times[1:], hit)
         assert mean == pytest.approx(50.0 - made.mean())
     assert speed == pytest.approx(0.5)
+    assert aside == 0.0
 
 
 def rollout_parameters() -> Array:
