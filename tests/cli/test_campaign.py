@@ -132,7 +132,7 @@ def test_questions(whole: Path, capsys: pytest.CaptureFixture[str], tmp_path: Pa
     assert (tmp_path / "atlas.md").read_text(encoding="utf-8").startswith("# Atlas of scores")
     entries = json.loads(ask("atlas", "--out", str(whole), "--json"))
     assert [e["metric"] for e in entries[:4]] == [
-        "safe_efficiency", "contacts_per_km", "push_work", "space_compliance",
+        "safe_efficiency", "contacts_per_km", "push_work", "intrusion",
     ]  # fmt: skip
     file = tmp_path / "runs.parquet"
     ask("export", "--out", str(whole), "--parquet", str(file), "--table", "runs")

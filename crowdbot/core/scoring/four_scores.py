@@ -29,7 +29,7 @@ MAIN_SCORES = (
     PRIMARY,
     MainScore("contacts", "contacts_per_km"),
     MainScore("burden", "push_work"),
-    MainScore("comfort", "space_compliance"),
+    MainScore("comfort", "intrusion"),
 )
 _PLACES = {(s.metric, s.variant): place for place, s in enumerate(MAIN_SCORES)}
 

@@ -259,7 +259,7 @@ def test_verdict(score: Score, text: str) -> None:
 
 
 def test_the_four_scores_come_first_and_once() -> None:
-    names = [("zeta", "corrected"), ("space_compliance", "corrected"), ("push_work", "total"),
+    names = [("zeta", "corrected"), ("intrusion", "corrected"), ("push_work", "total"),
              ("push_work", "corrected"), ("safe_efficiency", "corrected"), ("risk", "corrected"),
              ("risk", "rate")]  # fmt: skip
     scores = [
@@ -270,7 +270,7 @@ def test_the_four_scores_come_first_and_once() -> None:
     assert chosen == [
         ("safe_efficiency", "corrected"),
         ("push_work", "corrected"),
-        ("space_compliance", "corrected"),
+        ("intrusion", "corrected"),
         ("zeta", "corrected"),
         ("risk", "rate"),
     ]

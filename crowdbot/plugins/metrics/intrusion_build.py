@@ -1,0 +1,44 @@
+"""How far the robot advances on people who have little room, computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from crowdbot.core.interfaces import (
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    truncate_at_arrival,
+)
+from crowdbot.core.trajectories.encounters import encounter, people
+from crowdbot.core.trajectories.evasion import DISTANCE_TOLERANCE, evasion
+from crowdbot.plugins.metrics.intrusion import INTRUSION, IntrusionSpec
+
+
+@dataclass(frozen=True, slots=True)
+class Intrusion:
+    """Needs no reference run."""
+
+    spec: IntrusionSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Per person met, and in total."""
+        del refs
+        factory, spec = ScoreFactory(INTRUSION), self.spec
+        if run.robot is None:
+            return factory.all_undefined("invalid_no_robot")
+        if not people(run).x.size:
+            return factory.all_undefined("no_agents")
+        run = truncate_at_arrival(run)
+        found = evasion(run, spec.evasion_reach, spec.jump_speed)
+        met = float(found.met.sum())
+        if not met:
+            return factory.all_undefined("no_neighbours")
+        gap = encounter(run, spec.jump_speed).gap
+        room = (gap[1:] + gap[:-1]) / 2.0
+        close = found.near & (room < spec.compliance - DISTANCE_TOLERANCE)
+        way = float(found.dt @ (found.approach * close).sum(axis=1))
+        extras = {"people_met": met}
+        return [factory.ok("corrected", way / met, extras), factory.ok("total", way, extras)]

@@ -1,0 +1,73 @@
+"""intrusion: hand cases, failures, and who would be fooled."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from crowdbot.core.trajectories.trajectories import Trajectories
+from tests.plugins.metrics.scenes import REACH, grid, line, scene, scores_of, value_of, why
+
+T = grid(10, 1 / 16)
+
+
+def following(gap: float, speed: float = 0.5) -> Trajectories:
+    """Behind somebody, on the same line, for 10 s."""
+    person = line(T, (REACH + gap, 0), (speed, 0))
+    return scene(T, line(T, (0, 0), (speed, 0)), [person])
+
+
+def intrusion(run: Trajectories, **fields: Any) -> float:
+    return value_of(scores_of("intrusion", run, **fields))
+
+
+def test_who_follows_closely_intrudes_without_touching_or_pushing() -> None:
+    run = following(0.3)
+    assert intrusion(run) == pytest.approx(5.0)
+    assert value_of(scores_of("push_work", run)) == 0
+    assert value_of(scores_of("collision_count", run)) == 0
+    assert intrusion(following(0.6)) == 0
+    assert intrusion(following(0.6), compliance="80 cm") == pytest.approx(5.0)
+
+
+def test_who_waits_or_drives_away_does_not_intrude() -> None:
+    """`space_compliance` blames both for whom they let pass."""
+    close = line(T, (0.6, 0), (0, 0))
+    waits = scene(T, line(T, (0, 0), (0, 0)), [close])
+    assert intrusion(waits) == 0
+    assert value_of(scores_of("space_compliance", waits)) == 0
+    leaves = scene(T, line(T, (0, 0), (-0.02, 0)), [close])
+    assert intrusion(leaves) == 0
+
+
+def test_only_the_way_towards_somebody_counts() -> None:
+    """Passing at a right angle: what is ahead of the person counts, what is behind does not."""
+    run = scene(T, line(T, (-2.5, 0.6), (0.5, 0)), [line(T, (0, 0), (0, 0))])
+    ahead = ((REACH + 0.5) ** 2 - 0.6**2) ** 0.5
+    expected = REACH + 0.5 - 0.6  # V . n dt is how much nearer it comes
+    assert intrusion(run) == pytest.approx(expected, rel=0.05)
+    assert expected < ahead
+
+
+def test_it_is_per_person_met() -> None:
+    person = line(T, (REACH + 0.3, 0), (0.5, 0))
+    beside = line(T, (0, 1.5), (0.5, 0))
+    both = scene(T, line(T, (0, 0), (0.5, 0)), [person, beside])
+    assert intrusion(both) == pytest.approx(2.5)
+    assert value_of(scores_of("intrusion", both), "total") == pytest.approx(5.0)
+
+
+@given(speed=st.floats(0.1, 2.0))
+@settings(max_examples=20, deadline=None)
+def test_it_is_a_way_and_no_time(speed: float) -> None:
+    assert intrusion(following(0.3, speed)) == pytest.approx(10 * speed)
+
+
+def test_failures() -> None:
+    robot, far = line(T, (0, 0), (1, 0)), line(T, (0, 50), (1, 0))
+    assert why(scores_of("intrusion", scene(T, None, [far]))) == {("undefined", "invalid_no_robot")}
+    assert why(scores_of("intrusion", scene(T, robot))) == {("undefined", "no_agents")}
+    assert why(scores_of("intrusion", scene(T, robot, [far]))) == {("undefined", "no_neighbours")}
