@@ -36,20 +36,20 @@ class OracleSpec(PlannerSpec):
     )
     speeds: Annotated[int, Ge(2), Le(32)] = Field(default=6, description="Candidate speeds.")
     yaw_rates: Annotated[int, Ge(3), Le(64)] = Field(default=17, description="Candidate yaw rates.")
-    horizon: PositiveDuration = Field(default=4.0, description="Length of a rollout, s.")
+    horizon: PositiveDuration = Field(default=2.5, description="Length of a rollout, s.")
     turn_time: PositiveDuration = Field(
         default=1.0, description="Time on the arc; the rest of a rollout turns to the goal, s."
     )
     margin: NonNegativeLength = Field(
-        default=0.1, description="Clearance below which a rollout counts as a hit, m."
+        default=0.05, description="Clearance below which a rollout counts as a hit, m."
     )
     comfort: PositiveLength = Field(
         default=0.6, description="Clearance above which more is no better, m."
     )
     progress: Weight = Field(default=1.0, description="Weight of way made to the goal.")
     heading: Weight = Field(default=0.4, description="Weight of the heading after the arc.")
-    clearance: Weight = Field(default=0.4, description="Weight of the closest approach.")
-    impact: Weight = Field(default=2.0, description="Weight of an early and fast predicted hit.")
+    clearance: Weight = Field(default=0.2, description="Weight of the closest approach.")
+    impact: Weight = Field(default=1.0, description="Weight of an early and fast predicted hit.")
     smoothness: Weight = Field(default=0.05, description="Weight of a change of command.")
 
 
