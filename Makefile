@@ -9,6 +9,8 @@
 #   make lock    rewrite requirements.lock (needs uv)
 
 PYTHON ?= python3
+# Tests start hundreds of processes: without byte code each would translate all our files again.
+export PYTHONDONTWRITEBYTECODE :=
 BIN := .venv/bin
 READY := .venv/ready-$(shell cat requirements.lock pyproject.toml | cksum | cut -d' ' -f1)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
@@ -23,12 +25,12 @@ demo: setup
 
 check: setup
 	@$(MAKE) --no-print-directory -j2 --output-sync lint kernels
-	$(BIN)/pytest -n auto -q -m "not slow and not jupedsim"
+	$(BIN)/pytest -n auto --dist worksteal -q -m "not slow and not jupedsim"
 
 test: setup
 	@$(MAKE) --no-print-directory -j2 --output-sync lint kernels
 	@$(MAKE) --no-print-directory js-where-node-is
-	$(BIN)/pytest -n auto
+	$(BIN)/pytest -n auto --dist worksteal
 
 # What numba compiles, while mypy has the other core: or else each test process would compile it.
 kernels: setup

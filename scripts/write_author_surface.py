@@ -36,6 +36,7 @@ methods are called with, is on the page [plugins](plugins.md).
 _SAID = {
     "Better": "Which scores are better: `higher`, `lower`, those near the `reference`, or `none`.",
     "Incidence": "Angle between a ray and a surface's normal, above 0, at most a right angle.",
+    "PlannerRole": "What a planner is there for: `floor`, `baseline`, `ceiling` or `candidate`.",
     "MOST_RAYS": "Rays that one reading of a sensor may take.",
     "LOOP": "`Agents.at_goal`: walk back to the first point of the route.",
     "PORTAL": "`Agents.at_goal`: leave through a portal and come in by its entrance.",

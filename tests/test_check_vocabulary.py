@@ -43,8 +43,8 @@ def test_a_rule_holds_in_its_files_only() -> None:
 
 
 def test_a_finding_has_its_line() -> None:
-    ((line, word, instead),) = vocabulary.findings("a\nb\nan entrant", ".md")
-    assert (line, word) == (3, "entrant")
+    ((line, word, instead),) = vocabulary.findings("a\nb\na candidate", ".md")
+    assert (line, word) == (3, "candidate")
     assert instead == "planner entry"
 
 

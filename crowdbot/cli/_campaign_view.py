@@ -27,6 +27,8 @@ def show(plan: Plan) -> Iterator[Listener]:
         return
     complete = sum(bool(r.status) for r in plan.runs)
     _say(f"{len(plan.runs)} runs, {complete} complete, {len(plan.jobs)} jobs to do")
+    for label, why in plan.left_out.items():
+        _say(f"{label} is left out: {why}")
     lines = _Lines()
     if not sys.stderr.isatty():
         yield lines

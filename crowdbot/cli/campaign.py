@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from crowdbot.cli._campaign_run import print_plan, read_seeds, run_plan, worker_count
 from crowdbot.cli._options import NoPlugins, Plugins, installed
 from crowdbot.cli.simulate import RecordChoice
 
 if TYPE_CHECKING:
-    from crowdbot.core.campaign.plan import Plan
     from crowdbot.core.campaign.run import State
 
 _Set = Annotated[
@@ -46,6 +45,10 @@ def campaign(
     replay: Annotated[bool, typer.Option(help="Write the replay pages.")] = True,
     overrides: _Set = None,
     planner_set: _PlannerSet = None,
+    floors: Annotated[
+        bool,
+        typer.Option(help="Run floors and ceilings besides, in at most 18 scenarios of a suite."),
+    ] = True,
     retry_failed: Annotated[
         bool, typer.Option("--retry-failed", help="Run again where the planner failed.")
     ] = False,
@@ -68,6 +71,7 @@ def campaign(
     request = CampaignRequest(
         suites=suites,
         planners=planner or (),
+        floors=floors,
         seeds=read_seeds(seeds),
         only=only,
         out=out,
@@ -79,81 +83,15 @@ def campaign(
         retry_failed=retry_failed,
     )
     plan = make_plan(request, registry)
-    size = _size(jobs)
+    size = worker_count(jobs)
     if dry_run:
-        _print_plan(plan, size, as_json=as_json)
+        print_plan(plan, size, as_json=as_json)
         return
-    state = _run(plan, size, cluster)
+    state = run_plan(plan, size, cluster)
     if as_json:
         typer.echo(json.dumps(_document(state), indent=2))
     if state.exit_code:
         raise typer.Exit(state.exit_code)
-
-
-def read_seeds(text: str) -> list[int]:
-    """``0,1,2``, ``0..4``, or both mixed.
-
-    Raises:
-        UsageError: it is neither.
-    """
-    from crowdbot.errors import UsageError
-
-    seeds: list[int] = []
-    for part in text.split(","):
-        found = re.fullmatch(r"\s*(\d{1,9})(?:\.\.(\d{1,9}))?\s*", part)
-        if found is None or (found[2] and int(found[2]) < int(found[1])):
-            raise UsageError(f"--seeds {text}: write 0,1,2 or 0..4")
-        seeds += range(int(found[1]), int(found[2] or found[1]) + 1)
-    return seeds
-
-
-def _size(jobs: int) -> int:
-    from crowdbot.core.runs.rescore import available_cores
-
-    return jobs or available_cores()
-
-
-def _run(plan: Plan, size: int, cluster: str | None) -> State:
-    from crowdbot.cli._campaign_view import show
-    from crowdbot.core.campaign.run import run_campaign
-    from crowdbot.core.campaign.worker_pool import LocalWorkerPool, WorkerPool
-
-    pool: WorkerPool
-    if cluster is None:
-        pool = LocalWorkerPool(min(size, max(1, len(plan.jobs))))
-    else:
-        from crowdbot.core.campaign.dask_pool import DaskWorkerPool
-
-        pool = DaskWorkerPool(cluster, plan.out)
-        size = pool.size
-    with show(plan) as listener:
-        return run_campaign(plan, pool, size, listener)
-
-
-def _print_plan(plan: Plan, size: int, *, as_json: bool) -> None:
-    import shutil
-
-    complete = sum(bool(r.status) for r in plan.runs)
-    facts: dict[str, Any] = {
-        "runs": len(plan.runs),
-        "complete": complete,
-        "to_run": plan.count("run"),
-        "references": plan.references,
-        "references_to_run": plan.count("robot_alone") + plan.count("crowd_alone"),
-        "jobs": size,
-        "seconds": round(plan.seconds / size, 1),
-        "bytes": round(plan.size),
-        "out": str(plan.out),
-    }
-    if as_json:
-        typer.echo(json.dumps(facts, indent=2))
-        return
-    root = next(p for p in (plan.out, *plan.out.parents) if p.exists())
-    free = shutil.disk_usage(root).free
-    typer.echo(f"runs        {facts['runs']}, {complete} complete, {facts['to_run']} to run")
-    typer.echo(f"references  {facts['references']}, {facts['references_to_run']} to run")
-    typer.echo(f"time        about {plan.seconds / size / 60.0:.1f} min with {size} processes")
-    typer.echo(f"disk        about {plan.size / 1e9:.2f} GB, {free / 1e9:.0f} GB free")
 
 
 def _document(state: State) -> dict[str, Any]:

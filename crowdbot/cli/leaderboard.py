@@ -16,11 +16,17 @@ def leaderboard(
     out: Annotated[Path, typer.Option(metavar="FILE", help="The page.")] = Path("leaderboard.html"),
     by: Annotated[
         str, typer.Option(metavar="METRIC", help="Which metric decides the order.")
-    ] = "success_no_collision",
+    ] = "safe_efficiency",
     title: Annotated[str, typer.Option(metavar="TEXT", help="Heading.")] = "Leaderboard",
     accept: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME", help="Compare although this differs; repeatable."),
+    ] = None,
+    audit: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE", help="Audit of a suite; repeatable. Default: FOLDER/*audit.json."
+        ),
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
@@ -36,19 +42,21 @@ def leaderboard(
     from crowdbot.core.bundle.entries import load_entries
     from crowdbot.core.bundle.leaderboard import write_leaderboard
     from crowdbot.core.bundle.standings import standings
+    from crowdbot.core.statistics.audit import AUDIT, read_audit
     from crowdbot.errors import UnknownNameError
 
     registry = installed(plugin, no_plugins)
     if by not in registry.components("metric"):
         raise UnknownNameError("metric", by, registry.components("metric"), registry.why_absent(by))
     entries, left_out = load_entries(folder, registry)
-    tables = standings(entries, by, accept or ())
+    audits = [read_audit(path) for path in audit or sorted(folder.glob(f"*{AUDIT}"))]
+    tables = standings(entries, by, accept or (), audits)
     write_leaderboard(out, tables, left_out, title)
     for name, why in left_out.items():
         typer.echo(f"warning: {name} is left out: {why}", err=True)
     if as_json:
         document = [
-            {"edition": t.edition, "class": t.classed, "by": t.by,
+            {"edition": t.edition, "class": t.classed, "by": t.by, "suspicion": t.suspicion,
              "entries": [{"name": e.name, "rank": t.rank(by, e), "file": e.path.name}
                          for e in t.entries]}
             for t in tables

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from crowdbot.core.report import Contents
     from crowdbot.core.results.confounds import Finding
     from crowdbot.core.results.rows import Results
+    from crowdbot.core.statistics.audit import Audit
 
 _REFERENCE = " (reference)"
 
@@ -48,6 +49,10 @@ def report(
     accept: Annotated[
         list[str] | None,
         typer.Option(metavar="CONFOUND", help="Compare though this differs; repeatable, printed."),
+    ] = None,
+    audit: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Audit of the suite; default: ROOT/ID/audit.json."),
     ] = None,
     no_replay_links: Annotated[
         bool, typer.Option("--no-replay-links", help="For a page that is moved elsewhere.")
@@ -78,6 +83,7 @@ def report(
         accepted=tuple(str(f) for f in findings if f.accepted),
         warnings=tuple(str(f) for f in findings if not f.accepted),
         references=known,
+        audit=_audit(audit, root / results.runs[0].suite),
     )
     contents = gather(results, installed(plugin, no_plugins), heading, links)
     _tell(write_report(out, contents), contents, findings, as_json)
@@ -142,6 +148,18 @@ def _with_reference(results: Results, given: Results | None) -> tuple[Results, t
     return both, tuple(sorted({r.planner for r in runs}))
 
 
+def _audit(given: Path | None, folder: Path) -> Audit | None:
+    """The audit that somebody names, or the one beside the runs.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    from crowdbot.core.statistics.audit import AUDIT, read_audit
+
+    path = given or folder / AUDIT
+    return read_audit(path) if given or path.is_file() else None
+
+
 def _replays(results: Results, root: Path, out: Path) -> dict[str, str]:
     """Run id -> address of its replay page as seen from the report, where there is one."""
     from crowdbot.core.runs.run_directory import REPLAY
@@ -164,6 +182,8 @@ def _tell(
         counts = contents.counts()
         said = ", ".join(f"{n} {name.replace('_', ' ')}" for name, n in counts.items() if n)
         print(f"{', '.join(contents.planners)}: {said}", file=sys.stderr)
+        told = [contents.suspicion, *(check.text for check in contents.floors)]
+        print("\n".join(text for text in told if text), file=sys.stderr)
         typer.echo(paths["html"])
         return
     document = {
@@ -173,5 +193,10 @@ def _tell(
         "runs": contents.counts(),
         "accepted": contents.heading.accepted,
         "warnings": contents.heading.warnings,
+        "floors": [
+            {"planner": c.planner, "beats_floors": c.beats_all, "text": c.text}
+            for c in contents.floors
+        ],
+        "suspicion": contents.suspicion,
     }
     typer.echo(json.dumps(document, indent=2, ensure_ascii=False))

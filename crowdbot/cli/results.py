@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from crowdbot.core.scoring.four_scores import MAIN_SCORES
+
 if TYPE_CHECKING:
     from crowdbot.core.results.rows import Results
     from crowdbot.core.results.tables import GroupSummary
@@ -24,8 +26,9 @@ _ROOT = Path("runs")
 _WIDTH = 240
 #: What is shown of every planner when nobody asks for more.
 _HEADLINES = (
-    "success", "collision_count", "min_clearance", "path_efficiency", "relative_time_to_goal",
-    "proximity", "risk",
+    *(s.metric for s in MAIN_SCORES),
+    "success", "collision_count", "min_clearance", "relative_time_to_goal", "delay",
+    "evasive_acceleration",
 )  # fmt: skip
 
 
@@ -37,7 +40,7 @@ def show(
         str | None, typer.Option(metavar="GLOB", help="Metrics; default: a few headlines.")
     ] = None,
     variant: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Variant; default: corrected.")
+        str | None, typer.Option(metavar="NAME", help="Variant; default: rate, or else corrected.")
     ] = None,
     by: Annotated[
         str, typer.Option(metavar="AXIS,AXIS", help="Groups: axes, planner, seed, status.")
@@ -129,6 +132,34 @@ def failures(
         typer.echo("no failures")
 
 
+@results.command()
+def atlas(
+    out: _Out = _ROOT,
+    floor: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="A planner that others ought to beat; repeatable."),
+    ] = None,
+    md: Annotated[Path | None, typer.Option(metavar="FILE", help="Write Markdown.")] = None,
+    as_json: _Json = False,
+) -> None:
+    """Tell what moves each score, whether it tells floors from planners, and what repeats it.
+
+    Example: crowdbot results atlas --out runs --floor goal_seek --md atlas.md
+    """
+    from crowdbot.cli._atlas_page import atlas_page
+    from crowdbot.core.results.store import load
+    from crowdbot.core.statistics import atlas as entries_of
+    from crowdbot.core.support.atomic_write import atomic_write
+
+    entries = entries_of(load(out), floor or ())
+    if md is not None:
+        atomic_write(md, atlas_page(entries))
+    if as_json:
+        typer.echo(json.dumps([asdict(e) for e in entries], indent=2))
+    elif md is None:
+        typer.echo(atlas_page(entries), nl=False)
+
+
 def _only(found: Results, planners: list[str] | None, status: str | None) -> Results:
     """Runs of some planners that ended in some way, with their scores and failures.
 
@@ -169,6 +200,8 @@ def _line(summary: GroupSummary) -> dict[str, Any]:
         "variant": summary.variant,
         "unit": summary.unit,
         "mean": summary.mean,
+        "low": summary.low,
+        "high": summary.high,
         "median": summary.median,
         "n": summary.count,
         "undefined": summary.undefined,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import Field
 
@@ -10,6 +10,12 @@ from crowdbot.dsl.spec import ComponentSpec, Rectangle
 
 if TYPE_CHECKING:
     from crowdbot.dsl.assets import Asset
+
+
+#: What a planner is there for. ``floor``: every planner worth the name beats it; ``ceiling``: it
+#: knows more than any other may; ``baseline``: an honest one to measure against; ``candidate``:
+#: all others.
+PlannerRole = Literal["floor", "baseline", "ceiling", "candidate"]
 
 
 class EnvironmentSpec(ComponentSpec):
@@ -47,6 +53,7 @@ class PlannerSpec(ComponentSpec):
     """Abstract: the thing under test. Never part of a scenario."""
 
     category: ClassVar[str] = "planner"
+    role: ClassVar[PlannerRole] = "candidate"
 
 
 class CrowdPolicySpec(ComponentSpec):

@@ -14,7 +14,7 @@ from crowdbot.dsl.diagnostics import MAX_ERRORS, Diagnostic, Mark, Source
 from crowdbot.dsl.finder import Finder, Roots
 from crowdbot.dsl.include import Loader
 from crowdbot.dsl.installed import Installed
-from crowdbot.dsl.matrix import REPLICATE, combinations
+from crowdbot.dsl.matrix import DRAW, combinations
 from crowdbot.dsl.merge import merge, nest, undot
 from crowdbot.dsl.nodes import Entry, Node, parse, to_data
 from crowdbot.dsl.scenario import Scenario
@@ -122,9 +122,9 @@ class _Bare:
     tree: Node
 
     @property
-    def replicate(self) -> str:
-        """Label of the replicate; empty where there is only one."""
-        return self.labels.get(REPLICATE, "")
+    def draw(self) -> str:
+        """Label of the crowd draw; empty where there is only one."""
+        return self.labels.get(DRAW, "")
 
 
 class _Expander:
@@ -173,10 +173,10 @@ class _Expander:
                 continue
             labels = dict(zip(axes, combination.labels, strict=True))
             key = "-".join(labels[axis] for axis in suite.crowd_axes)
-            name = "-".join(v for axis, v in labels.items() if axis != REPLICATE)
+            name = "-".join(v for axis, v in labels.items() if axis != DRAW)
             name = name or suite.scenario_id
-            replicate = labels.get(REPLICATE)
-            name = f"{name}-{replicate}" if name and replicate else name
+            draw = labels.get(DRAW)
+            name = f"{name}-{draw}" if name and draw else name
             yield _Bare(name and name + self._suffix, key, labels, combination.tree)
 
     def _complete(self, bare: _Bare, reference: Node | None = None) -> Node:
@@ -186,12 +186,12 @@ class _Expander:
             tree = merge(tree, self._set)
         else:
             tree = merge(merge(tree, reference), _unless_removed(self._set, reference))
-        return self._with_seed(tree, bare.key, bare.replicate)
+        return self._with_seed(tree, bare.key, bare.draw)
 
-    def _with_seed(self, tree: Node, key: str, replicate: str) -> Node:
+    def _with_seed(self, tree: Node, key: str, draw: str) -> Node:
         """Write root and key of the seed into a suite's crowd, under what the document says.
 
-        A replicate draws other people even where the document writes the key itself.
+        Another draw has other people even where the document writes the key itself.
         """
         crowd = tree.entries.get("crowd")
         if self._suite.seed is None or crowd is None or not crowd.node.entries:
@@ -203,8 +203,8 @@ class _Expander:
             self._seeds[key] = nest(("seed",), seed, mark)
         node = merge(self._seeds[key], crowd.node)
         own = locate(crowd.node, ("seed", "key"))
-        if replicate and not own.rest and isinstance(own.node.value, str):
-            joined = replace(own.node, value=f"{own.node.value}-{replicate}".lstrip("-"))
+        if draw and not own.rest and isinstance(own.node.value, str):
+            joined = replace(own.node, value=f"{own.node.value}-{draw}".lstrip("-"))
             node = merge(node, nest(("seed", "key"), joined, joined.mark))
         return replace(tree, value={**tree.entries, "crowd": replace(crowd, node=node)})
 

@@ -14,8 +14,8 @@ from crowdbot.dsl.nodes import Node
 MAX_COMBINATIONS = 10_000
 MAX_AXES = 64
 
-#: Name of the axis that ``replicates: N`` adds behind the others.
-REPLICATE = "replicate"
+#: Name of the axis that ``draws: N`` adds behind the others.
+DRAW = "draw"
 
 _NAME = re.compile(r"[A-Za-z0-9_]+")
 _Path = tuple[str, ...]
@@ -38,14 +38,14 @@ class Combination:
 
 
 def read_axes(
-    matrix: Node | None, problems: list[Diagnostic], replicates: Node | None = None
+    matrix: Node | None, problems: list[Diagnostic], draws: Node | None = None
 ) -> tuple[Axis, ...]:
     """Axes as they are written, dotted keys written out; errors are added to ``problems``.
 
     Args:
         matrix: the map of axes.
         problems: errors so far.
-        replicates: how often everything is repeated; more than once adds the axis `REPLICATE`.
+        draws: how many crowds each condition is tried with; more than once adds the axis `DRAW`.
     """
     if matrix is not None and matrix.value is not None and not isinstance(matrix.value, dict):
         problems.append(Diagnostic("E111", "matrix wants a map of axes", matrix.mark))
@@ -53,22 +53,22 @@ def read_axes(
     listed = matrix.entries if matrix else {}
     axes = [_read_axis(name, entry.key, entry.node, problems) for name, entry in listed.items()]
     _check_overlap(axes, problems)
-    if replicates is not None and isinstance(replicates.value, int) and replicates.value > 1:
-        if REPLICATE in listed:
-            text = f"axis '{REPLICATE}' is the one that 'replicates' adds; rename it"
-            problems.append(Diagnostic("E010", text, listed[REPLICATE].key))
+    if draws is not None and isinstance(draws.value, int) and draws.value > 1:
+        if DRAW in listed:
+            text = f"axis '{DRAW}' is the one that 'draws' adds; rename it"
+            problems.append(Diagnostic("E010", text, listed[DRAW].key))
             return tuple(axes)
-        if replicates.value <= MAX_COMBINATIONS:
-            axes.append(_replicate_axis(replicates.value, replicates.mark))
-    if _too_many(axes, problems, (matrix or replicates or Node(Mark(Source("")), {})).mark):
+        if draws.value <= MAX_COMBINATIONS:
+            axes.append(_draw_axis(draws.value, draws.mark))
+    if _too_many(axes, problems, (matrix or draws or Node(Mark(Source("")), {})).mark):
         return ()
     return tuple(axes)
 
 
-def _replicate_axis(count: int, mark: Mark) -> Axis:
+def _draw_axis(count: int, mark: Mark) -> Axis:
     """Labels n01, n02, …: those of a small count stay the same in a larger one."""
     nothing = Node(mark, {}, implied=True)
-    return Axis(REPLICATE, {f"n{number:02d}": nothing for number in range(1, count + 1)})
+    return Axis(DRAW, {f"n{number:02d}": nothing for number in range(1, count + 1)})
 
 
 def _too_many(axes: Sequence[Axis], problems: list[Diagnostic], mark: Mark) -> bool:

@@ -89,7 +89,7 @@ class HumanResponse(RobotResponse):
         default=0.7, description="Time to contact at which late people notice the robot, s."
     )
     late_time_standing: NonNegativeDuration = Field(
-        default=1.5, description="The same where the robot stands, s."
+        default=2.5, description="The same where the robot stands, s."
     )
     late_gap: NonNegativeLength = Field(
         default=0.3, description="Surface gap at which late people notice it in any case, m."

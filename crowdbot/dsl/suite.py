@@ -7,7 +7,7 @@
     base: {…}
     matrix: {axis: {label: {override}}}
     only: {axis: [label, …]}    exclude: {axis: [label, …]}
-    replicates: N
+    draws: N
     seeds: {crowd: [axis, …]}
     metrics: [name, …]
     references: {name: {override}}
@@ -26,7 +26,7 @@ from pydantic import Field, WithJsonSchema
 from crowdbot.dsl.diagnostics import Diagnostic, Mark
 from crowdbot.dsl.finder import Finder
 from crowdbot.dsl.installed import Installed, check_metrics, check_versions
-from crowdbot.dsl.matrix import MAX_COMBINATIONS, REPLICATE, Axis, read_axes
+from crowdbot.dsl.matrix import DRAW, MAX_COMBINATIONS, Axis, read_axes
 from crowdbot.dsl.nodes import Node, count, to_data
 from crowdbot.dsl.selection import Kept, read_selection
 from crowdbot.dsl.spec import Spec
@@ -95,8 +95,9 @@ class SuiteDocument(Spec):
     exclude: _Choices = Field(
         default=None, description="Combinations that are left out, written as in `only`."
     )
-    replicates: Annotated[int, Ge(1), Le(MAX_COMBINATIONS)] = Field(
-        default=1, description="How often each scenario is repeated, with other people each time."
+    draws: Annotated[int, Ge(1), Le(MAX_COMBINATIONS)] = Field(
+        default=1,
+        description="Crowd draws of each condition: as many scenarios, with other people each.",
     )
     seeds: Seeds | None = Field(default=None, description="Axes of the random numbers.")
     metrics: list[str] | None = Field(default=None, description="Metrics to score; default all.")
@@ -187,7 +188,7 @@ def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite:
     head = root.child("suite")
     name = _text(head.child("id") if head else None, "suite")
     title = _text(head.child("title") if head else None, "")
-    axes = read_axes(root.child("matrix"), problems, root.child("replicates"))
+    axes = read_axes(root.child("matrix"), problems, root.child("draws"))
     _check_elsewhere(body, ("id", "references"), problems)
     for axis in axes:
         for over in axis.labels.values():
@@ -260,7 +261,7 @@ def _crowd_axes(root: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) 
             text = f"the matrix has no axis '{item.value}'"
             problems.append(Diagnostic("E208", text, item.mark, hint))
     wanted = {item.value for item in listed.value if isinstance(item.value, str)}
-    return tuple(name for name in known if name in wanted or name == REPLICATE)
+    return tuple(name for name in known if name in wanted or name == DRAW)
 
 
 def _check_elsewhere(body: Node, names: tuple[str, ...], problems: list[Diagnostic]) -> None:

@@ -91,6 +91,7 @@ def straight_world(seed: int, rate: float) -> World:
         "robot_goal_time": 8.0,
         "robot_goal": (2.5, 0.4),
         "robot_goal_radius": 0.1,
+        "robot_speed_limit": 0.6,
     }
     crowd: dict[str, Any] = {
         "agent_x": x,
@@ -186,6 +187,7 @@ def _robot(rng: np.random.Generator, t: Array) -> dict[str, Any]:
         "robot_goal_time": float(rng.uniform(t[len(t) // 2], t[-1] + 0.05)) if arrived else None,
         "robot_goal": _GOAL,
         "robot_goal_radius": 0.5,
+        "robot_speed_limit": 1.2,
     }
 
 

@@ -11,7 +11,8 @@ from typing import Any
 from tests.waiting import AT_MOST
 
 TINY = ["challenge-2020", "--only", "in-d0125-slow-c01-*", "--set",
-        "robots.robot.task.time_limit=1 s", "--no-replay", "--jobs", "2"]  # fmt: skip
+        "robots.robot.task.time_limit=1 s", "--no-replay", "--no-floors",
+        "--jobs", "2"]  # fmt: skip
 
 
 def start(out: Path, *more: str) -> subprocess.Popen[str]:

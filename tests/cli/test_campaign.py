@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from crowdbot import cli
-from crowdbot.cli.campaign import read_seeds
+from crowdbot.cli._campaign_run import read_seeds
 from crowdbot.core.results.rows import FailureRow, Results, RunRow, ScoreRow
 from crowdbot.core.results.store import INDEX, load
 from crowdbot.core.results.tables import summarise
@@ -128,6 +128,12 @@ def test_questions(whole: Path, capsys: pytest.CaptureFixture[str], tmp_path: Pa
     assert len(worst) == 2
     assert worst[0]["value"] <= worst[1]["value"]
     assert "goal_seek" in ask("--out", str(whole))
+    ask("atlas", "--out", str(whole), "--md", str(tmp_path / "atlas.md"))
+    assert (tmp_path / "atlas.md").read_text(encoding="utf-8").startswith("# Atlas of scores")
+    entries = json.loads(ask("atlas", "--out", str(whole), "--json"))
+    assert [e["metric"] for e in entries[:4]] == [
+        "safe_efficiency", "contacts_per_km", "push_work", "space_compliance",
+    ]  # fmt: skip
     file = tmp_path / "runs.parquet"
     ask("export", "--out", str(whole), "--parquet", str(file), "--table", "runs")
     import duckdb

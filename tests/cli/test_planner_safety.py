@@ -152,7 +152,7 @@ def test_nothing_that_a_planner_says_reaches_stdout(tmp_path: Path) -> None:
 
 
 def test_the_budget_of_a_step(shell: Shell, tmp_path: Path) -> None:
-    slow = {"step": "time.sleep(0.6 if obs.t > 0.4 else 0.0); return (0.1, 0.0)"}
+    slow = {"step": "time.sleep(0.6 if 0.4 < obs.t < 0.5 else 0.0); return (0.1, 0.0)"}
     options = [*file_options(tmp_path, **slow), *QUIET, "--json"]
     assert shell(*options).code == 0
     answer = shell(*options, "--step-budget", "0.5")

@@ -40,8 +40,7 @@ def site(tmp_path: Path) -> Site:
     return Site(tmp_path / "site")
 
 
-@pytest.mark.parametrize("source", ["", "src"])
-@pytest.mark.parametrize("inside", [False, True])
+@pytest.mark.parametrize(("source", "inside"), [("", False), ("src", True)])
 def test_a_project_or_its_package(source: str, inside: bool, site: Site, tmp_path: Path) -> None:
     project = write(tmp_path / "p", source=source)
     path = project / source / "acme_go" if inside else project

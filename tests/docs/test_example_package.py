@@ -19,7 +19,6 @@ from tests.paths import ROOT
 
 pytestmark = pytest.mark.slow
 
-ROOT = ROOT
 EXAMPLE = ROOT / "docs/examples/crowdbot-acme"
 TUTORIAL = ROOT / "docs/tutorial/files/crowdbot-careful"
 

@@ -49,7 +49,7 @@ DOCUMENT: dict[str, Any] = {
     },
     "only": {"flow": ["in", "back"]},
     "exclude": [{"flow": "in", "range": "r3"}],
-    "replicates": 2,
+    "draws": 2,
     "seeds": {"crowd": ["flow"]},
     "metrics": ["*"],
     "references": {"robot_alone": {"crowd": None}, "crowd_alone": {"robots": {}}},

@@ -51,7 +51,7 @@ CASES = {
     "choices": (HEAD + AXES + "exclude: [" + many(9_000, "{{w: w1}},") + "]", "E207", 15000),
     "references": (HEAD + "references:\n" + many(3000, "  r{}: {{crowd: null}}\n"), "E207", 6000),
     "work": (HEAD + many(2000, "  crowd.costs.c{}: {{kind: rvo}}\n") + AXES, "E207", 5000),
-    "replicates": (HEAD + "replicates: 1" + "0" * 39, "E112", 200),
+    "draws": (HEAD + "draws: 1" + "0" * 39, "E112", 200),
     "huge scalar": (HEAD + "  title: " + "x" * 900_000, "", 6000),
     "huge key": (HEAD + "  " + "k" * 900_000 + ": 1", "E002", 6000),
     "1e999": (HEAD + "  crowd.speed.mean: 1e999", "E008", 200),

@@ -38,7 +38,7 @@ BEYOND = {
     "E005": "tags likewise",
     "E006": "merge keys likewise",
     "E007": "several documents, or a directive",
-    "E010_replicate": "a name that is taken only beside another key",
+    "E010_draw": "a name that is taken only beside another key",
     "E015": "another file",
     "E103": "fields may come from another file, so that none is required",
     "E115": "a rule between fields",

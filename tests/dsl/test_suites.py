@@ -1,4 +1,4 @@
-"""Suites of suites: selections, replicates, and what is laid over what."""
+"""Suites of suites: selections, draws, and what is laid over what."""
 
 from __future__ import annotations
 
@@ -93,33 +93,33 @@ def test_the_literal_challenge_differs_in_one_field() -> None:
         ).model_dump() == a.model_dump()  # fmt: skip
 
 
-def test_replicates_draw_other_people(expand: Expand) -> None:
-    found = expand(HEAD + AXES + "seeds: {crowd: [flow]}\nreplicates: 2\n")
+def test_draws_draw_other_people(expand: Expand) -> None:
+    found = expand(HEAD + AXES + "seeds: {crowd: [flow]}\ndraws: 2\n")
     assert ids(found)[:3] == ["slow-in-n01", "slow-in-n02", "slow-back-n01"]
     keys = {s.id: s.crowd.seed.key for s in found.scenarios if s.crowd}
     assert keys["slow-in-n01"] == keys["fast-in-n01"] == "in-n01"
     assert keys["slow-in-n02"] == "in-n02"
 
 
-def test_more_replicates_keep_the_first(expand: Expand) -> None:
-    few, many = (hashes(expand(HEAD + MATRIX + f"replicates: {n}\n")) for n in (3, 120))
+def test_more_draws_keep_the_first(expand: Expand) -> None:
+    few, many = (hashes(expand(HEAD + MATRIX + f"draws: {n}\n")) for n in (3, 120))
     assert few.items() <= many.items()
     assert list(many)[119] == "slow-n120"
 
 
-def test_one_replicate_changes_nothing(expand: Expand) -> None:
-    assert hashes(expand(HEAD + AXES)) == hashes(expand(HEAD + AXES + "replicates: 1\n"))
+def test_one_draw_changes_nothing(expand: Expand) -> None:
+    assert hashes(expand(HEAD + AXES)) == hashes(expand(HEAD + AXES + "draws: 1\n"))
 
 
-def test_replicates_without_matrix_and_with_a_key_of_ones_own(expand: Expand) -> None:
-    text = HEAD.replace("}\n", "}\n", 1) + "replicates: 2\n"
+def test_draws_without_matrix_and_with_a_key_of_ones_own(expand: Expand) -> None:
+    text = HEAD.replace("}\n", "}\n", 1) + "draws: 2\n"
     assert ids(expand(text)) == ["s-n01", "s-n02"]
     seeds = [s.crowd.seed for s in expand(text, "crowd.seed.key=mine").scenarios if s.crowd]
     assert [(s.root, s.key) for s in seeds] == [(7, "mine-n01"), (7, "mine-n02")]
 
 
-def test_replicates_can_be_selected(expand: Expand) -> None:
-    text = HEAD + MATRIX + "replicates: 3\nonly: {replicate: [n02]}\n"
+def test_draws_can_be_selected(expand: Expand) -> None:
+    text = HEAD + MATRIX + "draws: 3\nonly: {draw: [n02]}\n"
     assert ids(expand(text)) == ["slow-n02", "fast-n02"]
 
 

@@ -10,6 +10,7 @@ from typing import Any
 from crowdbot.core.bundle.entries import LeaderboardEntry
 from crowdbot.core.bundle.manifest import RULES, RULES_TEXT
 from crowdbot.core.bundle.standings import Standings
+from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main
 from crowdbot.core.statistics import OUTCOMES, Estimate
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import render_page
@@ -49,6 +50,8 @@ def _table(table: Standings) -> dict[str, Any]:
         "groups": _groups(table),
         "findings": [(f.severity, str(f), f.accepted) for f in table.findings],
         "tests": table.summary.tests,
+        "suspicion": table.suspicion,
+        "audit": table.audit.text if table.audit else "nobody has audited this suite",
         "level": f"{table.summary.level:.0%}",
     }
 
@@ -84,7 +87,7 @@ def _state(entry: LeaderboardEntry) -> str:
 
 
 def _groups(table: Standings) -> dict[str, list[dict[str, Any]]]:
-    """Category -> metrics, each with a cell for every ranked entry."""
+    """Category -> metrics, each with a cell for every ranked entry; the four scores first."""
     ranked = [e for e in table.entries if e.ranked]
     found: dict[str, list[dict[str, Any]]] = {}
     for metric in dict.fromkeys(s.metric for s in table.summary.scores):
@@ -97,8 +100,9 @@ def _groups(table: Standings) -> dict[str, list[dict[str, Any]]]:
             "better": label.better,
             "cells": [_cell(table, metric, e) for e in ranked],
         }
-        found.setdefault(label.category, []).append(row)
-    return dict(sorted(found.items()))
+        main = is_main(metric, label.variant)
+        found.setdefault(FOUR_SCORES if main else label.category, []).append(row)
+    return dict(sorted(found.items(), key=lambda item: (item[0] != FOUR_SCORES, item[0])))
 
 
 def _cell(table: Standings, metric: str, entry: LeaderboardEntry) -> dict[str, Any]:
@@ -107,6 +111,8 @@ def _cell(table: Standings, metric: str, entry: LeaderboardEntry) -> dict[str, A
         return {"rank": "", "value": "—", "interval": "", "note": "an older version of the metric"}
     others = {k: getattr(score.counts, k) for k in OUTCOMES if k != "ok"}
     notes = [f"{n} {k}" for k, n in others.items() if n]
+    if score.counts.censored:
+        notes.append(f"mean of all runs {_number(score.bounds[0])} to {_number(score.bounds[1])}")
     notes += ["scored again"] * (metric in entry.rescored)
     return {
         "rank": "" if rank is None else f"{rank}{'=' * table.shares_rank(metric, entry)}",

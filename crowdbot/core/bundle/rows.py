@@ -49,6 +49,7 @@ def _run_row(planner: str, run_id: str, run: ClaimedRun) -> RunRow:
         directory=f"{planner}: {run.entry.directory}",
         conditions={str(k): str(v) for k, v in _map(record, "conditions").items()},
         record=record,
+        role=str(record.get("role", "candidate")),
     )
 
 

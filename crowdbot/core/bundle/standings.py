@@ -10,6 +10,8 @@ from crowdbot.core.bundle.entries import LeaderboardEntry
 from crowdbot.core.bundle.rows import results_of
 from crowdbot.core.results.confounds import Finding, check_comparable, confounds
 from crowdbot.core.statistics import PlannerScore, Summary, summarise
+from crowdbot.core.statistics.audit import Audit, suspicion
+from crowdbot.errors import InputError
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,6 +24,8 @@ class Standings:
         findings: what besides the planner differs.
         summary: of the ranked entries.
         by: metric that decides the order.
+        audit: of the suite; None where nobody has audited it.
+        suspicion: why ranks here may mean nothing, from the audit.
     """
 
     edition: str
@@ -30,6 +34,8 @@ class Standings:
     findings: tuple[Finding, ...]
     summary: Summary
     by: str
+    audit: Audit | None = None
+    suspicion: str = ""
 
     def rank(self, metric: str, entry: LeaderboardEntry) -> int | None:
         """1 + how many are better for certain; None where it is not ranked."""
@@ -49,7 +55,10 @@ class Standings:
 
 
 def standings(
-    entries: Sequence[LeaderboardEntry], by: str, accept: Iterable[str]
+    entries: Sequence[LeaderboardEntry],
+    by: str,
+    accept: Iterable[str],
+    audits: Iterable[Audit] = (),
 ) -> list[Standings]:
     """One table for each edition and class.
 
@@ -57,20 +66,33 @@ def standings(
         entries: from `load_entries`.
         by: metric that decides the order.
         accept: confounds that are accepted; tables print them.
+        audits: of suites, those of others are left out.
 
     Raises:
-        InputError: entries differ in more than the planner.
+        InputError: entries differ in more than the planner, or a suite has two audits.
         UnknownNameError: there is no such confound.
     """
     groups: dict[tuple[str, str], list[LeaderboardEntry]] = {}
     for entry in entries:
         groups.setdefault((entry.manifest.edition.name, entry.manifest.classed), []).append(entry)
-    accepted = tuple(accept)
-    return [_table(*key, groups[key], by, accepted) for key in sorted(groups, reverse=True)]
+    accepted, audited = tuple(accept), _by_suite(audits)
+    return [
+        _table(groups[key], by, accepted, audited.get(groups[key][0].manifest.edition.suite))
+        for key in sorted(groups, reverse=True)
+    ]
+
+
+def _by_suite(audits: Iterable[Audit]) -> dict[str, Audit]:
+    found: dict[str, Audit] = {}
+    for audit in audits:
+        if audit.suite in found:
+            raise InputError(f"there are two audits of {audit.suite}; give the one that holds")
+        found[audit.suite] = audit
+    return found
 
 
 def _table(
-    edition: str, classed: str, entries: list[LeaderboardEntry], by: str, accept: tuple[str, ...]
+    entries: list[LeaderboardEntry], by: str, accept: tuple[str, ...], audit: Audit | None
 ) -> Standings:
     results = results_of((e.name, run) for e in entries if e.ranked for run in e.runs)
     findings = confounds(results, accept)
@@ -87,10 +109,12 @@ def _table(
         return not entry.ranked, ranks.get(name, 1), entry.failed, mean, name
 
     return Standings(
-        edition=edition,
-        classed=classed,
+        edition=entries[0].manifest.edition.name,
+        classed=entries[0].manifest.classed,
         entries=tuple(sorted(entries, key=order)),
         findings=findings,
         summary=summary,
         by=by,
+        audit=audit,
+        suspicion=suspicion(audit, results.runs),
     )

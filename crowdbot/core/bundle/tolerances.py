@@ -56,6 +56,7 @@ SPREADS: Mapping[str, float] = {
     "relative_path_length": 0.12,
     "relative_time_to_goal": 0.094,
     "risk": 16,
+    "safe_efficiency": 0.5,
     "social_time_fraction": 0.089,
     "space_compliance": 0.14,
     "spl": 0.12,

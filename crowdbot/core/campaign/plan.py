@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from crowdbot.core.campaign.request import (
     open_planners,
     open_suites,
 )
+from crowdbot.core.campaign.sample import FLOOR_SCENARIOS, sample
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs.identity import (
@@ -30,6 +31,7 @@ from crowdbot.core.runs.identity import (
 from crowdbot.core.runs.outcome import PLANNER_FAILED
 from crowdbot.core.runs.request import Request
 from crowdbot.core.sim.preflight import preflight
+from crowdbot.errors import InputError
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,6 +66,7 @@ class Plan:
         references: calibration runs of all runs, there or not.
         estimate: knows the runs that are there.
         size: what the jobs are going to leave, bytes.
+        left_out: planners that nobody named and that some robot cannot do with -> why.
     """
 
     out: Path
@@ -72,6 +75,7 @@ class Plan:
     references: int
     estimate: CostEstimate
     size: float
+    left_out: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def seconds(self) -> float:
@@ -113,6 +117,7 @@ class _PlanBuilder:
         self._runs: list[PlannedRun] = []
         self._jobs: dict[str, Job] = {}
         self._references: dict[str, bool] = {}
+        self._left_out: dict[str, str] = {}
         self._populate = cached_population()
 
     def plan(self) -> Plan:
@@ -124,21 +129,35 @@ class _PlanBuilder:
             references=len(self._references),
             estimate=self._estimate,
             size=self._size,
+            left_out=self._left_out,
         )
 
     def add(self, suite: SelectedSuite) -> None:
         position = {s.id: i for i, s in enumerate(suite.expansion.scenarios)}
-        for scenario in suite.scenarios:
-            prepared = prepare(scenario, self._registry, populate=self._populate)
-            for entry, request in self._requests(suite, prepared, position[scenario.id]):
-                self._add(suite, prepared, entry, request)
+        everything = [
+            prepare(scenario, self._registry, populate=self._populate)
+            for scenario in suite.scenarios
+        ]
+        wanted = self._campaign.sample
+        chosen = everything if wanted is None else sample(everything, wanted, suite.name)
+        few = [id(one) for one in sample(chosen, FLOOR_SCENARIOS, suite.name)]
+        for one in chosen:
+            planners = [e for e in self._planners if not e.sampled or id(one) in few]
+            place = position[one.run.scenario.id]
+            for entry, request in self._requests(suite, one, place, planners):
+                self._add(suite, one, entry, request)
 
     def _requests(
-        self, suite: SelectedSuite, prepared: Prepared, position: int
+        self,
+        suite: SelectedSuite,
+        prepared: Prepared,
+        position: int,
+        planners: Sequence[PlannerEntry],
     ) -> Iterator[tuple[PlannerEntry, Request]]:
         scenario = prepared.run.scenario
-        for entry in self._planners:
-            for seed in dict.fromkeys(self._campaign.seeds):
+        seeds = tuple(dict.fromkeys(self._campaign.seeds))
+        for entry in planners:
+            for seed in seeds[:1] if entry.sampled else seeds:
                 request = Request(
                     scenario=scenario,
                     choice=entry.choice,
@@ -163,6 +182,8 @@ class _PlanBuilder:
             self._learn(request, record, prepared)
             if self._campaign.retry_failed and record["status"] == PLANNER_FAILED:
                 record = None
+        if record is None and not self._can_run(entry, request):
+            return
         self._runs.append(
             PlannedRun(
                 key=key,
@@ -177,9 +198,19 @@ class _PlanBuilder:
         for reference in references:
             self._references.setdefault(reference.run_id, False)
         if record is None:
-            preflight(request)
             missing = [r for r in references if self._is_missing(suite, entry, request, r)]
             self._job("run", key, suite, entry, request, prepared, missing)
+
+    def _can_run(self, entry: PlannerEntry, request: Request) -> bool:
+        """Whether the robot has what the planner needs; an error, where the user named it."""
+        try:
+            preflight(request)
+        except InputError as error:
+            if not entry.optional:
+                raise
+            self._left_out.setdefault(entry.choice.label, str(error))
+            return False
+        return True
 
     def _is_missing(
         self, suite: SelectedSuite, entry: PlannerEntry, request: Request, reference: Reference
@@ -220,7 +251,7 @@ class _PlanBuilder:
             index=request.position,
             spec_hash=trial.spec,
             planner=entry.text,
-            settings=tuple(self._campaign.planner_settings),
+            settings=entry.settings,
             label=entry.choice.label,
             seed=request.seed,
             out=str(self._out),

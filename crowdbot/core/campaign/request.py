@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crowdbot.core.campaign.job import SuiteSource
-from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
+from crowdbot.core.planning.resolve import PlannerChoice, kinds_of_role, resolve_planner
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.request import Recorded
 from crowdbot.core.scenarios.library import open_spec, select
+from crowdbot.dsl.component_specs import PlannerRole
 from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError, UnknownNameError, UsageError
@@ -22,7 +23,11 @@ class CampaignRequest:
 
     Attributes:
         suites: paths or names of packaged suites.
+        roles: planners with these roles are run as well, where the robot has what they need.
+        floors: run floors and ceilings besides, in a sample of the scenarios and at the first
+            seed, where the robot has what they need.
         only: pattern of scenario ids; must fit something in some suite.
+        sample: run so many scenarios of each suite, drawn; None: all.
         planner_settings: ``key=value`` texts, for all planners.
         retry_failed: run again what ended with a planner that failed.
     """
@@ -30,7 +35,10 @@ class CampaignRequest:
     suites: Sequence[str]
     planners: Sequence[str]
     seeds: Sequence[int] = (0,)
+    roles: Sequence[PlannerRole] = ()
+    floors: bool = False
     only: str | None = None
+    sample: int | None = None
     out: Path = Path("runs")
     record: Recorded = "used"
     replay: bool = True
@@ -56,10 +64,19 @@ class SelectedSuite:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlannerEntry:
-    """A planner of the campaign: the text by which a worker finds it, and what it is."""
+    """A planner of the campaign: the text by which a worker finds it, and what it is.
+
+    Attributes:
+        settings: ``key=value`` texts.
+        optional: left out of scenarios whose robot lacks what it needs.
+        sampled: run in a sample of the scenarios, at the first seed.
+    """
 
     text: str
     choice: PlannerChoice
+    settings: tuple[str, ...] = ()
+    optional: bool = False
+    sampled: bool = False
 
 
 def open_suites(request: CampaignRequest, registry: Registry) -> list[SelectedSuite]:
@@ -97,14 +114,18 @@ def open_planners(request: CampaignRequest, registry: Registry) -> list[PlannerE
         InputError: one is wrong, or two would write into the same folders.
         PlannerError: a Python file cannot be imported.
     """
-    if not request.planners:
+    if not request.planners and not request.roles:
         raise UsageError("which planner? Give --planner NAME, once for each")
+    settings = tuple(request.planner_settings)
     entries = [
         PlannerEntry(
-            text=_planner(p), choice=resolve_planner(p, registry, request.planner_settings)
+            text=_planner(p), choice=resolve_planner(p, registry, settings), settings=settings
         )
         for p in dict.fromkeys(request.planners)
     ]
+    for entry in _by_role(request, registry):
+        if entry.choice.label not in [e.choice.label for e in entries]:
+            entries.append(entry)
     labels: dict[str, PlannerEntry] = {}
     for entry in entries:
         other = labels.setdefault(entry.choice.label, entry)
@@ -114,6 +135,18 @@ def open_planners(request: CampaignRequest, registry: Registry) -> list[PlannerE
                 "their runs would replace each other; give each a folder with --out"
             )
     return entries
+
+
+def _by_role(request: CampaignRequest, registry: Registry) -> list[PlannerEntry]:
+    """Planners that nobody named: those of some roles, then floors and ceilings."""
+    sampled: tuple[PlannerRole, ...] = ("floor", "ceiling") if request.floors else ()
+    found = []
+    for role in (*request.roles, *(r for r in sampled if r not in request.roles)):
+        for kind in kinds_of_role(role, registry):
+            choice = resolve_planner(kind, registry)
+            is_sampled = role not in request.roles
+            found.append(PlannerEntry(text=kind, choice=choice, optional=True, sampled=is_sampled))
+    return found
 
 
 def _check_folders(suites: Sequence[SelectedSuite]) -> None:

@@ -7,7 +7,7 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, cast, get_args
 
 from pydantic import ValidationError
 from ruamel.yaml import YAML
@@ -26,7 +26,7 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.support.source_digest import source_digest
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.component import Component
-from crowdbot.dsl.component_specs import PlannerSpec
+from crowdbot.dsl.component_specs import PlannerRole, PlannerSpec
 from crowdbot.errors import InputError, PlannerError, UnknownNameError, did_you_mean, nearest
 
 
@@ -43,6 +43,8 @@ class PlannerChoice:
         label: ``name``, with ``+`` and four hex digits when parameters are not the defaults, and
             with ``+privileged`` where that holds: scores carry it.
         privileged: whether it may read what no sensor of a real robot could tell.
+        role: what it is there for: floor, baseline, ceiling or candidate. One with other
+            parameters than its defaults is a candidate.
         origin: the distribution, or the file, that it comes from.
     """
 
@@ -53,6 +55,7 @@ class PlannerChoice:
     needs: tuple[str, ...] | None
     label: str
     privileged: bool = False
+    role: PlannerRole = "candidate"
     origin: str = ""
 
 
@@ -84,6 +87,17 @@ def resolve_planner(text: str, registry: Registry, settings: Sequence[str] = ())
             raise InputError(f"{text}: 'kind' is missing: which planner is it?")
         return _from_kind(kind, {**document, **given}, registry, f"{text}: ")
     return _from_kind(text, given, registry, "")
+
+
+def kinds_of_role(role: PlannerRole, registry: Registry) -> list[str]:
+    """Planners that are installed for some purpose and need no parameter, in alphabetical order."""
+    return sorted(
+        kind
+        for kind, component in registry.components("planner").items()
+        if role_of(component.spec) == role
+        and not component.experimental
+        and _has_defaults(component)
+    )
 
 
 def select_sensors(
@@ -134,6 +148,7 @@ def _from_kind(
     # Imported at once, so that one that cannot be is refused before a run begins.
     load_build(component, registry.plugin_call(spec))
     owner = registry.owner(component)
+    as_given = _is_default(component, spec)
 
     def build() -> Planner:
         call = registry.plugin_call(spec, error=PlannerError, passes=PlannerError)
@@ -146,8 +161,9 @@ def _from_kind(
         pinned=owner.pinned,
         origin=owner.distribution,
         needs=_needs(component.spec),
-        label=_label(kind if _is_default(component, spec) else f"{kind}+{_digest(spec)}", spec),
+        label=_label(kind if as_given else f"{kind}+{_digest(spec)}", spec),
         privileged=_is_privileged(spec),
+        role=role_of(component.spec) if as_given else "candidate",
     )
 
 
@@ -180,6 +196,10 @@ def _is_default(component: Component[Any], spec: PlannerSpec) -> bool:
         return False
 
 
+def _has_defaults(component: Component[Any]) -> bool:
+    return not any(f.is_required() for f in component.spec.model_fields.values())
+
+
 def _digest(value: Any) -> str:
     """Four hex digits of some parameters."""
     dump = value.model_dump(mode="json") if isinstance(value, PlannerSpec) else value
@@ -195,6 +215,20 @@ def _needs(holder: type) -> tuple[str, ...] | None:
 def _is_privileged(holder: object) -> bool:
     """Whether a planner class, or a spec, in a class variable or a field, says so."""
     return getattr(holder, "privileged", False) is True
+
+
+def role_of(holder: type) -> PlannerRole:
+    """What a planner class, or a spec, says that it is there for.
+
+    Raises:
+        InputError: there is no such role.
+    """
+    role = getattr(holder, "role", "candidate")
+    if role not in get_args(PlannerRole):
+        known = get_args(PlannerRole)
+        near = did_you_mean(nearest(str(role), known)) or f"; there are {', '.join(known)}"
+        raise InputError(f"planner '{holder.__name__}': no role '{role}'{near}")
+    return cast(PlannerRole, role)
 
 
 def _label(label: str, holder: object) -> str:
@@ -266,6 +300,7 @@ def _from_class(path: Path, name: str, parameters: Mapping[str, Any]) -> Planner
         needs=_needs(kind),
         label=_label(f"{name}+{_digest(dict(parameters))}" if parameters else name, kind),
         privileged=_is_privileged(kind),
+        role="candidate" if parameters else role_of(kind),
     )
 
 

@@ -17,6 +17,7 @@ from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.spawns import (
     SpawnSampler,
     Streams,
+    draw_attention,
     draw_speeds,
     heading_to,
     stream_heading,
@@ -41,7 +42,7 @@ def realise(scenario: Scenario) -> Realisation:
     streams = Streams(crowd.seed.root, crowd.seed.key)
     occupancy = Occupancy([robot.task.start[:2] for robot in scenario.robots.values()])
     if crowd.names_nobody and crowd.policy.record is not None:
-        return _table(_recorded(crowd, crowd.policy.record), streams)
+        return _table(_recorded(crowd, crowd.policy.record, streams), streams)
     explicit = [_agent_row(a, scenario, crowd, streams) for a in crowd.agents]
     for row in explicit:
         occupancy.add(row["x"], row["y"], row["radius"])
@@ -58,20 +59,12 @@ def realise(scenario: Scenario) -> Realisation:
 
 
 def _table(rows: Iterable[Row], streams: Streams) -> Realisation:
-    """The table of rows that lack what depends on nothing but the agent's id, in its order."""
+    """The table of rows that lack nothing but the key of goals, in the order of ids."""
     key = {"goal_key": streams.seed("crowd.goal")}
-    listed = sorted(rows, key=lambda row: row["id"])
-    return Realisation.from_rows([row | _attention(row, streams) | key for row in listed])
+    return Realisation.from_rows(sorted((row | key for row in rows), key=lambda row: row["id"]))
 
 
-def _attention(row: Row, streams: Streams) -> Row:
-    """Drawn for each by id, whoever else is there, where it is not given."""
-    given = row.get("attention")
-    drawn = streams.rng("crowd.attention", row["id"]).random() if given is None else given
-    return {"attention": float(drawn)}
-
-
-def _recorded(crowd: Crowd, record: Asset) -> Iterator[Row]:
+def _recorded(crowd: Crowd, record: Asset, streams: Streams) -> Iterator[Row]:
     """The people of a record: each enters where and when it begins and goes where it ends."""
     from crowdbot.core.crowd.recorded import read_record  # with the engine, which takes its time
 
@@ -87,6 +80,7 @@ def _recorded(crowd: Crowd, record: Asset) -> Iterator[Row]:
             "heading": heading_to(*start, goal),
             "speed": float(people.preferred_speed[i]),
             "start_time": float(people.start_time[i]),
+            "attention": draw_attention(streams, "crowd.attention", who),
             "group": -1,
             "policy": "",
             "at_goal": "remove",
@@ -135,8 +129,11 @@ def _flow_rows(
     }
     ways = itertools.cycle(_ways(flow, scenario))
     return [
-        common | way | {"x": x, "y": y, "speed": speed}
-        for (x, y), speed, way in zip(points, speeds, ways, strict=False)
+        common
+        | way
+        | {"x": x, "y": y, "speed": speed}
+        | {"attention": draw_attention(streams, "crowd.attention", i)}
+        for i, ((x, y), speed, way) in enumerate(zip(points, speeds, ways, strict=False))
     ]
 
 
@@ -161,6 +158,8 @@ def _agent_row(agent: Agent, scenario: Scenario, crowd: Crowd, streams: Streams)
         assert crowd.speed is not None  # checked with the document
         rng = streams.rng("crowd.agents.speed", agent.id)
         row["speed"] = draw_speeds(rng, 1, crowd.speed)[0]
+    if agent.attention is None:
+        row["attention"] = draw_attention(streams, "crowd.agents.attention", agent.id)
     if agent.heading is None:
         row["heading"] = (
             stream_heading(agent.portals, scenario.environment.portals)

@@ -71,6 +71,11 @@ def draw_speeds(rng: np.random.Generator, count: int, speed: SpeedDistribution) 
     return speeds
 
 
+def draw_attention(streams: Streams, name: str, unit: int) -> float:
+    """How attentive one person of a stream is, whoever else is there."""
+    return float(streams.rng(name, unit).random())
+
+
 def linked_walk(
     areas: Mapping[str, GoalArea], begin: tuple[str, ...], length: int, rng: np.random.Generator
 ) -> list[str]:
@@ -147,6 +152,7 @@ class SpawnSampler:
                 "max_acceleration", spawn.max_acceleration, body.max_acceleration
             ),
             "start_time": self._parameter("start_time", spawn.start_time, 0.0),
+            "attention": self._rng("attention").random(count),
             "policy": self._policies(),
             "at_goal": [at_goal] * count,
             "portals": [spawn.portals or ("", "")] * count,

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
-from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.header import RecordingHeader, RobotHeader
 from crowdbot.core.recording.states import States, StatesReader, series
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.trajectories.trajectories import Trajectories
@@ -87,6 +87,7 @@ class Collected:
             "robot_goal_time": ends[0].goal_time if ends and ends[0].arrived else None,
             "robot_goal": robot.goal,
             "robot_goal_radius": robot.goal_radius,
+            "robot_speed_limit": _fastest(robot),
             "robot_footprint": robot.footprint,
             "contacts": self._contacts(),
         }
@@ -110,6 +111,14 @@ class Collected:
             "agent_jump": states.jump[1:] if states.told.any() else None,
             **{f"trip_{name}": column for name, column in trips.items()},
         }
+
+
+def _fastest(robot: RobotHeader) -> float | None:
+    """The largest speed in any direction, m/s; None where it is not recorded or not positive."""
+    if robot.limits is None:
+        return None
+    fastest = math.hypot(robot.limits.v_max, robot.limits.vy_max)
+    return fastest if fastest > 0.0 else None
 
 
 def _columns(rows: list[Any], names: tuple[str, ...]) -> dict[str, list[Any]]:

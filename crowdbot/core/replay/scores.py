@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from crowdbot.core.scoring.scores_csv import headlines
+from crowdbot.core.scoring.four_scores import main_first
+from crowdbot.core.scoring.scores_csv import headlines, section_of
 from crowdbot.core.types.score import Score
 
 _ARROWS = {
@@ -32,12 +33,12 @@ class Row(NamedTuple):
 
 
 def grouped(scores: Sequence[Score]) -> dict[str, list[Row]]:
-    """Category -> rows, in the order given."""
+    """Category -> rows, in the order given; the four scores are the first one."""
     groups: dict[str, list[Row]] = {}
     chosen = {id(s) for s in headlines(scores)}
-    for score in scores:
+    for score in main_first(scores, lambda s: (s.metric, s.variant)):
         row = _row(score, headline=id(score) in chosen)
-        groups.setdefault(_words(score.category), []).append(row)
+        groups.setdefault(_words(section_of(score)), []).append(row)
     return groups
 
 

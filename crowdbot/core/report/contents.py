@@ -13,7 +13,8 @@ from crowdbot.core.report.encode import Attempt, attempts, axes_of, status_of
 from crowdbot.core.report.figures import Figures, figures
 from crowdbot.core.report.series import Series, all_series
 from crowdbot.core.results.rows import Results, RunRow
-from crowdbot.core.statistics import Table, headline_names
+from crowdbot.core.statistics import FloorCheck, Table, check_floors, headline_names
+from crowdbot.core.statistics.audit import Audit, suspicion
 from crowdbot.errors import InputError
 
 STATUSES = ("arrived", "timeout", "planner_failed", "failed")
@@ -30,6 +31,7 @@ class Heading:
         accepted: differences between the runs that somebody has accepted, one sentence each.
         warnings: differences that do not forbid a comparison.
         references: planners whose scores were given to compare with.
+        audit: of the suite, if somebody has audited it.
     """
 
     suite: str
@@ -38,6 +40,7 @@ class Heading:
     accepted: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     references: tuple[str, ...] = ()
+    audit: Audit | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,6 +52,8 @@ class Contents:
         axes: ``name`` and ``labels`` of each axis.
         cards: metric -> what its card says.
         replays: run id -> address of its replay page, relative to the report.
+        floors: what each planner is told first: whether it beats the floors.
+        suspicion: why nothing here may mean anything; empty without a reason to think so.
     """
 
     heading: Heading
@@ -59,6 +64,8 @@ class Contents:
     figures: Figures
     cards: dict[str, dict[str, Any]]
     replays: Mapping[str, str]
+    floors: tuple[FloorCheck, ...]
+    suspicion: str
 
     @property
     def planners(self) -> tuple[str, ...]:
@@ -83,6 +90,11 @@ class Contents:
     def is_privileged(self, planner: str) -> bool:
         """Whether a planner was told what no sensor can tell, in any run."""
         return any(isinstance(a, RunRow) and a.privileged for a in self.of(planner))
+
+    def role(self, planner: str) -> str:
+        """What a planner is there for."""
+        roles = (a.role for a in self.of(planner) if isinstance(a, RunRow))
+        return next(roles, "candidate")
 
     def is_pinned(self, planner: str) -> bool:
         """Whether everything came from installed distributions, in all its runs."""
@@ -118,4 +130,6 @@ def gather(
         figures=figures(results, series, axes),
         cards=found,
         replays=replays,
+        floors=check_floors(results),
+        suspicion=suspicion(heading.audit, results.runs),
     )

@@ -27,7 +27,7 @@ from crowdbot.core.statistics import (
     summarise,
 )
 from crowdbot.core.statistics.axes import REALISED_DENSITY
-from crowdbot.core.statistics.clusters import Clusters, bootstrap, mean, trimmed_mean
+from crowdbot.core.statistics.clusters import bootstrap, mean, trimmed_mean
 
 #: What the page is told of a comparison, in this order.
 FIELDS = (
@@ -46,8 +46,8 @@ class Figures:
     """Statistics of a report.
 
     Attributes:
-        headline: of the scores that stand for their metrics, one family of tests; the other
-            variants are another.
+        headline: of the scores that stand for their metrics: the four are one family of tests,
+            the others another; all other variants are a third.
         selections: ``""`` for all runs, ``axis=label`` for a part.
         intervals: (selection, series, planner, 3): interquartile mean, low, high.
         pairs: (series, pair, field).
@@ -143,7 +143,7 @@ def _by_label(
         chosen = column.known & inside[k]
         if not chosen.any():
             continue
-        draws = Clusters.of([d for d, i in zip(table.draws, chosen, strict=True) if i])
+        draws = table.clusters.part(chosen)
         values = column.low[chosen]
         if one.centre == "interquartile mean":
             yield k, _numbers(bootstrap(trimmed_mean(values), draws))

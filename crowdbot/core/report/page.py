@@ -11,6 +11,7 @@ from crowdbot.core.report.cards import reference
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import encode_runs, encode_scores, pack
 from crowdbot.core.report.figures import FIELDS, VERDICTS
+from crowdbot.core.report.tables import chance, family
 from crowdbot.core.results.rows import RunRow
 from crowdbot.core.scoring.scores_csv import write_table
 from crowdbot.core.support.atomic_write import atomic_write
@@ -58,6 +59,7 @@ def render(contents: Contents) -> str:
         facts=provenance.facts(runs),
         scenarios=provenance.scenarios(runs),
         summary=figures.headline,
+        chance=chance(figures.headline),
         meta={**_meta(contents), "states": states},
         blobs=blobs,
     )
@@ -72,6 +74,7 @@ def _planner(contents: Contents, planner: str) -> dict[str, Any]:
         "privileged": contents.is_privileged(planner),
         "pinned": contents.is_pinned(planner),
         "reference": planner in contents.heading.references,
+        "role": contents.role(planner),
         "facts": provenance.planner_facts([a for a in tried if isinstance(a, RunRow)]),
     }
 
@@ -93,11 +96,10 @@ def _meta(contents: Contents) -> dict[str, Any]:
 
 
 def _first(contents: Contents) -> int:
-    """The series that is shown first: one that has a value."""
+    """The series that is shown first: the primary score, or what comes first without it."""
     known = {(s.metric, s.variant) for s in contents.figures.headline.scores}
     liked = [i for i, s in enumerate(contents.series) if s.name in known]
-    best = [i for i in liked if contents.series[i].metric == "relative_time_to_goal"]
-    return next(iter([*best, *liked]), 0)
+    return next(iter(liked), 0)
 
 
 def _stats(contents: Contents) -> dict[str, Any]:
@@ -107,6 +109,7 @@ def _stats(contents: Contents) -> dict[str, Any]:
         "level": round(100 * figures.headline.level, 6),
         "alpha": figures.headline.alpha,
         "tests": figures.headline.tests,
+        "family": family(figures.headline),
         "selections": figures.selections,
         "pairs": list(combinations(places, 2)),
         "fields": FIELDS,

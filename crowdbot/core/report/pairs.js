@@ -67,8 +67,8 @@ function pairsNote(rows) {
   const { tests, alpha, level } = report.stats;
   return `Mean of the differences over pairs of the same scenario and seed; effect size: the same in standard deviations; in brackets ${level} % intervals. ` +
     "Undefined, censored and failed runs take part in the probability and the test as far as they are known. " +
-    `p: signed ranks, signs flipped for whole crowd draws, corrected for the ${tests} tests of the headline scores; there is a verdict where it is at most ${alpha}. ` +
-    "Other variants are corrected among themselves. Detectable: the mean difference that so many draws would find in four cases of five.";
+    `p: signed ranks, signs flipped for whole crowd draws, corrected for the ${tests} tests of ${report.stats.family}; there is a verdict where it is at most ${alpha}. ` +
+    "All other scores are detail, and corrected among themselves. Detectable: the mean difference that so many draws would find in four cases of five.";
 }
 
 /** All scores of one pair: probability that the first is better, with its interval. */

@@ -6,9 +6,19 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Literal, NamedTuple
 
 from crowdbot.core.results.rows import ScoreRow
+from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main, main_first
 
 #: Categories that come first; the others follow by name.
-_FIRST = ("task", "path efficiency", "effect on crowd", "collision", "similarity", "proximity")
+_FIRST = (
+    FOUR_SCORES,
+    "task",
+    "burden",
+    "path efficiency",
+    "effect on crowd",
+    "collision",
+    "similarity",
+    "proximity",
+)
 #: Categories that no simulated run has data for.
 _LAST = ("shared control", "questionnaire")
 
@@ -45,6 +55,8 @@ def all_series(
 ) -> list[Series]:
     """Every variant of every metric in some scores; those of the seed first in their category.
 
+    The four scores are a category of their own, and come before all others.
+
     Args:
         scores: of all runs.
         headlines: (metric, variant) that stand for their metrics; a metric without one is
@@ -65,7 +77,7 @@ def all_series(
                 metric=label.metric,
                 variant=label.variant,
                 symbol=label.symbol,
-                category=label.category,
+                category=FOUR_SCORES if is_main(*name) else label.category,
                 unit=label.unit,
                 better=label.better,
                 plain=plain,
@@ -73,19 +85,21 @@ def all_series(
                 centre=_centre(ranges.get(label.metric, ""), values.get(name, [])),
             )
         )
-    return sorted(found, key=lambda s: (*_rank(s.category), s.metric not in seeds, *_place(s)))
+    found.sort(key=lambda s: (*_rank(s.category), s.metric not in seeds, *_place(s)))
+    return main_first(found, lambda s: s.name)
 
 
 def _centre(range_: str, values: Sequence[float]) -> Centre:
     """What sums up a series.
 
     The middle half has no room for rare events: nine runs without a collision and one with three
-    would be no collision at all. So counts, and what is zero in most runs, have their mean.
+    would be no collision at all. So counts, and what is zero in most runs, have their mean. So have
+    scores that are 0 for a failure ("0, or ..."): a quarter of failures would be trimmed off.
     """
     if range_.startswith("0 or 1"):
         return "share"
     rare = sum(value == 0 for value in values) > len(values) / 2
-    return "mean" if rare or range_.startswith("0, 1, 2") else "interquartile mean"
+    return "mean" if rare or range_.startswith("0, ") else "interquartile mean"
 
 
 def _values(scores: Sequence[ScoreRow]) -> dict[tuple[str, str], list[float]]:

@@ -9,7 +9,8 @@ from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import Attempt, status_of
 from crowdbot.core.report.provenance import short
 from crowdbot.core.results.rows import FailureRow, RunRow, ScoreRow
-from crowdbot.core.statistics import Comparison, Counts, Estimate, Summary
+from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main
+from crowdbot.core.statistics import Comparison, Estimate, PlannerScore, Summary
 
 _RUN = ("suite", "scenario", "planner", "seed", "run_status", "run_id", "realisation", "density")
 _SCORE = (
@@ -66,12 +67,18 @@ def markdown(contents: Contents) -> str:
     summary, heading = contents.figures.headline, contents.heading
     lines = [f"# {_plain(heading.suite)}", ""]
     lines += [f"Made {_plain(heading.made)}.", ""] if heading.made else []
+    lines += [f"**{_plain(contents.suspicion)}.**", ""] if contents.suspicion else []
+    for check in contents.floors:
+        mark = "**" if check.leads and not check.beats_all else ""
+        lines += [f"{mark}{_plain(check.text)}.{mark}", ""]
     for text in heading.accepted:
         lines += [f"**Accepted: {_plain(text)}**", ""]
     for text in heading.warnings:
         lines += [f"Warning: {_plain(text)}", ""]
     lines += [*_table(*_endings(contents)), "", "## Scores", "", _meaning(summary), ""]
     lines += [*_table(*_scores(contents)), ""]
+    if any(not v.reason for v in summary.variances):
+        lines += ["## What varies with which", "", *_table(*_variances(summary)), ""]
     if summary.comparisons:
         lines += ["## Planner against planner", "", _family(summary), ""]
         lines += [*_table(*_comparisons(summary)), ""]
@@ -82,15 +89,44 @@ def _meaning(summary: Summary) -> str:
     return (
         "Interquartile mean over all runs with a value (of counts and rare events the mean, of "
         f"yes or no the share), and its {100 * summary.level:g} % interval; whole crowd draws "
-        "were resampled. Runs without a value are counted, not dropped."
+        f"were resampled. {chance(summary)} Runs without a value are counted, not dropped."
     )
+
+
+def chance(summary: Summary) -> str:
+    """What intervals leave to chance."""
+    if summary.conditions_fixed:
+        return "Intervals tell what other people would change; conditions are those of the suite."
+    return (
+        "Intervals take people and conditions for chance: with one crowd draw a condition they "
+        "cannot be told apart."
+    )
+
+
+def _variances(summary: Summary) -> tuple[Sequence[str], list[Sequence[str]]]:
+    """Shares of the variance of the main scores; of all scores where there are none."""
+    known = [v for v in summary.variances if not v.reason]
+    main = [v for v in known if is_main(v.metric, v.variant)] or known
+    rows: list[Sequence[str]] = [
+        (v.metric, _plain(v.planner), *(f"{100.0 * share:.0f} %" for share in v.shares[:2]),
+         "" if v.seed is None else f"{100.0 * v.shares[2]:.0f} %")
+        for v in main
+    ]  # fmt: skip
+    return ("metric", "planner", "condition", "crowd draw", "seed"), rows
 
 
 def _family(summary: Summary) -> str:
     return (
-        f"Pairs of the same scenario and seed. {summary.tests} tests share the chance "
-        f"{summary.alpha:g} of any false verdict (Holm)."
+        f"Pairs of the same scenario and seed. {summary.tests} tests of {family(summary)} share "
+        f"the chance {summary.alpha:g} of any false verdict (Holm); all other scores are detail, "
+        "and share it among themselves."
     )
+
+
+def family(summary: Summary) -> str:
+    """What the scores that share the chance of a false verdict are called."""
+    main = any(is_main(s.metric, s.variant) for s in summary.scores)
+    return FOUR_SCORES if main else "the headline scores"
 
 
 def _endings(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
@@ -109,13 +145,14 @@ def _scores(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
         here = [scores[metric, variant, planner] for planner in summary.planners]
         unit = "" if here[0].unit == "1" else here[0].unit
         intervals = contents.figures.intervals[0, places[metric, variant]].tolist()
-        cells = [_score_cell(s.counts, found) for s, found in zip(here, intervals, strict=True)]
+        cells = [_score_cell(s, found) for s, found in zip(here, intervals, strict=True)]
         head = map(_plain, (f"{metric} {variant}".removesuffix(" corrected"), here[0].symbol, unit))
         rows.append((*head, here[0].better, *cells))
     return ("score", "symbol", "unit", "better", *map(_plain, summary.planners)), rows
 
 
-def _score_cell(counts: Counts, centre: Sequence[float]) -> str:
+def _score_cell(score: PlannerScore, centre: Sequence[float]) -> str:
+    counts = score.counts
     missing = [
         f"{count} {name}"
         for name, count in (
@@ -125,7 +162,15 @@ def _score_cell(counts: Counts, centre: Sequence[float]) -> str:
         )
         if count
     ]
-    return "; ".join([_numbers(*centre), *missing])
+    return "; ".join([_numbers(*centre), *missing, *_whole(score)])
+
+
+def _whole(score: PlannerScore) -> list[str]:
+    """Between which bounds the mean of all runs lies, where that of some says too little."""
+    if not score.counts.censored:
+        return []
+    low, high = ("?" if x is None else f"{x:.4g}" for x in score.bounds)
+    return [f"mean of all in [{low}, {high}]"]
 
 
 def _estimate(found: Estimate) -> str:

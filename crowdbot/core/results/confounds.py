@@ -122,11 +122,13 @@ def _all(runs: Sequence[RunRow]) -> Iterator[Finding]:
         yield _finding("crowd", scenario, group, lambda r: _short(r.realisation_hash))
         yield _finding("agents", scenario, group, lambda r: str(r.record.get("agents", "")))
     yield from _conditions(runs)
-    yield _finding("privileged", "planners", runs, _class)
+    # A ceiling is there to be compared with, and says what it is.
+    yield _finding("privileged", "planners", [r for r in runs if r.role != "ceiling"], _class)
     loose = [r for r in runs if not r.pinned]
     for planner, group in _grouped(loose, lambda r: r.planner):
         yield _finding("unpinned", planner, group, _source)
-    yield from _unpaired(runs)
+    # Floors and ceilings are run in a sample; what is said of them says in how many pairs.
+    yield from _unpaired([r for r in runs if r.role not in ("floor", "ceiling")])
 
 
 def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:

@@ -12,7 +12,11 @@ from typing import Any
 #: Status of a run whose planner failed.
 PLANNER_FAILED = "planner_failed"
 #: What is known of an attempt that left no run: its robot did not arrive.
-WITHOUT_RUN: Mapping[str, float] = {"success": 0.0, "success_no_collision": 0.0}
+WITHOUT_RUN: Mapping[str, float] = {
+    "success": 0.0,
+    "success_no_collision": 0.0,
+    "safe_efficiency": 0.0,
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,7 +28,7 @@ class RunRow:
         suite, scenario, planner, seed: planner is the label, with a digest of its parameters
             where they are not the defaults.
         axes: axis of the suite -> label, such as ``{"flow": "counter", "density": "d0250"}``,
-            in the suite's order; ``replicate`` among them where there are several.
+            in the suite's order; ``draw`` among them where a condition has several.
         status: ``arrived``, ``timeout`` or ``planner_failed``; ``reason`` says why it ended.
         goal_time: s, None when the robot did not arrive.
         sim_time, wall_time: s.
@@ -38,6 +42,7 @@ class RunRow:
         conditions: what must be equal in runs that are compared: rates, perceived radius, whether
             people see the robot, versions of software, parameters of metrics. Name -> text.
         record: the whole ``run.json``.
+        role: what the planner is there for: floor, baseline, ceiling or candidate.
     """
 
     run_id: str
@@ -60,6 +65,7 @@ class RunRow:
     directory: str
     conditions: Mapping[str, str]
     record: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    role: str = "candidate"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

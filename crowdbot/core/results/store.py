@@ -287,6 +287,7 @@ def _run(row: sqlite3.Row) -> RunRow:
         pinned=bool(pinned),
         conditions=json.loads(row["conditions"]),
         record=record,
+        role=str(record.get("role", "candidate")),
     )
 
 

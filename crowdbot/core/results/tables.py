@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 from statistics import fmean, median
-from typing import Any
+from typing import Any, Literal
 
 from crowdbot.core.results.rows import (
     PLANNER_FAILED,
@@ -113,8 +113,10 @@ class GroupSummary:
     """Scores of one metric and variant in one group of runs.
 
     ``mean`` and ``median`` are those of the ``count`` scores that have a value; ``undefined`` and
-    ``censored`` are how many have none. ``failed`` counts the runs whose planner failed, which are
-    among the others, and the attempts that left no run, which are not successes.
+    ``censored`` are how many have none. ``low`` and ``high`` bound the mean of all scores, if those
+    without a value are anywhere within their bounds; None where there is no bound. ``failed``
+    counts the runs whose planner failed, which are among the others, and the attempts that left no
+    run, which are not successes.
     """
 
     group: Mapping[str, str]
@@ -127,6 +129,8 @@ class GroupSummary:
     censored: int
     failed: int
     mean: float | None
+    low: float | None
+    high: float | None
     median: float | None
 
 
@@ -139,7 +143,7 @@ def summarise(
         results: what to look at.
         metric: pattern of names.
         by: axes, or ``planner``, ``suite``, ``scenario``, ``seed``, ``status``.
-        variant: None takes ``corrected`` where a metric has that, else its first.
+        variant: None takes ``rate`` where a metric has that, else ``corrected``, else its first.
 
     Raises:
         UnknownNameError: no such axis or metric.
@@ -167,11 +171,13 @@ def summarise(
 
 
 def _usual_variants(results: Results) -> dict[str, str]:
-    usual: dict[str, str] = {}
+    found: dict[str, dict[str, None]] = {}
     for score in results.scores:
-        if score.variant == "corrected" or score.metric not in usual:
-            usual[score.metric] = score.variant
-    return usual
+        found.setdefault(score.metric, {})[score.variant] = None
+    liked = ("rate", "corrected")
+    return {
+        m: next((v for v in liked if v in names), next(iter(names))) for m, names in found.items()
+    }
 
 
 def _summary(group: Mapping[str, str], scores: Sequence[ScoreRow], failed: int) -> GroupSummary:
@@ -188,8 +194,16 @@ def _summary(group: Mapping[str, str], scores: Sequence[ScoreRow], failed: int) 
         censored=sum(s.status == "censored" for s in scores),
         failed=failed,
         mean=fmean(values) if values else None,
+        low=_bound(scores, "lower"),
+        high=_bound(scores, "upper"),
         median=median(values) if values else None,
     )
+
+
+def _bound(scores: Sequence[ScoreRow], side: Literal["lower", "upper"]) -> float | None:
+    """Of the mean of all scores, those without a value at this end of what is possible."""
+    ends = [getattr(s, side) if s.value is None else s.value for s in scores]
+    return None if None in ends else fmean(ends)
 
 
 def _label(run: RunRow | FailureRow, name: str) -> str:

@@ -42,6 +42,7 @@ def run_record(
         "hashes": hashes,
         "pinned": request.pinned,
         "privileged": request.choice.privileged,
+        "role": request.choice.role,
         "allowed_plugins": request.registry.allowed,
         "recorded": request.record,
         **ending(outcome),

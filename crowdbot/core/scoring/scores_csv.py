@@ -11,6 +11,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main, main_first
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.types.score import Score
 from crowdbot.errors import InputError
@@ -149,19 +150,32 @@ _SIGNS = {"higher": "+", "lower": "-", "reference": "=", "none": ""}
 
 
 def headlines(scores: Sequence[Score]) -> list[Score]:
-    """One score for each metric that the run has data for: corrected, else what stands for it."""
+    """One score for each metric that the run has data for: the four scores first.
+
+    That is the rate, where a metric has one, else the corrected variant, else what stands for it.
+    """
     found = []
     for _, group in groupby(scores, key=lambda s: s.metric):
         variants = [s for s in group if s.reason not in _NOT_ASKED]
         corrected = [s for s in variants if s.variant == "corrected"]
         restricted = [s for s in variants if s.variant == "restricted" and s.status == "ok"]
         unclear = corrected and corrected[0].status != "ok"
-        found += ((restricted if unclear else []) + corrected + variants)[:1]
-    return found
+        rate = [s for s in variants if s.variant == "rate"]
+        found += (rate + (restricted if unclear else []) + corrected + variants)[:1]
+    return main_first(found, _name)
+
+
+def _name(score: Score) -> tuple[str, str]:
+    return score.metric, score.variant
+
+
+def section_of(score: Score) -> str:
+    """Under which heading a score is shown: its category, but for the four scores."""
+    return FOUR_SCORES if is_main(*_name(score)) else score.category
 
 
 def scores_table(scores: Sequence[Score]) -> Table:
-    """A table for people, grouped by category; fits 80 columns.
+    """A table for people, the four scores first, then by category; fits 80 columns.
 
     The last column says what is better: + higher, - lower, = like the people.
     """
@@ -174,8 +188,8 @@ def scores_table(scores: Sequence[Score]) -> Table:
         table.add_column(name, overflow="fold", no_wrap=True)
     table.add_column("value", overflow="fold", min_width=_VALUE_WIDTH)
     table.add_column("")
-    by_category = sorted(scores, key=lambda s: s.category)
-    for category, group in groupby(by_category, key=lambda s: s.category):
+    by_category = main_first(sorted(scores, key=lambda s: s.category), _name)
+    for category, group in groupby(by_category, key=section_of):
         table.add_section()
         table.add_row(Text(category, style="bold"))
         shown = ""

@@ -6,26 +6,36 @@ docs/explanation/statistics.md says what is computed and how to read it.
 
 from __future__ import annotations
 
+from crowdbot.core.statistics.atlas import AtlasEntry, atlas
 from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, Level
 from crowdbot.core.statistics.comparison import Comparison, Verdict
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts, Estimate, Outcome
+from crowdbot.core.statistics.floors import PRIMARY, FloorCheck, Lead, check_floors
 from crowdbot.core.statistics.summary import PlannerScore, Summary, headline_names, summarise
 from crowdbot.core.statistics.table import Name, Table
+from crowdbot.core.statistics.variance import VarianceParts
 
 __all__ = [
     "OUTCOMES",
+    "PRIMARY",
+    "AtlasEntry",
     "AxisEffect",
     "Comparison",
     "Counts",
     "DensityLevel",
     "Estimate",
+    "FloorCheck",
+    "Lead",
     "Level",
     "Name",
     "Outcome",
     "PlannerScore",
     "Summary",
     "Table",
+    "VarianceParts",
     "Verdict",
+    "atlas",
+    "check_floors",
     "headline_names",
     "summarise",
 ]

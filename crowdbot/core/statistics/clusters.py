@@ -3,6 +3,10 @@
 The 162 scenarios of the challenge walk 18 drawn crowds. Runs with the same crowd rise and fall
 together, so the sample has 18 independent parts and no more; see
 docs/decisions/0014-statistics.md for what was tried and how well it covers.
+
+Where each condition of a suite was tried with several draws, conditions are strata: they are what
+the suite says, and only people are left to chance. An interval then tells what other people would
+change. Where they were not, conditions and people cannot be told apart, and both are chance.
 """
 
 from __future__ import annotations
@@ -11,7 +15,7 @@ import hashlib
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -33,38 +37,79 @@ NO_RUNS = "no run has a value"
 NO_SPREAD = "no variation between crowd draws: the interval has no width"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Clusters:
     """Which crowd draw each run belongs to.
 
     Attributes:
         index: (n,) number of the draw, its place in ``names``.
         names: of the draws, sorted.
+        stratum: (count,) number of the stratum of each draw: conditions that are tied together
+            by draws in which all of them were tried.
     """
 
     index: NDArray[np.intp]
     names: tuple[str, ...]
+    stratum: NDArray[np.intp]
 
     @staticmethod
-    def of(names: Sequence[str]) -> Clusters:
-        """From the name of each run's draw."""
+    def of(names: Sequence[str], conditions: Sequence[str] | None = None) -> Clusters:
+        """From the name of each run's draw, and of its condition.
+
+        Without conditions, or where a stratum has but one draw, all draws are one stratum.
+        """
         different, index = np.unique(np.asarray(names, dtype=str), return_inverse=True)
-        return Clusters(index, tuple(different.tolist()))
+        return Clusters(index, tuple(different.tolist()), _strata(index, conditions))
 
     @property
     def count(self) -> int:
         """How many draws there are."""
         return len(self.names)
 
+    @cached_property
+    def strata(self) -> int:
+        """How many strata there are."""
+        return len(np.unique(self.stratum))
+
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom: draws without one for each stratum."""
+        return self.count - self.strata
+
+    @cached_property
+    def alike(self) -> NDArray[np.float64]:
+        """(count,) draws in the stratum of each draw."""
+        return np.bincount(self.stratum)[self.stratum].astype(np.float64)
+
     def part(self, chosen: NDArray[np.bool_]) -> Clusters:
         """Of some of the runs; draws without any of them are gone."""
         left, index = np.unique(self.index[chosen], return_inverse=True)
-        return Clusters(index, tuple(self.names[i] for i in left))
+        kept = self.stratum[left]
+        if len(kept) and np.bincount(kept)[kept].min() < 2:  # one draw tells nothing of chance
+            kept = np.zeros_like(kept)
+        return Clusters(index, tuple(self.names[i] for i in left), kept)
 
     def sums(self, values: Floats) -> Floats:
         """Sum of each draw's values, (count,)."""
         found = np.bincount(self.index, weights=values, minlength=self.count)
         return found.astype(np.float64, copy=False)
+
+
+def _strata(index: NDArray[np.intp], conditions: Sequence[str] | None) -> NDArray[np.intp]:
+    """(draws,) number of each draw's stratum; zeros where one of them has a single draw."""
+    draws = int(index.max()) + 1 if len(index) else 0
+    together = np.zeros(draws, np.intp)
+    if conditions is None or not draws:
+        return together
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    found, condition = np.unique(np.asarray(conditions, dtype=str), return_inverse=True)
+    ties = coo_array(
+        (np.ones(len(index)), (index, draws + condition)), shape=(draws + len(found),) * 2
+    )
+    stratum = connected_components(ties, directed=False)[1][:draws].astype(np.intp)
+    return stratum if np.bincount(stratum)[stratum].min() > 1 else together
 
 
 # ------------------------------------------------------------------------- means
@@ -83,7 +128,8 @@ def ratio(above: Floats, below: Floats, clusters: Clusters, level: float = 0.95)
     """Sum over sum, with the linearised variance between draws and t of ``count`` - 1.
 
     With equal draws and ``below`` = 1 it is the t interval of the draws' means (Cochran,
-    Sampling Techniques, 3rd ed., 6.3 and 9A).
+    Sampling Techniques, 3rd ed., 6.3 and 9A). In strata, what draws of one stratum have in common
+    is not chance (5A).
     """
     if not len(above) or not below.sum():
         return Estimate(reason=NO_RUNS)
@@ -91,19 +137,23 @@ def ratio(above: Floats, below: Floats, clusters: Clusters, level: float = 0.95)
     error = ratio_error(above, below, clusters)
     if error is None:
         return Estimate(value=value, reason=ONE_DRAW)
-    half = error * quantile_t(0.5 + level / 2, clusters.count - 1)
+    half = error * quantile_t(0.5 + level / 2, clusters.freedom)
     reason = "" if error > 0 else NO_SPREAD
     return Estimate(value=value, low=value - half, high=value + half, reason=reason)
 
 
 def ratio_error(above: Floats, below: Floats, clusters: Clusters) -> float | None:
     """Standard error of `ratio`; None with fewer than two draws."""
-    count, total = clusters.count, float(below.sum())
-    if count < 2:
+    total = float(below.sum())
+    if clusters.count < 2:
         return None
     rest = clusters.sums(above - above.sum() / total * below)
+    if clusters.strata > 1:
+        common = np.bincount(clusters.stratum, weights=rest)[clusters.stratum]
+        rest = rest - common / clusters.alike
+    rest = rest * np.sqrt(clusters.alike / (clusters.alike - 1.0))
     scale = float(np.abs(above).sum())
-    error = math.sqrt(count / (count - 1)) * math.hypot(*rest.tolist()) / total  # no overflow
+    error = math.hypot(*rest.tolist()) / total  # no overflow
     return error if error > 1e-13 * scale / total else 0.0  # equal up to rounding
 
 
@@ -118,12 +168,12 @@ def quantile_t(p: float, freedom: float) -> float:
 def bootstrap(
     statistic: Statistic, clusters: Clusters, level: float = 0.95, *, studentised: bool = True
 ) -> Estimate:
-    """BCa interval of a statistic; whole draws are resampled.
+    """BCa interval of a statistic; whole draws are resampled, each stratum for itself.
 
     Bias and acceleration as in Efron (1987), the acceleration from leaving out one draw at a
-    time. ``studentised`` takes quantiles of t with ``count`` - 1 degrees of freedom, stretched by
-    sqrt(count / (count - 1)), in place of normal ones (Hesterberg 2015, "expanded"): with few
-    draws the plain interval is too narrow.
+    time. ``studentised`` takes quantiles of t with the degrees of freedom of the draws, stretched
+    by the root of draws by degrees of freedom, in place of normal ones (Hesterberg 2015,
+    "expanded"): with few draws the plain interval is too narrow.
 
     Args:
         statistic: of weighted samples; a weight is how often a run is in the sample.
@@ -135,36 +185,51 @@ def bootstrap(
     if clusters.count < 2:
         return Estimate(value=value, reason=ONE_DRAW)
     found = _resampled(statistic, clusters)
-    left_out = statistic(1.0 - np.eye(clusters.count)[:, clusters.index])
+    left_out = statistic(_without_one(clusters)[:, clusters.index])
     found, left_out = found[np.isfinite(found)], left_out[np.isfinite(left_out)]
     if not len(found) or np.ptp(found) <= 1e-12 * float(np.abs(found).max()):
         return Estimate(value=value, low=value, high=value, reason=NO_SPREAD)
-    tails = [_bca_tail(p, value, found, left_out, clusters.count, studentised)
+    tails = [_bca_tail(p, value, found, left_out, clusters, studentised)
              for p in (0.5 - level / 2, 0.5 + level / 2)]  # fmt: skip
     low, high = np.quantile(found, tails)
     return Estimate(value=value, low=float(low), high=float(high))
 
 
 def _resampled(statistic: Statistic, clusters: Clusters) -> Floats:
-    times = _times(clusters.names)
+    times = _times(clusters.names, tuple(clusters.stratum.tolist()))
     rows = max(1, _AT_ONCE // max(1, len(clusters.index)))
     parts = [times[i : i + rows] for i in range(0, len(times), rows)]
     return np.concatenate([statistic(part[:, clusters.index]) for part in parts])
 
 
 @lru_cache(maxsize=64)
-def _times(names: tuple[str, ...]) -> Floats:
+def _times(names: tuple[str, ...], stratum: tuple[int, ...]) -> Floats:
     """How often each draw is in each resample, (RESAMPLES, count).
 
     The stream is named by the draws alone: neither the order of the runs nor other scores matter.
     """
-    key, count = hashlib.sha256("\0".join(names).encode()).hexdigest(), len(names)
+    key = hashlib.sha256("\0".join(names).encode()).hexdigest()
     rng = np.random.Generator(np.random.PCG64(stream_seed(0, key, "statistics.bootstrap")))
-    return rng.multinomial(count, np.full(count, 1 / count), size=RESAMPLES).astype(float)
+    times = np.empty((RESAMPLES, len(names)))
+    for one in dict.fromkeys(stratum):  # in the order of the draws' names
+        there = np.flatnonzero(np.asarray(stratum) == one)
+        share = np.full(len(there), 1 / len(there))
+        times[:, there] = rng.multinomial(len(there), share, size=RESAMPLES)
+    return times
+
+
+def _without_one(clusters: Clusters) -> Floats:
+    """(count, count) weights of draws when one is left out: others of its stratum stand for it."""
+    same = clusters.stratum[:, np.newaxis] == clusters.stratum
+    if clusters.strata == 1:
+        return 1.0 - np.eye(clusters.count)
+    weights = np.where(same, (clusters.alike / (clusters.alike - 1.0))[:, np.newaxis], 1.0)
+    np.fill_diagonal(weights, 0.0)
+    return weights
 
 
 def _bca_tail(
-    p: float, value: float, found: Floats, left_out: Floats, count: int, studentised: bool
+    p: float, value: float, found: Floats, left_out: Floats, draws: Clusters, studentised: bool
 ) -> float:
     from scipy.special import ndtr, ndtri
 
@@ -176,7 +241,7 @@ def _bca_tail(
     bend = float((centred**3).sum()) / (6 * spread) if spread > 0 else 0.0
     z = float(ndtri(p))
     if studentised:
-        z = quantile_t(p, count - 1) * math.sqrt(count / (count - 1))
+        z = quantile_t(p, draws.freedom) * math.sqrt(draws.count / draws.freedom)
     return float(ndtr(bias + (bias + z) / max(1 - bend * (bias + z), 0.1)))
 
 

@@ -93,7 +93,7 @@ def compare(
     label = table.label(name)
     sides = table.column(name, a), table.column(name, b)
     there = (sides[0].outcome != MISSING) & (sides[1].outcome != MISSING)
-    groups = Clusters.of([d for d, t in zip(table.draws, there, strict=True) if t])
+    groups = table.clusters.part(there)
     head = Comparison(
         metric=name[0], variant=name[1], unit=label.unit, better=label.better, a=a, b=b,
         pairs=int(there.sum()), draws=groups.count,
@@ -217,7 +217,7 @@ def _differences(
         difference=c.mean(sign * gains, some, level),
         bounds=bounds,
         standardised=_standardised(gains, some, level),
-        detectable=None if not error else error * _reach(some.count, level),
+        detectable=None if not error else error * _reach(some.freedom, level),
     )
 
 
@@ -236,9 +236,8 @@ def _finite(number: float) -> float | None:
     return number if math.isfinite(number) else None
 
 
-def _reach(draws: int, level: float) -> float:
+def _reach(freedom: int, level: float) -> float:
     """Standard errors that a difference must have to be found with probability `_POWER`."""
-    freedom = draws - 1
     return c.quantile_t(0.5 + level / 2, freedom) + c.quantile_t(_POWER, freedom)
 
 

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 
 from crowdbot.core.results.rows import Results
+from crowdbot.core.scoring.four_scores import is_main, main_first
 from crowdbot.core.statistics import clusters as c
 from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, axis_effects, densities
-from crowdbot.core.statistics.clusters import Clusters
 from crowdbot.core.statistics.comparison import Comparison, compare, with_verdict
 from crowdbot.core.statistics.estimate import Counts, Estimate
 from crowdbot.core.statistics.signed_rank import holm
-from crowdbot.core.statistics.table import Name, Table
+from crowdbot.core.statistics.table import MISSING, Column, Name, Table
+from crowdbot.core.statistics.variance import VarianceParts, variance_parts
 
 #: Reasons of scores whose data no simulated run has; they are left out where all runs say so.
 _NOT_ASKED = {"no_command", "no_answers", "no_formula_in_seed"}
@@ -29,6 +30,9 @@ class PlannerScore:
         counts: how the runs ended; ``reasons`` says why values are missing -> how often.
         draws: independent crowd draws among the values.
         mean, iqm: over the values that exist (``counts.ok``), with intervals.
+        bounds: of the mean over all runs, if undefined and censored values are anywhere within
+            their bounds; None on a side where there is no bound. Who arrives seldom may have a
+            good ``mean`` of the runs in which he did; this says what it is worth.
         least, quartiles, most: of these values; None without any.
     """
 
@@ -43,6 +47,7 @@ class PlannerScore:
     reasons: Mapping[str, int]
     draws: int
     mean: Estimate
+    bounds: tuple[float | None, float | None]
     iqm: Estimate
     least: float | None
     quartiles: tuple[float, float, float] | None
@@ -58,20 +63,26 @@ class Summary:
         scores: by metric, variant and planner.
         comparisons: of each pair of planners in each score.
         axes: effect of each axis on each score of each planner.
+        variances: parts of conditions, draws and seeds in each score of each planner.
         densities: how dense the crowds really were.
         level: of all intervals.
-        alpha: chance of any false verdict in the whole summary.
-        tests: how many comparisons `alpha` is shared by (Holm).
+        alpha: chance of any false verdict among the four scores, and among all others.
+        conditions_fixed: whether intervals leave only people to chance; else, with one draw a
+            condition, conditions are chance as well.
+        tests: how many comparisons of the four scores share `alpha` (Holm); where none of the
+            four is looked at, of all scores.
     """
 
     planners: tuple[str, ...]
     scores: tuple[PlannerScore, ...]
     comparisons: tuple[Comparison, ...]
     axes: tuple[AxisEffect, ...]
+    variances: tuple[VarianceParts, ...]
     densities: tuple[DensityLevel, ...]
     level: float
     alpha: float
     tests: int
+    conditions_fixed: bool = False
 
     def comparison(self, metric: str, a: str, b: str) -> Comparison | None:
         """The comparison of two planners in a metric as it was computed, a before b."""
@@ -92,16 +103,18 @@ class Summary:
 
 
 def headline_names(table: Table) -> tuple[Name, ...]:
-    """One variant of each metric, the same for all runs.
+    """One variant of each metric, the same for all runs; the four scores come first.
 
-    That is ``corrected``; where it has fewer values than ``restricted``, which is made for records
-    that end too early, that one; else the first. Metrics that no run has data for are left out.
+    That is ``rate``, where a metric has one: what grows with time compares how long runs last.
+    Else it is ``corrected``; where that has fewer values than ``restricted``, which is made for
+    records that end too early, that one; else the first. Metrics that no run has data for are left
+    out.
     """
     variants: dict[str, list[Name]] = {}
     for name in table.names:
         if _is_asked(table, name):
             variants.setdefault(name[0], []).append(name)
-    return tuple(_headline(table, names) for names in variants.values())
+    return tuple(main_first((_headline(table, n) for n in variants.values()), lambda n: n))
 
 
 def summarise(
@@ -115,18 +128,19 @@ def summarise(
 
     Args:
         results: from a store.
-        names: (metric, variant) to look at; default `headline_names`. They are the family that
-            Holm's correction is for, together with all pairs of planners.
+        names: (metric, variant) to look at; default `headline_names`. The four scores among them
+            are the family that Holm's correction is for, together with all pairs of planners; all
+            others are a family of their own, and so are comparisons with floors and ceilings.
         level: of intervals.
-        alpha: chance of any false verdict.
+        alpha: chance of any false verdict in a family.
     """
     table = Table(results)
     chosen = headline_names(table) if names is None else tuple(names)
     pairs = list(combinations(table.planners, 2))
     found = [compare(table, name, a, b, level=level) for name in chosen for a, b in pairs]
-    tested = [i for i, (x, _) in enumerate(found) if x.p is not None]
-    adjusted = holm(np.array([found[i][0].p for i in tested], dtype=float))
-    p_holm = dict(zip(tested, adjusted.tolist(), strict=True))
+    marks = {run.planner for run in results.runs if run.role in ("floor", "ceiling")}
+    families = list(_families([x for x, _ in found], marks))
+    p_holm = {place: p for family in families for place, p in family.items()}
     everybody = [(name, planner) for name in chosen for planner in table.planners]
     return Summary(
         planners=table.planners,
@@ -135,17 +149,37 @@ def summarise(
             with_verdict(x, d, p_holm.get(i), alpha) for i, (x, d) in enumerate(found)
         ),
         axes=tuple(e for name, p in everybody for e in axis_effects(table, name, p)),
+        variances=tuple(variance_parts(table, name, p) for name, p in everybody),
         densities=densities(table),
         level=level,
         alpha=alpha,
-        tests=len(tested),
+        tests=len(next(filter(None, families), {})),
+        conditions_fixed=table.clusters.strata > 1,
     )
+
+
+def _families(found: Sequence[Comparison], marks: Set[str]) -> Iterator[dict[int, float]]:
+    """Place of a comparison -> corrected p: first for the four scores, then for all others.
+
+    Comparisons with floors and ceilings (``marks``) are families of their own: that they are run
+    besides must not make it harder to tell other planners apart.
+    """
+    for marked, main in product((False, True), (True, False)):
+        here = {
+            place: x.p
+            for place, x in enumerate(found)
+            if x.p is not None
+            and is_main(x.metric, x.variant) is main
+            and bool({x.a, x.b} & marks) is marked
+        }
+        adjusted = holm(np.array(list(here.values()), dtype=float))
+        yield dict(zip(here, adjusted.tolist(), strict=True))
 
 
 def _planner_score(table: Table, name: Name, planner: str, level: float) -> PlannerScore:
     column, label = table.column(name, planner), table.label(name)
     values = column.low[column.known]
-    groups = Clusters.of(table.draws).part(column.known)
+    groups = table.clusters.part(column.known)
     quartiles = np.quantile(values, [0.25, 0.5, 0.75]).tolist() if len(values) else None
     nothing = Estimate(reason=c.NO_RUNS)
     return PlannerScore(
@@ -160,11 +194,21 @@ def _planner_score(table: Table, name: Name, planner: str, level: float) -> Plan
         reasons=column.reasons,
         draws=groups.count,
         mean=c.mean(values, groups, level),
+        bounds=_bounds(column),
         iqm=c.bootstrap(c.trimmed_mean(values), groups, level) if len(values) else nothing,
         least=float(values.min()) if len(values) else None,
         quartiles=(quartiles[0], quartiles[1], quartiles[2]) if quartiles else None,
         most=float(values.max()) if len(values) else None,
     )
+
+
+def _bounds(column: Column) -> tuple[float | None, float | None]:
+    """Of the mean over all runs that were tried."""
+    tried = column.outcome != MISSING
+    if not tried.any():
+        return None, None
+    low, high = float(column.low[tried].mean()), float(column.high[tried].mean())
+    return low if np.isfinite(low) else None, high if np.isfinite(high) else None
 
 
 def _is_asked(table: Table, name: Name) -> bool:
@@ -175,6 +219,8 @@ def _is_asked(table: Table, name: Name) -> bool:
 
 def _headline(table: Table, names: Sequence[Name]) -> Name:
     by_variant = {variant: (metric, variant) for metric, variant in names}
+    if "rate" in by_variant:
+        return by_variant["rate"]
     corrected, restricted = by_variant.get("corrected"), by_variant.get("restricted")
     if corrected and restricted and _values(table, restricted) > _values(table, corrected):
         return restricted

@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.results.rows import PLANNER_FAILED, WITHOUT_RUN, Results, RunRow, ScoreRow
-from crowdbot.core.statistics.clusters import Floats
+from crowdbot.core.statistics.clusters import Clusters, Floats
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts
+from crowdbot.dsl.matrix import DRAW
 
 #: Suite, scenario, seed: what runs are paired by.
 Key = tuple[str, str, int]
@@ -91,6 +92,18 @@ class Table:
         known = {key[:2]: draw for key, draw in found.items()}
         return tuple(found.get(k) or known.get(k[:2]) or f"{k[0]}/{k[1]}" for k in self.keys)
 
+    @cached_property
+    def conditions(self) -> tuple[str, ...]:
+        """What the suite says of each row: its labels on all axes but `DRAW`."""
+        found = {key: _condition(key, run.axes) for (_, key), run in self.runs.items()}
+        known = {key[:2]: condition for key, condition in found.items()}
+        return tuple(found.get(k) or known.get(k[:2]) or f"{k[0]}/{k[1]}" for k in self.keys)
+
+    @cached_property
+    def clusters(self) -> Clusters:
+        """The crowd draws of all rows; conditions are strata where each has several draws."""
+        return Clusters.of(self.draws, self.conditions)
+
     def reference(self, name: Name) -> float | None:
         """What a score that compares with people is to be near to."""
         return REFERENCES.get(name[0], 1.0)
@@ -134,6 +147,12 @@ def _draw(run: RunRow) -> str:
     """Its people; without people, or with none that are known, the scenario itself."""
     nobody = run.density is None and run.record.get("agents", "none") == "none"
     return f"{run.suite}/{run.scenario}" if nobody else run.realisation_hash
+
+
+def _condition(key: Key, axes: Mapping[str, str]) -> str:
+    """Labels on all axes but `DRAW`; the scenario itself where there are none."""
+    labels = [f"{axis}={label}" for axis, label in axes.items() if axis != DRAW]
+    return "/".join([key[0], *(labels or ([] if DRAW in axes else [key[1]]))])
 
 
 def _without_run(metric: str) -> _Read:

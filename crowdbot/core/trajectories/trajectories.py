@@ -108,6 +108,7 @@ class Trajectories:
         robot_footprint: outline of the robot in its own frame (x forward), m: the (K, 2) corners
             of a polygon in either sense, K >= 3; or the (2, 2) ends of the axis of a capsule,
             whose radius is ``robot.radius``. None: a disc of ``robot.radius``.
+        robot_speed_limit: the fastest that the robot can go, m/s; None: unknown.
         signals: name -> (P, 2) time (s) and value.
     """
 
@@ -120,6 +121,7 @@ class Trajectories:
     walls: Array | None = None
     planner_step_time: Array | None = None
     robot_footprint: Array | None = None
+    robot_speed_limit: float | None = None
     signals: Mapping[str, Array] = field(default_factory=dict)
     _cache: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -147,6 +149,7 @@ class Trajectories:
         robot_goal_time: float | None = None,
         robot_goal: tuple[float, float] | None = None,
         robot_goal_radius: float = 0.0,
+        robot_speed_limit: float | None = None,
         goal_zone: ArrayLike | None = None,
         walls: ArrayLike | None = None,
         planner_step_time: ArrayLike | None = None,
@@ -168,6 +171,7 @@ class Trajectories:
             robot_radius, robot_mass: m, kg; needed with a robot.
             robot_goal_time: when it arrived, s; None: it did not.
             robot_goal, robot_goal_radius: middle and radius of the goal, m.
+            robot_speed_limit: the fastest that the robot can go, m/s.
             goal_zone, walls, planner_step_time, robot_footprint, signals: as in `Trajectories`.
 
         Raises:
@@ -190,6 +194,7 @@ class Trajectories:
             robot_goal_time=robot_goal_time,
             robot_goal=robot_goal,
             robot_goal_radius=robot_goal_radius,
+            robot_speed_limit=robot_speed_limit,
             goal_zone=goal_zone,
             walls=walls,
             planner_step_time=planner_step_time,
@@ -220,6 +225,7 @@ class Trajectories:
         robot_goal_time: float | None = None,
         robot_goal: tuple[float, float] | None = None,
         robot_goal_radius: float = 0.0,
+        robot_speed_limit: float | None = None,
         agent_id: ArrayLike | None = None,
         agent_x: ArrayLike | None = None,
         agent_y: ArrayLike | None = None,
@@ -261,6 +267,7 @@ class Trajectories:
             walls=None if walls is None else _read_only(walls),
             planner_step_time=None if planner_step_time is None else _read_only(planner_step_time),
             robot_footprint=None if robot_footprint is None else _read_only(robot_footprint),
+            robot_speed_limit=_speed_limit(robot_speed_limit),
             signals={k: _read_only(v) for k, v in (signals or {}).items()},
         )
         _check(run)
@@ -297,6 +304,17 @@ def _robot(arguments: Mapping[str, Any]) -> RobotTrack:
         goal=None if goal is None else (float(goal[0]), float(goal[1])),
         goal_radius=float(arguments["robot_goal_radius"]),
     )
+
+
+def _speed_limit(value: float | None) -> float | None:
+    """As a number.
+
+    Raises:
+        InputError: it is not positive.
+    """
+    if value is not None and not (np.isfinite(value) and value > 0):
+        raise InputError(f"trajectories: robot_speed_limit is {value}, not a positive speed in m/s")
+    return None if value is None else float(value)
 
 
 def _forward(rows: Mapping[str, Array]) -> Array:

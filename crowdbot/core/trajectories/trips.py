@@ -83,7 +83,7 @@ def meets_robot(run: Trajectories, radius: float) -> Mask:
         return np.empty(0, dtype=bool)
     # teleports play no part in distances, so any jump speed does
     near = encounter(run, np.inf).distance <= radius + DISTANCE_TOLERANCE
-    first, last, column = _samples(run)
+    first, last, column = trip_samples(run)
     seen = np.concatenate([np.zeros((1, near.shape[1]), dtype=np.int64), near.cumsum(axis=0)])
     met = np.zeros(len(column), dtype=bool)
     known = (column >= 0) & (last >= first)
@@ -97,7 +97,7 @@ def walked_distances(run: Trajectories, jump_speed: float) -> tuple[Array, Array
     Both from the samples inside the trip; teleports add no length.
     """
     agents = people(run)
-    first, last, column = _samples(run)
+    first, last, column = trip_samples(run)
     length, displacement = np.zeros(len(column)), np.zeros(len(column))
     known = (column >= 0) & (last > first)
     if not known.any():
@@ -143,7 +143,7 @@ def _displacement(
     return np.where(seen & (a < b), straight, 0.0)
 
 
-def _samples(
+def trip_samples(
     run: Trajectories,
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
     """First and last sample inside each trip, and the person's column (-1: not in the table)."""

@@ -1,18 +1,23 @@
 """Metrics of the CrowdBot challenge (D7.3, sections 1.2 and 2.2), and the field's."""
 
 from crowdbot.plugins.metrics import (
+    burden,
     clearance,
     collision,
     contact,
     crowd_effect,
+    fault,
     motion,
     overtaking,
+    paired_people,
     path_efficiency,
     planner_time,
+    progress,
     proximity,
     questionnaire,
     reference_path,
     risk,
+    safe_efficiency,
     shared_control,
     similarity,
     task,
@@ -20,6 +25,10 @@ from crowdbot.plugins.metrics import (
 )
 
 COMPONENTS = (
+    *safe_efficiency.COMPONENTS,
+    *fault.COMPONENTS,
+    *burden.COMPONENTS,
+    *paired_people.COMPONENTS,
     *path_efficiency.COMPONENTS,
     *crowd_effect.COMPONENTS,
     *risk.COMPONENTS,
@@ -31,6 +40,7 @@ COMPONENTS = (
     *shared_control.COMPONENTS,
     *questionnaire.COMPONENTS,
     *task.COMPONENTS,
+    *progress.COMPONENTS,
     *motion.COMPONENTS,
     *reference_path.COMPONENTS,
     *contact.COMPONENTS,

@@ -23,6 +23,7 @@ class CollisionCountSpec(MetricSpec):
 COLLISION_COUNT = declare(
     CollisionCountSpec,
     symbol="C",
+    spec_version=2,
     unit="1",
     better="lower",
     minimum=0.0,
@@ -44,6 +45,7 @@ class CollisionSeveritySpec(MetricSpec):
 COLLISION_SEVERITY = declare(
     CollisionSeveritySpec,
     symbol="S_C",
+    spec_version=2,
     unit="J",
     better="lower",
     minimum=0.0,
@@ -72,6 +74,7 @@ class CollisionRateSpec(MetricSpec):
 COLLISION_RATE = declare(
     CollisionRateSpec,
     symbol="C_T",
+    spec_version=2,
     unit="1/s",
     better="lower",
     experimental=True,
@@ -94,6 +97,7 @@ class CollisionsAtFaultSpec(MetricSpec):
 COLLISIONS_AT_FAULT = declare(
     CollisionsAtFaultSpec,
     symbol="C_f",
+    spec_version=2,
     unit="1",
     better="lower",
     experimental=True,

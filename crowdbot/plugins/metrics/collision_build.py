@@ -18,10 +18,8 @@ from crowdbot.core.interfaces import (
     truncate_at_arrival,
 )
 from crowdbot.core.trajectories.encounters import (
-    Contacts,
     contact_runs,
     encounter,
-    onsets,
     people,
     people_speeds,
     relative_velocity,
@@ -29,6 +27,7 @@ from crowdbot.core.trajectories.encounters import (
     robot_velocities,
     touching,
 )
+from crowdbot.core.trajectories.person_contacts import PersonContacts, person_contacts
 from crowdbot.plugins.metrics.collision import (
     COLLISION_COUNT,
     COLLISION_RATE,
@@ -60,7 +59,7 @@ class CollisionCount:
     spec: CollisionCountSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``: runs of samples in contact; ``corrected``: contacts of the motion."""
+        """``literal``: runs of samples in contact; ``corrected``: contacts, however short."""
         del refs
         factory = ScoreFactory(COLLISION_COUNT)
         if run.robot is None:
@@ -71,13 +70,13 @@ class CollisionCount:
         pair = encounter(run, self.spec.jump_speed)
         return [
             factory.ok("literal", contact_runs(pair, self.spec.contact_tol)),
-            factory.ok("corrected", len(found.time), first),
+            factory.ok("corrected", len(found), first),
         ]
 
 
 @dataclass(frozen=True, slots=True)
 class CollisionSeverity:
-    """Needs no reference run. Contacts at an unknown relative speed add nothing."""
+    """Needs no reference run. Contacts at an unknown speed, or with nobody known, add nothing."""
 
     spec: CollisionSeveritySpec
 
@@ -92,14 +91,15 @@ class CollisionSeverity:
         square = vx**2 + vy**2
         square = np.where(np.isfinite(square), square, 0.0)
         found = events(run, self.spec)
-        at_onset, who = square[found.sample, found.agent], found.agent
+        known = np.isfinite(found.speed) & (found.agent >= 0)
+        speed, who = found.speed[known], found.agent[known]
         half_sum, reduced = self._masses(run)
         touch = touching(encounter(run, self.spec.jump_speed), self.spec.contact_tol)
         return [
             factory.ok("literal", (np.where(touch, square, 0.0) * half_sum).sum()),
-            factory.ok("per_event", half_sum[who] @ at_onset),
-            factory.ok("corrected", 0.5 * reduced[who] @ at_onset),
-            factory.ok("impulse", reduced[who] @ np.sqrt(at_onset)),
+            factory.ok("per_event", half_sum[who] @ speed**2),
+            factory.ok("corrected", 0.5 * reduced[who] @ speed**2),
+            factory.ok("impulse", reduced[who] @ speed),
         ]
 
     def _masses(self, run: Trajectories) -> tuple[Array, Array]:
@@ -117,13 +117,13 @@ class CollisionRate:
     spec: CollisionRateSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Contacts of the motion per second, and per metre that the robot drove."""
+        """Contacts per second, and per metre that the robot drove."""
         del refs
         factory = ScoreFactory(COLLISION_RATE)
         if run.robot is None:
             return factory.all_undefined("invalid_no_robot")
         run = truncate_at_arrival(run)
-        count = len(events(run, self.spec).time)
+        count = len(events(run, self.spec))
         length = path_length(run.t, robot_of(run), self.spec.jump_speed)
         return [
             factory.ratio("per_time", count, duration(run.t), self.spec.zero_tol),
@@ -147,13 +147,14 @@ class CollisionsAtFault:
         found = events(run, self.spec)
         pair = encounter(run, self.spec.jump_speed)
         rx, ry = robot_velocities(run, self.spec.jump_speed)
-        k, i = found.sample, found.agent
+        known = found.agent >= 0
+        k, i = found.sample[known], found.agent[known]
         lead = np.hypot(rx, ry)[k] - people_speeds(run, self.spec.jump_speed)[k, i]
         before = pair.px[k, i] * rx[k] + pair.py[k, i] * ry[k] > TOLERANCE
         robot = int(((lead > TOLERANCE) & before).sum())
-        return [factory.ok("robot", robot), factory.ok("person", len(k) - robot)]
+        return [factory.ok("robot", robot), factory.ok("person", len(found) - robot)]
 
 
-def events(run: Trajectories, spec: _Spec) -> Contacts:
-    """Contacts of the motion of a run up to the arrival."""
-    return onsets(run, spec.jump_speed, spec.contact_tol, spec.release_gap)
+def events(run: Trajectories, spec: _Spec) -> PersonContacts:
+    """Contacts with people in a run up to the arrival: of the table, else of the motion."""
+    return person_contacts(run, spec.jump_speed, spec.contact_tol, spec.release_gap)

@@ -21,10 +21,15 @@ class EffectOnTimeSpec(MetricSpec):
 EFFECT_ON_TIME = declare(
     EffectOnTimeSpec,
     symbol="E_t",
+    spec_version=2,
     unit="1",
-    better="higher",
+    better="reference",
     minimum=0.0,
-    variants={"literal": {}, "corrected": {"self_value": 1.0}, "restricted": {"self_value": 1.0}},
+    variants={
+        "literal": {"better": "higher"},
+        "corrected": {"self_value": 1.0},
+        "restricted": {"self_value": 1.0},
+    },
 )
 
 
@@ -39,10 +44,11 @@ class EffectOnVelocitySpec(MetricSpec):
 EFFECT_ON_VELOCITY = declare(
     EffectOnVelocitySpec,
     symbol="E_v",
+    spec_version=2,
     unit="1",
-    better="lower",
+    better="reference",
     minimum=0.0,
-    variants={"literal": {}, "corrected": {"self_value": 1.0}},
+    variants={"literal": {"better": "lower"}, "corrected": {"self_value": 1.0}},
 )
 
 
@@ -76,10 +82,11 @@ class NeighboursVelocitySpec(MetricSpec):
 NEIGHBOURS_VELOCITY = declare(
     NeighboursVelocitySpec,
     symbol="N_v",
+    spec_version=2,
     unit="1",
-    better="higher",
+    better="reference",
     minimum=0.0,
-    variants=("literal", "corrected"),
+    variants={"literal": {"better": "higher"}, "corrected": {}},
 )
 
 

@@ -13,6 +13,7 @@ from annotated_types import Ge
 from pydantic import Field
 
 from crowdbot.dsl import (
+    NonNegativeDuration,
     NonNegativeLength,
     NonNegativeSpeed,
     PositiveAngle,
@@ -50,6 +51,10 @@ NeighbourRadius = Annotated[
     PositiveLength,
     Field(default=3.0, description="Neighbours are no farther, centre to centre, m."),
 ]
+EvasionReach = Annotated[
+    PositiveLength,
+    Field(default=2.0, description="Who is farther off, centre to centre, does not evade, m."),
+]
 RiskHorizon = Annotated[
     PositiveDuration, Field(default=5.0, description="Contacts farther ahead carry no risk, s.")
 ]
@@ -76,6 +81,7 @@ OvertakeLateral = Annotated[
     Field(default=3.0, description="Who passes farther to the side does not overtake, m."),
 ]
 OvertakeAngle = Annotated[
+    NonNegativeDuration,
     PositiveAngle,
     Field(default=math.pi / 4, description="Who walks another way by more is not overtaken, rad."),
 ]
@@ -115,4 +121,36 @@ ProgressWindow = Annotated[
 ]
 ProgressDistance = Annotated[
     PositiveLength, Field(default=0.1, description="Coming nearer by less is not progress, m.")
+]
+AwaySpeed = Annotated[
+    NonNegativeSpeed,
+    Field(default=0.05, description="The goal recedes when it does so faster, m/s."),
+]
+FaultSpeed = Annotated[
+    NonNegativeSpeed,
+    Field(default=0.05, description="A robot that comes nearer more slowly is not at fault, m/s."),
+]
+LeastWay = Annotated[
+    PositiveLength, Field(default=1.0, description="Less way counts as this much, m.")
+]
+SameStart = Annotated[
+    NonNegativeLength,
+    Field(default=0.1, description="Who is farther from where he would be is left out, m."),
+]
+AfterMeeting = Annotated[
+    NonNegativeDuration,
+    Field(default=2.0, description="A meeting goes on so long after the robot is out of reach, s."),
+]
+MuchDisplacement = Annotated[
+    NonNegativeLength, Field(default=0.5, description="Who is displaced by more is counted, m.")
+]
+MuchDelay = Annotated[
+    NonNegativeDuration, Field(default=0.5, description="Who is delayed by more is counted, s.")
+]
+DtwThreshold = Annotated[
+    PositiveLength,
+    Field(default=1.0, description="Paths this far apart on average score 1/e, m."),
+]
+DtwSpacing = Annotated[
+    PositiveLength, Field(default=0.25, description="Distance of points on both paths, m.")
 ]

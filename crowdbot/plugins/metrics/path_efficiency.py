@@ -27,11 +27,15 @@ class RelativeTimeToGoalSpec(MetricSpec):
 RELATIVE_TIME_TO_GOAL = declare(
     RelativeTimeToGoalSpec,
     symbol="T_rtg",
+    spec_version=2,
     unit="1",
     better="higher",
     minimum=0.0,
-    self_value=1.0,
-    variants=("literal", "corrected"),
+    variants={
+        "literal": {"self_value": 1.0},
+        "corrected": {"self_value": 1.0},
+        "common": {},
+    },
 )
 
 
@@ -67,6 +71,7 @@ class RelativeJerkSpec(MetricSpec):
 RELATIVE_JERK = declare(
     RelativeJerkSpec,
     symbol="J_rp",
+    spec_version=2,
     unit="1",
     better="higher",
     self_value=1.0,

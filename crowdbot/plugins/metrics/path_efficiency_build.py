@@ -21,6 +21,7 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.core.trajectories.encounters import robot_of
 from crowdbot.core.trajectories.preprocess import heading_changes, inf_to_nan, valid_robot_steps
+from crowdbot.plugins.metrics.common_reference_build import shortest_time
 from crowdbot.plugins.metrics.path_efficiency import (
     RELATIVE_JERK,
     RELATIVE_PATH_LENGTH,
@@ -30,6 +31,8 @@ from crowdbot.plugins.metrics.path_efficiency import (
     RelativeTimeToGoalSpec,
 )
 
+#: Variants that compare with the planner's own run alone.
+_OWN = ("literal", "corrected")
 #: Slack of the comparison of sampling rates, so that rounding decides nothing.
 RATE_TOLERANCE = 1e-9
 
@@ -41,10 +44,18 @@ class RelativeTimeToGoal:
     spec: RelativeTimeToGoalSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal`` and ``corrected``."""
-        return _alone_over_crowded(
-            ScoreFactory(RELATIVE_TIME_TO_GOAL), self._time, run, refs, self.spec
-        )
+        """``literal`` and ``corrected`` against the planner alone; ``common``: against nobody."""
+        factory = ScoreFactory(RELATIVE_TIME_TO_GOAL)
+        scores = _alone_over_crowded(factory, self._time, run, refs, self.spec, _OWN)
+        return [*scores, self._common(factory, run)]
+
+    def _common(self, factory: ScoreFactory, run: Trajectories) -> Score:
+        """The shortest way at full speed over the time taken: who is slow alone gains nothing."""
+        shortest = shortest_time(factory, run, ("common",))
+        if isinstance(shortest, list):
+            return shortest[0]
+        run = truncate_at_arrival(run)
+        return _grows(factory, "common", shortest, self._time(run), run, self.spec.zero_tol)
 
     def _time(self, run: Trajectories) -> float:
         return travel_time(run, robot_of(run))
@@ -59,7 +70,7 @@ class RelativePathLength:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """``literal`` and ``corrected``."""
         return _alone_over_crowded(
-            ScoreFactory(RELATIVE_PATH_LENGTH), self._length, run, refs, self.spec
+            ScoreFactory(RELATIVE_PATH_LENGTH), self._length, run, refs, self.spec, _OWN
         )
 
     def _length(self, run: Trajectories) -> float:
@@ -86,9 +97,14 @@ class RelativeJerk:
         others = factory.variants[1:]
         if self._mismatch(alone.t, run.t):
             return scores + factory.all_undefined("sampling_mismatch", others)
-        return scores + [
-            _grows(factory, v, j_alone[v], j_run[v], run, self.spec.jerk_zero_tol) for v in others
-        ]
+        return scores + [self._ratio(v, j_alone[v], j_run[v], run) for v in others]
+
+    def _ratio(self, variant: str, alone: float, crowded: float, run: Trajectories) -> Score:
+        """Alone over crowded; nothing can be said of turning where the reference does not turn."""
+        factory, zero_tol = ScoreFactory(RELATIVE_JERK), self.spec.jerk_zero_tol
+        if variant == "angular" and alone <= zero_tol:
+            return factory.undefined(variant, "reference_does_not_turn")
+        return _grows(factory, variant, alone, crowded, run, zero_tol)
 
     def _literal(self, alone: float, crowded: float, run: Trajectories) -> Score:
         factory = ScoreFactory(RELATIVE_JERK)
@@ -145,10 +161,11 @@ def _alone_over_crowded(
     run: Trajectories,
     refs: References,
     spec: RelativeTimeToGoalSpec | RelativePathLengthSpec,
+    variants: Sequence[str],
 ) -> list[Score]:
     """Scores ``literal`` and ``corrected``; they differ in a run that never arrived."""
     if reason := obstacle(run, refs):
-        return factory.all_undefined(reason)
+        return factory.all_undefined(reason, variants)
     assert refs.robot_alone is not None
     run = truncate_at_arrival(run)
     alone, crowded = measure(truncate_at_arrival(refs.robot_alone)), measure(run)
@@ -167,12 +184,12 @@ def _grows(
     run: Trajectories,
     zero_tol: float,
 ) -> Score:
-    """Alone over crowded; known from above without arrival, as the quantity only grows."""
+    """Alone over crowded; without arrival between 0 and a bound, as the quantity only grows."""
     both = {"alone": alone, "crowded": crowded}
     if robot_of(run).goal_time is not None:
         return factory.ratio(variant, alone, crowded, zero_tol, both)
     upper = alone / crowded if crowded > zero_tol else None
-    return factory.censored(variant, "goal_not_reached", upper=upper, extras=both)
+    return factory.censored(variant, "goal_not_reached", lower=0.0, upper=upper, extras=both)
 
 
 def _sum(values: Array) -> float:

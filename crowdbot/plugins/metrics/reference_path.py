@@ -6,6 +6,7 @@ from functools import partial
 from typing import Literal
 
 from crowdbot.dsl import MetricSpec, declare_metric
+from crowdbot.plugins.metrics.parameters import DtwSpacing, DtwThreshold, JumpSpeed
 
 declare = partial(declare_metric, category="path efficiency")
 
@@ -31,7 +32,41 @@ FDE_TO_REFERENCE = declare(
     FdeToReferenceSpec, symbol="FDE", unit="m", better="lower", minimum=0.0, self_value=0.0
 )
 
+
+class NdtwSpec(MetricSpec):
+    """Likeness of the path in the crowd to the path alone, by dynamic time warping."""
+
+    kind: Literal["ndtw"] = "ndtw"
+    dtw_threshold: DtwThreshold
+    dtw_spacing: DtwSpacing
+    jump_speed: JumpSpeed
+
+
+NDTW = declare(
+    NdtwSpec,
+    symbol="nDTW",
+    unit="1",
+    better="higher",
+    minimum=0.0,
+    maximum=1.0,
+    self_value=1.0,
+)
+
+
+class SdtwSpec(MetricSpec):
+    """Success, weighted by the likeness of the path to the path alone."""
+
+    kind: Literal["sdtw"] = "sdtw"
+    dtw_threshold: DtwThreshold
+    dtw_spacing: DtwSpacing
+    jump_speed: JumpSpeed
+
+
+SDTW = declare(SdtwSpec, symbol="SDTW", unit="1", better="higher", minimum=0.0, maximum=1.0)
+
 COMPONENTS = (
     ADE_TO_REFERENCE,
     FDE_TO_REFERENCE,
+    NDTW,
+    SDTW,
 )

@@ -15,14 +15,19 @@ from crowdbot.core.interfaces import (
     Trajectories,
     truncate_at_arrival,
 )
+from crowdbot.core.trajectories.dynamic_time_warping import least_warping, spaced
 from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.preprocess import inf_to_nan
+from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_robot_steps
 from crowdbot.plugins.metrics.pairing_build import paired_samples
 from crowdbot.plugins.metrics.reference_path import (
     ADE_TO_REFERENCE,
     FDE_TO_REFERENCE,
+    NDTW,
+    SDTW,
     AdeToReferenceSpec,
     FdeToReferenceSpec,
+    NdtwSpec,
+    SdtwSpec,
 )
 
 
@@ -52,6 +57,53 @@ class FdeToReference:
         if isinstance(apart, list):
             return apart
         return [ScoreFactory(FDE_TO_REFERENCE).ok("corrected", apart[-1])]
+
+
+@dataclass(frozen=True, slots=True)
+class Ndtw:
+    """Needs ``robot_alone``. Ilharco et al. 2019."""
+
+    spec: NdtwSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """``exp(-DTW / (points of the reference x threshold))``."""
+        return _likeness(ScoreFactory(NDTW), run, refs, self.spec)
+
+
+@dataclass(frozen=True, slots=True)
+class Sdtw:
+    """Needs ``robot_alone``. Ilharco et al. 2019."""
+
+    spec: SdtwSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """0 without arrival, else ``ndtw``."""
+        factory = ScoreFactory(SDTW)
+        found = _likeness(factory, run, refs, self.spec)
+        if found[0].value is None or robot_of(run).goal_time is not None:
+            return found
+        return [factory.ok("corrected", 0.0)]
+
+
+def _likeness(
+    factory: ScoreFactory, run: Trajectories, refs: References, spec: NdtwSpec | SdtwSpec
+) -> list[Score]:
+    """Both paths up to the arrival, as points of equal distance: time plays no part."""
+    if run.robot is None:
+        return factory.all_undefined("invalid_no_robot")
+    if refs.robot_alone is None or refs.robot_alone.robot is None:
+        return factory.all_undefined("no_reference")
+    paths = [_path(truncate_at_arrival(r), spec) for r in (refs.robot_alone, run)]
+    if not all(len(path) for path in paths):
+        return factory.all_undefined("too_few_samples")
+    cost = least_warping(*paths) / (len(paths[0]) * spec.dtw_threshold)
+    return [factory.ok("corrected", np.exp(-cost))]
+
+
+def _path(run: Trajectories, spec: NdtwSpec | SdtwSpec) -> Array:
+    robot = robot_of(run)
+    valid = valid_robot_steps(run.t, robot, spec.jump_speed)
+    return spaced(inf_to_nan(robot.x), inf_to_nan(robot.y), valid, spec.dtw_spacing)
 
 
 def _apart(factory: ScoreFactory, run: Trajectories, refs: References) -> Array | list[Score]:

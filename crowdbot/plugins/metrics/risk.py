@@ -24,13 +24,15 @@ class RiskSpec(MetricSpec):
 RISK = declare(
     RiskSpec,
     symbol="R",
+    spec_version=2,
     unit="s",
     better="lower",
     minimum=0.0,
     variants={
         "literal": {"better": "none", "refinement": "double"},
-        "corrected": {"more_people": "up"},
-        "exposed_time": {"more_people": "up"},
+        "corrected": {"better": "none", "more_people": "up"},
+        "exposed_time": {"better": "none", "more_people": "up"},
+        "rate": {"unit": "1", "maximum": 1.0, "more_people": "up"},
     },
 )
 
@@ -48,10 +50,15 @@ class ExpectedSeveritySpec(MetricSpec):
 EXPECTED_SEVERITY = declare(
     ExpectedSeveritySpec,
     symbol="S_R",
+    spec_version=2,
     unit="m²/s",
     better="lower",
     minimum=0.0,
-    variants={"literal": {"better": "none", "refinement": "double"}, "corrected": {}},
+    variants={
+        "literal": {"better": "none", "refinement": "double"},
+        "corrected": {"better": "none"},
+        "rate": {"unit": "m²/s²"},
+    },
 )
 
 
@@ -66,7 +73,14 @@ class TimeExposedSpec(MetricSpec):
 
 
 TIME_EXPOSED = declare(
-    TimeExposedSpec, symbol="TET", unit="s", better="lower", minimum=0.0, more_people="up"
+    TimeExposedSpec,
+    symbol="TET",
+    spec_version=2,
+    unit="s",
+    better="lower",
+    minimum=0.0,
+    more_people="up",
+    variants={"corrected": {"better": "none"}, "rate": {"unit": "1", "maximum": 1.0}},
 )
 
 
@@ -83,10 +97,12 @@ class IntegratedTimeToCollisionSpec(MetricSpec):
 INTEGRATED_TIME_TO_COLLISION = declare(
     IntegratedTimeToCollisionSpec,
     symbol="TIT",
+    spec_version=2,
     unit="s²",
     better="lower",
     minimum=0.0,
     more_people="up",
+    variants={"corrected": {"better": "none"}, "rate": {"unit": "s"}},
 )
 
 

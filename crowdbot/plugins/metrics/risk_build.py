@@ -42,7 +42,7 @@ class Risk:
     spec: RiskSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``, ``corrected`` (with its ``mean`` over time) and ``exposed_time``."""
+        """``literal``; ``corrected`` and ``exposed_time``, which grow with time; ``rate``."""
         del refs
         factory = ScoreFactory(RISK)
         if run.robot is None:
@@ -58,6 +58,7 @@ class Risk:
             literal,
             factory.ok("corrected", imminence, {"mean": imminence / span}),
             factory.ok("exposed_time", weights @ (tau < horizon)),
+            factory.ok("rate", min(1.0, imminence / span)),
         ]
 
 
@@ -78,10 +79,14 @@ class ExpectedSeverity:
         ahead = np.isfinite(tau)
         literal = factory.ok("literal", square[ahead] @ tau[ahead])
         if (span := duration(run.t)) <= 0:
-            return [literal, factory.undefined("corrected", "too_few_samples")]
+            return [literal, *factory.all_undefined("too_few_samples", factory.variants[1:])]
         imminence = np.maximum(0.0, 1.0 - tau / self.spec.risk_horizon)
         total = float(time_weights(run.t) @ (square * imminence))
-        return [literal, factory.ok("corrected", total, {"mean": total / span})]
+        return [
+            literal,
+            factory.ok("corrected", total, {"mean": total / span}),
+            factory.ok("rate", total / span),
+        ]
 
     def _first_and_speed(self, run: Trajectories) -> tuple[Array, Array]:
         """Least time to contact (N,), s, and the squared relative speed there, m²/s²."""
@@ -100,7 +105,7 @@ class TimeExposed:
     spec: TimeExposedSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Time with somebody nearer than the horizon."""
+        """Time with somebody nearer than the horizon, and its share."""
         del refs
         return _over_time(ScoreFactory(TIME_EXPOSED), run, self.spec, exposed=True)
 
@@ -112,7 +117,7 @@ class IntegratedTimeToCollision:
     spec: IntegratedTimeToCollisionSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Integral of horizon minus time to contact, where positive."""
+        """Integral, and mean, of horizon minus time to contact, where positive."""
         del refs
         return _over_time(ScoreFactory(INTEGRATED_TIME_TO_COLLISION), run, self.spec, exposed=False)
 
@@ -166,4 +171,9 @@ def _over_time(
     tau = first_contact(run, spec)
     short = np.maximum(0.0, spec.risk_horizon - tau)
     values = (tau < spec.risk_horizon) if exposed else short
-    return [factory.ok("corrected", time_weights(run.t) @ values)]
+    total = float(time_weights(run.t) @ values)
+    most = 1.0 if exposed else spec.risk_horizon
+    return [
+        factory.ok("corrected", total),
+        factory.ok("rate", min(most, total / duration(run.t))),
+    ]

@@ -22,6 +22,7 @@ class TimeToGoalSimilaritySpec(MetricSpec):
 TIME_TO_GOAL_SIMILARITY = declare(
     TimeToGoalSimilaritySpec,
     symbol="Δ_ttg",
+    spec_version=2,
     unit="1",
     better="reference",
     minimum=0.0,
@@ -40,6 +41,7 @@ class PathLengthSimilaritySpec(MetricSpec):
 PATH_LENGTH_SIMILARITY = declare(
     PathLengthSimilaritySpec,
     symbol="Δ_L",
+    spec_version=2,
     unit="1",
     better="reference",
     minimum=0.0,
@@ -59,6 +61,7 @@ class HeadingSimilaritySpec(MetricSpec):
 HEADING_SIMILARITY = declare(
     HeadingSimilaritySpec,
     symbol="Δ_θ",
+    spec_version=2,
     unit="1",
     better="reference",
     variants={"literal": {}, "corrected": {"minimum": 0.0}},
@@ -76,6 +79,7 @@ class VelocitySimilaritySpec(MetricSpec):
 VELOCITY_SIMILARITY = declare(
     VelocitySimilaritySpec,
     symbol="Δ_v",
+    spec_version=2,
     unit="1",
     better="reference",
     minimum=0.0,
@@ -95,6 +99,7 @@ class NeighbourVelocitySimilaritySpec(MetricSpec):
 NEIGHBOUR_VELOCITY_SIMILARITY = declare(
     NeighbourVelocitySimilaritySpec,
     symbol="Δ_v|N",
+    spec_version=2,
     unit="1",
     better="reference",
     minimum=0.0,

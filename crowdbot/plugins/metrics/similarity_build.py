@@ -33,6 +33,7 @@ from crowdbot.core.trajectories.trips import (
     durations,
     walked_distances,
 )
+from crowdbot.plugins.metrics.common_reference_build import missed_goal
 from crowdbot.plugins.metrics.similarity import (
     HEADING_SIMILARITY,
     NEIGHBOUR_VELOCITY_SIMILARITY,
@@ -125,7 +126,8 @@ class HeadingSimilarity:
         robot, dt = robot[some], dt[some]
         literal = mean_ratio(factory, robot, signed, len(run.t) - 1, self.spec.zero_tol)
         means = float(dt @ np.abs(robot)), float(dt @ absolute)
-        return [literal, factory.ratio("corrected", *means, self.spec.zero_tol)]
+        corrected = factory.ratio("corrected", *means, self.spec.zero_tol)
+        return [literal, of_arrival(factory, run, corrected)]
 
     def _rates(self, run: Trajectories) -> Array:
         """Turning rates of people (N-1, M), rad/s; NaN for who does not walk at both ends."""
@@ -176,6 +178,17 @@ class NeighbourVelocitySimilarity:
         return _speed_scores(factory, run, np.where(near, speeds, np.nan), self.spec, nobody)
 
 
+def of_arrival(factory: ScoreFactory, run: Trajectories, score: Score) -> Score:
+    """The score of a run; of one that missed its goal only how alike it was up to its end.
+
+    How alike the whole run is nobody knows: it may have stood before the crowd it was to cross.
+    """
+    if not missed_goal(run) or score.value is None:
+        return score
+    so_far = {**score.extras, "so_far": score.value}
+    return factory.censored(score.variant, "goal_not_reached", extras=so_far)
+
+
 # ------------------------------------------------------------------- trip ratios
 def _against_mean(
     factory: ScoreFactory, run: Trajectories, robot: float, each: Array, zero_tol: float
@@ -205,7 +218,8 @@ def _per_distance(
     if min(own, others) <= spec.zero_tol:
         return factory.undefined("corrected", "zero_denominator")
     both = {"robot": amounts[0] / own, "agents": amounts[1] / others}
-    return factory.ratio("corrected", both["robot"], both["agents"], spec.zero_tol, both)
+    ratio = factory.ratio("corrected", both["robot"], both["agents"], spec.zero_tol, both)
+    return of_arrival(factory, run, ratio)
 
 
 # ------------------------------------------------------------------ rates, speeds
@@ -243,4 +257,4 @@ def _speed_scores(
         return [literal, factory.undefined("corrected", "too_few_samples")]
     means = float(weights[moving] @ robot[moving]), float(weights[moving] @ mean[moving])
     extras = {"coverage": float(moving.sum()) / len(run.t)}
-    return [literal, factory.ratio("corrected", *means, 0.0, extras)]
+    return [literal, of_arrival(factory, run, factory.ratio("corrected", *means, 0.0, extras))]

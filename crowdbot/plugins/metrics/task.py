@@ -25,7 +25,14 @@ class SuccessSpec(MetricSpec):
 
 
 SUCCESS = declare(
-    SuccessSpec, symbol="S", unit="1", better="higher", minimum=0.0, maximum=1.0, integer=True
+    SuccessSpec,
+    symbol="S",
+    spec_version=2,
+    unit="1",
+    better="higher",
+    minimum=0.0,
+    maximum=1.0,
+    integer=True,
 )
 
 
@@ -41,6 +48,7 @@ class SuccessNoCollisionSpec(MetricSpec):
 SUCCESS_NO_COLLISION = declare(
     SuccessNoCollisionSpec,
     symbol="S_C0",
+    spec_version=2,
     unit="1",
     better="higher",
     minimum=0.0,
@@ -69,7 +77,14 @@ class StlSpec(MetricSpec):
 
 
 STL = declare(
-    StlSpec, symbol="STL", unit="1", better="higher", experimental=True, minimum=0.0, maximum=1.0
+    StlSpec,
+    symbol="STL",
+    spec_version=2,
+    unit="1",
+    better="higher",
+    experimental=True,
+    minimum=0.0,
+    maximum=1.0,
 )
 
 
@@ -82,6 +97,7 @@ class TimeoutSpec(MetricSpec):
 TIMEOUT = declare(
     TimeoutSpec,
     symbol="TO",
+    spec_version=2,
     unit="1",
     better="lower",
     experimental=True,
@@ -154,6 +170,7 @@ class AggregatedTimeSpec(MetricSpec):
 AGGREGATED_TIME = declare(
     AggregatedTimeSpec,
     symbol="AT",
+    spec_version=2,
     unit="s",
     better="lower",
     experimental=True,

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from crowdbot.core.interfaces import (
-    Array,
-    Footprint,
     References,
     Score,
     ScoreFactory,
@@ -20,9 +18,13 @@ from crowdbot.core.interfaces import (
     truncate_at_arrival,
 )
 from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.preprocess import present
 from crowdbot.core.trajectories.trips import durations
 from crowdbot.plugins.metrics.collision_build import events
+from crowdbot.plugins.metrics.common_reference_build import (
+    goal_distance,
+    shortest_way,
+    without_task,
+)
 from crowdbot.plugins.metrics.path_efficiency_build import obstacle
 from crowdbot.plugins.metrics.task import (
     AGGREGATED_TIME,
@@ -60,8 +62,9 @@ class Success:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Whether there is a time of arrival."""
         del refs
-        if run.robot is None:
-            return ScoreFactory(SUCCESS).all_undefined("invalid_no_robot")
+        if reason := without_task(run):
+            return ScoreFactory(SUCCESS).all_undefined(reason)
+        assert run.robot is not None
         return [ScoreFactory(SUCCESS).ok("corrected", run.robot.goal_time is not None)]
 
 
@@ -75,9 +78,10 @@ class SuccessNoCollision:
         """Arrival without a contact of the motion with anybody."""
         del refs
         factory = ScoreFactory(SUCCESS_NO_COLLISION)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        free = not len(events(truncate_at_arrival(run), self.spec).time)
+        if reason := without_task(run):
+            return factory.all_undefined(reason)
+        assert run.robot is not None
+        free = not len(events(truncate_at_arrival(run), self.spec))
         return [factory.ok("corrected", run.robot.goal_time is not None and free)]
 
 
@@ -90,8 +94,9 @@ class Timeout:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """The opposite of ``success``."""
         del refs
-        if run.robot is None:
-            return ScoreFactory(TIMEOUT).all_undefined("invalid_no_robot")
+        if reason := without_task(run):
+            return ScoreFactory(TIMEOUT).all_undefined(reason)
+        assert run.robot is not None
         return [ScoreFactory(TIMEOUT).ok("corrected", run.robot.goal_time is None)]
 
 
@@ -130,7 +135,7 @@ class PathEfficiency:
         ratio = factory.ratio("corrected", *lengths, self.spec.zero_tol)
         if robot_of(run).goal_time is not None:
             return [ratio]
-        return [factory.censored("corrected", "goal_not_reached", upper=ratio.value)]
+        return [factory.censored("corrected", "goal_not_reached", lower=0.0, upper=ratio.value)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +147,7 @@ class Stl:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """0 without arrival; else the time alone over the longer of it and the time taken."""
         factory = ScoreFactory(STL)
-        if reason := obstacle(run, refs):
+        if reason := without_task(run) or obstacle(run, refs):
             return factory.all_undefined(reason)
         assert refs.robot_alone is not None
         if robot_of(run).goal_time is None:
@@ -210,8 +215,8 @@ class AggregatedTime:
         """Known from below where the robot, or somebody, had not arrived."""
         del refs
         factory = ScoreFactory(AGGREGATED_TIME)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
+        if reason := without_task(run):
+            return factory.all_undefined(reason)
         run = truncate_at_arrival(run)
         trips = durations(run)
         total = travel_time(run, robot_of(run)) + float(trips.seconds.sum())
@@ -222,39 +227,12 @@ class AggregatedTime:
         return [factory.ok("corrected", total)]
 
 
-def goal_distance(factory: ScoreFactory, run: Trajectories) -> tuple[Array, Array] | list[Score]:
-    """Times and distances (K,), (K,) of the robot's centre from its goal, s and m; or why not.
-
-    From the goal point; from the zone where only that is known.
-    """
-    if run.robot is None:
-        return factory.all_undefined("invalid_no_robot")
-    run = truncate_at_arrival(run)
-    robot = robot_of(run)
-    known = present(robot.x, robot.y)
-    if not known.any():
-        return factory.all_undefined("too_few_samples")
-    x, y = robot.x[known], robot.y[known]
-    if robot.goal is not None:
-        return run.t[known], np.hypot(x - robot.goal[0], y - robot.goal[1])
-    if run.goal_zone is not None:
-        return run.t[known], np.maximum(Footprint(run.goal_zone, 0.0).gap(x, y), 0.0)
-    return factory.all_undefined("invalid_no_goal")
-
-
 def _shortest_and_driven(
     factory: ScoreFactory, run: Trajectories, spec: SplSpec | PathEfficiencySpec
 ) -> tuple[float, float] | list[Score]:
     """Straight from the start to the goal zone, or to the disc of the goal; and what was driven."""
-    found = goal_distance(factory, run)
+    found = shortest_way(factory, run)
     if isinstance(found, list):
         return found
     run = truncate_at_arrival(run)
-    robot = robot_of(run)
-    if run.goal_zone is not None:
-        known = present(robot.x, robot.y)
-        start = robot.x[known][:1], robot.y[known][:1]
-        shortest = float(Footprint(run.goal_zone, 0.0).gap(*start)[0])
-    else:
-        shortest = float(found[1][0]) - robot.goal_radius
-    return max(0.0, shortest), path_length(run.t, robot, spec.jump_speed)
+    return found, path_length(run.t, robot_of(run), spec.jump_speed)

@@ -1,7 +1,10 @@
-"""Planners: one that sees nothing, one that stops, one that finds a way."""
+"""Planners: floors that see nothing or only stop, a baseline that finds a way, and a ceiling."""
 
 from crowdbot.plugins.planners.dwa import DWA
 from crowdbot.plugins.planners.goal_seek import GOAL_SEEK
+from crowdbot.plugins.planners.oracle import ORACLE
+from crowdbot.plugins.planners.stand_still import STAND_STILL
 from crowdbot.plugins.planners.stop_and_go import STOP_AND_GO
+from crowdbot.plugins.planners.wall_hug import WALL_HUG
 
-COMPONENTS = (GOAL_SEEK, STOP_AND_GO, DWA)
+COMPONENTS = (STAND_STILL, GOAL_SEEK, WALL_HUG, STOP_AND_GO, DWA, ORACLE)

@@ -18,7 +18,9 @@ from crowdbot.dsl import (
     NonNegativeDuration,
     NonNegativeLength,
     NonNegativeSpeed,
+    PlannerRole,
     PlannerSpec,
+    PositiveAngle,
     PositiveDuration,
     PositiveLength,
     PositiveSpeed,
@@ -30,6 +32,7 @@ Weight = Annotated[float, Ge(0)]
 class DwaSpec(PlannerSpec):
     """Sees lidar points and odometry, nothing else."""
 
+    role: ClassVar[PlannerRole] = "baseline"
     needs: ClassVar[tuple[str, ...]] = ("lidar",)
 
     kind: Literal["dwa"] = "dwa"
@@ -60,6 +63,13 @@ class DwaSpec(PlannerSpec):
     )
     look_ahead: PositiveDuration = Field(
         default=4.0, description="Time for which a direction should stay free, s."
+    )
+    swerve: PositiveAngle = Field(
+        default=1.3,
+        description="Largest angle from the goal's bearing where people walk, rad.",
+    )
+    hold: Weight = Field(
+        default=0.3, description="Weight of keeping to the last direction; half where people stand."
     )
     look_back: NonNegativeDuration = Field(
         default=0.3, description="Age of the scan that shows what moves; 0 takes all as still, s."

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
 from crowdbot.plugins.planners.dwa import DwaSpec
+from crowdbot.plugins.planners.dwa_heading_build import Heading, compile_heading
 from crowdbot.plugins.planners.dwa_map_build import AIM, remembered, way_out
 from crowdbot.plugins.planners.dwa_points_build import (
     apparent_velocity,
@@ -42,6 +44,14 @@ _LEEWAY = 0.05
 _MAP_PERIOD = 0.5
 #: People in that map have this share of their radius.
 _MAPPED = 0.5
+#: Legs of a person who walks are so near to the middle, m.
+_LEGS = 0.4
+#: Somebody who walks within this distance is what the robot waits for, m.
+_NEARBY = 4.0
+#: Who is faster walks (m/s); so long (s) and such a share of those nearby make it a flow.
+_WALKS, _SETTLES, _MOST = 0.5, 1.0, 0.4
+#: Share of that time that does not count as time without progress.
+_WAITING = 0.8
 #: Speed and duration of the way back out of a dead end: m/s, s.
 _REVERSE, _ESCAPE = -0.2, 2.0
 
@@ -60,6 +70,8 @@ class Dwa:
         self._scans: deque[tuple[float, Array, Array]] = deque(maxlen=64)
         self._map: Array = np.empty((0, 2))
         self._around = (np.empty((0, 2)), np.empty((0, 2)))
+        self._walking, self._flow = False, 0.0
+        self._heading_by_walls = Heading()
         self._mapped_at = -math.inf
         self._way: float | None = None
         self._last = (0.0, 0.0)
@@ -84,6 +96,7 @@ class Dwa:
     def _warm_up(self, task: Task, sensors: Mapping[str, SensorInfo]) -> None:
         """Two steps in a made-up world, so that no step of the run waits for a compiler."""
         way_out(np.ones((1, 2)), 0.0, 0.0, 9.0, 0.0, self._spec.robot_radius)
+        compile_heading()
         for t in (0.0, self._spec.look_back):
             readings = {n: Reading(t, np.full(s.shape, 1.0 + t)) for n, s in sensors.items()}
             self.step(
@@ -100,13 +113,16 @@ class Dwa:
     def step(self, obs: Observation) -> Command:
         """The next command; zero at the goal."""
         assert self._limits is not None
+        seen = self._lidars(obs.readings, obs.t, obs.twist)
+        obs = replace(obs, pose=self._heading_by_walls.pose(obs.pose, seen))
         distance, goal = bearing(obs.pose, obs.goal)
         period = 1.0 / 16.0 if self._time is None else max(1e-3, obs.t - self._time)
         self._time = obs.t
         self._p[rollout.PERIOD] = period
         if distance <= _ARRIVED:
             return Command(0.0, 0.0)
-        points, velocities = self._see(obs)
+        points, velocities = self._see(obs, seen)
+        self._wait(period)
         escaping = self._is_stuck(obs)
         room = distance
         if self._is_lost(distance):
@@ -131,10 +147,9 @@ class Dwa:
         obs.log("dwa/free_time", free)
         return Command(*self._last)
 
-    def _see(self, obs: Observation) -> tuple[Array, Array]:
+    def _see(self, obs: Observation, seen: Array) -> tuple[Array, Array]:
         """Thinned points and their velocities (K, 2), base frame."""
         radius = self._spec.person_radius
-        seen = self._lidars(obs.readings, obs.t, obs.twist)
         people, rest = people_in(seen, _REACH if radius else 0.0)
         points = nearest_per_sector(with_discs(rest, people, radius), _SECTORS, _REACH)
         self._around = rest, people
@@ -153,8 +168,24 @@ class Dwa:
                     for new, old in zip(now, before, strict=True)
                 )
                 carry(points, velocities, people, going, radius)
+                self._stand_apart(rest, people, going)
         self._scans.append((obs.t, now[0], now[1]))
         return points, velocities
+
+    def _stand_apart(self, rest: Array, people: Array, going: Array) -> None:
+        """Note whether those nearby walk; while they do, keep for the map only what stands.
+
+        Legs that are paired now one way, now another, seem to move: one step proves nothing.
+        """
+        speed = np.hypot(going[:, 0], going[:, 1])
+        near = np.hypot(people[:, 0], people[:, 1]) < _NEARBY
+        share = float(np.mean(speed[near] > _WALKS)) if near.any() else self._flow
+        self._flow += min(1.0, float(self._p[rollout.PERIOD]) / _SETTLES) * (share - self._flow)
+        self._walking = self._flow > _MOST
+        if self._walking:
+            walk = speed > 0.0
+            apart = np.hypot(*(rest[:, None] - people[walk]).T).T.min(axis=1, initial=math.inf)
+            self._around = rest[apart > _LEGS], people[~walk]
 
     def _choose(
         self,
@@ -178,6 +209,8 @@ class Dwa:
             spec.robot_radius + spec.margin + (_LEEWAY if self._way is None else 0.0),
             min(spec.look_ahead, room / speed + 0.1),
             0.2 if escaping else 1.0,
+            spec.swerve if self._walking and not escaping else math.pi,
+            spec.hold if self._walking else 0.5 * spec.hold,
         )
         self._heading = direction + pose.yaw
         return direction, free
@@ -196,6 +229,16 @@ class Dwa:
         left, right = max(w - dw, -limits.w_max), min(w + dw, limits.w_max)
         wish = max(left, min(right, 1.5 * direction_error(direction)))
         return rollout.candidates(low, high, spec.speeds, left, right, spec.yaw_rates, wish)
+
+    def _wait(self, period: float) -> None:
+        """Let time without progress count less while somebody walks nearby, who will be gone."""
+        if not self._walking:
+            return
+        if self._moved_at is not None:
+            x, y, since = self._moved_at
+            self._moved_at = (x, y, since + _WAITING * period)
+        if self._nearest is not None:
+            self._nearest = (self._nearest[0], self._nearest[1] + _WAITING * period)
 
     def _is_lost(self, distance: float) -> bool:
         """Whether the robot has come no nearer to the goal for long: it needs a map."""

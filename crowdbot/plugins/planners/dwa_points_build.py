@@ -139,6 +139,8 @@ def choose_direction(
     radius: float,
     limit: float,
     detour: float,
+    swerve: float,
+    hold: float,
 ) -> tuple[float, float]:
     """The direction in which to go on: towards the goal, free for long, like last time.
 
@@ -151,6 +153,8 @@ def choose_direction(
         radius: of the disc that must stay free, m.
         limit: s; a direction that is free this long is as good as any.
         detour: cost of the opposite direction; 1 is the cost of being blocked at once.
+        swerve: largest angle from the goal's bearing, rad.
+        hold: cost of turning round from the last choice.
 
     Returns:
         bearing (rad, not wrapped) and the time for which it is free (s).
@@ -158,13 +162,14 @@ def choose_direction(
     half = 24
     best, angle, time = math.inf, goal, 0.0
     for k in range(-half, half + 1):
-        theta = goal + k * math.pi / half
+        off = swerve * k / half
+        theta = goal + off
         t = free_time(
             points, velocities, speed * math.cos(theta), speed * math.sin(theta), radius, limit
         )
         swing = unsigned(theta - previous) / math.pi
         turn = unsigned(theta) / math.pi
-        cost = detour * abs(k) / half + (1.0 - t / limit) + 0.15 * swing + 0.15 * turn
+        cost = detour * abs(off) / math.pi + (1.0 - t / limit) + hold * swing + 0.15 * turn
         if cost < best:
             best, angle, time = cost, theta, t
     return angle, time

@@ -7,12 +7,20 @@ from typing import Annotated, ClassVar, Literal
 from annotated_types import Gt, Le
 from pydantic import Field
 
-from crowdbot.dsl import Component, PlannerSpec, PositiveAngle, PositiveFrequency, PositiveLength
+from crowdbot.dsl import (
+    Component,
+    PlannerRole,
+    PlannerSpec,
+    PositiveAngle,
+    PositiveFrequency,
+    PositiveLength,
+)
 
 
 class GoalSeekSpec(PlannerSpec):
-    """Heads for the centre of the goal and sees nothing on the way: the baseline of collisions."""
+    """Heads for the centre of the goal and sees nothing on the way: the floor of collisions."""
 
+    role: ClassVar[PlannerRole] = "floor"
     needs: ClassVar[tuple[str, ...]] = ()
 
     kind: Literal["goal_seek"] = "goal_seek"

@@ -11,6 +11,7 @@ from crowdbot.dsl import (
     Component,
     NonNegativeDuration,
     NonNegativeLength,
+    PlannerRole,
     PlannerSpec,
     PositiveAngle,
     PositiveFrequency,
@@ -21,6 +22,7 @@ from crowdbot.dsl import (
 class StopAndGoSpec(PlannerSpec):
     """A stop box before the robot: as wide as the robot and a margin on either side."""
 
+    role: ClassVar[PlannerRole] = "floor"
     needs: ClassVar[tuple[str, ...]] = ("lidar",)
 
     kind: Literal["stop_and_go"] = "stop_and_go"

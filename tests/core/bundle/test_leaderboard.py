@@ -16,8 +16,10 @@ from crowdbot import cli
 from crowdbot.core.bundle.entries import load_entries, old_metrics
 from crowdbot.core.bundle.standings import standings
 from crowdbot.core.bundle.verification import content_hash, record_path, save_verification
+from crowdbot.core.statistics.audit import Audit, audit, write_audit
 from crowdbot.errors import InputError
 from tests.core.bundle.made_up_runs import make_bundle, registry, rewrite
+from tests.core.statistics.test_floors import results
 
 
 @pytest.fixture(scope="module")
@@ -83,6 +85,41 @@ def test_classes_stand_apart_and_noise_is_not_ranked(folder: Path) -> None:
     assert [e.manifest.team for e in first.entries] == ["Two", "One <b>team</b>"]
     assert [first.rank("spl", e) for e in first.entries] == [1, 1]  # three draws prove nothing
     assert first.shares_rank("spl", first.entries[0])
+
+
+def audited(suite: str, blind: float) -> Audit:
+    """An audit of some suite whose floor and baseline have these values."""
+    found = results({"known": [1.0] * 8, "blind": [blind] * 8})
+    return audit(replace(found, runs=tuple(replace(r, suite=suite) for r in found.runs)))
+
+
+def test_nobody_has_audited_it(folder: Path, tmp_path: Path) -> None:
+    _, page = board(folder, tmp_path / "page.html")
+    assert "nobody has audited this suite" in "".join(page.words)
+    assert "Ranks may mean nothing." not in page.words
+
+
+def test_a_suite_that_cannot_tell_is_labelled(folder: Path, tmp_path: Path) -> None:
+    entries, _ = load_entries(folder, registry())
+    scenarios = {run.entry.scenario: "" for e in entries for run in e.runs}
+    for run in (run for e in entries for run in e.runs):
+        scenarios[run.entry.scenario] = str(run.record["hashes"]["spec"])
+    for blind, labelled in ((1.0, True), (0.0, False)):
+        found = audited("tiny", blind).model_copy(update={"scenarios": scenarios})
+        write_audit(tmp_path / "audit.json", found)
+        _, page = board(folder, tmp_path / "a.html", "--audit", str(tmp_path / "audit.json"))
+        assert ("Ranks may mean nothing." in page.words) == labelled
+        assert found.text in "".join(page.words)
+
+
+def test_audits_in_the_folder_are_found_and_those_of_others_left_alone(folder: Path) -> None:
+    entries, _ = load_entries(folder, registry())
+    tables = standings(entries, "spl", (), [audited("another", 1.0)])
+    assert {t.suspicion for t in tables} == {""}
+    old = standings(entries, "spl", (), [audited("tiny", 0.0)])
+    assert all("audit it again" in t.suspicion for t in old)
+    with pytest.raises(InputError, match="two audits of tiny"):
+        standings(entries, "spl", (), [audited("tiny", 0.0)] * 2)
 
 
 def test_verification_is_shown_for_the_very_bundle(folder: Path, tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.periodic_boundary import images
+from crowdbot.core.crowd.response.parameters import Human
 from tests.core.crowd.crowd_reference import Array, agents_of
 from tests.core.crowd.crowd_worlds import TICKS, Straight, ToGoal, rows, walkers
 
@@ -167,7 +168,8 @@ class Spy(Straight):
 def test_a_policy_sees_robots_pillars_and_images() -> None:
     spy = Spy()
     agents = Agents.of(x=[1.0, 10.0], y=0.0, start_time=[0.0, 0.0], routes=[[(9.0, 0.0)]] * 2)
-    world = CrowdWorld(periodic_boundary=BOX, pillars=np.array([5.0, 1.0, 0.4]))
+    shown = Human(shown_to_policies=True)
+    world = CrowdWorld(periodic_boundary=BOX, pillars=np.array([5.0, 1.0, 0.4]), response=shown)
     engine = CrowdEngine(agents, world, spy)
     flat = engine.initial_state()
     engine.advance(flat, np.array([[7.0, 2.0, 0.1, 0.2, 0.178, 0.428]]))

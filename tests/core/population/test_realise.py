@@ -87,6 +87,28 @@ def test_streams_are_independent() -> None:
     assert not np.array_equal(base.speed, other.speed)
 
 
+def test_attention_is_drawn_for_each_whoever_else_is_there() -> None:
+    few, many = _drawn(), _drawn("in-d0125-slow-c01-r02", "crowd.flow.density=0.5 1/m^2")
+    assert np.array_equal(many.attention[:50], few.attention)
+    assert np.mean(many.attention < 0.4) == pytest.approx(0.4, abs=0.1)
+    assert np.all((many.attention >= 0.0) & (many.attention < 1.0))
+    assert not np.any(_drawn("in-d0125-fast-c01-r02").attention == few.attention)
+
+
+def test_how_many_are_late_moves_nobody_in_the_table() -> None:
+    other = _drawn("in-d0125-slow-c01-r02", "crowd.robot_response.late_fraction=0.1")
+    assert other.hash == _drawn().hash
+
+
+@pytest.mark.parametrize("given", [None, 0.25])
+def test_an_explicit_agent_may_have_its_own_attention(given: float | None) -> None:
+    words = "" if given is None else f", attention: {given}"
+    agents = f"crowd.agents=[{{id: 900, x: 2, y: 3, speed: 1, goals: [[9, 3]]{words}}}]"
+    drawn = _drawn("in-d0125-slow-c01-r02", agents)
+    assert (drawn.attention[drawn.id == 900] == 0.25) == (given is not None)
+    assert np.array_equal(drawn.attention[:50], _drawn().attention)
+
+
 def test_without_a_crowd_the_table_is_empty() -> None:
     drawn = _drawn("in-d0125-slow-c01-r02", "crowd=null")
     assert len(drawn.id) == len(drawn.x) == 0

@@ -28,6 +28,7 @@ from crowdbot.errors import InputError, UnknownNameError
 from tests.core.recording.recording_cases import (
     ANGLES,
     LIDAR,
+    LIMITS,
     WALLS,
     ZONE,
     Run,
@@ -50,6 +51,7 @@ def as_given(run: Run) -> Trajectories:
         parts |= dict(zip(names, run.robot.T, strict=True))
         parts |= {"robot_radius": 0.2, "robot_mass": 6.3, "robot_goal_time": 2.25}
         parts |= {"robot_goal": (46.5, 0.0), "robot_goal_radius": 0.5}
+        parts["robot_speed_limit"] = LIMITS.v_max
         parts["planner_step_time"] = 0.01 + run.t
         parts["signals"] = {"doubt": np.column_stack((run.t, np.full(len(run.t), -0.0)))}
         parts["contacts"] = {

@@ -194,7 +194,7 @@ def test_differences_that_were_accepted_are_prominent() -> None:
     notices = [
         a["class"] for tag, a in page.tags if tag == "p" and "notice" in (a.get("class") or "")
     ]
-    assert notices[:2] == ["notice accepted", "notice"]
+    assert [n for n in notices if "floors" not in str(n)][:2] == ["notice accepted", "notice"]
     assert page.words.index("rates: 16 Hz") < page.words.index("how the runs ended")
     assert "**Accepted: rates: 16 Hz, 20 Hz**" in markdown(report)
 
@@ -216,6 +216,7 @@ def test_csv_has_every_score_and_every_failure(tmp_path: Path) -> None:
         assert (float(row["value"]) if row["value"] else None) == value
 
 
+@pytest.mark.slow
 def test_markdown_says_what_the_page_says() -> None:
     report = full()
     text = markdown(report)

@@ -29,6 +29,7 @@ def rows(metric: str, variant: str, *values: float | None, **more: Any) -> list[
         ("[0, ∞)", (0.0, 9.0), "interquartile mean"),
         ("[0, ∞)", (0.0, None, None, 9.0), "interquartile mean"),
         ("0, 1, 2, …", (3.0, 4.0), "mean"),
+        ("0, or in (0, 1]", (0.0, 0.9, 0.8, 0.9), "mean"),  # a failure is not to be trimmed off
         ("0 or 1", (0.0, 0.0, 1.0), "share"),
         ("", (0.0, 1.0), "interquartile mean"),  # no card says that it is yes or no
         ("", (), "interquartile mean"),
@@ -66,3 +67,19 @@ def test_known_categories_come_first_and_in_them_the_metrics_of_the_seed() -> No
     names = [f"{s.metric}.{s.variant}" for s in all_series(scores, [], {})]
     assert names == ["e.corrected", "d.corrected", "d.literal", "c.corrected", "b.corrected",
                      "a.corrected"]  # fmt: skip
+
+
+def test_the_four_scores_are_a_category_of_their_own_and_come_first() -> None:
+    scores = [
+        *rows("push_work", "total", 1.0, category="burden"),
+        *rows("push_work", "corrected", 1.0, category="burden"),
+        *rows("relative_jerk", "literal", 1.0, category="task"),
+        *rows("safe_efficiency", "corrected", 1.0, category="task"),
+    ]
+    found = all_series(scores, [], {})
+    assert [(s.metric, s.variant, s.category) for s in found] == [
+        ("safe_efficiency", "corrected", "the four scores"),
+        ("push_work", "corrected", "the four scores"),
+        ("relative_jerk", "literal", "task"),
+        ("push_work", "total", "burden"),
+    ]

@@ -113,6 +113,16 @@ def test_runs_without_a_partner_are_told() -> None:
     assert "only a in 1 run (suite/s1/a/seed-0)" in text
 
 
+def test_a_ceiling_may_know_what_others_sense() -> None:
+    assert found(row("a"), row("b", privileged=True, role="ceiling")) == {}
+
+
+def test_floors_and_ceilings_are_run_in_a_sample_and_need_no_partner() -> None:
+    rows = (row("a"), row("b"), row("a", "s1"), row("b", "s1"), row("blind", role="floor"))
+    assert found(*rows) == {}
+    assert set(found(*rows, row("a", "s2"))) == {"unpaired"}
+
+
 def test_unknown_names_are_refused() -> None:
     with pytest.raises(UnknownNameError, match="did you mean 'rates'"):
         confounds(Results(), accept=["rate"])

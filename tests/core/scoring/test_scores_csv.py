@@ -256,3 +256,24 @@ def test_a_terminal_without_unicode() -> None:
 )
 def test_verdict(score: Score, text: str) -> None:
     assert verdict(score) == text
+
+
+def test_the_four_scores_come_first_and_once() -> None:
+    names = [("zeta", "corrected"), ("space_compliance", "corrected"), ("push_work", "total"),
+             ("push_work", "corrected"), ("safe_efficiency", "corrected"), ("risk", "corrected"),
+             ("risk", "rate")]  # fmt: skip
+    scores = [
+        Score(metric=m, symbol="x", category="c", unit="1", better="none", variant=v, value=1.0)
+        for m, v in names
+    ]
+    chosen = [(s.metric, s.variant) for s in headlines(scores)]
+    assert chosen == [
+        ("safe_efficiency", "corrected"),
+        ("push_work", "corrected"),
+        ("space_compliance", "corrected"),
+        ("zeta", "corrected"),
+        ("risk", "rate"),
+    ]
+    text = drawn(scores)
+    assert text.index("the four scores") < text.index("safe_efficiency") < text.index("zeta")
+    assert text.count("safe_efficiency") == 1

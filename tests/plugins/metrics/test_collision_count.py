@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core.trajectories.encounters import contact_onsets, encounter
-from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.trajectories.trajectories import ContactEvents, Trajectories
 from tests.plugins.metrics.scenes import (
     REACH,
     Body,
@@ -202,3 +202,54 @@ def test_one_sample() -> None:
 def test_reasons() -> None:
     found = scores_of("collision_count", scene(T, None, [STILL]))
     assert {(s.status, s.reason) for s in found.values()} == {("undefined", "invalid_no_robot")}
+
+
+# ------------------------------------------------------------- the table of contacts
+def with_table(run: Trajectories, *rows: tuple[float, float, int, float]) -> Trajectories:
+    """Onset, end, person, relative speed."""
+    columns = np.array(rows, dtype=np.float64).reshape(-1, 4).T
+    t0, t1, agent, speed = columns
+    return dataclasses.replace(
+        run,
+        contacts=ContactEvents(
+            t0=t0,
+            t1=t1,
+            agent=agent.astype(np.int64),
+            impulse=t0 * 0 + 1.0,
+            peak_force=t0 * 0 + 1.0,
+            relative_speed=speed,
+            bearing=t0 * np.nan,
+        ),
+    )
+
+
+def test_a_bounce_of_30_ms_between_two_samples_is_counted() -> None:
+    """No sample is in contact, nor is the straight line between two of them."""
+    run = at_gaps([0.2, 0.02, 0.02, 0.2], dt=1 / 16)
+    assert counts(run) == (0, 0)
+    bounced = with_table(run, (0.08, 0.11, 0, 0.9))
+    assert counts(bounced) == (0, 1)
+    found = scores_of("collision_severity", bounced)
+    reduced = 6.3 * 70.0 / 76.3
+    assert found["corrected"].value == pytest.approx(0.5 * reduced * 0.9**2)
+    assert found["impulse"].value == pytest.approx(reduced * 0.9)
+    assert scores_of("success_no_collision", bounced)["corrected"].reason == "invalid_no_goal"
+    there = dataclasses.replace(bounced, goal_zone=np.array([[0.0, -1], [1, -1], [1, 1]]))
+    assert scores_of("success_no_collision", there)["corrected"].value == 0
+    rate = scores_of("collision_rate", bounced)["per_time"].value
+    assert rate == pytest.approx(1 / (run.t[-1] - run.t[0]))
+
+
+def test_the_table_is_the_truth_where_there_is_one() -> None:
+    """An empty table says that nothing was felt; walls are not people."""
+    assert counts(with_table(head_on())) == (1, 0)
+    assert counts(with_table(head_on(), (2.0, 2.1, -1, 1.0))) == (1, 0)
+    assert counts(with_table(head_on(), (2.0, 2.1, 0, 1.0), (3.0, 3.1, 0, 1.0))) == (1, 2)
+
+
+def test_contacts_with_somebody_who_is_not_in_the_table_of_people() -> None:
+    run = with_table(head_on(), (2.0, 2.1, 77, 1.0))
+    assert counts(run) == (1, 1)
+    assert scores_of("collision_severity", run)["corrected"].value == 0
+    fault = scores_of("collisions_at_fault", run)
+    assert (fault["robot"].value, fault["person"].value) == (0, 1)

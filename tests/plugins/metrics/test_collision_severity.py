@@ -61,6 +61,7 @@ def test_expected_severity() -> None:  # b01
     assert values(found) == {
         "literal": pytest.approx(467.52),
         "corrected": pytest.approx(4 * 2.96025),
+        "rate": pytest.approx(4 * 0.296025),
     }
     assert found["corrected"].extras["mean"] == pytest.approx(4 * 0.296025)
 

@@ -139,7 +139,7 @@ def test_unfinished_trips_are_not_dropped() -> None:
 
 def test_a_run_that_did_not_arrive_has_no_time() -> None:
     t = grid(2)
-    alone, lost = run(**robot(t, t)), run(**robot(t, t, goal_time=None))
+    alone, lost = run(**robot(t, t)), run(**robot(t, t, goal_time=None), robot_goal=(9.0, 0.0))
     found = one("relative_time_to_goal", "corrected", lost, alone)
     assert (found.value, found.status, found.upper) == (None, "censored", 1.0)
     assert one("success", "corrected", lost).value == 0.0

@@ -61,6 +61,10 @@ def assert_agrees(found: float | None, expected: float | None) -> None:
 def test_risk_and_severity(seed: int) -> None:
     run = crowded(seed)
     expected = oracle.risk(oracle.World(run))
+    times = oracle.World(run).t
+    span = times[-1] - times[0]
+    expected |= {"rate": expected["corrected"] / span}
+    expected |= {"severity_rate": expected["severity_corrected"] / span}
     for variant, s in scores_of("risk", run).items():
         assert s.value == pytest.approx(expected[variant], rel=1e-6, abs=1e-6)
     for variant, s in scores_of("expected_severity", run).items():

@@ -76,14 +76,14 @@ def test_nothing_after_the_arrival_counts() -> None:  # e09
 
 
 @pytest.mark.parametrize("metric", BOTH)
-def test_without_arrival_only_an_upper_bound_is_known(metric: str) -> None:  # e07
+def test_without_arrival_only_bounds_are_known(metric: str) -> None:  # e07
     found = scores_of(metric, straight(20, 20, arrives=False), straight(20, 20))
     assert (found["literal"].status, found["literal"].reason) == ("undefined", "goal_not_reached")
     assert found["literal"].upper is None
     bound = found["corrected"]
     assert (bound.status, bound.reason, bound.value) == ("censored", "goal_not_reached", None)
     assert bound.upper == pytest.approx(1)
-    assert bound.lower is None
+    assert bound.lower == 0.0  # a time, a length: whoever never arrives takes any
 
 
 def test_the_bound_is_alone_over_observed() -> None:
@@ -118,8 +118,9 @@ def test_reasons(
     metric: str, crowded: Trajectories, alone: Trajectories | None, reason: str
 ) -> None:
     found = scores_of(metric, crowded, alone)
-    assert {(s.status, s.reason, s.upper) for s in found.values()} == {("undefined", reason, None)}
-    assert set(found) == {"literal", "corrected"}
+    own = [found["literal"], found["corrected"]]
+    assert {(s.status, s.reason, s.upper) for s in own} == {("undefined", reason, None)}
+    assert set(found) - {"common"} == {"literal", "corrected"}
 
 
 def test_zero_denominators() -> None:
@@ -129,7 +130,38 @@ def test_zero_denominators() -> None:
     assert value_of(scores_of("relative_path_length", straight(5, 5), still)) == 0
     at_once = scene(grid(5), line(grid(5), (0, 0), (1, 0)), goal_time=0.0)
     found = scores_of("relative_time_to_goal", at_once, straight(5, 5))
-    assert {(s.status, s.reason) for s in found.values()} == {("undefined", "zero_denominator")}
+    own = [found["literal"], found["corrected"]]
+    assert {(s.status, s.reason) for s in own} == {("undefined", "zero_denominator")}
+
+
+def test_a_common_reference() -> None:
+    """A robot that is slow alone, too, loses nothing against itself, and half against all."""
+    goal: dict[str, Any] = {"robot_goal": (10.0, 0.0), "robot_speed_limit": 2.0}
+    slow = driven(grid(10), v=1.0, goal_time=10.0, **goal)
+    found = scores_of("relative_time_to_goal", slow, slow)
+    assert value_of(found) == 1
+    assert value_of(found, "common") == pytest.approx(0.5)
+    assert value_of(scores_of("relative_time_to_goal", slow), "common") == pytest.approx(0.5)
+    lost = driven(grid(10), v=0.5, **goal)
+    late = scores_of("relative_time_to_goal", lost)["common"]
+    assert late.status == "censored"
+    assert (late.lower, late.upper) == (0.0, 0.5)
+    unknown = driven(grid(10), v=0.5, robot_goal=(10.0, 0.0))
+    found = scores_of("relative_time_to_goal", unknown)
+    assert found["common"].reason == "invalid_no_speed_limit"
+    assert scores_of("relative_time_to_goal", driven(grid(10)))["common"].reason == (
+        "invalid_no_goal"
+    )
+
+
+def test_a_reference_that_does_not_turn_says_nothing_of_turning() -> None:
+    """Rounding of a straight drive, 1e-15, over a crowded drive was a score."""
+    t = grid(10)
+    straight_on = driven(t, v=1.0, w=1e-16 * np.sin(t), goal_time=10.0)
+    turning = driven(t, v=1.0, w=0.2 * np.sin(t), goal_time=10.0)
+    found = scores_of("relative_jerk", turning, straight_on)["angular"]
+    assert (found.status, found.reason) == ("undefined", "reference_does_not_turn")
+    assert value_of(scores_of("relative_jerk", turning, turning), "angular") == pytest.approx(1)
 
 
 def test_one_sample() -> None:
@@ -205,7 +237,8 @@ def test_jerk_of_a_quadratic_speed() -> None:  # i01
     for variant in ("literal", "corrected", "linear", "norm"):
         assert value_of(found, variant) == pytest.approx(0.5)
     assert value_of(found, "legacy") == pytest.approx(0.5)
-    assert (found["angular"].status, found["angular"].reason) == ("undefined", "zero_denominator")
+    assert found["angular"].status == "undefined"
+    assert found["angular"].reason == "reference_does_not_turn"
     assert found["corrected"].extras["crowded"] == pytest.approx(0.02 * (10 - 0.1))
 
 

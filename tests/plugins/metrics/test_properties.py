@@ -21,6 +21,15 @@ SEEDS = st.integers(0, 2**32 - 1)
 many = settings(max_examples=40, deadline=None)
 
 
+#: Metrics that have a rate, and what it is the rate of.
+RATES = (
+    ("risk", "corrected"),
+    ("expected_severity", "corrected"),
+    ("time_exposed", "corrected"),
+    ("integrated_time_to_collision", "corrected"),
+)
+
+
 def scored(world: World, metric: str, **fields: float) -> dict[str, float]:
     """Variant -> value, where there is one."""
     found = crowdbot.score(
@@ -65,6 +74,11 @@ def test_the_family_of_risk_agrees(seed: int) -> None:
     assert total == pytest.approx(5.0 * risk["corrected"])
     severity = scored(world, "expected_severity")["corrected"]
     assert (severity > 1e-12) <= (risk["corrected"] > 0)
+    span = float(world.run.t[-1] - world.run.t[0])
+    for metric, variant in RATES:
+        found = scored(world, metric)
+        if world.run.robot and world.run.robot.goal_time is None:
+            assert found["rate"] == pytest.approx(found[variant] / span)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -77,6 +91,7 @@ def test_literal_risk_times_dt_converges(seed: int) -> None:
 @many
 def test_collisions_are_counted_person_by_person(seed: int) -> None:
     world = random_world(seed)
+    world = replace(world, run=replace(world.run, contacts=None))  # of samples, not of the table
     assert world.run.agents is not None
     counts, severities = scored(world, "collision_count"), scored(world, "collision_severity")
     assert counts["corrected"] >= min(counts["literal"], 1)
@@ -93,6 +108,7 @@ def test_collisions_are_counted_person_by_person(seed: int) -> None:
 def test_faster_and_shorter(seed: int, factor: float) -> None:
     """All velocities times c, all times over c: each literal S_R term, v² τ, grows by c."""
     world = random_world(seed)
+    world = replace(world, run=replace(world.run, contacts=None))  # their speeds are not hurried
     fast = replace(world, run=_hurried(world.run, factor))
     slow, quick = scored(world, "expected_severity"), scored(fast, "expected_severity")
     assert quick["literal"] == pytest.approx(factor * slow["literal"], rel=1e-5, abs=1e-9)

@@ -27,6 +27,9 @@ from tests.plugins.metrics.scenes import (
 
 T = grid(10)
 TIME, LENGTH = "time_to_goal_similarity", "path_length_similarity"
+ALL_SIMILARITIES = (
+    TIME, LENGTH, "heading_similarity", "velocity_similarity", "neighbour_velocity_similarity",
+)  # fmt: skip
 
 
 def against(robot_speed: float, agent_speed: float, *, arrives: bool = True) -> Trajectories:
@@ -339,3 +342,19 @@ def test_how_often_people_overtake() -> None:
     lone = scores_of("overtaking_count", scene(T, line(T, (0, 0), (1, 0))))
     assert values(lone) == {"literal": 0, "corrected": 0}
     assert set(lone["literal"].extras) == {"overtaken_by"}
+
+
+def test_who_misses_his_goal_is_not_alike() -> None:
+    """A parked robot among people who stand was as fast as they are, with status ok."""
+    crowd = [line(T, (0, 3), (1, 0)), line(T, (0, 5), (1, 0.1))]
+    rows = trips((0, 0, 9, True), (1, 0, 10, True))
+    away = scene(T, line(T, (0, 0), (1, 0)), crowd, **rows, robot_goal=(99.0, 0.0))
+    for metric in ALL_SIMILARITIES:
+        found = scores_of(metric, away)["corrected"]
+        if found.status == "undefined":
+            continue
+        assert (found.status, found.reason) == ("censored", "goal_not_reached")
+        assert (found.lower, found.upper) == (None, None)
+        assert away.robot is not None
+        free = dataclasses.replace(away, robot=dataclasses.replace(away.robot, goal=None))
+        assert found.extras["so_far"] == scores_of(metric, free)["corrected"].value

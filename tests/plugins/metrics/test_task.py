@@ -41,13 +41,24 @@ def value(metric: str, run: Trajectories, *refs: Trajectories, **fields: Any) ->
 def test_success() -> None:
     bump = scene(T, line(T, (0, 0), (1, 0)), [line(T, (5, 0), (0, 0))], goal_time=10.0)
     free = scene(T, line(T, (0, 0), (1, 0)), [line(T, (5, 9), (0, 0))], goal_time=10.0)
-    never = scene(T, line(T, (0, 0), (1, 0)), [line(T, (5, 9), (0, 0))])
+    never = scene(T, line(T, (0, 0), (1, 0)), [line(T, (5, 9), (0, 0))], **GOAL)
     names = ("success", "success_no_collision", "timeout")
     assert [value(n, bump) for n in names] == [1, 0, 0]
     assert [value(n, free) for n in names] == [1, 1, 0]
     assert [value(n, never) for n in names] == [0, 0, 1]
     after = scene(T, line(T, (0, 0), (1, 0)), [line(T, (5, 0), (0, 0))], goal_time=4.0)
     assert value("success_no_collision", after) == 1
+
+
+def test_without_a_goal_there_is_no_task() -> None:
+    """A drive without a goal neither arrives nor fails to; one that arrived had a goal."""
+    free, there = driven(T, v=1.0), driven(T, v=1.0, goal_time=10.0)
+    zone = driven(T, v=0.1, goal_zone=ZONE)
+    for metric in ("success", "success_no_collision", "timeout", "stl", "aggregated_time"):
+        assert why(scores_of(metric, free, there)) == {("undefined", "invalid_no_goal")}
+        for run in (there, zone):
+            found = scores_of(metric, run, there)["corrected"]
+            assert found.reason != "invalid_no_goal"
 
 
 def test_spl() -> None:
@@ -73,7 +84,7 @@ def test_stl() -> None:
     alone, slow = driven(T, v=1.0, goal_time=8.0), driven(T, v=1.0, goal_time=10.0)
     assert value("stl", slow, alone) == pytest.approx(0.8)
     assert value("stl", alone, slow) == 1
-    assert value("stl", driven(T, v=1.0), alone) == 0
+    assert value("stl", driven(T, v=1.0, **GOAL), alone) == 0
     assert why(scores_of("stl", slow)) == {("undefined", "no_reference")}
 
 
@@ -102,7 +113,7 @@ def test_aggregated_time() -> None:
     rows = ((0, 0, 4, True), (1, 2, 9, True))
     run = scene(T, line(T, (0, 0), (1, 0)), people, goal_time=10.0, **trips(*rows))
     assert value("aggregated_time", run) == pytest.approx(10 + 4 + 7)
-    late = scene(T, line(T, (0, 0), (1, 0)), people, **trips(*rows))
+    late = scene(T, line(T, (0, 0), (1, 0)), people, **trips(*rows), **GOAL)
     found = scores_of("aggregated_time", late)["corrected"]
     assert found.status == "censored"
     assert found.lower == pytest.approx(21)

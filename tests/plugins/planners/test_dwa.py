@@ -148,6 +148,21 @@ def test_a_dense_crowd_does_not_freeze_it() -> None:
     assert longest_stand(out) < 10.0
 
 
+def share_away(out: Outcome) -> float:
+    """Share of the time in which it moves away from the goal at more than 0.05 m/s."""
+    speed = np.diff([p.x for p in out.path[::16]]) * 8.0
+    return float(np.mean(speed < -0.05))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_it_does_not_flee_from_those_who_come_towards_it(seed: int) -> None:
+    """0.3 p/m^2 who avoid nobody, all of them against it."""
+    out = run(crowd(seed, 120, (0.8, 1.4), (-1,)), seed=seed)
+    assert share_away(out) < 0.05
+    assert out.arrived
+
+
 def test_boxed_in_it_stands_and_touches_nobody() -> None:
     ring = [(5 + 0.75 * math.cos(a), 0.75 * math.sin(a)) for a in np.arange(8) * math.pi / 4]
     world = World(standing(*ring), start=Pose(5.0, 0.0, 0.0))

@@ -64,11 +64,34 @@ def test_free_time_of_still_and_moving_points() -> None:
 
 
 def test_direction_is_the_goals_when_free_and_goes_round_when_not() -> None:
-    assert choose_direction(NOTHING, NOTHING, 0.3, 0.3, 0.6, 0.3, 4.0, 1.0) == (0.3, 4.0)
+    around = (4.0, 1.0, math.pi, 0.15)
+    assert choose_direction(NOTHING, NOTHING, 0.3, 0.3, 0.6, 0.3, *around) == (0.3, 4.0)
     wall = points(*((1.0, y) for y in np.linspace(-2.0, 0.4, 25)))
-    angle, free = choose_direction(wall, np.zeros_like(wall), 0.0, 0.0, 0.6, 0.3, 4.0, 1.0)
+    angle, free = choose_direction(wall, np.zeros_like(wall), 0.0, 0.0, 0.6, 0.3, *around)
     assert 0.5 < angle < 1.6
     assert free == 4.0
+
+
+def test_direction_stays_within_the_swerve_whoever_comes() -> None:
+    """A front of people who come on: only flight would be free for long."""
+    front = points(*((2.0, y) for y in np.linspace(-4.0, 4.0, 41)))
+    coming = np.tile([-1.4, 0.0], (len(front), 1))
+    for swerve in (0.5, 1.3, math.pi):
+        for previous in (0.0, 3.0):
+            angle, _ = choose_direction(
+                front, coming, 0.2, previous, 0.6, 0.3, 4.0, 0.2, swerve, 0.15
+            )
+            assert abs(angle - 0.2) <= swerve + 1e-12
+    assert abs(angle - 0.2) > 1.3  # it would have fled
+
+
+def test_it_holds_to_its_last_direction() -> None:
+    """Two gaps that are as good: that on the side of the last choice is taken."""
+    block = points(*((1.5, y) for y in np.linspace(-0.8, 0.8, 17)))
+    still = np.zeros_like(block)
+    for previous in (-0.9, 0.9):
+        angle, _ = choose_direction(block, still, 0.0, previous, 0.6, 0.3, 4.0, 1.0, 1.3, 0.3)
+        assert angle * previous > 0.0
 
 
 # -------------------------------------------------------------------------- rollouts

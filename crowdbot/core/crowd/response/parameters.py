@@ -37,7 +37,7 @@ class Human:
     sight: float = 6.0
     field_of_view: float = math.radians(200.0)
     late_time: float = 0.7
-    late_time_standing: float = 1.5
+    late_time_standing: float = 2.5
     late_gap: float = 0.3
     reaction_time: float = 0.3
     horizon: float = 3.0

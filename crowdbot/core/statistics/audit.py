@@ -1,0 +1,214 @@
+"""Audit of a suite: whether its runs tell floors from baselines, and what the ceiling leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from crowdbot.core.results.rows import Results, RunRow
+from crowdbot.core.statistics.floors import Lead, lead_over, primary_name
+from crowdbot.core.statistics.table import Table
+from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.errors import InputError
+
+#: Format of the file.
+FORMAT = 1
+AUDIT = "audit.json"
+_LEVEL = 0.95
+_SHOWN = 3
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class AuditedPair(_Model):
+    """One planner that should be ahead of another.
+
+    Attributes:
+        better, worse: labels, and their roles.
+        required: whether the suite fails if it is not: baselines over floors. The ceiling over
+            baselines only says how much there is left to win.
+        by, low, high: mean lead and its interval, in the score's unit.
+    """
+
+    better: str
+    worse: str
+    required: bool
+    pairs: Annotated[int, Field(ge=0)]
+    draws: Annotated[int, Field(ge=0)]
+    by: float | None
+    low: float | None
+    high: float | None
+    verdict: str
+    reason: str
+
+    @property
+    def text(self) -> str:
+        """For people."""
+        why = f" ({self.reason})" if self.reason else ""
+        value = "no value" if self.by is None else f"{self.by:+.3g}"
+        ends = (
+            "" if self.low is None or self.high is None else f" [{self.low:.3g}, {self.high:.3g}]"
+        )
+        return f"{self.better} over {self.worse}: {value}{ends}{why}"
+
+
+class Audit(_Model):
+    """What was found.
+
+    Attributes:
+        suite: its id.
+        tells_apart: whether every baseline is ahead of every floor, for certain.
+        reason: why not, where that is not for the pairs to say.
+        metric, variant: the score that decides.
+        roles: planner -> floor, baseline or ceiling.
+        seeds: of the runs.
+        scenarios: those that were run -> hash of their specification.
+        versions: of the software.
+    """
+
+    format: int = FORMAT
+    suite: str
+    tells_apart: bool
+    reason: str
+    metric: str
+    variant: str
+    level: float
+    roles: dict[str, str]
+    pairs: tuple[AuditedPair, ...]
+    seeds: list[int]
+    scenarios: dict[str, str]
+    versions: dict[str, str]
+
+    @property
+    def failing(self) -> tuple[AuditedPair, ...]:
+        """Required pairs that could not be told apart, or the wrong way round."""
+        return tuple(p for p in self.pairs if p.required and p.verdict != "ahead")
+
+    @property
+    def text(self) -> str:
+        """One sentence."""
+        if self.tells_apart:
+            return f"{self.suite} tells floors from baselines in {_plain(self.metric)}"
+        pairs = [pair.text for pair in self.failing]
+        more = f"; {len(pairs) - _SHOWN} more" if len(pairs) > _SHOWN else ""
+        why = self.reason or "; ".join(pairs[:_SHOWN]) + more
+        return f"{self.suite} cannot tell floors from baselines: {why}"
+
+    def fits(self, runs: Sequence[RunRow]) -> bool:
+        """Whether runs are of the suite as it was audited."""
+        audited = [r for r in runs if r.scenario in self.scenarios]
+        return bool(audited) and all(r.spec_hash == self.scenarios[r.scenario] for r in audited)
+
+
+def audit(results: Results) -> Audit:
+    """Judge a suite by the runs of floors, baselines and ceilings; others are left out.
+
+    Args:
+        results: of one suite.
+
+    Raises:
+        InputError: there is no such run.
+    """
+    runs = [r for r in results.runs if r.role in ("floor", "baseline", "ceiling")]
+    if not runs:
+        raise InputError("there is no run of a floor, a baseline or a ceiling")
+    roles = {r.planner: r.role for r in runs}
+    table = Table(results)
+    name = primary_name(table)
+    pairs = [] if name is None else [
+        _pair(lead_over(table, name, a, b, level=_LEVEL), required)
+        for a, b, required in _wanted(roles)
+    ]  # fmt: skip
+    reason = _reason(roles, name is not None, pairs)
+    required = [p for p in pairs if p.required]
+    return Audit(
+        suite=runs[0].suite,
+        tells_apart=not reason and all(p.verdict == "ahead" for p in required),
+        reason=reason,
+        metric=name[0] if name else "",
+        variant=name[1] if name else "",
+        level=_LEVEL,
+        roles=dict(sorted(roles.items())),
+        pairs=tuple(pairs),
+        seeds=sorted({r.seed for r in runs}),
+        scenarios={r.scenario: r.spec_hash for r in runs},
+        versions={str(k): str(v) for k, v in (runs[0].record.get("versions") or {}).items()},
+    )
+
+
+def _wanted(roles: Mapping[str, str]) -> list[tuple[str, str, bool]]:
+    of = {role: sorted(p for p, r in roles.items() if r == role) for role in set(roles.values())}
+    baselines = of.get("baseline", [])
+    required = [(b, f, True) for b in baselines for f in of.get("floor", [])]
+    return required + [(c, b, False) for c in of.get("ceiling", []) for b in baselines]
+
+
+def _pair(lead: Lead, required: bool) -> AuditedPair:
+    return AuditedPair(
+        better=lead.planner, worse=lead.other, required=required, pairs=lead.pairs,
+        draws=lead.draws, by=lead.by.value, low=lead.by.low, high=lead.by.high,
+        verdict=lead.verdict, reason=lead.reason,
+    )  # fmt: skip
+
+
+def _reason(roles: Mapping[str, str], scored: bool, pairs: Sequence[AuditedPair]) -> str:
+    for role in ("floor", "baseline"):
+        if role not in roles.values():
+            return f"no {role} was run"
+    if not scored:
+        return "its runs have no score that could decide"
+    if not any(p.pairs for p in pairs if p.required):
+        return "no scenario was run with both a floor and a baseline"
+    return ""
+
+
+def suspicion(found: Audit | None, runs: Sequence[RunRow]) -> str:
+    """What a reader of runs must be told of their suite; empty if nothing is known.
+
+    Args:
+        found: the audit that is at hand.
+        runs: of the suite.
+    """
+    if found is None:
+        return ""
+    if not found.fits(runs):
+        return f"{found.suite} has changed since it was audited: audit it again"
+    return "" if found.tells_apart else found.text
+
+
+def write_audit(path: Path, found: Audit) -> None:
+    """Write an audit; equal input gives equal bytes.
+
+    Raises:
+        InputError: it cannot be written there.
+    """
+    atomic_write(path, found.model_dump_json(indent=1) + "\n")
+
+
+def read_audit(path: Path) -> Audit:
+    """An audit from its file.
+
+    Raises:
+        InputError: it cannot be read, or holds something else.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise InputError(f"{path}: cannot be read: {why}") from error
+    try:
+        return Audit.model_validate_json(text)
+    except ValidationError as error:
+        first: Any = error.errors(include_url=False)[0]
+        place = ".".join(map(str, first["loc"]))
+        where = f"{place}: " if place else ""
+        raise InputError(f"{path}: not an audit of this release: {where}{first['msg']}") from None
+
+
+def _plain(metric: str) -> str:
+    return metric.replace("_", " ")

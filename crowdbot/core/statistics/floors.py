@@ -1,0 +1,181 @@
+"""Floors: whether a planner beats those that any should, in the score that counts first.
+
+A planner has to beat every floor. All of these tests must succeed at once, so that none needs a
+correction for the others (Berger 1982, intersection-union test).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from crowdbot.core.results.rows import Results
+from crowdbot.core.scoring import four_scores
+from crowdbot.core.statistics.comparison import Comparison, compare
+from crowdbot.core.statistics.estimate import NOTHING, Estimate
+from crowdbot.core.statistics.signed_rank import least_p
+from crowdbot.core.statistics.summary import headline_names
+from crowdbot.core.statistics.table import MISSING, Name, Table
+
+#: The score that decides, the first of these that the runs have: older ones lack the first.
+PRIMARY = (four_scores.PRIMARY.metric, "success_no_collision", "success")
+
+LeadVerdict = Literal["ahead", "behind", "not distinguishable"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Lead:
+    """By how much one planner is better than another in one score.
+
+    Attributes:
+        pairs, draws: scenarios and seeds that both have run; crowd draws among them.
+        by: mean lead over the pairs, in the score's unit, positive where ``planner`` is better.
+        verdict: ``ahead`` or ``behind`` only where the interval excludes 0, every pair has a value
+            and there are draws enough for any test to tell; else ``reason`` may say why not.
+    """
+
+    planner: str
+    other: str
+    pairs: int
+    draws: int
+    by: Estimate = NOTHING
+    verdict: LeadVerdict = "not distinguishable"
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FloorCheck:
+    """One planner against all floors that were run.
+
+    Attributes:
+        metric, variant: the score; empty where the runs have none that could decide.
+        leads: over each floor, the smallest first.
+    """
+
+    planner: str
+    metric: str
+    variant: str
+    leads: tuple[Lead, ...] = ()
+
+    @property
+    def beats_all(self) -> bool:
+        """Whether there are floors, and the planner is ahead of each."""
+        return bool(self.leads) and all(lead.verdict == "ahead" for lead in self.leads)
+
+    @property
+    def text(self) -> str:
+        """What a reader is told first."""
+        if not self.leads:
+            return f"{self.planner} was compared with no floor: nothing says what its scores mean"
+        score, lost = self.metric.replace("_", " "), [x for x in self.leads if x.verdict != "ahead"]
+        if not lost:
+            names = ", ".join(x.other for x in self.leads)
+            return f"{self.planner} beats the floors in {score}: {_by(self.leads[0])} ({names})"
+        told = "; ".join(_by(lead) for lead in lost)
+        return f"{self.planner} does not beat the floors in {score}: {told}"
+
+
+def check_floors(results: Results, *, level: float = 0.95) -> tuple[FloorCheck, ...]:
+    """Each planner against every floor, by name; floors themselves are not checked.
+
+    Args:
+        results: runs that may be compared.
+        level: of the intervals.
+    """
+    roles = {run.planner: run.role for run in results.runs}
+    table = Table(results)
+    floors = [p for p in table.planners if roles.get(p) == "floor"]
+    name = primary_name(table)
+    return tuple(
+        against_floors(table, name, planner, floors, level=level)
+        for planner in table.planners
+        if planner not in floors
+    )
+
+
+def against_floors(
+    table: Table, name: Name | None, planner: str, floors: Iterable[str], *, level: float = 0.95
+) -> FloorCheck:
+    """One planner against some floors; those that share no scenario and seed with it are left out.
+
+    Args:
+        table: of the runs.
+        name: from `primary_name`.
+        planner, floors: labels.
+        level: of the intervals.
+    """
+    if name is None:
+        return FloorCheck(planner=planner, metric="", variant="")
+    leads = [lead_over(table, name, planner, floor, level=level) for floor in floors]
+    met = sorted((x for x in leads if x.pairs), key=lambda x: (_low(x), x.other))
+    return FloorCheck(planner=planner, metric=name[0], variant=name[1], leads=tuple(met))
+
+
+def primary_name(table: Table) -> Name | None:
+    """The score that decides: that of `PRIMARY` which stands first among the headlines."""
+    headlines = dict(headline_names(table))
+    found = (metric for metric in PRIMARY if metric in headlines)
+    metric = next(found, None)
+    return None if metric is None else (metric, headlines[metric])
+
+
+def lead_over(table: Table, name: Name, planner: str, other: str, *, level: float = 0.95) -> Lead:
+    """How far a planner is ahead of another in one score."""
+    found, _ = compare(table, name, planner, other, level=level)
+    sign = 1.0 if found.better in ("higher", "none") else -1.0
+    by = _turned(found.difference, sign)
+    verdict, reason = _verdict(found, by, _lacking(table, name, planner, other), level)
+    return Lead(
+        planner=planner, other=other, pairs=found.pairs, draws=found.draws, by=by,
+        verdict=verdict, reason=reason,
+    )  # fmt: skip
+
+
+def _turned(found: Estimate, sign: float) -> Estimate:
+    if sign > 0 or found.value is None:
+        return found
+    low = None if found.high is None else -found.high
+    high = None if found.low is None else -found.low
+    return Estimate(value=-found.value, low=low, high=high, reason=found.reason)
+
+
+def _lacking(table: Table, name: Name, *planners: str) -> int:
+    """Pairs that both have tried, and that one has no value in."""
+    columns = [table.column(name, planner) for planner in planners]
+    tried = np.all([c.outcome != MISSING for c in columns], axis=0)
+    return int(np.count_nonzero(tried & ~np.all([c.known for c in columns], axis=0)))
+
+
+def _verdict(
+    found: Comparison, by: Estimate, lacking: int, level: float
+) -> tuple[LeadVerdict, str]:
+    if found.better == "none":
+        return "not distinguishable", "nothing says which values are better"
+    if by.low is None or by.high is None:
+        return "not distinguishable", by.reason or found.reason
+    if lacking:  # who leaves out the runs that went badly must not gain by it
+        return "not distinguishable", f"{lacking} of {found.pairs} pairs have no value"
+    # An interval needs two draws; with so few, any two planners differ by chance.
+    if least_p(found.draws) > 1.0 - level:
+        return "not distinguishable", f"too few crowd draws: {found.draws}"
+    if by.low > 0.0:
+        return "ahead", ""
+    return ("behind", "") if by.high < 0.0 else ("not distinguishable", "")
+
+
+def _low(lead: Lead) -> float:
+    return float("-inf") if lead.by.low is None else lead.by.low
+
+
+def _by(lead: Lead) -> str:
+    """Such as ``0.31 [0.22, 0.40] ahead of stop_and_go in 18 pairs``."""
+    why = f" ({lead.reason})" if lead.reason else ""
+    place = f"{lead.other}, {lead.pairs} pairs, {lead.draws} crowd draws"
+    if lead.by.value is None:
+        return f"not comparable with {place}{why}"
+    ends = (lead.by.low, lead.by.high)
+    interval = "" if None in ends else f" [{ends[0]:.3g}, {ends[1]:.3g}]"
+    return f"{lead.by.value:+.3g}{interval} against {place}{why}"

@@ -1,0 +1,104 @@
+"""How people near the robot change their way: accelerations, and the robot's part in them.
+
+N samples, M people; world frame, SI units. Steps, not samples, have an acceleration.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from crowdbot.core.trajectories.encounters import (
+    encounter,
+    people,
+    people_velocities,
+    robot_velocities,
+)
+from crowdbot.core.trajectories.preprocess import truncate_to_shorter
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.arrays import Array, Mask
+
+#: Two times closer than this are the same, s.
+SAME_TIME = 1e-6
+#: Slack of the rule who is near, m.
+DISTANCE_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Evasion:
+    """Accelerations of people on steps near the robot; 0 on all others.
+
+    Attributes:
+        dt: (N-1,) lengths of the steps, s.
+        near: (N-1, M) steps on which somebody is near and moves continuously.
+        size: (N-1, M) magnitude of the acceleration, m/s².
+        away: (N-1, M) the part that points away from the robot, never negative, m/s².
+        approach: (N-1, M) speed of the robot towards the person, never negative, m/s.
+    """
+
+    dt: Array
+    near: Mask
+    size: Array
+    away: Array
+    approach: Array
+
+    @property
+    def met(self) -> Mask:
+        """People (M,) who are near on some step."""
+        return np.asarray(self.near.any(axis=0))
+
+    def work(self, mass: Array) -> float:
+        """Work that the robot's advance does against people who accelerate away from it, J."""
+        power = self.away * self.approach * mass
+        return float(self.dt @ power.sum(axis=1))
+
+    def rms(self) -> float:
+        """Root mean square of the acceleration over people and time near the robot, m/s²."""
+        time = float(self.dt @ self.near.sum(axis=1))
+        return float(np.sqrt(self.dt @ (self.size**2).sum(axis=1) / time)) if time > 0 else 0.0
+
+
+def evasion(run: Trajectories, reach: float, jump_speed: float) -> Evasion:
+    """Accelerations within ``reach`` (m, centre to centre) of the robot, which the run must have.
+
+    ``jump_speed`` (m/s) tells teleports where none were recorded.
+    """
+    return run.cached(("evasion", reach, jump_speed), lambda: _evasion(run, reach, jump_speed))
+
+
+def _evasion(run: Trajectories, reach: float, jump_speed: float) -> Evasion:
+    pair, dt = encounter(run, jump_speed), np.diff(run.t)
+    px, py = _middle(pair.px), _middle(pair.py)
+    distance = np.hypot(px, py)
+    rx, ry = (_middle(v)[:, None] for v in robot_velocities(run, jump_speed))
+    ax, ay = (np.diff(v, axis=0) / dt[:, None] for v in people_velocities(run, jump_speed))
+    known = np.isfinite(ax) & np.isfinite(ay) & np.isfinite(rx) & np.isfinite(ry)
+    near = pair.valid & known & (distance <= reach + DISTANCE_TOLERANCE)
+    there = near & (distance > 0.0)
+    nx, ny = (np.divide(p, distance, out=np.zeros(p.shape), where=there) for p in (px, py))
+    return Evasion(
+        dt=dt,
+        near=near,
+        size=np.where(near, np.hypot(ax, ay), 0.0),
+        away=np.where(there, np.maximum(ax * nx + ay * ny, 0.0), 0.0),
+        approach=np.where(there, np.maximum(rx * nx + ry * ny, 0.0), 0.0),
+    )
+
+
+def ghost_run(run: Trajectories, alone: Trajectories) -> tuple[Trajectories, Trajectories] | None:
+    """The run, and its robot as a ghost among the people who never met one.
+
+    What such a ghost is blamed for happens without a robot. Both have the length of the shorter
+    record; None where the two were not sampled at the same times after the start.
+    """
+    run, alone = truncate_to_shorter(run, alone)
+    since, other = run.t - run.t[0], alone.t - alone.t[0]
+    if len(since) != len(other) or np.any(np.abs(since - other) > SAME_TIME):
+        return None
+    return run, replace(run, agents=people(alone), trips=alone.trips, contacts=None)
+
+
+def _middle(values: Array) -> Array:
+    """Mean of both ends of each step."""
+    return (values[1:] + values[:-1]) / 2.0

@@ -1,0 +1,269 @@
+"""The same people with and without the robot: how far each is displaced, how long delayed.
+
+People are matched by id, their trips by number. A trip with the robot is laid over the same trip
+without it: what lies beside that way is displacement, what lies behind on it is delay. So a person
+who walks the same way later is delayed and not displaced.
+
+A crowd is chaotic: two that differ by 2 cm at the start have nothing to do with each other after
+a minute, without any robot. So people are compared over the whole run, and, apart from that, over
+their first meeting with the robot, if until then they have walked as they do without it. SI units.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.trajectories.encounters import encounter, people
+from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_agent_steps
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.trajectories.trips import trip_samples
+from crowdbot.core.types.arrays import Array, Mask
+
+#: A person is looked for this many samples before and after the place where he was found last.
+WINDOW = 48
+#: Who is later or earlier by more no longer walks as he does without the robot, s.
+SAME_PACE = 0.1
+#: Places this near are one, m²: who waits is where he was.
+_SAME = 1e-18
+#: Slack of the rules who is near and who is where he would be, m and s.
+_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Effects:
+    """What people pay; each (P,), by id.
+
+    Attributes:
+        displacement: largest distance from the way without the robot, m.
+        delay: time lost, s; negative: gained.
+        speed: mean walking speed without the robot, m/s.
+        left_out: trips, or people met, that were not compared because they begin elsewhere.
+    """
+
+    displacement: Array
+    delay: Array
+    speed: Array
+    left_out: int
+
+    def __len__(self) -> int:
+        """How many people."""
+        return len(self.speed)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pairing:
+    """Who is compared, and over which time.
+
+    Attributes:
+        same_start: who begins farther off than without the robot is left out, m.
+        reach: who is no farther from the robot, centre to centre, meets it, m.
+        after: a meeting goes on so long after somebody is out of reach, s.
+        jump_speed: tells teleports where none were recorded, m/s.
+    """
+
+    same_start: float
+    reach: float
+    after: float
+    jump_speed: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """One trip: its samples, positions and times since its beginning (K,); how long it took."""
+
+    rows: NDArray[np.intp]
+    column: int
+    x: Array
+    y: Array
+    t: Array
+    seconds: float
+    reached: bool
+
+
+@dataclass(frozen=True, slots=True)
+class _Pair:
+    """One trip of a person with and without the robot; ``beside``, ``late`` as of `follow`."""
+
+    who: int
+    one: _Way
+    two: _Way
+    beside: Array
+    late: Array
+
+
+def whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
+    """All people over all trips that both runs have and that begin alike.
+
+    Args:
+        run: up to its end.
+        alone: the same people without robot.
+        pairing: who is compared.
+    """
+    found: dict[int, list[tuple[float, float, float, float]]] = {}
+    left_out = 0
+    for pair in _pairs(run, alone, pairing.jump_speed):
+        if _starts_apart(pair, pairing):
+            left_out += 1
+            continue
+        effect = float(pair.beside.max()), _delay(pair)
+        found.setdefault(pair.who, []).append((*effect, *_walked(pair.two)))
+    people = [np.array(trips) for trips in found.values()]
+    return Effects(
+        displacement=np.array([trips[:, 0].max() for trips in people]),
+        delay=np.array([trips[:, 1].sum() for trips in people]),
+        speed=np.array([trips[:, 2].sum() / trips[:, 3].sum() for trips in people]),
+        left_out=left_out,
+    )
+
+
+def meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
+    """People who meet the robot, from the beginning of their first meeting to its end.
+
+    Only those count who until then walk as without the robot: the others were disturbed before,
+    by whom nobody knows. The run has to have a robot; otherwise as `whole_effects`.
+    """
+    distance = encounter(run, pairing.jump_speed).distance
+    rows, met, left_out = [], set[int](), 0
+    for pair in _pairs(run, alone, pairing.jump_speed):
+        one, beside, late = pair.one, pair.beside, pair.late
+        first, last = _meeting(distance[one.rows, one.column], run.t[one.rows], pairing)
+        if pair.who in met or first < 0:
+            continue
+        met.add(pair.who)
+        moved = beside[first] > pairing.same_start + _TOLERANCE
+        if _starts_apart(pair, pairing) or moved or abs(late[first]) > SAME_PACE + _TOLERANCE:
+            left_out += 1
+            continue
+        length, seconds = _walked(pair.two)
+        most = float(beside[first : last + 1].max() - beside[first])
+        rows.append((most, float(late[last] - late[first]), length / seconds))
+    table = np.array(rows).reshape(-1, 3)
+    return Effects(
+        displacement=table[:, 0], delay=table[:, 1], speed=table[:, 2], left_out=left_out
+    )
+
+
+def _pairs(run: Trajectories, alone: Trajectories, jump_speed: float) -> list[_Pair]:
+    """Trips that both runs have, by person and number; laid over one another once."""
+    done: dict[tuple[int, float], tuple[Trajectories, list[_Pair]]] = run.cached("pairs", dict)
+    key = id(alone), jump_speed
+    if key not in done:  # the run that is kept beside the pairs keeps its id
+        ways, others = _ways(run, jump_speed), _ways(alone, jump_speed)
+        both = sorted(ways.keys() & others.keys())
+        pairs = [_Pair(k[0], ways[k], others[k], *_laid_over(ways[k], others[k])) for k in both]
+        done[key] = alone, pairs
+    return done[key][1]
+
+
+def _starts_apart(pair: _Pair, pairing: Pairing) -> bool:
+    apart = math.hypot(pair.one.x[0] - pair.two.x[0], pair.one.y[0] - pair.two.y[0])
+    return apart > pairing.same_start + _TOLERANCE
+
+
+def _meeting(distance: Array, t: Array, pairing: Pairing) -> tuple[int, int]:
+    """First and last sample (of a trip) of the first meeting; -1, -1 if there is none."""
+    near = np.flatnonzero(distance <= pairing.reach + _TOLERANCE)
+    if not len(near):
+        return -1, -1
+    ends = np.flatnonzero(np.diff(t[near]) > pairing.after + _TOLERANCE)
+    out = near[ends[0]] if len(ends) else near[-1]
+    last = int(np.searchsorted(t, t[out] + pairing.after + _TOLERANCE, side="right")) - 1
+    return int(near[0]), last
+
+
+def _delay(pair: _Pair) -> float:
+    """Time lost on a whole trip, s."""
+    one, two = pair.one, pair.two
+    if one.reached and two.reached:
+        return one.seconds - two.seconds
+    if one.reached:  # only the other one was cut
+        return -float(_laid_over(two, one)[1][-1])
+    return float(pair.late[-1])
+
+
+def _laid_over(one: _Way, two: _Way) -> tuple[Array, Array]:
+    """Distance from the other way (m), and how late there (s), at each sample (K,)."""
+    beside, late = np.empty(len(one.t)), np.empty(len(one.t))
+    first, other = (np.stack([way.x, way.y, way.t]) for way in (one, two))
+    follow(first, other, WINDOW, beside, late)
+    return beside, late
+
+
+def _ways(run: Trajectories, jump_speed: float) -> dict[tuple[int, int], _Way]:
+    """Person and number of the trip -> where it went; two samples at least."""
+    agents, trips = people(run), run.trips
+    if trips is None or not agents.x.size:
+        return {}
+    x, y = inf_to_nan(agents.x), inf_to_nan(agents.y)
+    valid = valid_agent_steps(run.t, agents, jump_speed)
+    first, last, column = trip_samples(run)
+    found: dict[tuple[int, int], _Way] = {}
+    count: dict[int, int] = {}
+    for k in np.lexsort((trips.t0, trips.agent)).tolist():
+        who, c = int(trips.agent[k]), int(column[k])
+        count[who] = count.get(who, 0) + 1
+        rows = _continuous(valid[:, c], int(first[k]), int(last[k]))
+        if c >= 0 and len(rows) >= 2:
+            found[who, count[who]] = _Way(
+                rows=rows,
+                column=c,
+                x=x[rows, c],
+                y=y[rows, c],
+                t=run.t[rows] - trips.t0[k],
+                seconds=float(trips.t1[k] - trips.t0[k]),
+                reached=bool(trips.reached[k]),
+            )
+    return found
+
+
+def _continuous(valid: Mask, first: int, last: int) -> NDArray[np.intp]:
+    """Samples of the longest part of a trip without a teleport or absence."""
+    if last <= first:
+        return np.arange(0)
+    breaks = np.flatnonzero(~valid[first:last])
+    edges = np.concatenate([[-1], breaks, [last - first]])
+    longest = int(np.argmax(np.diff(edges)))
+    return first + np.arange(edges[longest] + 1, edges[longest + 1] + 1)
+
+
+def _walked(way: _Way) -> tuple[float, float]:
+    """Length (m) and duration (s) of what was seen of a trip."""
+    length = np.hypot(np.diff(way.x), np.diff(way.y)).sum()
+    return float(length), float(way.t[-1] - way.t[0])
+
+
+@kernel
+def follow(one: Array, other: Array, window: int, beside: Array, late: Array) -> None:
+    """Lay one way over another, from beginning to end.
+
+    The other way is prolonged by a step at both ends: samples do not fall on them.
+
+    Args:
+        one, other: (3, K) and (3, L) x, y (m) and time (s), L >= 2.
+        window: how many samples away from the last place the next one is looked for.
+        beside: (K,) written: distance from the other way, m.
+        late: (K,) written: how much later than there the place is reached, s.
+    """
+    x, y, t = one[0], one[1], one[2]
+    wx, wy, wt = other[0], other[1], other[2]
+    at = 0
+    for k in range(x.shape[0]):
+        best, near, behind = math.inf, at, 0.0
+        for s in range(max(0, at - window), min(wx.shape[0] - 1, at + window + 1)):
+            ex, ey = wx[s + 1] - wx[s], wy[s + 1] - wy[s]
+            px, py = x[k] - wx[s], y[k] - wy[s]
+            square = ex * ex + ey * ey
+            u = (px * ex + py * ey) / square if square > 0.0 else 0.0
+            u = max(u, -1.0 if s == 0 else 0.0)
+            u = min(u, 2.0 if s == wx.shape[0] - 2 else 1.0)
+            apart = (px - u * ex) ** 2 + (py - u * ey) ** 2
+            lag = t[k] - wt[s] - u * (wt[s + 1] - wt[s])
+            if apart < best - _SAME or (apart <= best + _SAME and abs(lag) < abs(behind)):
+                best, near, behind = min(apart, best), s, lag
+        at = near
+        beside[k], late[k] = math.sqrt(best), behind

@@ -1,0 +1,154 @@
+"""Contacts of the robot with people: from the recorded table, else from the samples.
+
+The table holds every contact that the simulator or the robot's skin felt, however short. Samples
+miss what happens between them: a bounce of 30 ms lies between two samples 62.5 ms apart.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.trajectories.encounters import (
+    encounter,
+    onsets,
+    people,
+    relative_velocity,
+    robot_of,
+    robot_velocities,
+)
+from crowdbot.core.trajectories.preprocess import TIME_TOLERANCE, inf_to_nan
+from crowdbot.core.trajectories.trajectories import ContactEvents, Trajectories
+from crowdbot.core.types.arrays import Array, Mask
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PersonContacts:
+    """Contacts with people by time; each (K,).
+
+    Attributes:
+        time: of the onset, s.
+        agent: column of the person; -1: not in the table of people.
+        sample: last one before the onset, or at it.
+        speed: relative speed before, m/s; NaN: unknown.
+        closing: speed of the robot towards the person before, m/s; NaN: unknown.
+        recorded: whether they are those of the table.
+    """
+
+    time: Array
+    agent: NDArray[np.int64]
+    sample: NDArray[np.int64]
+    speed: Array
+    closing: Array
+    recorded: bool
+
+    def __len__(self) -> int:
+        """How many."""
+        return len(self.time)
+
+    def at_fault(self, fault_speed: float) -> Mask:
+        """Contacts (K,) into which the robot moved faster than ``fault_speed``, m/s.
+
+        Where nothing is known of the direction the robot is at fault.
+        """
+        return ~(self.closing <= fault_speed)
+
+
+def person_contacts(
+    run: Trajectories, jump_speed: float, contact_tol: float, release_gap: float
+) -> PersonContacts:
+    """Contacts of a run that has a robot and ends at its arrival.
+
+    Args:
+        run: the run.
+        jump_speed: tells teleports where none were recorded, m/s.
+        contact_tol, release_gap: of contacts from samples, m; see `encounters.contact_onsets`. A
+            table has its own rule when a contact ends.
+    """
+    key = "person_contacts", jump_speed, contact_tol, release_gap
+    return run.cached(key, lambda: _contacts(run, jump_speed, contact_tol, release_gap))
+
+
+def _contacts(
+    run: Trajectories, jump_speed: float, contact_tol: float, release_gap: float
+) -> PersonContacts:
+    if run.contacts is not None:
+        return _recorded(run, run.contacts, jump_speed)
+    found = onsets(run, jump_speed, contact_tol, release_gap)
+    speed = np.hypot(*relative_velocity(run, jump_speed))[found.sample, found.agent]
+    unknown = np.full(len(found.time), np.nan)
+    return PersonContacts(
+        time=found.time,
+        agent=found.agent,
+        sample=found.sample,
+        speed=speed,
+        closing=_closing(run, found.time, found.agent, found.sample, unknown, jump_speed),
+        recorded=False,
+    )
+
+
+def _recorded(run: Trajectories, table: ContactEvents, jump_speed: float) -> PersonContacts:
+    rows = np.flatnonzero(table.agent >= 0)
+    rows = rows[np.lexsort((table.agent[rows], table.t0[rows]))]
+    time, who, ids = table.t0[rows], table.agent[rows], people(run).id
+    order = np.argsort(ids)
+    slot = np.minimum(np.searchsorted(ids[order], who), max(len(ids) - 1, 0))
+    column = (
+        np.where(ids[order][slot] == who, order[slot], -1) if len(ids) else np.full(len(who), -1)
+    )
+    before = np.searchsorted(run.t, time + TIME_TOLERANCE, side="right") - 1
+    sample = np.clip(before, 0, len(run.t) - 1)
+    return PersonContacts(
+        time=time,
+        agent=column,
+        sample=sample,
+        speed=table.relative_speed[rows],
+        closing=_closing(run, time, column, sample, table.bearing[rows], jump_speed),
+        recorded=True,
+    )
+
+
+def _closing(
+    run: Trajectories,
+    time: Array,
+    agent: NDArray[np.int64],
+    sample: NDArray[np.int64],
+    bearing: Array,
+    jump_speed: float,
+) -> Array:
+    """Speed of the robot towards where it is touched (K,), m/s; NaN where that is unknown.
+
+    Towards the bearing where the table has one, else towards the person's centre at the onset.
+    """
+    if not len(time):
+        return np.empty(0)
+    vx, vy = (v[sample] for v in robot_velocities(run, jump_speed))
+    told = inf_to_nan(robot_of(run).theta)[sample] + bearing
+    towards = _direction_of(run, time, agent, sample, jump_speed)
+    angle = np.where(np.isfinite(told), told, towards)
+    stands = np.hypot(vx, vy) == 0.0
+    return np.where(stands, 0.0, vx * np.cos(angle) + vy * np.sin(angle))
+
+
+def _direction_of(
+    run: Trajectories,
+    time: Array,
+    agent: NDArray[np.int64],
+    sample: NDArray[np.int64],
+    jump_speed: float,
+) -> Array:
+    """World direction from the robot to a person at a time between two samples (K,), rad."""
+    pair = encounter(run, jump_speed)
+    if not pair.px.shape[1]:
+        return np.full(len(time), np.nan)
+    after = np.minimum(sample + 1, len(run.t) - 1)
+    span = run.t[after] - run.t[sample]
+    part = np.divide(time - run.t[sample], span, out=np.zeros(len(time)), where=span > 0)
+    px, py = (
+        p[sample, agent] + part * (p[after, agent] - p[sample, agent]) for p in (pair.px, pair.py)
+    )
+    first = pair.px[sample, agent], pair.py[sample, agent]
+    px, py = (np.where(np.isfinite(p), p, q) for p, q in zip((px, py), first, strict=True))
+    return np.where(agent >= 0, np.arctan2(py, px), np.nan)

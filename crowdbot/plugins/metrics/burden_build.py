@@ -1,0 +1,114 @@
+"""What people have to do for the robot, computed from how they move near it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from crowdbot.core.interfaces import (
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    truncate_at_arrival,
+)
+from crowdbot.core.trajectories.encounters import people
+from crowdbot.core.trajectories.evasion import Evasion, evasion, ghost_run
+from crowdbot.plugins.metrics.burden import (
+    EVASIVE_ACCELERATION,
+    PUSH_WORK,
+    EvasiveAccelerationSpec,
+    PushWorkSpec,
+)
+
+#: Of the people met, this share has no higher peak.
+PERCENTILE = 0.95
+
+_Spec = PushWorkSpec | EvasiveAccelerationSpec
+
+
+@dataclass(frozen=True, slots=True)
+class PushWork:
+    """``excess`` needs ``crowd_alone``, sampled at the same times."""
+
+    spec: PushWorkSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Per person met, in total, and beyond what a ghost on the same way is blamed for."""
+        factory = ScoreFactory(PUSH_WORK)
+        found = _near(factory, run, self.spec)
+        if isinstance(found, list):
+            return found
+        work, met = found.work(people(run).mass), float(found.met.sum())
+        extras = {"people_met": met}
+        return [
+            factory.ok("corrected", work / met, extras),
+            factory.ok("total", work, extras),
+            _excess(factory, run, refs, self.spec, self._difference),
+        ]
+
+    def _difference(self, run: Trajectories, ghost: Trajectories) -> float:
+        return self._per_person(run) - self._per_person(ghost)
+
+    def _per_person(self, run: Trajectories) -> float:
+        found = evasion(run, self.spec.evasion_reach, self.spec.jump_speed)
+        return found.work(people(run).mass) / max(float(found.met.sum()), 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class EvasiveAcceleration:
+    """``excess`` needs ``crowd_alone``, sampled at the same times."""
+
+    spec: EvasiveAccelerationSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """95th percentile of people's peaks, largest peak, root mean square, its excess."""
+        factory = ScoreFactory(EVASIVE_ACCELERATION)
+        found = _near(factory, run, self.spec)
+        if isinstance(found, list):
+            return found
+        peaks = found.size.max(axis=0)[found.met]
+        return [
+            factory.ok(
+                "corrected", np.quantile(peaks, PERCENTILE), {"people_met": float(len(peaks))}
+            ),
+            factory.ok("peak", peaks.max()),
+            factory.ok("rms", found.rms()),
+            _excess(factory, run, refs, self.spec, self._difference),
+        ]
+
+    def _difference(self, run: Trajectories, ghost: Trajectories) -> float:
+        own, other = (
+            evasion(r, self.spec.evasion_reach, self.spec.jump_speed).rms() for r in (run, ghost)
+        )
+        return float(np.sqrt(max(0.0, own**2 - other**2)))
+
+
+def _near(factory: ScoreFactory, run: Trajectories, spec: _Spec) -> Evasion | list[Score]:
+    """People near the robot up to the arrival; or why there are none."""
+    if run.robot is None:
+        return factory.all_undefined("invalid_no_robot")
+    if not people(run).x.size or not np.isfinite(people(run).x).any():
+        return factory.all_undefined("no_agents")
+    found = evasion(truncate_at_arrival(run), spec.evasion_reach, spec.jump_speed)
+    return found if found.met.any() else factory.all_undefined("no_neighbours")
+
+
+def _excess(
+    factory: ScoreFactory,
+    run: Trajectories,
+    refs: References,
+    spec: _Spec,
+    difference: Callable[[Trajectories, Trajectories], float],
+) -> Score:
+    """The run against its robot as a ghost among the same people."""
+    if refs.crowd_alone is None or refs.crowd_alone.agents is None:
+        return factory.undefined("excess", "no_reference")
+    both = ghost_run(truncate_at_arrival(run), refs.crowd_alone)
+    if both is None:
+        return factory.undefined("excess", "sampling_mismatch")
+    if not evasion(both[0], spec.evasion_reach, spec.jump_speed).met.any():
+        return factory.undefined("excess", "no_neighbours")
+    return factory.ok("excess", difference(*both))

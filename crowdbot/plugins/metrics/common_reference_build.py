@@ -1,0 +1,88 @@
+"""The goal, and the reference that all planners share: the shortest way at full speed.
+
+The planner's own run alone is another reference for each planner: who is slow there, too, loses
+nothing in the crowd. Nobody is faster than the shortest way at the fastest speed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from crowdbot.core.interfaces import (
+    Array,
+    Footprint,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    truncate_at_arrival,
+)
+from crowdbot.core.trajectories.encounters import robot_of
+from crowdbot.core.trajectories.preprocess import present
+
+
+def without_task(run: Trajectories) -> str:
+    """Why the robot has nothing to arrive at; empty where it has, or did arrive."""
+    if run.robot is None:
+        return "invalid_no_robot"
+    told = run.robot.goal is not None or run.goal_zone is not None
+    return "" if told or run.robot.goal_time is not None else "invalid_no_goal"
+
+
+def missed_goal(run: Trajectories) -> bool:
+    """Whether the robot has a goal, and did not arrive."""
+    return not without_task(run) and robot_of(run).goal_time is None
+
+
+def goal_distance(
+    factory: ScoreFactory, run: Trajectories, variants: Iterable[str] | None = None
+) -> tuple[Array, Array] | list[Score]:
+    """Times and distances (K,), (K,) of the robot's centre from its goal, s and m; or why not.
+
+    From the goal point; from the zone where only that is known.
+    """
+    if run.robot is None:
+        return factory.all_undefined("invalid_no_robot", variants)
+    run = truncate_at_arrival(run)
+    robot = robot_of(run)
+    known = present(robot.x, robot.y)
+    if not known.any():
+        return factory.all_undefined("too_few_samples", variants)
+    x, y = robot.x[known], robot.y[known]
+    if robot.goal is not None:
+        return run.t[known], np.hypot(x - robot.goal[0], y - robot.goal[1])
+    if run.goal_zone is not None:
+        return run.t[known], np.maximum(Footprint(run.goal_zone, 0.0).gap(x, y), 0.0)
+    return factory.all_undefined("invalid_no_goal", variants)
+
+
+def shortest_way(
+    factory: ScoreFactory, run: Trajectories, variants: Iterable[str] | None = None
+) -> float | list[Score]:
+    """Straight from the start to the goal zone, or to the disc of the goal, m; or why not.
+
+    Walls are not gone round: the true shortest way is at least as long, for all planners alike.
+    """
+    found = goal_distance(factory, run, variants)
+    if isinstance(found, list):
+        return found
+    robot = robot_of(run)
+    if run.goal_zone is None:
+        return max(0.0, float(found[1][0]) - robot.goal_radius)
+    known = present(robot.x, robot.y)
+    start = robot.x[known][:1], robot.y[known][:1]
+    return max(0.0, float(Footprint(run.goal_zone, 0.0).gap(*start)[0]))
+
+
+def shortest_time(
+    factory: ScoreFactory, run: Trajectories, variants: Iterable[str] | None = None
+) -> float | list[Score]:
+    """The shortest way at the fastest speed that the robot can go, s; or why there is none."""
+    way = shortest_way(factory, run, variants)
+    if isinstance(way, list):
+        return way
+    fastest = run.robot_speed_limit
+    if fastest is None:
+        return factory.all_undefined("invalid_no_speed_limit", variants)
+    return way / fastest

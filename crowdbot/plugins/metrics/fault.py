@@ -1,0 +1,67 @@
+"""Contacts that the robot drives into, and contacts per way."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Literal
+
+from crowdbot.dsl import MetricSpec, declare_metric
+from crowdbot.plugins.metrics.parameters import (
+    ContactTol,
+    FaultSpeed,
+    JumpSpeed,
+    LeastWay,
+    ReleaseGap,
+)
+
+declare = partial(declare_metric, category="collision")
+
+
+class ContactsAtFaultSpec(MetricSpec):
+    """Contacts with people that the robot drives into, and those that people walk into."""
+
+    kind: Literal["contacts_at_fault"] = "contacts_at_fault"
+    fault_speed: FaultSpeed
+    contact_tol: ContactTol
+    release_gap: ReleaseGap
+    jump_speed: JumpSpeed
+
+
+CONTACTS_AT_FAULT = declare(
+    ContactsAtFaultSpec,
+    symbol="C_af",
+    unit="1",
+    better="lower",
+    minimum=0.0,
+    integer=True,
+    more_people="up",
+    refinement="same",
+    variants={"corrected": {}, "person": {"better": "none"}},
+)
+
+
+class ContactsPerKmSpec(MetricSpec):
+    """Contacts with people per kilometre of way made good towards the goal."""
+
+    kind: Literal["contacts_per_km"] = "contacts_per_km"
+    least_way: LeastWay
+    fault_speed: FaultSpeed
+    contact_tol: ContactTol
+    release_gap: ReleaseGap
+    jump_speed: JumpSpeed
+
+
+CONTACTS_PER_KM = declare(
+    ContactsPerKmSpec,
+    symbol="C_km",
+    unit="1/km",
+    better="lower",
+    minimum=0.0,
+    more_people="up",
+    variants=("corrected", "at_fault", "driven"),
+)
+
+COMPONENTS = (
+    CONTACTS_AT_FAULT,
+    CONTACTS_PER_KM,
+)

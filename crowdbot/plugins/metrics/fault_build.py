@@ -1,0 +1,82 @@
+"""Contacts that the robot drives into, and contacts per way, computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from crowdbot.core.interfaces import (
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    path_length,
+    truncate_at_arrival,
+)
+from crowdbot.core.trajectories.encounters import robot_of
+from crowdbot.core.trajectories.person_contacts import person_contacts
+from crowdbot.plugins.metrics.common_reference_build import goal_distance
+from crowdbot.plugins.metrics.fault import (
+    CONTACTS_AT_FAULT,
+    CONTACTS_PER_KM,
+    ContactsAtFaultSpec,
+    ContactsPerKmSpec,
+)
+
+#: Slack of the rule whose fault a contact is, m/s: rounding decides nothing.
+TOLERANCE = 1e-9
+KILOMETRE = 1000.0
+
+
+@dataclass(frozen=True, slots=True)
+class ContactsAtFault:
+    """Needs no reference run."""
+
+    spec: ContactsAtFaultSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """The robot's fault: it moves towards whom it touches; else the person's."""
+        del refs
+        factory, spec = ScoreFactory(CONTACTS_AT_FAULT), self.spec
+        if run.robot is None:
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
+        found = person_contacts(run, spec.jump_speed, spec.contact_tol, spec.release_gap)
+        robot = int(found.at_fault(spec.fault_speed + TOLERANCE).sum())
+        return [factory.ok("corrected", robot), factory.ok("person", len(found) - robot)]
+
+
+@dataclass(frozen=True, slots=True)
+class ContactsPerKm:
+    """Needs a goal, but for ``driven``."""
+
+    spec: ContactsPerKmSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """All contacts, and those at fault, per way made good; all per way driven."""
+        del refs
+        factory, spec = ScoreFactory(CONTACTS_PER_KM), self.spec
+        if run.robot is None:
+            return factory.all_undefined("invalid_no_robot")
+        run = truncate_at_arrival(run)
+        found = person_contacts(run, spec.jump_speed, spec.contact_tol, spec.release_gap)
+        fault = int(found.at_fault(spec.fault_speed + TOLERANCE).sum())
+        driven = path_length(run.t, robot_of(run), spec.jump_speed)
+        rate = self._rate("driven", len(found), driven)
+        nearer = goal_distance(factory, run, ("corrected", "at_fault"))
+        if isinstance(nearer, list):
+            return [*nearer, rate]
+        good = float(nearer[1][0] - nearer[1].min())
+        return [
+            self._rate("corrected", len(found), good),
+            self._rate("at_fault", fault, good),
+            rate,
+        ]
+
+    def _rate(self, variant: str, count: int, way: float) -> Score:
+        """Per kilometre; who went nowhere has no rate, unless he was in contact even so."""
+        factory, least = ScoreFactory(CONTACTS_PER_KM), self.spec.least_way
+        if not count and way < least - TOLERANCE:
+            return factory.undefined(variant, "zero_denominator")
+        extras = {"contacts": float(count), "way": way}
+        return factory.ok(variant, KILOMETRE * count / max(way, least), extras)

@@ -1,0 +1,77 @@
+"""How far the robot displaces people, and how long it delays them: each against himself."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Literal
+
+from crowdbot.dsl import MetricSpec, declare_metric
+from crowdbot.plugins.metrics.parameters import (
+    AfterMeeting,
+    JumpSpeed,
+    MuchDelay,
+    MuchDisplacement,
+    NeighbourRadius,
+    SameStart,
+)
+
+declare = partial(declare_metric, category="burden")
+
+
+class DisplacementSpec(MetricSpec):
+    """How far people who meet the robot are moved off the way that they walk without it."""
+
+    kind: Literal["displacement"] = "displacement"
+    much_displacement: MuchDisplacement
+    neighbour_radius: NeighbourRadius
+    after_meeting: AfterMeeting
+    same_start: SameStart
+    jump_speed: JumpSpeed
+
+
+DISPLACEMENT = declare(
+    DisplacementSpec,
+    symbol="D_p",
+    unit="m",
+    better="lower",
+    self_value=0.0,
+    variants={
+        "corrected": {"minimum": 0.0},
+        "worst": {"minimum": 0.0},
+        "count": {"unit": "1", "minimum": 0.0, "integer": True, "more_people": "up"},
+        "slope": {"unit": "s", "better": "none"},
+        "whole": {"better": "none", "minimum": 0.0},
+    },
+)
+
+
+class DelaySpec(MetricSpec):
+    """Time that people who meet the robot lose against their trips without it."""
+
+    kind: Literal["delay"] = "delay"
+    much_delay: MuchDelay
+    neighbour_radius: NeighbourRadius
+    after_meeting: AfterMeeting
+    same_start: SameStart
+    jump_speed: JumpSpeed
+
+
+DELAY = declare(
+    DelaySpec,
+    symbol="Δt_p",
+    unit="s",
+    better="lower",
+    self_value=0.0,
+    variants={
+        "corrected": {},
+        "worst": {},
+        "count": {"unit": "1", "minimum": 0.0, "integer": True, "more_people": "up"},
+        "slope": {"unit": "s²/m", "better": "none"},
+        "whole": {"better": "none"},
+    },
+)
+
+COMPONENTS = (
+    DISPLACEMENT,
+    DELAY,
+)

@@ -1,0 +1,119 @@
+"""How far the robot displaces people, and how long it delays them, computed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from crowdbot.core.interfaces import (
+    Array,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    truncate_at_arrival,
+)
+from crowdbot.core.trajectories.paired_people import (
+    Effects,
+    Pairing,
+    meeting_effects,
+    whole_effects,
+)
+from crowdbot.plugins.metrics.paired_people import (
+    DELAY,
+    DISPLACEMENT,
+    DelaySpec,
+    DisplacementSpec,
+)
+
+#: Share of the people who have it worst.
+WORST = 0.05
+#: Walking speeds that differ by less are the same, m/s.
+SAME_SPEED = 1e-6
+#: Slack of the rule who is counted, m and s: rounding decides nothing.
+TOLERANCE = 1e-9
+
+
+_Spec = DisplacementSpec | DelaySpec
+
+
+@dataclass(frozen=True, slots=True)
+class Displacement:
+    """Needs ``crowd_alone`` with the same people."""
+
+    spec: DisplacementSpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Mean over people met, of the worst 5 %, how many by much, slope, mean over everybody."""
+        factory, much = ScoreFactory(DISPLACEMENT), self.spec.much_displacement
+        return _scores(factory, run, refs, self.spec, lambda found: found.displacement, much)
+
+
+@dataclass(frozen=True, slots=True)
+class Delay:
+    """Needs ``crowd_alone`` with the same people."""
+
+    spec: DelaySpec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Mean over people met, of the worst 5 %, how many by much, slope, mean over everybody."""
+        factory, much = ScoreFactory(DELAY), self.spec.much_delay
+        return _scores(factory, run, refs, self.spec, lambda found: found.delay, much)
+
+
+def _scores(
+    factory: ScoreFactory,
+    run: Trajectories,
+    refs: References,
+    spec: _Spec,
+    each: Callable[[Effects], Array],
+    much: float,
+) -> list[Score]:
+    """All variants of what each person pays (P,)."""
+    alone = refs.crowd_alone
+    if alone is None or alone.agents is None:
+        return factory.all_undefined("no_reference")
+    if run.trips is None or alone.trips is None:
+        return factory.all_undefined("no_trips")
+    run, alone = truncate_at_arrival(run), truncate_at_arrival(alone)
+    pairing = Pairing(
+        same_start=spec.same_start,
+        reach=spec.neighbour_radius,
+        after=spec.after_meeting,
+        jump_speed=spec.jump_speed,
+    )
+    everybody = whole_effects(run, alone, pairing)
+    whole = factory.undefined("whole", "no_trips")
+    if len(everybody):
+        extras = {"people": float(len(everybody)), "left_out": float(everybody.left_out)}
+        whole = factory.ok("whole", each(everybody).mean(), extras)
+    names = factory.variants[:-1]
+    if run.robot is None:
+        return [*factory.all_undefined("invalid_no_robot", names), whole]
+    met = meeting_effects(run, alone, pairing)
+    if not len(met):
+        return [*factory.all_undefined("no_neighbours", names), whole]
+    return [*_of_met(factory, met, each(met), much), whole]
+
+
+def _of_met(factory: ScoreFactory, met: Effects, each: Array, much: float) -> list[Score]:
+    """Mean, worst, count and slope."""
+    worst = np.sort(each)[-max(1, math.ceil(WORST * len(each))) :]
+    extras = {"people": float(len(each)), "left_out": float(met.left_out)}
+    return [
+        factory.ok("corrected", each.mean(), extras),
+        factory.ok("worst", worst.mean()),
+        factory.ok("count", (each > much + TOLERANCE).sum()),
+        _slope(factory, met.speed, each),
+    ]
+
+
+def _slope(factory: ScoreFactory, speed: Array, each: Array) -> Score:
+    """Least squares line of what people pay over how fast they walk: who pays."""
+    off = speed - speed.mean()
+    if len(speed) < 3 or np.abs(off).max() <= SAME_SPEED:
+        return factory.undefined("slope", "too_few_people")
+    return factory.ok("slope", float(off @ (each - each.mean())) / float(off @ off))

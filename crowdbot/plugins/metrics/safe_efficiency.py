@@ -1,0 +1,41 @@
+"""The primary score: whether the robot arrives safely, and how soon against a common reference."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Literal
+
+from crowdbot.dsl import MetricSpec, declare_metric
+from crowdbot.plugins.metrics.parameters import (
+    ContactTol,
+    FaultSpeed,
+    JumpSpeed,
+    ReleaseGap,
+    ZeroTol,
+)
+
+declare = partial(declare_metric, category="task")
+
+
+class SafeEfficiencySpec(MetricSpec):
+    """Arrival without a contact at fault, weighted by the shortest over the taken time."""
+
+    kind: Literal["safe_efficiency"] = "safe_efficiency"
+    fault_speed: FaultSpeed
+    contact_tol: ContactTol
+    release_gap: ReleaseGap
+    jump_speed: JumpSpeed
+    zero_tol: ZeroTol
+
+
+SAFE_EFFICIENCY = declare(
+    SafeEfficiencySpec,
+    symbol="E_s",
+    unit="1",
+    better="higher",
+    minimum=0.0,
+    maximum=1.0,
+    more_people="down",
+)
+
+COMPONENTS = (SAFE_EFFICIENCY,)

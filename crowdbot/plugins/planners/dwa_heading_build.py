@@ -1,0 +1,146 @@
+"""Where the robot heads, by the walls that its lidars see.
+
+A person who bumps into a robot turns it while its wheels slip, and wheel odometry does not notice.
+The directions of straight runs of lidar points, as a histogram, turn with the robot; the shift that
+fits those seen before best is by how much (Weiss, Wetzler, von Puttkamer, "Keeping track of
+position and orientation of moving indoor systems by correlation of range-finder scans", IROS 1994).
+Where no wall is seen the heading is that of odometry.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crowdbot.core.interfaces import Array, Pose, kernel
+
+#: Bins of a histogram of directions of lines, over half a turn.
+BINS = 360
+#: Points of a straight run, how far it may be bent, and how long it is, m.
+_RUN, _BEND, _SHORT, _LONG = 6, 0.01, 0.12, 1.2
+#: A line also counts in so many bins on either side, less and less.
+_BLUR = 4
+#: Straight runs without which nothing is said, and how far a turn may have gone unnoticed, rad.
+_FEW, _WINDOW = 12.0, 0.75
+#: A difference up to this is left to odometry, rad: a robot that nobody touches drives straight.
+_NOISE = 0.02
+#: How much of what is seen in a step the memory takes in.
+_LEARN = 0.02
+
+
+@kernel
+def directions(points: Array, out: Array) -> float:
+    """Histogram of the directions of straight runs; returns how many there are.
+
+    Args:
+        points: (P, 2) base frame, m, those of one lidar in the order of its beams.
+        out: (BINS,) written; bin k stands for lines at an angle of k / BINS * pi.
+    """
+    out[:] = 0.0
+    count = 0.0
+    for i in range(points.shape[0] - _RUN + 1):
+        x, y = points[i, 0], points[i, 1]
+        dx, dy = points[i + _RUN - 1, 0] - x, points[i + _RUN - 1, 1] - y
+        long = math.sqrt(dx * dx + dy * dy)
+        if long < _SHORT or long > _LONG:
+            continue
+        bent = 0.0
+        for k in range(i + 1, i + _RUN - 1):
+            aside = abs(dx * (points[k, 1] - y) - dy * (points[k, 0] - x)) / long
+            bent = max(bent, aside)
+        if bent > _BEND:
+            continue
+        at = math.atan2(dy, dx) / math.pi * BINS
+        below = math.floor(at)
+        share = at - below
+        out[int(below) % BINS] += 1.0 - share
+        out[int(below + 1) % BINS] += share
+        count += 1.0
+    return count
+
+
+@kernel
+def turned(memory: Array, seen: Array, guess: float) -> float:
+    """By how much to turn what is seen so that it fits the memory best, near a guess; rad.
+
+    Args:
+        memory, seen: (BINS,) histograms.
+        guess: rad; the guess itself where nothing fits.
+    """
+    middle, wide = round(guess / math.pi * BINS), int(_WINDOW / math.pi * BINS)
+    best, shift = 0.0, float("nan")
+    before, after, last = 0.0, 0.0, 0.0
+    for s in range(middle - wide, middle + wide + 1):
+        fit = 0.0
+        for k in range(BINS):
+            if seen[k] > 0.0:
+                fit += seen[k] * memory[(k + s) % BINS]
+        if fit > best:
+            best, shift, before, after = fit, float(s), last, -1.0
+        elif after < 0.0:
+            after = fit
+        last = fit
+    if best <= 0.0:
+        return guess
+    bend = before - 2.0 * best + after
+    if after >= 0.0 and bend < 0.0:
+        shift += 0.5 * (before - after) / bend
+    return shift * math.pi / BINS
+
+
+@kernel
+def learn(memory: Array, seen: Array, yaw: float, share: float) -> None:
+    """Mix what is seen, turned by the yaw (rad) and blurred, into the memory, in place."""
+    shift = round(yaw / math.pi * BINS)
+    for k in range(BINS):
+        memory[k] *= 1.0 - share
+    for k in range(BINS):
+        if seen[k] > 0.0:
+            for b in range(-_BLUR, _BLUR + 1):
+                weight = 1.0 - abs(b) / (_BLUR + 1.0)
+                memory[(k + shift + b) % BINS] += share * weight * seen[k]
+
+
+class Heading:
+    """Follows odometry, but turns as the walls say."""
+
+    def __init__(self) -> None:
+        self._memory, self._seen = np.zeros(BINS), np.zeros(BINS)
+        self._odometry: Pose | None = None
+        self._pose = Pose(0.0, 0.0, 0.0)
+
+    def pose(self, odometry: Pose, points: Array) -> Pose:
+        """Where the robot is, as far as wheels and walls tell.
+
+        Args:
+            odometry: pose by odometry, in whose frame the answer is.
+            points: (P, 2) what the lidars show now, base frame, m.
+        """
+        moved = odometry if self._odometry is None else self._after(self._odometry, odometry)
+        count = directions(points, self._seen)
+        yaw = moved.yaw
+        if count >= _FEW:
+            fitting = turned(self._memory, self._seen, yaw) if self._memory.any() else yaw
+            learn(self._memory, self._seen, fitting, _LEARN if self._memory.any() else 1.0)
+            yaw = fitting if abs(fitting - yaw) > _NOISE else yaw
+        self._odometry, self._pose = odometry, Pose(moved.x, moved.y, yaw)
+        return self._pose
+
+    def _after(self, before: Pose, now: Pose) -> Pose:
+        """The last pose and what odometry has moved since, as seen from the robot."""
+        off = self._pose.yaw - before.yaw
+        c, s = math.cos(off), math.sin(off)
+        dx, dy = now.x - before.x, now.y - before.y
+        return Pose(
+            self._pose.x + c * dx - s * dy, self._pose.y + s * dx + c * dy,
+            self._pose.yaw + math.remainder(now.yaw - before.yaw, 2.0 * math.pi),
+        )  # fmt: skip
+
+
+def compile_heading() -> None:
+    """Compile what is not compiled yet: a made-up wall, seen twice."""
+    wall = np.column_stack([np.linspace(0.0, 2.0, 40), np.ones(40)])
+    heading = Heading()
+    for _ in range(2):
+        heading.pose(Pose(0.0, 0.0, 0.0), wall)

@@ -1,0 +1,23 @@
+"""Stand still: hurts nobody and gets nowhere."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+from crowdbot.dsl import Component, PlannerRole, PlannerSpec
+
+
+class StandStillSpec(PlannerSpec):
+    """Never moves: whoever scores no better pays for its safety with its task."""
+
+    role: ClassVar[PlannerRole] = "floor"
+    needs: ClassVar[tuple[str, ...]] = ()
+
+    kind: Literal["stand_still"] = "stand_still"
+
+
+STAND_STILL = Component(
+    spec=StandStillSpec,
+    build="crowdbot.plugins.planners.stand_still_build:build",
+    summary="never moves",
+)

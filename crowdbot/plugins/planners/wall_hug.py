@@ -1,0 +1,55 @@
+"""Wall hug: to the border of the goal zone and along it, blind."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from annotated_types import Gt, Le
+from pydantic import Field
+
+from crowdbot.dsl import (
+    Component,
+    NonNegativeLength,
+    PlannerRole,
+    PlannerSpec,
+    PositiveAngle,
+    PositiveFrequency,
+    PositiveLength,
+)
+
+
+class WallHugSpec(PlannerSpec):
+    """Knows where walls are, and that few people walk along them; sees nobody.
+
+    Where a goal zone is as wide as the place, as in a corridor, its border is the wall.
+    """
+
+    role: ClassVar[PlannerRole] = "floor"
+    needs: ClassVar[tuple[str, ...]] = ()
+
+    kind: Literal["wall_hug"] = "wall_hug"
+    side: Literal["left", "right"] = Field(
+        default="left", description="Which border, as seen on the way from start to goal."
+    )
+    gap: NonNegativeLength = Field(
+        default=0.3, description="From the border to the centre of the robot, m."
+    )
+    speed: Annotated[float, Gt(0), Le(1)] = Field(
+        default=1.0, description="Cruising speed as a fraction of the robot's largest."
+    )
+    look_ahead: PositiveLength = Field(
+        default=1.0, description="It aims at the point of its line so far ahead, m."
+    )
+    heading_gain: PositiveFrequency = Field(
+        default=2.0, description="Yaw rate per heading error, 1/s."
+    )
+    turn_in_place: PositiveAngle = Field(
+        default=0.785, description="Heading error above which the robot turns on the spot, rad."
+    )
+
+
+WALL_HUG = Component(
+    spec=WallHugSpec,
+    build="crowdbot.plugins.planners.wall_hug_build:build",
+    summary="to the border of the goal zone and along it, blind",
+)

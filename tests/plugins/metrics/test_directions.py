@@ -1,0 +1,40 @@
+"""Which scores are ranked, and which way: what would reward the wrong thing is not."""
+
+from __future__ import annotations
+
+import pytest
+
+from crowdbot.plugins.metrics import COMPONENTS
+
+BY_KIND = {c.kind: c for c in COMPONENTS}
+
+
+def directions(kind: str) -> dict[str, str]:
+    return {name: v.better for name, v in BY_KIND[kind].variants.items()}
+
+
+@pytest.mark.parametrize("kind", ["mean_planner_time", "max_planner_time"])
+def test_the_wall_clock_ranks_nobody(kind: str) -> None:
+    assert set(directions(kind).values()) == {"none"}
+
+
+@pytest.mark.parametrize(
+    "kind", ["risk", "expected_severity", "time_exposed", "integrated_time_to_collision"]
+)
+def test_what_grows_with_time_ranks_nobody(kind: str) -> None:
+    ranked = {name for name, better in directions(kind).items() if better != "none"}
+    assert ranked == {"rate"}
+
+
+@pytest.mark.parametrize("kind", ["effect_on_time", "effect_on_velocity", "neighbours_velocity"])
+def test_the_best_crowd_walks_as_it_does_alone(kind: str) -> None:
+    """The seed's directions stay those of the seed's formula."""
+    found = directions(kind)
+    assert found.pop("literal") in ("higher", "lower")
+    assert set(found.values()) == {"reference"}
+
+
+@pytest.mark.parametrize("kind", ["displacement", "delay"])
+def test_chaos_ranks_nobody(kind: str) -> None:
+    assert directions(kind)["whole"] == "none"
+    assert directions(kind)["corrected"] == "lower"

@@ -1,0 +1,97 @@
+"""Heading by walls: turns that wheels do not notice."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from crowdbot.core.interfaces import Array, LidarPoints, Pose
+from crowdbot.plugins.planners.dwa_heading_build import BINS, Heading, directions
+from tests.plugins.planners.world import World, crowd
+
+LIDARS = LidarPoints({n: s.info() for n, s in World().sensors.items()})
+
+
+def seen_from(pose: Pose, people: Array | None = None, walls: bool = True) -> Array:
+    """What both lidars show in the corridor, base frame, m."""
+    world = World(() if people is None else people, start=pose)
+    if not walls:
+        world = World(() if people is None else people, start=pose, walls=np.empty((0, 4)))
+    obs = world._observe()
+    return LIDARS(obs.readings, obs.t, (0.0, 0.0))
+
+
+def off(a: float, b: float) -> float:
+    return abs(math.remainder(a - b, 2.0 * math.pi))
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(-3.0, 3.0), st.floats(-0.65, 0.65), st.floats(5.0, 40.0), st.floats(-3.5, 3.5))
+@example(0.0, 0.5, 20.0, 0.0)
+def test_a_turn_that_nobody_told_is_noticed(yaw: float, push: float, x: float, y: float) -> None:
+    heading = Heading()
+    told = Pose(x, y, yaw)
+    assert off(heading.pose(told, seen_from(told)).yaw, yaw) == 0.0
+    found = heading.pose(told, seen_from(Pose(x, y, yaw + push)))
+    near = 0.5 if abs(push) > 0.03 else 1.7  # up to 0.02 rad odometry is believed
+    assert off(found.yaw, yaw + push) < math.radians(near)
+
+
+def test_nobody_touches_it_and_it_heads_as_odometry_says() -> None:
+    heading = Heading()
+    for k in range(50):
+        told = Pose(5.0 + 0.04 * k, 0.0, 0.01 * k)
+        assert heading.pose(told, seen_from(told)) == pytest.approx(told)
+
+
+def test_many_bumps_among_people() -> None:
+    """Thirty bumps of up to 30 degrees: odometry is lost, the walls are not."""
+    rng = np.random.default_rng(3)
+    heading, yaw, told = Heading(), 0.0, 0.0
+    worst = 0.0
+    for k in range(300):
+        x = 5.0 + 0.04 * k
+        if k % 10 == 9:
+            yaw += rng.uniform(-0.5, 0.5)  # a bump; wheels slip
+        people = crowd(k // 40, 60, (0.0, 1.0), (1,))
+        found = heading.pose(Pose(x, 0.0, told), seen_from(Pose(x, 0.0, yaw), people))
+        worst = max(worst, off(found.yaw, yaw))
+    assert abs(yaw) > 0.5
+    assert worst < math.radians(2.0)
+
+
+def test_where_no_wall_is_seen_odometry_is_believed() -> None:
+    heading = Heading()
+    nothing = np.empty((0, 2))
+    for k in range(5):
+        told = Pose(0.1 * k, 0.0, 0.3 * k)
+        assert heading.pose(told, nothing) == pytest.approx(told)
+
+
+def test_legs_are_no_walls() -> None:
+    people = np.array([[10.0 + 0.9 * k, 0.8 * (-1) ** k, 0.0, 0.0] for k in range(-4, 5)])
+    cloud = seen_from(Pose(10.4, 0.1, 0.0), people, walls=False)
+    assert len(cloud) > 40
+    assert directions(cloud, np.zeros(BINS)) < 12
+
+
+def test_the_way_is_laid_along_the_true_heading() -> None:
+    """After an unnoticed turn to the left, 1 m forward by the wheels is 1 m to the left."""
+    heading = Heading()
+    heading.pose(Pose(20.0, 0.0, 0.0), seen_from(Pose(20.0, 0.0, 0.0)))
+    heading.pose(Pose(20.0, 0.0, 0.0), seen_from(Pose(20.0, 0.0, 0.6)))
+    found = heading.pose(Pose(21.0, 0.0, 0.0), seen_from(Pose(20.8, 0.56, 0.6)))
+    assert (found.x, found.y) == pytest.approx((20.0 + math.cos(0.6), math.sin(0.6)), abs=0.02)
+
+
+def test_all_directions_are_counted_once() -> None:
+    line = np.column_stack([np.linspace(0.0, 2.0, 60), np.full(60, 1.0)])
+    out = np.zeros(BINS)
+    count = directions(line, out)
+    assert count == 55
+    assert out.sum() == pytest.approx(count)
+    assert np.argmax(out) == 0
+    directions(line[:, ::-1].copy(), out)
+    assert np.argmax(out) == BINS // 2
