@@ -92,7 +92,8 @@ def _one(
 
 
 def _row(expansion: Expansion, scenario: Scenario, registry: Registry) -> dict[str, str]:
-    return {"suite": expansion.suite_id, "id": scenario.id, "hash": _hash(scenario, registry)}
+    row = {"suite": expansion.suite_id, "id": scenario.id, "title": scenario.title}
+    return row | {"hash": _hash(scenario, registry)}
 
 
 def _print_list(scenarios: list[Scenario], registry: Registry) -> None:

@@ -60,10 +60,11 @@ class CrowdSeed(Spec):
 
 
 class Flow(Spec):
-    """A stream of people from one portal to the other."""
+    """A stream of people from one portal to the other, or two that meet."""
 
-    direction: Literal["in", "counter"] = Field(
-        description="in: from the first portal to the second; counter: the other way."
+    direction: Literal["in", "counter", "both"] = Field(
+        description="in: from the first portal to the second; counter: the other way; both: every "
+        "second person the other way."
     )
     portals: tuple[str, str] = Field(
         default=("a", "b"), strict=False, description="Names of the two portals."

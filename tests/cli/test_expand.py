@@ -53,7 +53,7 @@ def test_explain(capsys: Captured) -> None:
     assert main(argv) == 0
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     places = {line[0]: line[-1] for line in lines if "#" in line}
-    assert places["density:"].endswith("challenge-2020.yaml:41")
+    assert places["density:"].endswith("challenge-2020.yaml:46")
     assert places["length:"].endswith("parts/corridor_50x10.yaml:5")
     assert "--set:1" in [line[-1] for line in lines if line[0] == "mass:"]
     assert places["wall_height:"] == "default"

@@ -73,7 +73,7 @@ def test_everything_has_its_name(svg: ET.Element) -> None:
     said = texts(svg)
     for name in ("robot_spawn", "crowd", "robot_goal (goal)", "portal a", "portal b", "robot"):
         assert name in said
-    assert any("people: 200" in t and "0.5 1/m² in crowd" in t for t in said)
+    assert any("people: 200" in t and "0.5 1/m² in crowd at the start" in t for t in said)
     assert sum("cb1-sha256:" in t for t in said) == 2
     assert {"wall", "wall for robots only", "its goal", "m", "5 m"} <= set(said)
 

@@ -5,8 +5,8 @@ First explicit agents, then the flow, then the spawns by name: each keeps clear 
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import count
 from typing import Any
 
 import numpy as np
@@ -91,7 +91,7 @@ def _recorded(crowd: Crowd, record: Asset, streams: Streams) -> Iterator[Row]:
 
 def _numbered(rows: Sequence[Row], taken: set[int]) -> Iterator[Row]:
     """Rows with the smallest numbers that no explicit agent has, in order."""
-    free = (n for n in count() if n not in taken)
+    free = (n for n in itertools.count() if n not in taken)
     return (row | {"id": n} for row, n in zip(rows, free, strict=False))
 
 
@@ -116,9 +116,7 @@ def _flow_rows(
         points.append((x, y))
     assert crowd.speed is not None  # checked with the document
     speeds = draw_speeds(streams.rng("crowd.speed"), people, crowd.speed)
-    portals = flow.portals if flow.direction == "in" else flow.portals[::-1]
     common: Row = {
-        "heading": stream_heading(portals, scenario.environment.portals),
         "radius": body.radius,
         "mass": body.mass,
         "max_speed": body.max_speed,
@@ -127,15 +125,27 @@ def _flow_rows(
         "group": -1,
         "policy": "",
         "at_goal": "portal",
-        "portals": portals,
         "goals": (),
     }
+    ways = itertools.cycle(_ways(flow, scenario))
     return [
         common
+        | way
         | {"x": x, "y": y, "speed": speed}
         | {"attention": draw_attention(streams, "crowd.attention", i)}
-        for i, ((x, y), speed) in enumerate(zip(points, speeds, strict=True))
+        for i, ((x, y), speed, way) in enumerate(zip(points, speeds, ways, strict=False))
     ]
+
+
+def _ways(flow: Flow, scenario: Scenario) -> list[Row]:
+    """Portals and heading of those who take turns in a flow; places are drawn whoever goes where.
+
+    Equal seeds therefore put people at the same places in all directions of a flow.
+    """
+    there, back = flow.portals, flow.portals[::-1]
+    taken = {"in": [there], "counter": [back], "both": [there, back]}[flow.direction]
+    boxes = scenario.environment.portals
+    return [{"portals": way, "heading": stream_heading(way, boxes)} for way in taken]
 
 
 def _agent_row(agent: Agent, scenario: Scenario, crowd: Crowd, streams: Streams) -> Row:

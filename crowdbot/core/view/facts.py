@@ -10,10 +10,11 @@ from crowdbot.dsl.scenario import Scenario
 
 def scenario_facts(scenario: Scenario, people: Realisation, spec_hash: str) -> dict[str, str]:
     """Name -> text: counts, density, speeds, time limit, hashes."""
-    facts = {"people": str(len(people))}
+    facts = {"title": scenario.title} if scenario.title else {}
+    facts["people"] = str(len(people))
     flow = scenario.crowd.flow if scenario.crowd is not None else None
     if flow is not None:
-        facts["density"] = f"{flow.density:g} 1/m² in {flow.area}"
+        facts["density"] = f"{flow.density:g} 1/m² in {flow.area} at the start"
         facts["flow"] = flow.direction
     if len(people):
         low, high = float(people.speed.min()), float(people.speed.max())

@@ -146,3 +146,24 @@ def test_extreme_speeds_stay_positive(std: str) -> None:
 def test_too_many_people_is_an_error() -> None:
     with pytest.raises(InputError, match=r"only \d+ of 1200 people fit"):
         _drawn("in-d0125-slow-c01-r02", "crowd.flow.density=3 1/m^2")
+
+
+@pytest.mark.parametrize(("density", "there", "back"), [("0.25", 50, 50), ("0.1275", 26, 25)])
+def test_both_ways_is_half_each_way(density: str, there: int, back: int) -> None:
+    drawn = _drawn(
+        "in-d0250-slow-c01-r02", "crowd.flow.direction=both", f"crowd.flow.density={density}"
+    )
+    ways = list(zip(drawn.portals, drawn.heading.tolist(), strict=True))
+    assert ways.count((("a", "b"), 0.0)) == there
+    assert ways.count((("b", "a"), np.pi)) == back
+    assert len(ways) == there + back
+
+
+def test_the_direction_of_a_flow_moves_nobody_who_has_the_same_seed() -> None:
+    one, other = (
+        _drawn("in-d0250-slow-c01-r02", f"crowd.flow.direction={way}") for way in ("in", "both")
+    )
+    assert one.x.tobytes() == other.x.tobytes()
+    assert one.speed.tobytes() == other.speed.tobytes()
+    assert one.attention.tobytes() == other.attention.tobytes()
+    assert one.hash != other.hash

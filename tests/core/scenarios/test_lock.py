@@ -207,7 +207,7 @@ def test_the_lock_says_what_it_holds(suite: Path) -> None:
 
 
 @pytest.mark.usefixtures("no_drawing")
-@pytest.mark.parametrize("name", ["challenge-2020", "challenge-2020-literal"])
+@pytest.mark.parametrize("name", ["challenge-2020", "challenge-2020-literal", "challenge-2026"])
 def test_packaged_suites_are_locked(name: str) -> None:
     """To accept a wanted change: crowdbot lock NAME."""
     expansion, files = open_suite(name, REGISTRY)

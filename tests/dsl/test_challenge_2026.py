@@ -1,0 +1,95 @@
+"""The challenge of 2026: which conditions it has, who walks in them, what its labels say."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from crowdbot.core.crowd import state as s
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.population.realise import realise
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.scenarios.library import open_spec, pick
+from crowdbot.core.sim.build_crowd import build_crowd
+from crowdbot.core.support.ticks import TICKS_PER_SECOND
+from crowdbot.dsl.canonical import content_hash
+from crowdbot.dsl.expand import Expansion
+from crowdbot.dsl.scenario import Crowd
+
+REGISTRY = discover(allow=())
+#: Where the people start, m, and the way that they walk before they come back to where they were.
+ZONE, LOOP, WIDTH = (5.0, 45.0), 51.0, 10.0
+
+
+@pytest.fixture(scope="module")
+def suite() -> Expansion:
+    return open_spec("challenge-2026", REGISTRY)
+
+
+def crowds(suite: Expansion) -> dict[str, Crowd]:
+    return {one.id: one.crowd for one in suite.scenarios if one.crowd is not None}
+
+
+def test_nine_draws_of_each_condition(suite: Expansion) -> None:
+    conditions = Counter(id_.rpartition("-")[0] for id_ in crowds(suite))
+    assert len(conditions) == 18
+    assert set(conditions.values()) == {9}
+    hashes = {content_hash(one, REGISTRY.spec_versions(one)) for one in suite.scenarios}
+    assert len(hashes) == 162
+
+
+def test_no_two_runs_share_a_draw(suite: Expansion) -> None:
+    assert len({crowd.seed for crowd in crowds(suite).values()}) == 162
+
+
+def test_the_densest_counterflow_has_27_runs(suite: Expansion) -> None:
+    assert sum(id_.startswith("counter-d040-") for id_ in crowds(suite)) == 27
+
+
+def test_labels_and_titles_say_the_density_that_is_realised(suite: Expansion) -> None:
+    """People spread over the whole loop; the nominal density counts the start zone alone."""
+    for scenario in suite.scenarios:
+        assert scenario.crowd is not None
+        assert scenario.crowd.flow is not None
+        people = scenario.crowd.flow.density * (ZONE[1] - ZONE[0]) * WIDTH
+        realised = people / (LOOP * WIDTH)
+        assert scenario.id.split("-")[1] == f"d{round(100 * realised):03d}"
+        assert f"{realised:.2f} realised" in scenario.title
+        assert scenario.title.startswith(f"{scenario.crowd.flow.density:g} people")
+
+
+@pytest.mark.parametrize(
+    ("label", "ignoring", "late"),
+    [("attentive", 0.0, 0.0), ("late", 0.0, 0.4), ("never", 0.1, 0.4)],
+)
+def test_attention(suite: Expansion, label: str, ignoring: float, late: float) -> None:
+    found = [crowd.robot_response for id_, crowd in crowds(suite).items() if f"-{label}-" in id_]
+    assert len(found) == 54
+    assert {(r.kind, r.ignoring, r.late) for r in found} == {("human", ignoring, late)}
+
+
+def test_people_walk_as_people_do(suite: Expansion) -> None:
+    """Mean and standard deviation of Weidmann 1993; a tail is cut off at three sd."""
+    speeds = np.concatenate([realise(one).speed for one in suite.scenarios[::40]])
+    assert np.mean(speeds) == pytest.approx(1.34, abs=0.04)
+    assert np.std(speeds) == pytest.approx(0.26, abs=0.03)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("condition", ["counter-d020", "both-d040"])
+def test_the_density_is_realised(suite: Expansion, condition: str) -> None:
+    scenario = pick(suite, f"{condition}-attentive-n01")
+    parts = build_environment(REGISTRY, scenario.environment)
+    engine = build_crowd(scenario, realise(scenario), parts, REGISTRY)
+    assert engine is not None
+    flat, inside = engine.initial_state(), []
+    people = s.view(flat)[1]
+    for _ in range(60 * TICKS_PER_SECOND // 64):
+        for _ in range(64):
+            engine.advance(flat)
+        x = people[people[:, s.WAITING] == s.PRESENT, s.X]
+        inside.append(np.count_nonzero((x > ZONE[0]) & (x < ZONE[1])))
+    realised = np.mean(inside) / ((ZONE[1] - ZONE[0]) * WIDTH)
+    assert realised == pytest.approx(int(condition[-3:]) / 100, rel=0.03)
