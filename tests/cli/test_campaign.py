@@ -185,7 +185,8 @@ def _alive(pid: int) -> bool:
 
 
 def _records(out: Path) -> int:
-    return len(list(out.rglob("run.json")))
+    # Unlike rglob, walk does not mind folders that are renamed meanwhile.
+    return sum("run.json" in files for _, _, files in os.walk(out))
 
 
 def _kill_after(out: Path, wanted: int) -> None:

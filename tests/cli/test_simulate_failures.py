@@ -21,7 +21,7 @@ WRONG = {
     "unknown id": (["challenge-2020", "in-d0125-slow-c01-r03"], 1, "did you mean"),
     "several ids": (["challenge-2020", "in-d0125"], 1, "27 scenarios"),
     "no id": (["challenge-2020"], 1, "no id was given"),
-    "unknown suite": (["challenge-2002"], 1, "did you mean 'challenge-2020'"),
+    "unknown suite": (["chalenge-2020"], 1, "did you mean 'challenge-2020'"),
     "missing file": (["no/such.yaml"], 1, "no/such.yaml"),
     "unknown planner": (["challenge-2020", ID, "--planner", "dwaa"], 1, "did you mean 'dwa'"),
     "missing planner file": (["challenge-2020", ID, "--planner", "no.py:Mine"], 1, "no.py"),

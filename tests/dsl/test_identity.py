@@ -127,7 +127,8 @@ def test_parse_and_print_is_the_identity(tmp_path: Path) -> None:
     assert canonical_bytes(again, kinds) == canonical_bytes(ONE, kinds)
     content = json.loads(canonical_bytes(ONE, kinds))
     assert content.pop("kinds") == kinds
-    assert REGISTRY.scenario_model.model_validate({**content, "id": ONE.id}) == ONE.model_copy(
+    outside = {"id": ONE.id, "title": ONE.title}
+    assert REGISTRY.scenario_model.model_validate({**content, **outside}) == ONE.model_copy(
         update={"references": {}}
     )
 
