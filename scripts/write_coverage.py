@@ -8,6 +8,7 @@ Examples:
 from __future__ import annotations
 
 import json
+import shlex
 import subprocess
 import sys
 from collections import defaultdict
@@ -101,7 +102,7 @@ def _coverage(*words: str) -> None:
 def main(arguments: Sequence[str]) -> None:
     """Measure and write the page; nothing is written if a test fails."""
     report = measure(arguments)
-    command = " ".join(["make coverage", *arguments])
+    command = shlex.join(["scripts/write_coverage.py", *arguments])
     today = datetime.now(UTC).date().isoformat()
     PAGE.write_text(page(report, command, today), encoding="utf-8")
     print(f"wrote {PAGE.relative_to(ROOT)}")
