@@ -116,16 +116,16 @@ def test_a_filter_changes_the_numbers_to_those_of_its_runs(
 ) -> None:
     report = full()
     with Visit(browser, path) as page:
-        everything = shown(page, "risk.corrected")
-        expected = [middle_mean(values(report, "risk", "corrected", p)) for p in report.planners]
+        everything = shown(page, "risk.rate")
+        expected = [middle_mean(values(report, "risk", "rate", p)) for p in report.planners]
         assert [v for v, _ in everything] == pytest.approx(expected, abs=0.005)
 
         page.select_option("#axis-density", "d0500")
-        one = shown(page, "risk.corrected")
+        one = shown(page, "risk.rate")
         for p, planner in enumerate(report.planners):
-            chosen = values(report, "risk", "corrected", planner, density="d0500")
+            chosen = values(report, "risk", "rate", planner, density="d0500")
             place = report.figures.selections.index("density=d0500")
-            series = next(i for i, s in enumerate(report.series) if s.name == ("risk", "corrected"))
+            series = next(i for i, s in enumerate(report.series) if s.name == ("risk", "rate"))
             value, low, high = report.figures.intervals[place, series, p]
             assert middle_mean(chosen) == pytest.approx(value)
             assert one[p] == (round(value, 2), f"[{low:.2f}, {high:.2f}]")
@@ -133,34 +133,34 @@ def test_a_filter_changes_the_numbers_to_those_of_its_runs(
         assert page.inner_text("#shown") == "162 of 486 runs"
 
         page.select_option("#axis-flow", "counter")
-        two = shown(page, "risk.corrected")
-        chosen = values(report, "risk", "corrected", "dwa", density="d0500", flow="counter")
+        two = shown(page, "risk.rate")
+        chosen = values(report, "risk", "rate", "dwa", density="d0500", flow="counter")
         q1, q3 = np.quantile(chosen, [0.25, 0.75])
         assert two[0] == (round(middle_mean(chosen), 2), f"[{q1:.2f}, {q3:.2f}]")
-        assert page.query_selector('tr[data-score="risk.corrected"] .quartile')
+        assert page.query_selector('tr[data-score="risk.rate"] .quartile')
         assert page.inner_text("#filter-text") == "Only flow = counter; density = d0500."
         assert not page.is_visible("#pairs-table")  # nobody has worked that out
 
         page.screenshot(path=tmp_path / "filtered.png")
         assert (tmp_path / "filtered.png").stat().st_size > 20_000
         page.click("#clear")
-        assert shown(page, "risk.corrected") == everything
+        assert shown(page, "risk.rate") == everything
 
 
 def test_planners_categories_and_variants_can_be_chosen(browser: Browser, path: Path) -> None:
     with Visit(browser, path) as page:
         page.click("#planner-0")
         assert page.get_attribute("#planner-0", "aria-pressed") == "false"
-        assert len(shown(page, "risk.corrected")) == 2
+        assert len(shown(page, "risk.rate")) == 2
         page.select_option("#category", "collision")
         rows = page.query_selector_all("#scores-table tr[data-score]")
-        assert {"risk.corrected", "collision_count.corrected"} <= {
+        assert {"risk.rate", "collision_count.corrected"} <= {
             r.get_attribute("data-score") for r in rows
         }
         assert not page.query_selector('tr[data-score="spl.corrected"]')
         page.select_option("#variant", "literal")
         assert page.query_selector('tr[data-score="risk.literal"]')
-        assert not page.query_selector('tr[data-score="risk.corrected"]')
+        assert not page.query_selector('tr[data-score="risk.rate"]')
         assert "without a value" not in page.inner_text("#scores-silent")
 
 
@@ -210,7 +210,7 @@ def test_what_has_no_value_is_counted_and_drawn(browser: Browser, path: Path) ->
         s for s in report.results.scores
         if (s.metric, s.variant) == ("relative_time_to_goal", "corrected") and s.status != "ok"
     ]  # fmt: skip
-    with Visit(browser, path) as page:
+    with Visit(browser, path, "#score=relative_time_to_goal.corrected") as page:
         text = page.inner_text('tr[data-score="relative_time_to_goal.corrected"]')
         told = sum(int(n) for n in re.findall(r"(\d+) censored", text))
         assert told == len(page.query_selector_all("#distribution .bound")) <= len(censored)
@@ -262,7 +262,7 @@ def test_keys_are_enough(browser: Browser, path: Path) -> None:
         assert page.get_attribute(name, "aria-describedby") == "card"
         page.keyboard.press("Escape")
         assert not page.is_visible("#card")
-        page.hover('tr[data-score="risk.corrected"] .metric')
+        page.hover('tr[data-score="risk.rate"] .metric')
         page.wait_for_selector("#card:visible")
         assert "R" in page.inner_text("#card")
         page.keyboard.press("Escape")
