@@ -1,6 +1,6 @@
 # Everything from nothing but Python 3.11 or newer, pip, venv and make.
 #   make demo    set up, then run one challenge scenario
-#   make check   set up, then run what a change has to pass before each commit, in 90 s
+#   make check   set up, then run what a change has to pass before each commit, in two minutes
 #   make test    set up, then run every check
 #   make setup   only prepare .venv/
 #   make coverage  run all tests, then write docs/reference/coverage.md
