@@ -67,6 +67,8 @@ def _check_numbers(model: RobotModel) -> None:
         raise PluginError(f"limits: 0 must be within v_min {limits.v_min} and v_max {limits.v_max}")
     if not (0.0 <= limits.w_max < math.inf and 0.0 <= limits.vy_max < math.inf):
         raise PluginError("limits: w_max and vy_max must be finite and not negative")
+    if not model.skin_stiffness > 0.0:
+        raise PluginError(f"skin_stiffness is {model.skin_stiffness}; it must be positive")
     if not limits.command_timeout > 0.0:
         raise PluginError(f"limits: command_timeout is {limits.command_timeout}")
     if limits.vy_max and not isinstance(drive, HolonomicDrive):

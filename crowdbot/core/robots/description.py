@@ -16,13 +16,13 @@ from xml.etree import ElementTree as Xml
 import numpy as np
 
 from crowdbot.core.robots.joint import KNOWN, Joint, child_of, sdf_joint, urdf_joint
-from crowdbot.core.robots.xml import matrix, name_of, number, pose_of
+from crowdbot.core.robots.xml import matrix, name_of, number, numbers, pose_of
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import DifferentialDrive
 from crowdbot.errors import PluginError, did_you_mean, nearest
 
 Format = Literal["sdf", "urdf"]
-_ROUND = ("sphere", "cylinder")
+_ROUND = ("sphere", "cylinder", "ellipsoid")
 
 
 @dataclass(frozen=True)
@@ -249,5 +249,7 @@ def collisions(link: Xml.Element) -> Iterator[Xml.Element]:
 
 
 def _radius(shape: Xml.Element) -> float:
+    if shape.tag == "ellipsoid":
+        return max(numbers(shape.findtext("radii") or "", "the radii of an ellipsoid"), default=0.0)
     text = shape.get("radius") or shape.findtext("radius") or ""
     return number(text, f"the radius of a {shape.tag}")

@@ -17,6 +17,7 @@ from crowdbot.core.geometry.optical_frame import OPTICAL_RPY, optical
 from crowdbot.core.recording.writer import FRAMES
 from crowdbot.core.robots import Description, read_description
 from crowdbot.core.robots.xml import matrix, name_of, pose_of
+from crowdbot.core.robots.xml import numbers as numbers_in
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import DifferentialDrive, RobotModel
 from crowdbot.core.types.sensor import SensorInfo
@@ -181,6 +182,10 @@ def _shape(geometry: Xml.Element, source: Xml.Element) -> None:
                 numbers["filename"] = numbers.pop("uri")
             Xml.SubElement(geometry, shape, numbers)
             return
+    if (radii := source.findtext("geometry/ellipsoid/radii")) is not None:  # a wheel about z
+        radius, _, half = numbers_in(radii, f"the radii of '{name_of(source)}'")
+        Xml.SubElement(geometry, "cylinder", radius=f"{radius:g}", length=f"{2.0 * half:g}")
+        return
     raise InputError(f"URDF has no shape like that of '{name_of(source)}'")
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,18 +26,34 @@ _AT_GOAL = {"portal": PORTAL, "stop": STOP, "remove": REMOVE, "loop": LOOP}
 
 
 def build_crowd(
-    scenario: Scenario, realisation: Realisation, parts: EnvironmentParts, registry: Registry
+    scenario: Scenario,
+    realisation: Realisation,
+    parts: EnvironmentParts,
+    registry: Registry,
+    skin_stiffness: float = math.inf,
 ) -> CrowdEngine | None:
-    """The engine for a scenario's crowd, or None when it has none."""
+    """The engine for a scenario's crowd, or None when it has none.
+
+    Args:
+        skin_stiffness: of the robot that they touch, N/m.
+    """
     crowd = scenario.crowd
     if crowd is None:
         return None
     flows, policies = _flows(realisation), _policies(crowd, realisation)
     return CrowdEngine(
         _agents(crowd, realisation, flows, list(policies)),
-        _world(scenario, crowd, realisation, parts, _boxes(flows, parts)),
+        replace(
+            _world(scenario, crowd, realisation, parts, _boxes(flows, parts)),
+            stiffness=in_series(scenario.contact.stiffness, skin_stiffness),
+        ),
         [_factory(group, registry) for group in policies.values()],
     )
+
+
+def in_series(body: float, skin: float) -> float:
+    """Stiffness of two springs that are pressed by one force, N/m."""
+    return body if math.isinf(skin) else body * skin / (body + skin)
 
 
 def _factory(group: Crowd | NamedPolicy, registry: Registry) -> PolicyFactory:

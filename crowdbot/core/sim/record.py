@@ -36,7 +36,9 @@ def record_robot(setup: RunSetup, built: BuiltRun) -> Outcome:
         InputError: the robot would start in a wall, an obstacle or a person.
         PlannerHungError: a planner step never returned; the recording is closed all the same.
     """
-    engine = build_crowd(built.scenario, setup.agents, built.parts, setup.registry)
+    engine = build_crowd(
+        built.scenario, setup.agents, built.parts, setup.registry, built.model.skin_stiffness
+    )
     check_start(built.parts, built.model, built.task.start, engine, built.name)
     header = _header(built, engine)
     with recording(setup, header) as (writer, ending), _watchdog(setup) as watchdog:

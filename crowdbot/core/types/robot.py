@@ -72,6 +72,8 @@ class RobotModel:
             of a capsule, (K, 2) with K > 2 a convex polygon, counter-clockwise.
         height: of the whole robot, m.
         force_height: height above the floor at which people push, m.
+        skin_stiffness: of what people touch, in series with their own bodies, N/m; infinite of a
+            rigid shell.
     """
 
     description: str
@@ -84,6 +86,7 @@ class RobotModel:
     force_height: float
     mass: float
     footprint: Array | None = None
+    skin_stiffness: float = math.inf
 
 
 class RobotState(NamedTuple):

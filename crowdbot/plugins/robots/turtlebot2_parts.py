@@ -9,14 +9,18 @@ computer lies on the lowest plate where it keeps the balance over the axle.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
-Vector = tuple[float, float, float]
-Colour = tuple[float, float, float]
-
-BLACK, COAL, GREY = (0.05, 0.05, 0.06), (0.13, 0.13, 0.14), (0.32, 0.33, 0.35)
-SILVER, WOOD = (0.78, 0.79, 0.8), (0.2, 0.15, 0.11)
-GLASS, GREEN = (0.35, 0.45, 0.6), (0.1, 0.8, 0.2)
+from crowdbot.plugins.robots.body_part import (
+    BLACK,
+    COAL,
+    GLASS,
+    GREEN,
+    GREY,
+    SILVER,
+    WOOD,
+    Part,
+    scaled,
+)
 
 PLATES = (0.1204, 0.1772, 0.3864)  # heights of the plates' centres above base_link
 _PLATE = 0.006  # thickness, m
@@ -24,22 +28,6 @@ _PLATE_X = -0.0136
 _POLES = ((0.06, 0.135), (-0.105, 0.098))  # left ones; m
 _CAMERA = (-0.087, 0.0, 0.287)
 _COMPUTER_X = 0.0674
-
-
-class Part(NamedTuple):
-    """A cylinder (radius, 0, length along z) or a box (sides along x, y, z), from base_link.
-
-    Attributes:
-        mass: kg; 0 for what only is seen.
-    """
-
-    name: str
-    shape: str
-    size: Vector
-    at: Vector
-    colour: Colour
-    mass: float = 0.0
-    pitch: float = 0.0
 
 
 def _base() -> list[Part]:
@@ -91,32 +79,4 @@ def _top() -> list[Part]:
 
 def parts(mass: float) -> list[Part]:
     """The body's parts, scaled to weigh ``mass`` (kg) together."""
-    found = _base() + _stack() + _top()
-    scale = mass / sum(p.mass for p in found)
-    return [p._replace(mass=scale * p.mass) for p in found]
-
-
-def balance(body: list[Part]) -> tuple[Vector, Vector]:
-    """Centre of mass (m, from base_link) and moments of inertia about it (kg m^2).
-
-    Products of inertia, a hundredth of the moments, are left out.
-    """
-    mass = sum(p.mass for p in body)
-    cx, cy, cz = (sum(p.mass * p.at[i] for p in body) / mass for i in range(3))
-    xx = yy = zz = 0.0
-    for p in body:
-        own = _moments(p)
-        x, y, z = p.at[0] - cx, p.at[1] - cy, p.at[2] - cz
-        xx += own[0] + p.mass * (y * y + z * z)
-        yy += own[1] + p.mass * (x * x + z * z)
-        zz += own[2] + p.mass * (x * x + y * y)
-    return (cx, cy, cz), (xx, yy, zz)
-
-
-def _moments(part: Part) -> Vector:
-    a, b, c = part.size
-    if part.shape == "box":
-        m = part.mass / 12.0
-        return m * (b * b + c * c), m * (a * a + c * c), m * (a * a + b * b)
-    across = part.mass * (3.0 * a * a + c * c) / 12.0
-    return across, across, 0.5 * part.mass * a * a
+    return scaled(_base() + _stack() + _top(), mass)
