@@ -97,20 +97,35 @@ class Loader:
         return replace(read_agents(text, source, self.problems), mark=table.mark)
 
     def _resolve(self, root: Node, file: _File) -> Node:
-        """Resolve ``extends`` at the root and in ``base`` and ``scenario``."""
+        """Resolve ``extends`` at the root, in ``base``, ``scenario`` and labels of the matrix."""
         entries = dict(root.entries)
+        if "matrix" in entries:
+            axes = entries["matrix"]
+            entries["matrix"] = replace(axes, node=self._labels(axes.node, file, depth=2))
         for key in ("base", "scenario"):
             if key in entries and entries[key].node.entries:
                 part = entries[key]
                 entries[key] = replace(part, node=self._extended(part.node, file))
         return self._extended(replace(root, value=entries), file)
 
+    def _labels(self, node: Node, file: _File, depth: int) -> Node:
+        """A matrix whose labels, two maps down, are resolved."""
+        if depth == 0:
+            return self._extended(node, file)
+        if not node.entries:
+            return node
+        below = {
+            k: replace(e, node=self._labels(e.node, file, depth - 1))
+            for k, e in node.entries.items()
+        }
+        return replace(node, value=below)
+
     def _extended(self, node: Node, file: _File) -> Node:
+        if "extends" not in node.entries:
+            return node
         entries = dict(node.entries)
-        extends = entries.pop("extends", None)
+        extends = entries.pop("extends")
         own = replace(node, value=entries)
-        if extends is None:
-            return own
         items = extends.node.value if isinstance(extends.node.value, tuple) else (extends.node,)
         tree = Node(node.mark, {}, implied=True)
         for item in items:

@@ -39,7 +39,7 @@ def suite_schema(scenario: type[Scenario], metrics: Iterable[str]) -> Json:
         metrics: kinds of the installed metrics.
     """
     parts = Parts(scenario)
-    labels = _map_of(_override(parts), _NAME)
+    labels = _map_of(parts.named("Label", _body(parts, ("id", "references"))), _NAME)
     matrix = {
         **_map_of({**labels, "minProperties": 1}, _NAME),
         "type": ["object", "null"],

@@ -239,6 +239,13 @@ def imu(ns: int, frame: str, values: Array) -> Any:
     )
 
 
+def wrench(ns: int, frame: str, values: Array) -> Any:
+    """Horizontal force x, y (N) and torque about z (N m)."""
+    x, y, torque = values.tolist()
+    pushed = new("geometry_msgs/Wrench", force=_vector(x, y, 0.0), torque=_vector(0.0, 0.0, torque))
+    return new("geometry_msgs/WrenchStamped", header=header(ns, frame), wrench=pushed)
+
+
 def numbers(values: Array) -> Any:
     """The values of a sensor of unknown category, flattened row by row."""
     dims, stride = [], values.size

@@ -139,6 +139,13 @@ def imu(frame: str) -> Template:
     return Template(ros.imu(ANY_TIME, frame, values), ANY_STAMP, *marks)
 
 
+def wrench(frame: str) -> Template:
+    """Places: stamp; force x, y; torque about z; float64 each."""
+    values = np.array([_A, _B, _C])
+    marks = values[:2].tobytes(), values[2:].tobytes()
+    return Template(ros.wrench(ANY_TIME, frame, values), ANY_STAMP, *marks)
+
+
 def numbers(shape: tuple[int, ...]) -> Template:
     """Place: values."""
     values = np.full(shape, _A)

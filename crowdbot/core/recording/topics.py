@@ -58,6 +58,8 @@ def sensor_topics(sensors: Mapping[str, SensorInfo]) -> dict[str, SensorTopic]:
             topics[name] = _cloud(f"/{name}/points", info)
         elif info.ros_type == "sensor_msgs/msg/Imu" and info.shape == (6,):
             topics[name] = _imu(f"/{name}/imu", info)
+        elif info.ros_type == "geometry_msgs/msg/WrenchStamped" and info.shape == (3,):
+            topics[name] = _wrench(f"/{name}/wrench", info)
         else:
             topics[name] = _numbers(f"/{name}", info)
     return topics
@@ -150,6 +152,16 @@ def _imu(topic: str, info: SensorInfo) -> SensorTopic:
     def message(ns: int, values: Array) -> bytes:
         data = np.asarray(values, np.float64)
         return blank.fill(template.stamp(ns), data[:3].tobytes(), data[3:].tobytes())
+
+    return SensorTopic(topic, blank.msgtype, message)
+
+
+def _wrench(topic: str, info: SensorInfo) -> SensorTopic:
+    blank = template.wrench(info.frame)
+
+    def message(ns: int, values: Array) -> bytes:
+        data = np.asarray(values, np.float64)
+        return blank.fill(template.stamp(ns), data[:2].tobytes(), data[2:].tobytes())
 
     return SensorTopic(topic, blank.msgtype, message)
 

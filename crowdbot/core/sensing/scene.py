@@ -13,6 +13,7 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotState
 
 #: In place of details that are not wanted.
+_UNTOUCHED = (0.0, 0.0, 0.0)
 _NO_ANGLES, _NOBODY = np.empty((0, 0)), np.empty((0, 0), dtype=np.int64)
 
 
@@ -35,6 +36,8 @@ class Scene:
         people_radius, people_height: (M,) m.
         pillars, pillar_heights: (P, 3) x, y, radius, and (P, 2) bottom and top, m.
         robot: the robot's state, None before the first update or in a scene without one.
+        push: force of people on the robot x, y (N, world frame), and its torque about the robot's
+            base (N m), in the last tick.
         people: (M, 4) x, y (m), vx, vy (m/s), a read-only view.
         present: (M,) bool, who is in the world, a read-only view.
     """
@@ -54,6 +57,7 @@ class Scene:
         self.people_radius = _constant(people_radius, (count,))
         self.people_height = _constant(people_height, (count,))
         self.robot: RobotState | None = None
+        self.push: tuple[float, float, float] = _UNTOUCHED
         self.people: Array = _constant(0.0, (count, 4))
         self.present: NDArray[np.bool_] = np.zeros(count, dtype=np.bool_)
         self.present.setflags(write=False)
@@ -79,6 +83,7 @@ class Scene:
         present: NDArray[np.bool_],
         direction: Array | None = None,
         walked: Array | None = None,
+        push: tuple[float, float, float] = _UNTOUCHED,
     ) -> None:
         """Show another instant.
 
@@ -88,6 +93,7 @@ class Scene:
             present: (M,) bool, who is in the world; kept as a view.
             direction: (M, 2) unit vectors of the way people face; as before if left out.
             walked: (M,) way walked so far, m, the phase of their legs; as before if left out.
+            push: force of people on the robot and its torque, N, N, N m.
 
         Raises:
             ValueError: a shape or a type does not fit.
@@ -97,7 +103,7 @@ class Scene:
             raise ValueError(f"people must be float64 ({count}, 4), not {people_xyv.shape}")
         if present.shape != (count,) or present.dtype != np.bool_:
             raise ValueError(f"present must be bool ({count},), not {present.shape}")
-        self.robot = robot_state
+        self.robot, self.push = robot_state, push
         self.people = people_xyv.view()
         self.people.setflags(write=False)
         self.present = present.view()

@@ -162,7 +162,8 @@ class SensorBank(LeafSystem):
         rates = {n: x.info.rate for n, x in self.slots.items()}
         self._step = ticks_between(rates.values())
         self._due = Timetable(rates)
-        self._blind = {n for n, x in self.slots.items() if not (x.info.sees or x.info.camera)}
+        infos = {n: x.info for n, x in self.slots.items()}
+        self._blind = {n for n, i in infos.items() if not (i.sees or i.feels or i.camera)}
         self.DeclarePeriodicUnrestrictedUpdateEvent(self._step * TICK, 0.0, self._update)
 
     def reading(self, name: str, bank: Array) -> Reading:
@@ -212,13 +213,14 @@ class SensorBank(LeafSystem):
         if self._crowd is None:
             self._scene.update(robot, np.zeros((0, 4)), np.zeros(0, np.bool_))
             return None
-        _, rows = s.view(self._crowd.Eval(context))
+        header, rows = s.view(self._crowd.Eval(context))
         self._scene.update(
             robot,
             rows[:, s.X : s.VY + 1],
             rows[:, s.WAITING] == 0.0,
             rows[:, s.DIR_X : s.DIR_Y + 1],
             rows[:, s.WALKED],
+            (header[s.ROBOT_FX], header[s.ROBOT_FY], header[s.ROBOT_TORQUE]),
         )
         return rows
 

@@ -44,6 +44,7 @@ class SensorInfo:
             elevation of each beam of a multi-layer lidar, (2,) edges of the zone of an ultrasound
             or an infrared sensor; or None.
         sees: whether ``read`` looks at the people of the scene; if not, they may be out of date.
+        feels: whether ``read`` looks at the scene's ``push``; if not, it may be out of date.
         memory: number of float64 the sensor keeps between readings (0: none).
         random: whether ``read`` draws from ``rng``; if not, it must leave it alone.
         camera: of a sensor whose readings are images. They are a pure function of what is seen
@@ -65,6 +66,7 @@ class SensorInfo:
     memory: int = 0
     random: bool = True
     sees: bool = True
+    feels: bool = False
     camera: Pinhole | None = None
     privileged: bool = False
 

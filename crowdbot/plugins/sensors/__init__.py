@@ -1,6 +1,7 @@
 """Sensors."""
 
 from crowdbot.plugins.sensors.bumper import BUMPER
+from crowdbot.plugins.sensors.contact_force import CONTACT_FORCE
 from crowdbot.plugins.sensors.imu import IMU
 from crowdbot.plugins.sensors.infrared import INFRARED
 from crowdbot.plugins.sensors.lidar2d import LIDAR2D
@@ -20,5 +21,6 @@ COMPONENTS = (
     HOLONOMIC_ODOMETRY,
     IMU,
     BUMPER,
+    CONTACT_FORCE,
     PEOPLE_TRACKER,
 )

@@ -221,7 +221,12 @@ class _Straight:
 
 
 def person(
-    x: float, y: float = 0.0, speed: float = 1.2, response: Response = UNMOVED
+    x: float,
+    y: float = 0.0,
+    speed: float = 1.2,
+    response: Response = UNMOVED,
+    *,
+    stiffness: float = 30000.0,
 ) -> CrowdEngine:
     """One person who walks straight in -x along y = 0, come what may."""
     agents = Agents.of(
@@ -232,7 +237,7 @@ def person(
     world = CrowdWorld(
         walls=np.zeros((0, 4)), entrance=np.array([50.0, 51.0, -5.0, 5.0]),
         out=np.array([-1.0, 0.0, y - 0.33, y + 0.33]), response=response,
-        robot_visible=True, stiffness=30000.0, dissipation=0.3, goal_key=1, decision_rate=16.0,
+        robot_visible=True, stiffness=stiffness, dissipation=0.3, goal_key=1, decision_rate=16.0,
     )  # fmt: skip
     return CrowdEngine(agents, world, lambda _: _Straight())
 

@@ -1,8 +1,8 @@
 """Force control: F = m dv/dt on the base, no more than the drive could give.
 
 Source: CrowdBot D7.3, section 1.1 (control modes). Mass and inertia are those that a force at the
-base has to move, driven wheels among them. A holonomic drive is pushed sideways too; the wheels of
-a differential one hold it on its track.
+base has to move, driven wheels among them. A holonomic drive is pushed sideways too, at the height
+of its centre of mass; the wheels of a differential one hold it on its track.
 """
 
 from __future__ import annotations
@@ -32,10 +32,11 @@ class ForceDrive(LeafSystem):
         size = rig.plant.num_velocities()
         self._start = push_on(rig).at or 0
         self._mass, self._inertia = moved(rig)
+        self._sideways = isinstance(rig.robot.drive, HolonomicDrive)
+        self._lever = _centre_above_root(rig) if self._sideways else 0.0
         self._most, self._most_torque = strongest(rig)
         self._tick = rig.plant.time_step()
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
-        self._sideways = isinstance(rig.robot.drive, HolonomicDrive)
         self._desired = self.DeclareVectorInputPort(ports.DESIRED_STATE, 3)
         self._push = self.DeclareVectorInputPort(ports.ROBOT_FORCE, size)
         self.DeclareVectorOutputPort(
@@ -60,7 +61,20 @@ class ForceDrive(LeafSystem):
         values = output.get_mutable_value()
         values[:] = self._push.Eval(context) if self._push.HasValue(context) else 0.0
         i = self._start
-        values[i + 2 : i + 5] += torque, c * force - s * aside, s * force + c * aside
+        fx, fy = c * force - s * aside, s * force + c * aside
+        values[i : i + 5] += -self._lever * fy, self._lever * fx, torque, fx, fy
+
+
+def _centre_above_root(rig: RobotPlant) -> float:
+    """Height of the centre of mass above the root's frame, m.
+
+    There the force acts. Below it, it would also tilt the robot, whose base would then seem to
+    weigh less than it does: a tall robot's speed would swing.
+    """
+    context = rig.plant.CreateDefaultContext()
+    centre = rig.plant.CalcCenterOfMassPositionInWorld(context, [rig.model])
+    root = rig.plant.EvalBodyPoseInWorld(context, rig.root).translation()
+    return float(centre[2] - root[2])
 
 
 def _clamp(value: float, most: float) -> float:

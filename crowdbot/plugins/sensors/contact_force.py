@@ -1,0 +1,33 @@
+"""Contact force: what people push the robot with, as a soft skin or a force bumper feels it."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from crowdbot.dsl import Component, Mount, PositiveForce, PositiveFrequency, SensorSpec
+
+
+class ContactForceSpec(SensorSpec):
+    """Reading: force x, y (N) and torque about z (N m), in the axes of the mount and about it.
+
+    It is the sum over all who touch, wherever they touch. Walls are not felt.
+    """
+
+    kind: Literal["contact_force"] = "contact_force"
+    mount: Mount = Field(default=Mount(), description="Pose on the robot; x, y and yaw count.")
+    rate: PositiveFrequency = Field(default=128.0, le=128, description="Readings per second, Hz.")
+    noise: float = Field(
+        default=0.0, ge=0, description="Standard deviation of each force, N; of the torque, N m."
+    )
+    force_max: PositiveForce = Field(
+        default=1000.0, description="Larger forces are measured as this, in their direction, N."
+    )
+
+
+CONTACT_FORCE = Component(
+    spec=ContactForceSpec,
+    build="crowdbot.plugins.sensors.contact_force_build:build",
+    summary="force and torque with which people push the robot",
+)
