@@ -97,25 +97,26 @@ class Loader:
         return replace(read_agents(text, source, self.problems), mark=table.mark)
 
     def _resolve(self, root: Node, file: _File) -> Node:
-        """Resolve ``extends`` at the root, in ``base``, ``scenario`` and labels of the matrix."""
+        """Resolve ``extends`` wherever fields of a scenario stand, and at the root."""
         entries = dict(root.entries)
-        if "matrix" in entries:
-            axes = entries["matrix"]
-            entries["matrix"] = replace(axes, node=self._labels(axes.node, file, depth=2))
+        for key, depth in (("matrix", 2), ("references", 1)):
+            if key in entries:
+                part = entries[key]
+                entries[key] = replace(part, node=self._below(part.node, file, depth))
         for key in ("base", "scenario"):
             if key in entries and entries[key].node.entries:
                 part = entries[key]
                 entries[key] = replace(part, node=self._extended(part.node, file))
         return self._extended(replace(root, value=entries), file)
 
-    def _labels(self, node: Node, file: _File, depth: int) -> Node:
-        """A matrix whose labels, two maps down, are resolved."""
+    def _below(self, node: Node, file: _File, depth: int) -> Node:
+        """A map of maps, ``depth`` deep, whose innermost maps are resolved."""
         if depth == 0:
             return self._extended(node, file)
         if not node.entries:
             return node
         below = {
-            k: replace(e, node=self._labels(e.node, file, depth - 1))
+            k: replace(e, node=self._below(e.node, file, depth - 1))
             for k, e in node.entries.items()
         }
         return replace(node, value=below)

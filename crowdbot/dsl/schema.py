@@ -39,7 +39,7 @@ def suite_schema(scenario: type[Scenario], metrics: Iterable[str]) -> Json:
         metrics: kinds of the installed metrics.
     """
     parts = Parts(scenario)
-    labels = _map_of(parts.named("Label", _body(parts, ("id", "references"))), _NAME)
+    labels = _map_of(_override(parts), _NAME)
     matrix = {
         **_map_of({**labels, "minProperties": 1}, _NAME),
         "type": ["object", "null"],
@@ -143,7 +143,7 @@ def _body(parts: Parts, without: tuple[str, ...]) -> Json:
 
 
 def _override(parts: Parts) -> Json:
-    return parts.named("Override", parts.root(without=("id", "references")))
+    return parts.named("Override", _body(parts, without=("id", "references")))
 
 
 def _map_of(member: Json, name: str = "^[^.]+$") -> Json:

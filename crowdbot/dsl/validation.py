@@ -22,7 +22,7 @@ Error = Mapping[str, Any]
 _FEW = 12
 #: Fields that people look for, and where they are.
 _ELSEWHERE = {
-    "extends": "it stands at the top of a file, in 'base', in 'scenario' or in a label of 'matrix'",
+    "extends": "it stands at the top of a file and where fields of a scenario begin",
     "planner": "it is what you test: crowdbot simulate … --planner NAME",
     "scenario": "a document holds 'suite' and 'base', or one 'scenario'",
 }

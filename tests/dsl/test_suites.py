@@ -215,3 +215,34 @@ def test_many_errors_in_many_combinations_end_soon(expand: Expand) -> None:
     with pytest.raises(SpecError) as caught:
         expand(f"{text}matrix: {{a: {{{axis}}}, b: {{{axis}}}}}\n".replace("b: {x", "b: {y", 1))
     assert 1 <= len(caught.value.diagnostics) <= 1000
+
+
+def test_labels_and_references_extend(expand: Expand, tmp_path: Path) -> None:
+    """A label's own fields win over those of its file, which win over the base's."""
+    (tmp_path / "hasty.yaml").write_text("crowd.speed: {mean: 2, std: 0.5}\n", encoding="utf-8")
+    (tmp_path / "empty.yaml").write_text("crowd: null\n", encoding="utf-8")
+    written = HEAD + (
+        "matrix:\n  pace:\n    slow: {}\n    hasty: {extends: hasty.yaml, crowd.speed.std: 0.25}\n"
+        "references:\n  robot_alone: {extends: empty.yaml}\n"
+    )
+    slow, hasty = expand(written).scenarios
+    assert (hasty.crowd.speed.mean, hasty.crowd.speed.std) == (2.0, 0.25)
+    assert slow.crowd.speed != hasty.crowd.speed
+    assert slow.references["robot_alone"].crowd is None
+    plain = HEAD + (
+        "matrix:\n  pace:\n    slow: {}\n    hasty: {crowd.speed: {mean: 2, std: 0.25}}\n"
+        "references:\n  robot_alone: {crowd: null}\n"
+    )
+    assert hashes(expand(plain)) == hashes(expand(written))
+
+
+def test_an_error_in_a_file_that_a_label_extends_is_shown_there(
+    expand: Expand, tmp_path: Path
+) -> None:
+    (tmp_path / "hasty.yaml").write_text("crowd.speed.meen: 2\n", encoding="utf-8")
+    with pytest.raises(SpecError) as caught:
+        expand(HEAD + "matrix:\n  pace:\n    hasty: {extends: hasty.yaml}\n")
+    text = render(caught.value.diagnostics)
+    assert "hasty.yaml:1:" in text
+    assert "'mean'" in text
+    assert "included from" in text

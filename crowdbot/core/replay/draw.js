@@ -218,6 +218,27 @@ function drawRobot(g, run, frame, px) {
   g.lineWidth = 1.5 * px;
   g.strokeStyle = colours["robot-edge"];
   g.stroke();
+  if (run.robot.look?.length) drawLook(g, run.robot, px);
+  else drawArrow(g, r);
+  g.restore();
+}
+
+/** The robot's parts as they are seen from above. */
+function drawLook(g, robot, px) {
+  g.lineWidth = 0.7 * px;
+  g.strokeStyle = colours["robot-edge"];
+  for (const [colour, outline] of robot.look) {
+    g.beginPath();
+    outline.forEach(([x, y], i) => g[i ? "lineTo" : "moveTo"](x, y));
+    g.closePath();
+    g.fillStyle = colour;
+    g.fill();
+    g.stroke();
+  }
+}
+
+/** Where a robot looks that has nothing else to tell it by. */
+function drawArrow(g, r) {
   g.beginPath();
   g.moveTo(0.72 * r, 0);
   g.lineTo(-0.42 * r, 0.5 * r);
@@ -226,7 +247,6 @@ function drawRobot(g, run, frame, px) {
   g.closePath();
   g.fillStyle = colours["robot-edge"];
   g.fill();
-  g.restore();
 }
 
 /** The robot's outline in its own frame, `more` larger: a disc, a capsule or a polygon. */

@@ -5,13 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from crowdbot.core.recording.scans import ReplayScan
 from crowdbot.core.replay.encode import encode, summary
 from crowdbot.core.replay.scores import grouped
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import render_page
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.score import Score
+
+#: A part of the robot: outline (K, 2), m, and colour.
+Seen = tuple[Array, str]
 
 _SCRIPTS = ("decode.js", "motion.js", "draw.js", "timeline.js", "app.js")
 
@@ -23,6 +29,7 @@ def write_replay(
     scores: Sequence[Score],
     title: str,
     facts: Mapping[str, str],
+    look: Sequence[Seen] = (),
 ) -> None:
     """Write one offline HTML page; equal input gives equal bytes.
 
@@ -33,11 +40,13 @@ def write_replay(
         scores: shown beside the run; may be empty.
         title: heading, e.g. the scenario's id.
         facts: name -> text; ``Status`` is shown beside the title.
+        look: parts of the robot as they are seen from above, the lowest first: outline (K, 2) in
+            its frame, m, and colour; without any it is its outline and an arrow.
 
     Raises:
         InputError: the path cannot be written.
     """
-    text = _render(run, scans, scores, title, facts)
+    text = _render(run, scans, scores, title, facts, look)
     atomic_write(path, text)
 
 
@@ -47,8 +56,11 @@ def _render(
     scores: Sequence[Score],
     title: str,
     facts: Mapping[str, str],
+    look: Sequence[Seen],
 ) -> str:
     meta, blobs = encode(run, scans)
+    if meta["robot"] is not None:
+        meta["robot"]["look"] = [[c, np.round(np.asarray(o), 3).tolist()] for o, c in look]
     status = next((v for k, v in facts.items() if k.lower() == "status"), "")
     return render_page(
         __package__,

@@ -151,6 +151,7 @@ def test_robot_is_exact_to_single_precision(
         "goal": [46.5, 0.0],
         "goalRadius": 0.5,
         "goalTime": 2.25,
+        "look": [],
     }
 
 

@@ -1,0 +1,112 @@
+"""What a robot looks like from above: the shapes of its description that are seen.
+
+Of each shape the outline of its projection on the floor, in the frame of the robot's base.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+from xml.etree import ElementTree as Xml
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+
+from crowdbot.core.robots.description import Description, read_description
+from crowdbot.core.robots.xml import matrix, numbers, pose_of
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.robot import RobotModel
+
+_RIM = 24  # corners that stand for a circle
+_GREY = "#8a8d91"
+_LEAST = 1e-6  # m^2; a smaller outline is not drawn
+
+
+class SeenPart(NamedTuple):
+    """A part from above.
+
+    Attributes:
+        outline: (K, 2) convex, counter-clockwise, base frame, m.
+        colour: ``#rrggbb``.
+        top: how high it reaches above the base's frame, m.
+    """
+
+    outline: Array
+    colour: str
+    top: float
+
+
+def seen_from_above(robot: RobotModel) -> list[SeenPart]:
+    """The parts that are seen, the lowest first; meshes are left out."""
+    described = read_description(robot.description)
+    found = [
+        part
+        for name, link in described.links.items()
+        for part in _parts(link, described.pose(name, robot.base), described)
+    ]
+    return sorted(found, key=lambda part: part.top)
+
+
+def _parts(link: Xml.Element, at: Array, described: Description) -> Iterator[SeenPart]:
+    for visual in link.findall("visual"):
+        for shape in visual.findall("geometry/*"):
+            cloud = _cloud(shape)
+            if not len(cloud):
+                continue
+            pose = at @ matrix(pose_of(visual))
+            placed = cloud @ pose[:3, :3].T + pose[:3, 3]
+            outline = _hull(placed[:, :2])
+            if len(outline):
+                yield SeenPart(outline, _colour(visual, described), float(placed[:, 2].max()))
+
+
+def _cloud(shape: Xml.Element) -> Array:
+    """Points (N, 3) whose hull is the shape; none of a mesh."""
+    if shape.tag == "box":
+        half = 0.5 * np.array(_values(shape, "size"))
+        signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+        return np.asarray(signs * half)
+    if shape.tag in ("cylinder", "capsule"):
+        (radius,), (length,) = _values(shape, "radius"), _values(shape, "length")
+        ring, end = _circle(radius), np.array([0.0, 0.0, 0.5 * length])
+        return np.concatenate([ring + end, ring - end])
+    if shape.tag == "sphere":
+        (radius,) = _values(shape, "radius")
+        ring = _circle(radius)
+        return np.concatenate([ring, ring[:, [0, 2, 1]], ring[:, [2, 1, 0]]])
+    return np.zeros((0, 3))
+
+
+def _circle(radius: float) -> Array:
+    angle = np.linspace(0.0, 2.0 * math.pi, _RIM, endpoint=False)
+    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(_RIM)])
+
+
+def _values(shape: Xml.Element, name: str) -> list[float]:
+    """Numbers that URDF writes as an attribute and SDFormat as text."""
+    return numbers(shape.get(name) or shape.findtext(name) or "", f"the {name} of a {shape.tag}")
+
+
+def _hull(points: Array) -> Array:
+    try:
+        hull = ConvexHull(points)
+    except QhullError:  # no area
+        return np.zeros((0, 2))
+    return np.asarray(points[hull.vertices]) if hull.volume > _LEAST else np.zeros((0, 2))
+
+
+def _colour(visual: Xml.Element, described: Description) -> str:
+    text = visual.findtext("material/diffuse")
+    material = visual.find("material")
+    if text is None and material is not None:
+        named = described.model.find(f"material[@name='{material.get('name')}']")
+        for place in (material, named):
+            colour = None if place is None else place.find("color")
+            if colour is not None:
+                text = colour.get("rgba")
+                break
+    if text is None:
+        return _GREY
+    red, green, blue, *_ = (round(255.0 * min(1.0, max(0.0, c))) for c in numbers(text, "a colour"))
+    return f"#{red:02x}{green:02x}{blue:02x}"
