@@ -17,7 +17,7 @@ class ScoreScale:
     Attributes:
         minimum, maximum: bounds of every value, inclusive.
         integer: values are whole numbers; of a rate, what is counted.
-        rate_over: variant of the same metric that the value is a rate over; empty if it is not a rate.
+        rate_over: variant of the same metric that the value is a rate over; empty: not a rate.
     """
 
     minimum: float = -math.inf

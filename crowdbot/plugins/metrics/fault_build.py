@@ -15,7 +15,7 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.core.trajectories.encounters import robot_of
 from crowdbot.core.trajectories.person_contacts import person_contacts
-from crowdbot.plugins.metrics.common_reference_build import goal_distance
+from crowdbot.plugins.metrics.common_reference_build import way_made_good
 from crowdbot.plugins.metrics.fault import (
     CONTACTS_AT_FAULT,
     CONTACTS_PER_KM,
@@ -63,11 +63,9 @@ class ContactsPerKm:
         fault = int(found.at_fault(spec.fault_speed + TOLERANCE).sum())
         driven = path_length(run.t, robot_of(run), spec.jump_speed)
         of_path = self._rate("driven", len(found), driven), self._way("driven_way", driven)
-        nearer = goal_distance(factory, run, ("corrected", "at_fault", "way"))
-        if isinstance(nearer, list):
-            corrected, at_fault, way = nearer
-            return [corrected, at_fault, of_path[0], way, of_path[1]]
-        good = float(nearer[1][0] - nearer[1].min())
+        good = way_made_good(factory, run, ("corrected", "at_fault", "way"))
+        if isinstance(good, list):
+            return [*good[:2], of_path[0], good[2], of_path[1]]
         return [
             self._rate("corrected", len(found), good),
             self._rate("at_fault", fault, good),
