@@ -15,6 +15,7 @@ from crowdbot.cli._plugin_table import table
 
 if TYPE_CHECKING:
     from crowdbot.core.campaign.plan import Plan
+    from crowdbot.core.registry.registry import Registry
     from crowdbot.core.results.rows import Results
     from crowdbot.core.statistics.audit import Audit
 
@@ -61,24 +62,26 @@ def audit(
         overrides=overrides or (),
         plugins=plugin or (),
     )
-    plan = make_plan(request, installed(plugin, no_plugins))
+    registry = installed(plugin, no_plugins)
+    plan = make_plan(request, registry)
     if dry_run:
         print_plan(plan, worker_count(jobs), as_json=as_json)
         return
     state = run_plan(plan, worker_count(jobs), None)
-    found, path = _judged(plan)
+    found, path = _judged(plan, registry)
     typer.echo(json.dumps(found.model_dump(), indent=1) if as_json else _text(found, path))
     if state.exit_code or not found.tells_apart:
         raise typer.Exit(state.exit_code or 1)
 
 
-def _judged(plan: Plan) -> tuple[Audit, Path]:
+def _judged(plan: Plan, registry: Registry) -> tuple[Audit, Path]:
     """The audit of the runs of a plan, and where it was written."""
     from crowdbot.core.results.store import load
+    from crowdbot.core.scoring.score_scale import score_scales
     from crowdbot.core.statistics.audit import AUDIT, write_audit
     from crowdbot.core.statistics.audit import audit as judge
 
-    results = _of(load(plan.out), plan)
+    results = replace(_of(load(plan.out), plan), scales=score_scales(registry))
     found = judge(results)
     path = plan.out / found.suite / AUDIT
     write_audit(path, found)

@@ -82,6 +82,8 @@ def _one(
     from crowdbot.dsl.explain import explain_yaml
 
     scenario = pick(expansion, pattern)
+    if scenario.hidden:
+        typer.echo("its people are hidden: the seed below is not theirs", err=True)
     if as_json:
         text = canonical_bytes(scenario, registry.spec_versions(scenario)).decode()
         content = {**_row(expansion, scenario, registry), "scenario": json.loads(text)}
@@ -91,15 +93,16 @@ def _one(
     return dump_scenario_yaml(scenario, registry.spec_versions(scenario))
 
 
-def _row(expansion: Expansion, scenario: Scenario, registry: Registry) -> dict[str, str]:
+def _row(expansion: Expansion, scenario: Scenario, registry: Registry) -> dict[str, str | None]:
     row = {"suite": expansion.suite_id, "id": scenario.id, "title": scenario.title}
-    return row | {"hash": _hash(scenario, registry)}
+    return row | {"hash": None if scenario.hidden else _hash(scenario, registry)}
 
 
 def _print_list(scenarios: list[Scenario], registry: Registry) -> None:
     width = max((len(s.id) for s in scenarios), default=0)
     for scenario in scenarios:
-        typer.echo(f"{scenario.id:<{width}}  {_hash(scenario, registry)}")
+        text = "hidden draw" if scenario.hidden else _hash(scenario, registry)
+        typer.echo(f"{scenario.id:<{width}}  {text}")
 
 
 def _hash(scenario: Scenario, registry: Registry) -> str:

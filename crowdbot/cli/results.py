@@ -67,7 +67,7 @@ def show(
     from crowdbot.core.results.tables import summarise
     from crowdbot.errors import UsageError
 
-    found = _only(load(out), planner, status)
+    found = _with_scales(_only(load(out), planner, status))
     if worst:
         if metric is None:
             raise UsageError("--worst needs --metric NAME")
@@ -151,13 +151,21 @@ def atlas(
     from crowdbot.core.statistics import atlas as entries_of
     from crowdbot.core.support.atomic_write import atomic_write
 
-    entries = entries_of(load(out), floor or ())
+    entries = entries_of(_with_scales(load(out)), floor or ())
     if md is not None:
         atomic_write(md, atlas_page(entries))
     if as_json:
         typer.echo(json.dumps([asdict(e) for e in entries], indent=2))
     elif md is None:
         typer.echo(atlas_page(entries), nl=False)
+
+
+def _with_scales(found: Results) -> Results:
+    """Results with what the installed metrics say of their values."""
+    from crowdbot.cli._options import installed
+    from crowdbot.core.scoring.score_scale import score_scales
+
+    return replace(found, scales=score_scales(installed(None, False)))
 
 
 def _only(found: Results, planners: list[str] | None, status: str | None) -> Results:

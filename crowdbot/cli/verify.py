@@ -112,6 +112,8 @@ def _suite(archive: Archive, registry: Registry, given: str | None) -> Expansion
     expansion = open_spec(given or name, registry)
     if expansion.suite_id != name:
         raise InputError(f"{archive.path} is of suite '{name}', not of '{expansion.suite_id}'")
+    if expansion.commitment:  # hidden draws have no bundle: what follows refuses them
+        typer.echo(f"{name}: seed and salt fit {expansion.commitment}", err=True)
     return expansion
 
 

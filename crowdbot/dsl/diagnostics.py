@@ -59,6 +59,8 @@ CODES = {
     "E211": "empty selection",
     "E212": "suite without an id of its own",
     "E213": "asset with another content",
+    "E214": "draws that are not the committed ones",
+    "E215": "draws revealed in part",
     "E301": "plugin collision",
 }
 REFERENCE = "docs/reference/errors.md"

@@ -26,7 +26,7 @@ from crowdbot.errors import SpecError, UsageError
 #: With these the rest of a document is still worth looking at.
 _GO_ON = frozenset(
     ("E003", "E102", "E103", "E111", "E112", "E116", "E014", "E120", "E121", "E204", "E205",
-     "E208", "E210", "E211", "E212")
+     "E208", "E210", "E211", "E212", "E214", "E215")
 )  # fmt: skip
 
 #: Errors of single scenarios after which the rest of a suite is not looked at any more.
@@ -42,6 +42,8 @@ class Expansion:
         metrics: names or patterns of the metrics to score; None means all.
         trees: id -> the merged tree of the scenario, which knows where each value is written.
         axes: id -> axis -> label, in the suite's order; no axes in a document without a matrix.
+        commitment: to the suite's seed; empty if there is none. While the seed is hidden, the
+            scenarios say so; once it is revealed, it has been checked.
     """
 
     suite_id: str
@@ -50,6 +52,7 @@ class Expansion:
     metrics: tuple[str, ...] | None = None
     trees: dict[str, Node] = field(default_factory=dict, repr=False)
     axes: dict[str, dict[str, str]] = field(default_factory=dict, repr=False)
+    commitment: str = ""
 
     @property
     def single(self) -> bool:
@@ -163,7 +166,9 @@ class _Expander:
         if problems:
             raise SpecError(_sorted(problems))
         suite = self._suite
-        return Expansion(suite.id, suite.title, scenarios, suite.metrics, trees, axes)
+        return Expansion(
+            suite.id, suite.title, scenarios, suite.metrics, trees, axes, suite.commitment
+        )
 
     def _trees(self) -> Iterator[_Bare]:
         """The combinations that stay, as trees."""
@@ -199,6 +204,8 @@ class _Expander:
         if key not in self._seeds:
             mark = self._suite.seed.mark
             parts = {"root": self._suite.seed, "key": Node(mark, key)}
+            if self._suite.hidden:
+                del parts["root"]
             seed = Node(mark, {k: Entry(mark, node) for k, node in parts.items()}, implied=True)
             self._seeds[key] = nest(("seed",), seed, mark)
         node = merge(self._seeds[key], crowd.node)
@@ -224,8 +231,17 @@ class _Expander:
             self._note(diagnostic, name, reference)
         if found or scenario is None:
             return None
+        if self._is_hidden(tree):
+            scenario.hide(self._suite.commitment)
         self._validated[shared] = scenario
         return scenario
+
+    def _is_hidden(self, tree: Node) -> bool:
+        """Whether people are drawn from the suite's seed, and that is hidden."""
+        crowd = tree.child("crowd")
+        if not self._suite.hidden or crowd is None or not crowd.entries:
+            return False
+        return bool(locate(crowd, ("seed", "root")).rest)
 
     def _with_assets(
         self, tree: Node, data: dict[str, Any]

@@ -21,11 +21,17 @@ _S = TypeVar("_S", bound=MetricSpec)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MetricVariant:
-    """One of the numbers that a metric gives: its unit, direction and invariants."""
+    """One of the numbers that a metric gives: its unit, direction and invariants.
+
+    Attributes:
+        rate_over: variant whose value it is a rate over, such as the way of contacts per way. Many
+            runs are then summed up as one: all contacts over all of the way. Empty: by the mean.
+    """
 
     unit: str
     better: Better
     invariants: MetricInvariants = field(default_factory=MetricInvariants)
+    rate_over: str = ""
 
 
 class VariantOptions(InvariantOptions, total=False):
@@ -33,6 +39,7 @@ class VariantOptions(InvariantOptions, total=False):
 
     unit: str
     better: Better
+    rate_over: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +72,11 @@ class MetricComponent(Component[S_co]):
                 raise _wrong(self.spec, f"{name} is empty")
         if not self.variants:
             raise _wrong(self.spec, "it has no variant")
+        for name, variant in self.variants.items():
+            if variant.rate_over and variant.rate_over not in self.variants:
+                hint = did_you_mean(nearest(variant.rate_over, self.variants))
+                text = f"'{name}' is a rate over '{variant.rate_over}', which is not a variant"
+                raise _wrong(self.spec, f"{text}{hint}")
         for better in (self.better, *(v.better for v in self.variants.values())):
             if better not in get_args(Better):
                 known = ", ".join(get_args(Better))
@@ -99,7 +111,8 @@ def declare_metric(
         better: which values are better.
         category: under which its scores are listed, such as ``motion``.
         variants: names of the variants in the order in which they are scored; or name -> what is
-            different there: ``unit``, ``better`` and fields of `MetricInvariants`.
+            different there: ``unit``, ``better``, ``rate_over`` (see `MetricVariant`) and fields
+            of `MetricInvariants`.
         signals: names of the signals that it reads.
         build: ``"package.module:function"``. Default: beside the spec; that of
             ``package.motion:SpeedSpec`` is ``package.motion_build:Speed``.
@@ -113,7 +126,7 @@ def declare_metric(
             invariant that no value can satisfy.
     """
     changes = _by_name(spec, variants)
-    common: VariantOptions = {"unit": unit, "better": better, **invariants}
+    common: VariantOptions = {"unit": unit, "better": better, "rate_over": "", **invariants}
     return MetricComponent(
         spec=spec,
         build=build or f"{spec.__module__}_build:{spec.__name__.removesuffix('Spec')}",
@@ -154,8 +167,14 @@ def _variant(spec: type[MetricSpec], name: str, options: VariantOptions) -> Metr
             raise _wrong(spec, f"variant '{name}' has no option '{option}'{hint}")
     invariants: dict[str, Any] = {**options}
     unit, better = invariants.pop("unit"), invariants.pop("better")
+    rate_over = invariants.pop("rate_over")
     try:
-        return MetricVariant(unit=unit, better=better, invariants=MetricInvariants(**invariants))
+        return MetricVariant(
+            unit=unit,
+            better=better,
+            invariants=MetricInvariants(**invariants),
+            rate_over=rate_over,
+        )
     except ValueError as error:
         raise _wrong(spec, f"variant '{name}': {error}") from error
 

@@ -226,6 +226,7 @@ class Scenario(Spec):
         default={}, exclude=True, repr=False, description="Calibration runs, by name."
     )
     _locked: Locked | None = PrivateAttr(default=None)  # where its agents are frozen
+    _hidden: str = PrivateAttr(default="")  # commitment to a seed that nobody knows yet
 
     def __eq__(self, other: object) -> bool:
         """Equal in content; where the agents are frozen does not count."""
@@ -235,6 +236,15 @@ class Scenario(Spec):
     def locked(self) -> Locked | None:
         """Where its agents are frozen, if they are."""
         return self._locked
+
+    @property
+    def hidden(self) -> str:
+        """The commitment to the seed of its people, where that has not been revealed; else ""."""
+        return self._hidden
+
+    def hide(self, commitment: str) -> None:
+        """Say that the seed of its people is hidden."""
+        self._hidden = commitment
 
     def lock_to(self, locked: Locked) -> None:
         """Say where the agents are frozen, also those of the references."""

@@ -23,6 +23,7 @@ from typing import Annotated, Any
 from annotated_types import Ge, Le
 from pydantic import Field, WithJsonSchema
 
+from crowdbot.dsl.commitment import COMMITMENT, SALT, read_commitment
 from crowdbot.dsl.diagnostics import Diagnostic, Mark
 from crowdbot.dsl.finder import Finder
 from crowdbot.dsl.installed import Installed, check_metrics, check_versions
@@ -68,6 +69,16 @@ class SuiteHead(Spec):
     title: str = Field(default="", description="For people.")
     seed: Annotated[int, Ge(0), Le(2**63 - 1)] = Field(
         default=0, description="Root of every crowd's random numbers."
+    )
+    commitment: str | None = Field(
+        default=None,
+        pattern=COMMITMENT,
+        description="Hash of seed, salt and document, published before the seed is.",
+    )
+    salt: str | None = Field(
+        default=None,
+        pattern=SALT,
+        description="Hexadecimal digits that reveal the seed of a commitment, together with it.",
     )
 
 
@@ -124,7 +135,10 @@ class ParsedSuite:
         seed: root seed with the place where it is written, or None for a single scenario.
         crowd_axes: names of the axes whose labels make the crowd's seed key.
         kept: labels of the combinations that stay; None: all.
+        commitment: to the seed; empty if there is none.
+        hidden: whether the seed has not been revealed; ``seed`` is a node of None then.
         problems: errors found so far.
+        tree: the whole document, all it extends included.
         finder: finds the files that the document names; None: assets are not looked for.
     """
 
@@ -138,8 +152,11 @@ class ParsedSuite:
     metrics: tuple[str, ...] | None
     references: dict[str, Node]
     problems: tuple[Diagnostic, ...]
+    tree: Node
     kept: Kept | None = None
     finder: Finder | None = None
+    commitment: str = ""
+    hidden: bool = False
 
 
 def read_suite(
@@ -180,8 +197,9 @@ def _scenario(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite
     _check_elsewhere(body, ("references",), problems)
     _check_references(root, problems)
     return ParsedSuite(
-        name, title, name, None, body, (), (), _metrics(root), _references(root), tuple(problems)
-    )
+        name, title, name, None, body, (), (), _metrics(root), _references(root), tuple(problems),
+        root,
+    )  # fmt: skip
 
 
 def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite:
@@ -195,15 +213,16 @@ def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite:
             _check_elsewhere(over, ("id", "references"), problems)
     _check_references(root, problems)
     _check_own_id(head, problems)
+    commitment, hidden = read_commitment(root, problems)
     seed = head.child("seed") if head else None
-    if seed is None or not isinstance(seed.value, int):
-        seed = Node(head.mark if head else root.mark, 0)
+    if hidden or seed is None or not isinstance(seed.value, int):
+        seed = Node(head.mark if head else root.mark, None if hidden else 0)
     crowd_axes = _crowd_axes(root, axes, problems)
     kept = read_selection(root, axes, problems)
     _check_size(root, body, axes, problems)
     return ParsedSuite(
         name, title, name, seed, body, axes, crowd_axes, _metrics(root), _references(root),
-        tuple(problems), kept,
+        tuple(problems), root, kept, None, commitment, hidden,
     )  # fmt: skip
 
 

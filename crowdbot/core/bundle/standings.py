@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from crowdbot.core.bundle.entries import LeaderboardEntry
 from crowdbot.core.bundle.rows import results_of
 from crowdbot.core.results.confounds import Finding, check_comparable, confounds
+from crowdbot.core.scoring.score_scale import Scales
 from crowdbot.core.statistics import PlannerScore, Summary, summarise
 from crowdbot.core.statistics.audit import Audit, suspicion
 from crowdbot.errors import InputError
@@ -59,6 +60,7 @@ def standings(
     by: str,
     accept: Iterable[str],
     audits: Iterable[Audit] = (),
+    scales: Scales | None = None,
 ) -> list[Standings]:
     """One table for each edition and class.
 
@@ -67,6 +69,7 @@ def standings(
         by: metric that decides the order.
         accept: confounds that are accepted; tables print them.
         audits: of suites, those of others are left out.
+        scales: of the scores, from `score_scales`: intervals do not leave bounds.
 
     Raises:
         InputError: entries differ in more than the planner, or a suite has two audits.
@@ -77,7 +80,13 @@ def standings(
         groups.setdefault((entry.manifest.edition.name, entry.manifest.classed), []).append(entry)
     accepted, audited = tuple(accept), _by_suite(audits)
     return [
-        _table(groups[key], by, accepted, audited.get(groups[key][0].manifest.edition.suite))
+        _table(
+            groups[key],
+            by,
+            accepted,
+            audited.get(groups[key][0].manifest.edition.suite),
+            scales or {},
+        )
         for key in sorted(groups, reverse=True)
     ]
 
@@ -92,9 +101,14 @@ def _by_suite(audits: Iterable[Audit]) -> dict[str, Audit]:
 
 
 def _table(
-    entries: list[LeaderboardEntry], by: str, accept: tuple[str, ...], audit: Audit | None
+    entries: list[LeaderboardEntry],
+    by: str,
+    accept: tuple[str, ...],
+    audit: Audit | None,
+    scales: Scales,
 ) -> Standings:
-    results = results_of((e.name, run) for e in entries if e.ranked for run in e.runs)
+    rows = results_of((e.name, run) for e in entries if e.ranked for run in e.runs)
+    results = replace(rows, scales=scales)
     findings = confounds(results, accept)
     check_comparable(findings)
     summary = summarise(results)

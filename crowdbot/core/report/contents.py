@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from crowdbot.core.registry.registry import Registry
@@ -13,6 +13,7 @@ from crowdbot.core.report.encode import Attempt, attempts, axes_of, status_of
 from crowdbot.core.report.figures import Figures, figures
 from crowdbot.core.report.series import Series, all_series
 from crowdbot.core.results.rows import Results, RunRow
+from crowdbot.core.scoring.score_scale import score_scales
 from crowdbot.core.statistics import FloorCheck, Table, check_floors, headline_names
 from crowdbot.core.statistics.audit import Audit, suspicion
 from crowdbot.errors import InputError
@@ -117,6 +118,7 @@ def gather(
     """
     if not results.runs:
         raise InputError("there is no run to report about")
+    results = replace(results, scales=score_scales(registry))
     axes = axes_of(results)
     found = cards(registry, dict.fromkeys(s.metric for s in results.scores))
     ranges = {metric: dict(card["head"]).get("range", "") for metric, card in found.items()}

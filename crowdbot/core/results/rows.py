@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from crowdbot.core.scoring.score_scale import Scales
+
 #: Status of a run whose planner failed.
 PLANNER_FAILED = "planner_failed"
 #: What is known of an attempt that left no run: its robot did not arrive.
@@ -111,9 +113,11 @@ class Results:
     """Everything at one moment.
 
     Runs are sorted by suite, scenario in the suite's order, planner and seed; scores by run,
-    metric and variant.
+    metric and variant. ``scales`` are those of the metrics that are installed, from
+    `crowdbot.core.scoring.score_scale.score_scales`: intervals do not leave bounds that are known.
     """
 
     runs: tuple[RunRow, ...] = ()
     scores: tuple[ScoreRow, ...] = ()
     failures: tuple[FailureRow, ...] = ()
+    scales: Scales = field(default_factory=dict, repr=False)

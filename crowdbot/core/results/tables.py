@@ -22,6 +22,7 @@ from crowdbot.core.scoring.scores_csv import write_table
 from crowdbot.errors import InputError, MissingLibraryError, UnknownNameError
 
 Line = dict[str, Any]
+_Place = tuple[str, str, str]
 _RUN = (
     "suite", "scenario", "planner", "seed", "status", "reason", "goal_time", "sim_time",
     "wall_time", "density", "privileged", "pinned", "spec_hash", "realisation_hash",
@@ -112,7 +113,8 @@ def write_parquet(path: Path, lines: Sequence[Line]) -> None:
 class GroupSummary:
     """Scores of one metric and variant in one group of runs.
 
-    ``mean`` and ``median`` are those of the ``count`` scores that have a value; ``undefined`` and
+    ``mean`` and ``median`` are those of the ``count`` scores that have a value, and ``mean`` of a
+    rate that of all these runs together, where the results have scales; ``undefined`` and
     ``censored`` are how many have none. ``low`` and ``high`` bound the mean of all scores, if those
     without a value are anywhere within their bounds; None where there is no bound. ``failed``
     counts the runs whose planner failed, which are among the others, and the attempts that left no
@@ -153,6 +155,7 @@ def summarise(
     lost = [tuple(_label(f, name) for name in by) for f in results.failures]
     failed = Counter([*lost, *(runs[r.run_id] for r in results.runs if r.status == PLANNER_FAILED)])
     found: dict[str, dict[tuple[str, ...], list[ScoreRow]]] = {}
+    over = _exposures(results)
     usual = _usual_variants(results)
     for score in results.scores:
         if fnmatchcase(score.metric, metric) and score.variant == (variant or usual[score.metric]):
@@ -164,7 +167,7 @@ def summarise(
         for group in lost:
             groups.setdefault(group, []).append(nothing)
     return [
-        _summary(dict(zip(by, group, strict=True)), scores, failed[group])
+        _summary(dict(zip(by, group, strict=True)), scores, failed[group], over)
         for groups in found.values()
         for group, scores in groups.items()
     ]
@@ -180,9 +183,29 @@ def _usual_variants(results: Results) -> dict[str, str]:
     }
 
 
-def _summary(group: Mapping[str, str], scores: Sequence[ScoreRow], failed: int) -> GroupSummary:
+def _exposures(results: Results) -> dict[_Place, float]:
+    """Run, metric and variant of each rate -> what it is over."""
+    rates = {name: scale.rate_over for name, scale in results.scales.items() if scale.rate_over}
+    values = {(s.run_id, s.metric, s.variant): s.value for s in results.scores}
+    found = ((s, values.get((s.run_id, s.metric, rates.get((s.metric, s.variant), "")))) for s in
+             results.scores)  # fmt: skip
+    return {(s.run_id, s.metric, s.variant): value for s, value in found if value}
+
+
+def _summary(
+    group: Mapping[str, str],
+    scores: Sequence[ScoreRow],
+    failed: int,
+    over: Mapping[_Place, float],
+) -> GroupSummary:
     values = [s.value for s in scores if s.value is not None]
     first = scores[0]
+    ways = [over.get((s.run_id, s.metric, s.variant)) for s in scores if s.value is not None]
+    low, high = _bound(scores, "lower"), _bound(scores, "upper")
+    mean = fmean(values) if values else None
+    if values and None not in ways:  # a rate: all that was counted over all of the way
+        mean = fmean(values, weights=[way or 0.0 for way in ways])
+        low, high = (None if end is None else mean for end in (low, high))
     return GroupSummary(
         group=group,
         metric=first.metric,
@@ -193,9 +216,9 @@ def _summary(group: Mapping[str, str], scores: Sequence[ScoreRow], failed: int) 
         undefined=sum(s.status == "undefined" for s in scores),
         censored=sum(s.status == "censored" for s in scores),
         failed=failed,
-        mean=fmean(values) if values else None,
-        low=_bound(scores, "lower"),
-        high=_bound(scores, "upper"),
+        mean=mean,
+        low=low,
+        high=high,
         median=median(values) if values else None,
     )
 

@@ -8,7 +8,7 @@ import re
 import shutil
 import tempfile
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import cache, cached_property, partial
 from importlib.resources.abc import Traversable
@@ -27,6 +27,33 @@ _BUILTIN = "builtin"
 _UNPACKED = "crowdbot-unpacked-"
 #: Errors about something that no plugin has: kind, metric, file.
 _UNKNOWN = ("E120", "E121", "E201")
+
+
+@dataclass(frozen=True, slots=True)
+class OpenDocument:
+    """A document that has been read: its file, what messages call it, and what it says."""
+
+    path: Path
+    name: str
+    suite: ParsedSuite
+
+
+def open_document(spec: str, registry: Registry) -> OpenDocument:
+    """Read a suite or scenario with all it extends; nothing is expanded.
+
+    Raises:
+        SpecError: the document cannot be taken apart.
+        UnknownNameError: neither a file nor a packaged suite has this name.
+    """
+    roots = _folders(registry)
+    path, name = _find(spec, roots, registry)
+    try:
+        suite = load_document(path, roots, name=name, installed=installed(registry))
+    except SpecError as error:
+        raise SpecError([_with_reason(d, registry) for d in error.diagnostics]) from None
+    if suite.problems:
+        raise SpecError([_with_reason(d, registry) for d in suite.problems])
+    return OpenDocument(path, name, suite)
 
 
 def open_spec(spec: str, registry: Registry, overrides: Sequence[str] = ()) -> Expansion:

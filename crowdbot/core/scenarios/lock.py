@@ -15,7 +15,7 @@ from typing import Literal
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.scenarios.lock_check import check_fits, spec_of, values_of
+from crowdbot.core.scenarios.lock_check import check_fits, check_revealed, spec_of, values_of
 from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.lock import (
     LOCK,
@@ -58,10 +58,11 @@ def population(scenario: Scenario, registry: Registry) -> Population:
     drawing depends on.
 
     Raises:
-        InputError: the lock does not fit the suite any more.
+        InputError: the lock does not fit the suite any more, or the seed of the agents is hidden.
     """
     if scenario.crowd is None:
         return Population(Realisation.nobody(), "none")
+    check_revealed(scenario)
     if scenario.locked is None:
         return Population(realise(scenario), "drawn")
     files = scenario.locked.files
@@ -82,8 +83,10 @@ def make_lock(expansion: Expansion, registry: Registry, old: LockFiles | None) -
     """Freeze a suite; tables whose inputs did not change since ``old`` are kept as they are.
 
     Raises:
-        InputError: a crowd cannot be drawn, or the old lock is not a lock.
+        InputError: a crowd cannot be drawn or is hidden, or the old lock is not a lock.
     """
+    for scenario in expansion.scenarios:
+        check_revealed(scenario)
     locked, drawn = dict[str, LockedTable](), 0
     tables, by_inputs = dict[str, str](), dict[str, str]()
     for scenario in _with_crowd(expansion):

@@ -40,8 +40,26 @@ class LockDifference:
 
 
 def spec_of(scenario: Scenario, registry: Registry) -> str:
-    """The hash of a scenario."""
+    """The hash of a scenario.
+
+    Raises:
+        InputError: its people are not known yet, so that it has none.
+    """
+    check_revealed(scenario)
     return content_hash(scenario, registry.spec_versions(scenario))
+
+
+def check_revealed(scenario: Scenario) -> None:
+    """Whether the people of a scenario are known.
+
+    Raises:
+        InputError: their seed is hidden; the message says how to practise.
+    """
+    if scenario.hidden:
+        raise InputError(
+            f"{scenario.id}: its people are hidden, the seed of {scenario.hidden[:19]}… has not "
+            "been revealed yet; to practise on people of your own: --set crowd.seed.root=1"
+        )
 
 
 def values_of(scenario: Scenario) -> Values:

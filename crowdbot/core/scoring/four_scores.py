@@ -28,8 +28,8 @@ PRIMARY = MainScore("safe efficiency", "safe_efficiency")
 MAIN_SCORES = (
     PRIMARY,
     MainScore("contacts", "contacts_per_km"),
-    MainScore("burden", "push_work"),
-    MainScore("comfort", "intrusion"),
+    MainScore("burden", "push_work", "rate"),
+    MainScore("comfort", "intrusion", "rate"),
 )
 _PLACES = {(s.metric, s.variant): place for place, s in enumerate(MAIN_SCORES)}
 

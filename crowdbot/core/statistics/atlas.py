@@ -15,8 +15,6 @@ from crowdbot.core.statistics.summary import headline_names
 from crowdbot.core.statistics.table import Name, Table
 from crowdbot.errors import UnknownNameError
 
-#: Planners that any other one ought to beat.
-FLOORS = ("stand_still", "goal_seek", "wall_hug", "stop_and_go")
 #: Scores whose ranks agree so well say the same.
 SAME = 0.8
 #: Fewer runs have no correlation that means anything.
@@ -53,8 +51,8 @@ def atlas(results: Results, floors: Sequence[str] = ()) -> tuple[AtlasEntry, ...
 
     Args:
         results: runs of one suite, of floors and of planners.
-        floors: labels of planners that any other one ought to beat; default: those of `FLOORS`
-            that are among the runs.
+        floors: labels of planners that any other one ought to beat; default: those whose role it
+            is.
 
     Raises:
         UnknownNameError: a floor is not among the planners.
@@ -63,7 +61,8 @@ def atlas(results: Results, floors: Sequence[str] = ()) -> tuple[AtlasEntry, ...
     for name in floors:
         if name not in table.planners:
             raise UnknownNameError("planner", name, table.planners)
-    chosen = tuple(floors) or tuple(f for f in FLOORS if f in table.planners)
+    roles = {run.planner: run.role for run in results.runs}
+    chosen = tuple(floors) or tuple(p for p in table.planners if roles.get(p) == "floor")
     names = headline_names(table)
     values = {name: _values(table, name) for name in names}
     lasted = _durations(table)

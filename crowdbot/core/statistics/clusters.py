@@ -28,8 +28,13 @@ Floats = NDArray[np.float64]
 #: Statistic of many weighted samples at once: weights (B, n) -> values (B,).
 Statistic = Callable[[Floats], Floats]
 
+#: What no value can leave: least and greatest.
+Bounds = tuple[float, float]
+UNBOUNDED: Bounds = (-math.inf, math.inf)
+
 #: Resamples of a bootstrap.
 RESAMPLES = 2000
+_ROUNDING = 1e-12
 _AT_ONCE = 2_000_000  # weights that are held in memory at a time
 
 ONE_DRAW = "one crowd draw: its chance cannot be told from a difference"
@@ -113,23 +118,38 @@ def _strata(index: NDArray[np.intp], conditions: Sequence[str] | None) -> NDArra
 
 
 # ------------------------------------------------------------------------- means
-def mean(values: Floats, clusters: Clusters, level: float = 0.95) -> Estimate:
-    """Mean of all runs; Student's t over the draws.
+def mean(
+    values: Floats,
+    clusters: Clusters,
+    level: float = 0.95,
+    bounds: Bounds = UNBOUNDED,
+    step: float = 0.0,
+) -> Estimate:
+    """Mean of all runs; Student's t over the draws, within bounds.
 
     Args:
         values: (n,).
         clusters: of the same runs.
         level: of the interval.
+        bounds: what no value can leave.
+        step: of counts, 1.
     """
-    return ratio(values, np.ones_like(values), clusters, level)
+    return ratio(values, np.ones_like(values), clusters, level, bounds, step)
 
 
-def ratio(above: Floats, below: Floats, clusters: Clusters, level: float = 0.95) -> Estimate:
+def ratio(
+    above: Floats,
+    below: Floats,
+    clusters: Clusters,
+    level: float = 0.95,
+    bounds: Bounds = UNBOUNDED,
+    step: float = 0.0,
+) -> Estimate:
     """Sum over sum, with the linearised variance between draws and t of ``count`` - 1.
 
     With equal draws and ``below`` = 1 it is the t interval of the draws' means (Cochran,
     Sampling Techniques, 3rd ed., 6.3 and 9A). In strata, what draws of one stratum have in common
-    is not chance (5A).
+    is not chance (5A). The interval stays within ``bounds`` of the quotient, see `interval`.
     """
     if not len(above) or not below.sum():
         return Estimate(reason=NO_RUNS)
@@ -137,9 +157,55 @@ def ratio(above: Floats, below: Floats, clusters: Clusters, level: float = 0.95)
     error = ratio_error(above, below, clusters)
     if error is None:
         return Estimate(value=value, reason=ONE_DRAW)
-    half = error * quantile_t(0.5 + level / 2, clusters.freedom)
-    reason = "" if error > 0 else NO_SPREAD
-    return Estimate(value=value, low=value - half, high=value + half, reason=reason)
+    t = quantile_t(0.5 + level / 2, clusters.freedom)
+    if error > 0.0:
+        low, high = interval(value, error, t, bounds)
+        return Estimate(value=value, low=low, high=high)
+    one = t**2 / clusters.count
+    width = min((bounds[1] - bounds[0]) * one / (1.0 + one), _of_counts(one, below, step))
+    low, high = _at_a_bound(value, bounds, width)
+    return Estimate(value=value, low=low, high=high, reason=NO_SPREAD if low == high else "")
+
+
+def _of_counts(one: float, below: Floats, step: float) -> float:
+    return one * step * len(below) / float(below.sum()) if step else math.inf
+
+
+def _at_a_bound(value: float, bounds: Bounds, width: float) -> tuple[float, float]:
+    """Ends of the interval where all runs are equal; no width where that is not at a bound."""
+    least, most = bounds
+    near = _ROUNDING * max(1.0, abs(value))
+    if math.isfinite(width) and value <= least + near:
+        return least, least + width
+    if math.isfinite(width) and value >= most - near:
+        return most - width, most
+    return value, value
+
+
+def interval(value: float, error: float, t: float, bounds: Bounds) -> tuple[float, float]:
+    """Ends of an interval that does not leave the bounds.
+
+    The means m for which ``(value - m)**2 <= t**2 V(m)``, where the variance V is that of the
+    sample, and goes to 0 towards each bound in proportion to the distance from it, as that of
+    every proportion and count does. Between 0 and 1 it is Wilson's score interval (1927) with as
+    many independent runs as the variance between draws is worth (Korn & Graubard 1998, Survey
+    Methodology 24:193), above 0 the score interval of a Poisson rate with the dispersion of the
+    sample; far from the bounds it is Student's.
+
+    Args:
+        value: the mean.
+        error: its standard error, above 0.
+        t: quantile.
+        bounds: of the mean.
+    """
+    below, above = value - bounds[0], bounds[1] - value
+    if below <= 0.0 or above <= 0.0:  # the bounds do not hold
+        return value - t * error, value + t * error
+    one, other = error / below, error / above
+    tilt, damping = t**2 * (one - other), 1.0 + t**2 * one * other
+    root = math.hypot(tilt, 2.0 * t * math.sqrt(damping))
+    low, high = (value + error * (tilt + sign * root) / (2.0 * damping) for sign in (-1.0, 1.0))
+    return max(low, bounds[0]), min(high, bounds[1])
 
 
 def ratio_error(above: Floats, below: Floats, clusters: Clusters) -> float | None:

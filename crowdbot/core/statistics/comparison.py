@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.statistics import clusters as c
-from crowdbot.core.statistics.clusters import Clusters, Floats
+from crowdbot.core.statistics.centre import bounds_of_difference, rate_difference
+from crowdbot.core.statistics.clusters import Bounds, Clusters, Floats
 from crowdbot.core.statistics.estimate import NOTHING, Counts, Estimate
 from crowdbot.core.statistics.signed_rank import double_ranks, least_p, p_value, signed_ranks
 from crowdbot.core.statistics.table import MISSING, UNDEFINED, Column, Name, Table
@@ -106,7 +107,10 @@ def compare(
         return replace(head, verdict="not ranked", reason=NO_REFERENCE), Leaning()
     pair = _Pair(*(_Side.of(s, there, label.better, reference) for s in sides))
     sign = 1.0 if label.better in ("higher", "none") else -1.0
-    found = _differences(head, pair, groups, sign, level)
+    found = _differences(head, pair, groups, _bounds(table, head), level)
+    rates = rate_difference(table, name, (a, b), _chosen(there, pair.known), level)
+    if rates is not None:
+        found = _with_rates(found, *rates, groups, level)
     if label.better == "none":
         return replace(found, verdict="not ranked", reason=NO_DIRECTION), Leaning()
     found, ranks = _ranked(found, pair, groups, level)
@@ -197,25 +201,51 @@ class _Pair:
         return certain, (certain == 0) & ~self.known & ~both
 
 
+def _chosen(there: NDArray[np.bool_], known: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Rows of the table in which both have a value."""
+    chosen = there.copy()
+    chosen[there] = known
+    return chosen
+
+
+def _bounds(table: Table, head: Comparison) -> Bounds:
+    """Of differences; distances to a reference have others than the values."""
+    name = head.metric, head.variant
+    return c.UNBOUNDED if head.better == "reference" else bounds_of_difference(table, name)
+
+
+def _with_rates(
+    found: Comparison, difference: Estimate, error: float | None, groups: Clusters, level: float
+) -> Comparison:
+    """A comparison of rates: those of all runs together take the place of means of pairs."""
+    ends = (difference.value, difference.value)
+    return replace(
+        found,
+        difference=difference,
+        bounds=(None, None) if None in found.bounds else ends,
+        detectable=None if not error else error * _reach(groups.freedom, level),
+    )
+
+
 def _differences(
-    head: Comparison, pair: _Pair, groups: Clusters, sign: float, level: float
+    head: Comparison, pair: _Pair, groups: Clusters, bounds: Bounds, level: float
 ) -> Comparison:
     """What is told in the metric's unit, over pairs where both have a value."""
-    known = pair.known
+    known, sign = pair.known, 1.0 if head.better in ("higher", "none") else -1.0
     least, most = sign * pair.least, sign * pair.most
     ends = [float(x.mean()) for x in (np.minimum(least, most), np.maximum(least, most))]
-    bounds = (_finite(ends[0]), _finite(ends[1]))
+    open_ends = (_finite(ends[0]), _finite(ends[1]))
     if not known.any():
         nothing = Estimate(reason="no pair in which both have a value")
-        return replace(head, difference=nothing, standardised=nothing, bounds=bounds)
+        return replace(head, difference=nothing, standardised=nothing, bounds=open_ends)
     some = groups.part(known)
     gains = (pair.least)[known]
     ones = np.ones_like(gains)
     error = c.ratio_error(gains, ones, some)
     return replace(
         head,
-        difference=c.mean(sign * gains, some, level),
-        bounds=bounds,
+        difference=c.mean(sign * gains, some, level, bounds),
+        bounds=open_ends,
         standardised=_standardised(gains, some, level),
         detectable=None if not error else error * _reach(some.freedom, level),
     )
@@ -269,27 +299,22 @@ def _ranked(
     ranks = signed_ranks(contrasts)
     won = 0.5 + np.sign(contrasts) / 2
     half = float(undecided.mean()) / 2
-    improvement = _clipped(c.mean(won, groups, level), 0.0, 1.0)
+    improvement = c.mean(won, groups, level, (0.0, 1.0))
     share = float(won.mean())
-    biserial = c.ratio(ranks.astype(float), double_ranks(contrasts).astype(float), groups, level)
+    shares = ranks.astype(float), double_ranks(contrasts).astype(float)
+    biserial = c.ratio(*shares, groups, level, (-1.0, 1.0))
     ended = replace(
         found,
         wins=int((contrasts > 0).sum()),
         losses=int((contrasts < 0).sum()),
         ties=int(((contrasts == 0) & ~undecided).sum()),
         undecided=int(undecided.sum()),
-        rank_biserial=_clipped(biserial, -1.0, 1.0),
+        rank_biserial=biserial,
         improvement=improvement,
         improvement_bounds=(share - half, share + half),
         p=p_value(ranks, groups),
     )
     return ended, int(np.sign(ranks.sum()))
-
-
-def _clipped(found: Estimate, least: float, most: float) -> Estimate:
-    low = None if found.low is None else max(found.low, least)
-    high = None if found.high is None else min(found.high, most)
-    return Estimate(value=found.value, low=low, high=high, reason=found.reason)
 
 
 def _contradicts(leaning: Leaning, better: str) -> bool:

@@ -12,6 +12,7 @@ from crowdbot.core.results.rows import Results
 from crowdbot.core.scoring.four_scores import is_main, main_first
 from crowdbot.core.statistics import clusters as c
 from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, axis_effects, densities
+from crowdbot.core.statistics.centre import planner_mean
 from crowdbot.core.statistics.comparison import Comparison, compare, with_verdict
 from crowdbot.core.statistics.estimate import Counts, Estimate
 from crowdbot.core.statistics.signed_rank import holm
@@ -29,7 +30,8 @@ class PlannerScore:
     Attributes:
         counts: how the runs ended; ``reasons`` says why values are missing -> how often.
         draws: independent crowd draws among the values.
-        mean, iqm: over the values that exist (``counts.ok``), with intervals.
+        mean, iqm: over the values that exist (``counts.ok``), with intervals; the mean of a rate is
+            that of all runs together.
         bounds: of the mean over all runs, if undefined and censored values are anywhere within
             their bounds; None on a side where there is no bound. Who arrives seldom may have a
             good ``mean`` of the runs in which he did; this says what it is worth.
@@ -182,6 +184,7 @@ def _planner_score(table: Table, name: Name, planner: str, level: float) -> Plan
     groups = table.clusters.part(column.known)
     quartiles = np.quantile(values, [0.25, 0.5, 0.75]).tolist() if len(values) else None
     nothing = Estimate(reason=c.NO_RUNS)
+    centre, exposure = planner_mean(table, name, planner, level), table.exposure(name, planner)
     return PlannerScore(
         planner=planner,
         metric=name[0],
@@ -193,13 +196,19 @@ def _planner_score(table: Table, name: Name, planner: str, level: float) -> Plan
         counts=column.counts,
         reasons=column.reasons,
         draws=groups.count,
-        mean=c.mean(values, groups, level),
-        bounds=_bounds(column),
+        mean=centre,
+        bounds=_bounds(column) if exposure is None else _of_rate(column, centre),
         iqm=c.bootstrap(c.trimmed_mean(values), groups, level) if len(values) else nothing,
         least=float(values.min()) if len(values) else None,
         quartiles=(quartiles[0], quartiles[1], quartiles[2]) if quartiles else None,
         most=float(values.max()) if len(values) else None,
     )
+
+
+def _of_rate(column: Column, centre: Estimate) -> tuple[float | None, float | None]:
+    """Of a rate: itself, or none where runs have no value."""
+    tried = column.outcome != MISSING
+    return (centre.value, centre.value) if column.known[tried].all() else (None, None)
 
 
 def _bounds(column: Column) -> tuple[float | None, float | None]:

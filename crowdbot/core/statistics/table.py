@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.results.rows import PLANNER_FAILED, WITHOUT_RUN, Results, RunRow, ScoreRow
+from crowdbot.core.scoring.score_scale import UNKNOWN, ScoreScale
 from crowdbot.core.statistics.clusters import Clusters, Floats
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts
 from crowdbot.dsl.matrix import DRAW
@@ -73,6 +74,7 @@ class Table:
         places = [*self.runs, *self.failures]
         self.keys: tuple[Key, ...] = tuple(dict.fromkeys(key for _, key in places))
         self.planners = tuple(sorted({planner for planner, _ in places}))
+        self.scales = results.scales
         self._rows = _by_score(results.scores)
         self._columns: dict[tuple[Name, str], Column] = {}
 
@@ -107,6 +109,21 @@ class Table:
     def reference(self, name: Name) -> float | None:
         """What a score that compares with people is to be near to."""
         return REFERENCES.get(name[0], 1.0)
+
+    def scale(self, name: Name) -> ScoreScale:
+        """Bounds of a score, and what it is a rate over."""
+        return self.scales.get(name, UNKNOWN)
+
+    def exposure(self, name: Name, planner: str) -> Floats | None:
+        """What a rate of one planner is over in each row, (n,); NaN where that is not known.
+
+        None where the score is not a rate, or the runs do not have what it is over.
+        """
+        over = name[0], self.scale(name).rate_over
+        if not over[1] or over not in self._rows:
+            return None
+        column = self.column(over, planner)
+        return np.where(column.known & (column.low > 0.0), column.low, np.nan)
 
     def column(self, name: Name, planner: str) -> Column:
         """One score of one planner."""

@@ -48,9 +48,14 @@ class Evasion:
         """People (M,) who are near on some step."""
         return np.asarray(self.near.any(axis=0))
 
-    def work(self, mass: Array) -> float:
-        """Work that the robot's advance does against people who accelerate away from it, J."""
-        power = self.away * self.approach * mass
+    def work(self, mass: Array, share: Array | float = 1.0) -> float:
+        """Work that the robot's advance does against people who accelerate away from it, J.
+
+        Args:
+            mass: (M,) of people, kg.
+            share: (N-1, M) of each step that counts.
+        """
+        power = self.away * self.approach * mass * share
         return float(self.dt @ power.sum(axis=1))
 
     def rms(self) -> float:

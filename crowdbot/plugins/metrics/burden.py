@@ -6,15 +6,17 @@ from functools import partial
 from typing import Literal
 
 from crowdbot.dsl import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import EvasionReach, JumpSpeed
+from crowdbot.plugins.metrics.parameters import EvasionReach, ForcedHeadway, JumpSpeed, LeastWay
 
 declare = partial(declare_metric, category="burden")
 
 
 class PushWorkSpec(MetricSpec):
-    """Work of pushing people aside, per person met."""
+    """Work of pushing people aside, per way made good and per person met."""
 
     kind: Literal["push_work"] = "push_work"
+    forced_headway: ForcedHeadway
+    least_way: LeastWay
     evasion_reach: EvasionReach
     jump_speed: JumpSpeed
 
@@ -22,13 +24,15 @@ class PushWorkSpec(MetricSpec):
 PUSH_WORK = declare(
     PushWorkSpec,
     symbol="W_push",
+    spec_version=2,
     unit="J",
     better="lower",
-    mass_exponent=1,
     variants={
-        "corrected": {"minimum": 0.0},
-        "total": {"minimum": 0.0, "more_people": "up", "better": "none"},
-        "excess": {"self_value": 0.0},
+        "rate": {"minimum": 0.0, "unit": "J/m", "mass_exponent": 1, "rate_over": "way"},
+        "corrected": {"minimum": 0.0, "mass_exponent": 1},
+        "total": {"minimum": 0.0, "more_people": "up", "better": "none", "mass_exponent": 1},
+        "excess": {"self_value": 0.0, "mass_exponent": 1},
+        "way": {"minimum": 0.0, "unit": "m", "better": "none"},
     },
 )
 

@@ -16,12 +16,14 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.core.trajectories.encounters import people
 from crowdbot.core.trajectories.evasion import Evasion, evasion, ghost_run
+from crowdbot.core.trajectories.headway import share_below
 from crowdbot.plugins.metrics.burden import (
     EVASIVE_ACCELERATION,
     PUSH_WORK,
     EvasiveAccelerationSpec,
     PushWorkSpec,
 )
+from crowdbot.plugins.metrics.common_reference_build import rate_and_way
 
 #: Of the people met, this share has no higher peak.
 PERCENTILE = 0.95
@@ -36,18 +38,28 @@ class PushWork:
     spec: PushWorkSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Per person met, in total, and beyond what a ghost on the same way is blamed for."""
+        """Per way; per person met, in total, beyond what a ghost on the same way is blamed for."""
         factory = ScoreFactory(PUSH_WORK)
         found = _near(factory, run, self.spec)
         if isinstance(found, list):
             return found
         work, met = found.work(people(run).mass), float(found.met.sum())
         extras = {"people_met": met}
+        rate, way = rate_and_way(factory, run, self._forced(run), self.spec.least_way)
         return [
+            rate,
             factory.ok("corrected", work / met, extras),
             factory.ok("total", work, extras),
             _excess(factory, run, refs, self.spec, self._difference),
+            way,
         ]
+
+    def _forced(self, run: Trajectories) -> float:
+        """Work on people whom the robot would reach at once if they stayed where they are, J."""
+        spec, run = self.spec, truncate_at_arrival(run)
+        found = evasion(run, spec.evasion_reach, spec.jump_speed)
+        share = share_below(run, spec.forced_headway, spec.jump_speed)
+        return found.work(people(run).mass, share)
 
     def _difference(self, run: Trajectories, ghost: Trajectories) -> float:
         return self._per_person(run) - self._per_person(ghost)

@@ -57,6 +57,30 @@ def goal_distance(
     return factory.all_undefined("invalid_no_goal", variants)
 
 
+def way_made_good(
+    factory: ScoreFactory, run: Trajectories, variants: Iterable[str] | None = None
+) -> float | list[Score]:
+    """How much nearer to the goal the robot has come at most, m; or why that is not known."""
+    found = goal_distance(factory, run, variants)
+    return found if isinstance(found, list) else float(found[1][0] - found[1].min())
+
+
+def rate_and_way(
+    factory: ScoreFactory, run: Trajectories, amount: float, least: float
+) -> tuple[Score, Score]:
+    """Variants ``rate`` and ``way`` of something that is the less the better, per way made good.
+
+    Less way than ``least`` (m) counts as that; who went nowhere and did nothing has no rate.
+    """
+    way = way_made_good(factory, run, ("rate", "way"))
+    if isinstance(way, list):
+        return way[0], way[1]
+    over = factory.ok("way", max(way, least))
+    if not amount and way < least:
+        return factory.undefined("rate", "zero_denominator"), over
+    return factory.ok("rate", amount / max(way, least), {"amount": amount, "way": way}), over
+
+
 def shortest_way(
     factory: ScoreFactory, run: Trajectories, variants: Iterable[str] | None = None
 ) -> float | list[Score]:

@@ -54,11 +54,17 @@ class ContactsPerKmSpec(MetricSpec):
 CONTACTS_PER_KM = declare(
     ContactsPerKmSpec,
     symbol="C_km",
+    spec_version=2,
     unit="1/km",
     better="lower",
     minimum=0.0,
-    more_people="up",
-    variants=("corrected", "at_fault", "driven"),
+    variants={
+        "corrected": {"more_people": "up", "rate_over": "way"},
+        "at_fault": {"more_people": "up", "rate_over": "way"},
+        "driven": {"more_people": "up", "rate_over": "driven_way"},
+        "way": {"unit": "km", "better": "none"},
+        "driven_way": {"unit": "km", "better": "none"},
+    },
 )
 
 COMPONENTS = (

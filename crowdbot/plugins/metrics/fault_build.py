@@ -15,7 +15,7 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.core.trajectories.encounters import robot_of
 from crowdbot.core.trajectories.person_contacts import person_contacts
-from crowdbot.plugins.metrics.common_reference_build import goal_distance
+from crowdbot.plugins.metrics.common_reference_build import way_made_good
 from crowdbot.plugins.metrics.fault import (
     CONTACTS_AT_FAULT,
     CONTACTS_PER_KM,
@@ -53,7 +53,7 @@ class ContactsPerKm:
     spec: ContactsPerKmSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """All contacts, and those at fault, per way made good; all per way driven."""
+        """All contacts, and those at fault, per way made good; all per way driven; the ways."""
         del refs
         factory, spec = ScoreFactory(CONTACTS_PER_KM), self.spec
         if run.robot is None:
@@ -62,16 +62,22 @@ class ContactsPerKm:
         found = person_contacts(run, spec.jump_speed, spec.contact_tol, spec.release_gap)
         fault = int(found.at_fault(spec.fault_speed + TOLERANCE).sum())
         driven = path_length(run.t, robot_of(run), spec.jump_speed)
-        rate = self._rate("driven", len(found), driven)
-        nearer = goal_distance(factory, run, ("corrected", "at_fault"))
-        if isinstance(nearer, list):
-            return [*nearer, rate]
-        good = float(nearer[1][0] - nearer[1].min())
+        of_path = self._rate("driven", len(found), driven), self._way("driven_way", driven)
+        good = way_made_good(factory, run, ("corrected", "at_fault", "way"))
+        if isinstance(good, list):
+            return [*good[:2], of_path[0], good[2], of_path[1]]
         return [
             self._rate("corrected", len(found), good),
             self._rate("at_fault", fault, good),
-            rate,
+            of_path[0],
+            self._way("way", good),
+            of_path[1],
         ]
+
+    def _way(self, variant: str, way: float) -> Score:
+        """What the rates are over."""
+        factory = ScoreFactory(CONTACTS_PER_KM)
+        return factory.ok(variant, max(way, self.spec.least_way) / KILOMETRE)
 
     def _rate(self, variant: str, count: int, way: float) -> Score:
         """Per kilometre; who went nowhere has no rate, unless he was in contact even so."""

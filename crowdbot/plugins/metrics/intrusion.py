@@ -6,15 +6,23 @@ from functools import partial
 from typing import Literal
 
 from crowdbot.dsl import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import Compliance, EvasionReach, JumpSpeed
+from crowdbot.plugins.metrics.parameters import (
+    Compliance,
+    EvasionReach,
+    JumpSpeed,
+    LeastWay,
+    TimeGap,
+)
 
 declare = partial(declare_metric, category="proximity")
 
 
 class IntrusionSpec(MetricSpec):
-    """Way on which the robot advances on people with little room, per person met."""
+    """Way on which the robot drives at people with little time or room, per way made good."""
 
     kind: Literal["intrusion"] = "intrusion"
+    time_gap: TimeGap
+    least_way: LeastWay
     compliance: Compliance
     evasion_reach: EvasionReach
     jump_speed: JumpSpeed
@@ -23,10 +31,16 @@ class IntrusionSpec(MetricSpec):
 INTRUSION = declare(
     IntrusionSpec,
     symbol="L_in",
+    spec_version=2,
     unit="m",
     better="lower",
     minimum=0.0,
-    variants={"corrected": {}, "total": {"better": "none", "more_people": "up"}},
+    variants={
+        "rate": {"unit": "1", "rate_over": "way"},
+        "corrected": {},
+        "total": {"better": "none", "more_people": "up"},
+        "way": {"better": "none"},
+    },
 )
 
 COMPONENTS = (INTRUSION,)

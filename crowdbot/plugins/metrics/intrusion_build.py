@@ -14,6 +14,8 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.core.trajectories.encounters import encounter, people
 from crowdbot.core.trajectories.evasion import DISTANCE_TOLERANCE, evasion
+from crowdbot.core.trajectories.headway import share_below
+from crowdbot.plugins.metrics.common_reference_build import rate_and_way
 from crowdbot.plugins.metrics.intrusion import INTRUSION, IntrusionSpec
 
 
@@ -24,7 +26,7 @@ class Intrusion:
     spec: IntrusionSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Per person met, and in total."""
+        """Of little time, per way; of little room, per person met and in total."""
         del refs
         factory, spec = ScoreFactory(INTRUSION), self.spec
         if run.robot is None:
@@ -41,4 +43,12 @@ class Intrusion:
         close = found.near & (room < spec.compliance - DISTANCE_TOLERANCE)
         way = float(found.dt @ (found.approach * close).sum(axis=1))
         extras = {"people_met": met}
-        return [factory.ok("corrected", way / met, extras), factory.ok("total", way, extras)]
+        short = share_below(run, spec.time_gap, spec.jump_speed)
+        hurried = float(found.dt @ (found.approach * short).sum(axis=1))
+        rate, over = rate_and_way(factory, run, hurried, spec.least_way)
+        return [
+            rate,
+            factory.ok("corrected", way / met, extras),
+            factory.ok("total", way, extras),
+            over,
+        ]

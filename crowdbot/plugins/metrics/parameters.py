@@ -130,6 +130,16 @@ FaultSpeed = Annotated[
     NonNegativeSpeed,
     Field(default=0.05, description="A robot that comes nearer more slowly is not at fault, m/s."),
 ]
+ForcedHeadway = Annotated[
+    PositiveDuration,
+    Field(
+        default=0.5, description="Who would be reached sooner if he stood still is forced away, s."
+    ),
+]
+TimeGap = Annotated[
+    PositiveDuration,
+    Field(default=1.0, description="Who would be reached sooner if he stood still is crowded, s."),
+]
 LeastWay = Annotated[
     PositiveLength, Field(default=1.0, description="Less way counts as this much, m.")
 ]

@@ -50,6 +50,7 @@ class RelativePathLengthSpec(MetricSpec):
 RELATIVE_PATH_LENGTH = declare(
     RelativePathLengthSpec,
     symbol="L_rp",
+    spec_version=2,
     unit="1",
     better="higher",
     minimum=0.0,

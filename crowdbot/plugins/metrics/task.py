@@ -138,7 +138,13 @@ class PathEfficiencySpec(MetricSpec):
 
 
 PATH_EFFICIENCY = declare(
-    PathEfficiencySpec, symbol="PE", unit="1", better="higher", experimental=True, minimum=0.0
+    PathEfficiencySpec,
+    symbol="PE",
+    spec_version=2,
+    unit="1",
+    better="higher",
+    experimental=True,
+    minimum=0.0,
 )
 
 

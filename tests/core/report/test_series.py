@@ -72,14 +72,14 @@ def test_known_categories_come_first_and_in_them_the_metrics_of_the_seed() -> No
 def test_the_four_scores_are_a_category_of_their_own_and_come_first() -> None:
     scores = [
         *rows("push_work", "total", 1.0, category="burden"),
-        *rows("push_work", "corrected", 1.0, category="burden"),
+        *rows("push_work", "rate", 1.0, category="burden"),
         *rows("relative_jerk", "literal", 1.0, category="task"),
         *rows("safe_efficiency", "corrected", 1.0, category="task"),
     ]
     found = all_series(scores, [], {})
     assert [(s.metric, s.variant, s.category) for s in found] == [
         ("safe_efficiency", "corrected", "the four scores"),
-        ("push_work", "corrected", "the four scores"),
+        ("push_work", "rate", "the four scores"),
         ("relative_jerk", "literal", "task"),
         ("push_work", "total", "burden"),
     ]

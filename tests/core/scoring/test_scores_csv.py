@@ -259,8 +259,8 @@ def test_verdict(score: Score, text: str) -> None:
 
 
 def test_the_four_scores_come_first_and_once() -> None:
-    names = [("zeta", "corrected"), ("intrusion", "corrected"), ("push_work", "total"),
-             ("push_work", "corrected"), ("safe_efficiency", "corrected"), ("risk", "corrected"),
+    names = [("zeta", "corrected"), ("intrusion", "rate"), ("push_work", "total"),
+             ("push_work", "rate"), ("safe_efficiency", "corrected"), ("risk", "corrected"),
              ("risk", "rate")]  # fmt: skip
     scores = [
         Score(metric=m, symbol="x", category="c", unit="1", better="none", variant=v, value=1.0)
@@ -269,8 +269,8 @@ def test_the_four_scores_come_first_and_once() -> None:
     chosen = [(s.metric, s.variant) for s in headlines(scores)]
     assert chosen == [
         ("safe_efficiency", "corrected"),
-        ("push_work", "corrected"),
-        ("intrusion", "corrected"),
+        ("push_work", "rate"),
+        ("intrusion", "rate"),
         ("zeta", "corrected"),
         ("risk", "rate"),
     ]

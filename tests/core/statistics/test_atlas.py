@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -22,7 +24,10 @@ def planted() -> Results:
     for planner, skill in (("goal_seek", 0.0), ("clever", 5.0)):
         for i in range(24):
             label, lasted = i % 2, float(rng.uniform(10, 100))
-            r = run(planner, f"s{i}", f"d{i}", axes={"density": LABELS[label]}, sim_time=lasted)
+            r = run(
+                planner, f"s{i}", f"d{i}", axes={"density": LABELS[label]}, sim_time=lasted,
+                role="floor" if planner == "goal_seek" else "candidate",
+            )  # fmt: skip
             runs.append(r)
             own = skill + rng.normal()
             made = {
@@ -57,6 +62,10 @@ def test_floors_are_named_or_known() -> None:
     results = planted()
     assert atlas(results, ["goal_seek"]) == atlas(results)
     assert atlas(results, ["clever"]) != atlas(results)
+    named_like_a_floor = replace(
+        results, runs=tuple(replace(r, role="candidate") for r in results.runs)
+    )
+    assert all(entry.separation is None for entry in atlas(named_like_a_floor))
     with pytest.raises(UnknownNameError, match="goal_sek"):
         atlas(results, ["goal_sek"])
 

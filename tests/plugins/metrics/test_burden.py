@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core.trajectories.trajectories import Trajectories
 from tests.plugins.metrics.scenes import (
+    REACH,
     Array,
     Body,
     grid,
@@ -66,6 +67,46 @@ def test_a_robot_that_pushes_without_touching_is_seen() -> None:
     assert scores_of("contacts_at_fault", pushes)["corrected"].value == 0
     assert value_of(scores_of("push_work", pushes)) > 10
     assert value_of(scores_of("push_work", waits)) == 0
+
+
+def forced(robot_speed: float, gap: float, gain: float) -> float:
+    """The rate of a robot behind somebody who speeds up."""
+    person = speeding_up(T, REACH + gap, robot_speed, gain)
+    run = scene(T, line(T, (0, 0), (robot_speed, 0)), [person], robot_goal=(20.0, 0.0))
+    return value_of(scores_of("push_work", run), "rate")
+
+
+def test_the_rate_is_work_on_those_who_had_to_make_way() -> None:
+    """0.4 s behind somebody who speeds up just enough to stay ahead for the 4 s, a while."""
+    found = forced(1.0, 0.4, 0.01)  # after 4 s 0.08 m farther: 0.48 s
+    assert found == pytest.approx(MASS * 0.01 * 1.0 * 4 / 4.0, rel=1e-6)
+    assert forced(1.0, 0.6, 0.01) == 0.0
+    assert forced(0.5, 0.4, 0.01) == 0.0  # the slower robot leaves 0.8 s
+
+
+def test_the_rate_of_who_waits_is_zero_and_of_who_stays_unknown() -> None:
+    """People may do what they like around a robot that stands; parking wins nothing."""
+    jumps = speeding_up(T, REACH + 0.05, 0.0, 2.0)
+    parked = scene(T, line(T, (0, 0), (0, 0)), [jumps], robot_goal=(20.0, 0.0))
+    assert scores_of("push_work", parked)["rate"].reason == "zero_denominator"
+    later = np.where(T < 2.0, 0.0, T - 2.0)
+    robot = Body(-later, 0 * T, np.where(T < 2.0, 0.0, -1.0), 0 * T)
+    leaves = scene(T, robot, [jumps], robot_goal=(-20.0, 0.0))
+    assert value_of(scores_of("push_work", leaves), "rate") == 0.0
+
+
+def test_who_stops_in_time_has_forced_nobody() -> None:
+    """Both come within 0.1 m of somebody who steps back; only one came fast."""
+    steps_back = speeding_up(T, REACH + 2.1, 0.0, 0.05)
+    fast = scene(T, line(T, (0, 0), (0.6, 0)), [steps_back], robot_goal=(20.0, 0.0))
+    slows = 2.0 * (1 - np.exp(-T))
+    careful = scene(
+        T, Body(slows, 0 * T, 2.0 * np.exp(-T), 0 * T), [steps_back], robot_goal=(20.0, 0.0)
+    )
+    rates = [value_of(scores_of("push_work", run), "rate") for run in (fast, careful)]
+    assert rates[1] == 0.0
+    assert value_of(scores_of("push_work", careful)) > 0.0
+    assert rates[0] > 0.0
 
 
 def test_who_turns_towards_the_robot_is_not_pushed() -> None:

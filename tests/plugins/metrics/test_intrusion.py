@@ -66,6 +66,55 @@ def test_it_is_a_way_and_no_time(speed: float) -> None:
     assert intrusion(following(0.3, speed)) == pytest.approx(10 * speed)
 
 
+def rated(run: Trajectories) -> float:
+    return value_of(scores_of("intrusion", run), "rate")
+
+
+def towards(gap: float, speed: float, way: float = 20.0) -> Trajectories:
+    """Following somebody, on the way to a goal."""
+    person = line(T, (REACH + gap, 0), (speed, 0))
+    return scene(T, line(T, (0, 0), (speed, 0)), [person], robot_goal=(way, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("gap", "speed", "rate"),
+    [
+        (0.3, 0.5, 1.0),  # 0.6 s behind
+        (0.3, 0.25, 0.0),  # 1.2 s: the slower, the nearer one may be
+        (0.9, 1.0, 1.0),  # 0.9 s: more than half a metre is little for who is fast
+        (1.1, 1.0, 0.0),
+    ],
+)
+def test_the_rate_asks_for_time_and_not_for_room(gap: float, speed: float, rate: float) -> None:
+    assert rated(towards(gap, speed)) == pytest.approx(rate)
+
+
+def test_the_rate_is_per_way_made_good() -> None:
+    """Back and forth behind somebody: as much intrusion on less way."""
+    straight = rated(towards(0.3, 0.5))
+    aside = scene(
+        T, line(T, (0, 0), (0.5, 0)), [line(T, (REACH + 0.3, 0), (0.5, 0))], robot_goal=(0.0, 50.0)
+    )
+    assert rated(aside) > 4 * straight  # hardly any of the way is made good; 1 m at least
+    assert value_of(scores_of("intrusion", aside), "way") == 1.0
+
+
+def test_who_stays_has_no_rate_and_who_passes_at_a_distance_has_a_good_one() -> None:
+    close = line(T, (0.6, 0), (0, 0))
+    stays = scene(T, line(T, (0, 0), (0, 0)), [close], robot_goal=(5.0, 0.0))
+    assert why(scores_of("intrusion", stays)) >= {("undefined", "zero_denominator")}
+    passes = scene(
+        T, line(T, (0, 0), (0.5, 0)), [line(T, (2, 0.7), (0, 0))], robot_goal=(20.0, 0.0)
+    )
+    assert rated(passes) == 0.0
+
+
+def test_without_a_goal_there_is_no_rate() -> None:
+    found = scores_of("intrusion", following(0.3))
+    assert {found[v].reason for v in ("rate", "way")} == {"invalid_no_goal"}
+    assert value_of(found) == pytest.approx(5.0)
+
+
 def test_failures() -> None:
     robot, far = line(T, (0, 0), (1, 0)), line(T, (0, 50), (1, 0))
     assert why(scores_of("intrusion", scene(T, None, [far]))) == {("undefined", "invalid_no_robot")}

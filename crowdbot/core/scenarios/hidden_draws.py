@@ -1,0 +1,270 @@
+"""Hidden draws: an organiser commits to a seed, and reveals it when nobody can tune to it.
+
+Works on a suite's file: lines are added at its end, and written only if the file then says what it
+should. What is hidden, seed and salt, lies in a file of its own that only its owner can read.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import secrets
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+from annotated_types import Ge, Le
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.scenarios.library import OpenDocument, check_writable, open_document
+from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.dsl.commitment import COMMITMENT, SALT, commitment_of, committed_content, is_random
+from crowdbot.dsl.diagnostics import Diagnostic
+from crowdbot.dsl.expand import expand_document
+from crowdbot.dsl.lock import LockFiles, changes, flatten
+from crowdbot.dsl.suite import ParsedSuite
+from crowdbot.errors import InputError, SpecError
+
+#: Bytes of a salt.
+SALT_BYTES = 32
+_SEEDS = 2**63
+_LONGEST = 1 << 20
+_SHOWN = 3
+
+
+class Secret(BaseModel):
+    """The content of ``NAME.secret.json``: what reveals a commitment."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    secret: Annotated[int, Ge(1), Le(1)] = 1
+    suite: str
+    commitment: Annotated[str, Field(pattern=COMMITMENT)]
+    seed: Annotated[int, Ge(0), Le(_SEEDS - 1)]
+    salt: Annotated[str, Field(pattern=SALT)]
+    document: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """Lines to be added to a suite's file.
+
+    Attributes:
+        path: of the file.
+        lines: to be added at its end.
+        text: of the file, with the lines.
+    """
+
+    path: Path
+    lines: tuple[str, ...]
+    text: str
+
+
+def secret_path(document: Path) -> Path:
+    """Where the secret of a suite lies, if nobody says otherwise."""
+    return document.with_suffix(".secret.json")
+
+
+def commit(spec: str, registry: Registry, seed: int | None = None) -> tuple[Secret, Change]:
+    """Choose seed and salt of a suite, and say what to add to it. Nothing is written.
+
+    Args:
+        spec: the suite.
+        registry: the installed components.
+        seed: default: from the system's entropy, as the salt is always.
+
+    Raises:
+        InputError: it is not a suite, is committed already, has a seed in the open, or draws nobody
+            from its seed.
+    """
+    document = open_document(spec, registry)
+    _check_open(document)
+    content = committed_content(document.suite.tree)
+    seed = secrets.randbelow(_SEEDS) if seed is None else seed
+    salt = _new_salt()
+    secret = Secret(
+        suite=document.suite.id,
+        commitment=commitment_of(content, seed, salt),
+        seed=seed,
+        salt=salt,
+        document=content,
+    )
+    return secret, _change(document, [f"suite.commitment: {secret.commitment}"], registry)
+
+
+def reveal(spec: str, registry: Registry, secret_file: Path) -> tuple[Secret, Change]:
+    """What to add to a suite so that everybody knows its seed.
+
+    Raises:
+        InputError: the secret is that of another suite, or suite or commitment were changed since.
+    """
+    secret = read_secret(secret_file)
+    document = open_document(spec, registry)
+    suite = document.suite
+    if not suite.commitment:
+        raise InputError(f"{document.name} has no commitment: there is nothing to reveal")
+    if not suite.hidden:
+        raise InputError(f"{document.name}: its seed has been revealed already")
+    if secret.suite != suite.id:
+        raise InputError(f"{secret_file} is the secret of '{secret.suite}', not of '{suite.id}'")
+    content = committed_content(suite.tree)
+    found = commitment_of(content, secret.seed, secret.salt)
+    if found != suite.commitment:
+        raise InputError(f"{document.name}: {_why(secret, content)}")
+    lines = [f"suite.seed: {secret.seed}", f'suite.salt: "{secret.salt}"']
+    return secret, _change(document, lines, registry)
+
+
+def write_change(change: Change) -> None:
+    """Write the suite's file anew, whole or not at all.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    atomic_write(change.path, change.text)
+
+
+def write_secret(path: Path, secret: Secret) -> None:
+    """Write seed and salt into a new file that only its owner can read, at every moment.
+
+    Raises:
+        InputError: there is such a file already, or it cannot be written.
+    """
+    text = secret.model_dump_json(indent=1) + "\n"
+    try:
+        number = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    except FileExistsError:
+        raise InputError(
+            f"{path} is there already: a secret that is lost cannot be revealed; move it, or name "
+            "another file with --secret"
+        ) from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+    try:
+        with os.fdopen(number, "w", encoding="utf-8") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            path.unlink()
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def read_secret(path: Path) -> Secret:
+    """A secret from its file.
+
+    Raises:
+        InputError: it cannot be read, or is not one.
+    """
+    try:
+        with path.open("rb") as file:
+            text = file.read(_LONGEST).decode()
+        return Secret.model_validate_json(text)
+    except OSError as error:
+        raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path} is not UTF-8 text") from None
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        place = ".".join(map(str, first["loc"]))
+        where = f"{place}: " if place else ""
+        raise InputError(f"{path} is not a secret of hidden draws: {where}{first['msg']}") from None
+
+
+def read_seed(path: Path) -> int:
+    """A seed from a file that holds nothing else, such as the outcome of a public lottery.
+
+    Raises:
+        InputError: it cannot be read, or holds something else.
+    """
+    try:
+        text = path.read_bytes()[:_LONGEST].decode("ascii", errors="replace").strip()
+    except OSError as error:
+        raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    if not re.fullmatch(r"[0-9]{1,19}", text) or int(text) >= _SEEDS:
+        raise InputError(f"{path}: a seed is a whole number from 0 to {_SEEDS - 1}, nothing else")
+    return int(text)
+
+
+# ---------------------------------------------------------------------- committing
+def _check_open(document: OpenDocument) -> None:
+    suite, name = document.suite, document.name
+    if suite.seed is None:
+        raise InputError(f"{name} is a single scenario; draws of suites can be hidden")
+    if suite.commitment:
+        state = "hidden" if suite.hidden else "revealed"
+        raise InputError(
+            f"{name} is committed already, its seed is {state}; for new draws remove "
+            "suite.commitment, suite.seed and suite.salt"
+        )
+    head = suite.tree.child("suite")
+    seed = head.child("seed") if head else None
+    if seed is not None and seed.mark.source.included_from is None:
+        text = "the seed is in the open: everybody can draw these people"
+        raise SpecError([Diagnostic("E215", text, seed.mark, "remove it; another one is chosen")])
+
+
+def _new_salt() -> str:
+    while True:
+        salt = secrets.token_hex(SALT_BYTES)
+        if is_random(salt):
+            return salt
+
+
+# ----------------------------------------------------------------------- changing
+def _change(document: OpenDocument, lines: Sequence[str], registry: Registry) -> Change:
+    """The file with lines added at its end, which is read once to see that it says the same.
+
+    Raises:
+        InputError: nothing can be added to it, or nobody is drawn from its seed.
+    """
+    check_writable(LockFiles(document.path, document.name))
+    before = document.path.read_bytes().decode()
+    end = "" if before.endswith("\n") else "\n"
+    text = before + end + "".join(f"{line}\n" for line in lines)
+    with _copy(document.path, text) as copy:
+        try:
+            after = open_document(str(copy), registry).suite
+        except SpecError:
+            wanted = "\n".join(f"  {line}" for line in lines)
+            raise InputError(
+                f"{document.name}: nothing can be added at its end; write this into it:\n{wanted}"
+            ) from None
+        if after.hidden:
+            _check_drawn(document, after, registry)
+    return Change(document.path, tuple(lines), text)
+
+
+def _check_drawn(document: OpenDocument, after: ParsedSuite, registry: Registry) -> None:
+    expansion = expand_document(after, registry.scenario_model)
+    if not any(scenario.hidden for scenario in expansion.scenarios):
+        raise InputError(f"{document.name}: nobody is drawn from suite.seed: nothing to hide")
+
+
+@contextlib.contextmanager
+def _copy(path: Path, text: str) -> Iterator[Path]:
+    """A text as a file beside another one, whose includes it finds, while somebody reads it."""
+    copy = path.with_name(f".{path.stem}.{os.getpid()}.try.yaml")
+    try:
+        copy.write_bytes(text.encode())
+        yield copy
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+    finally:
+        with contextlib.suppress(OSError):
+            copy.unlink()
+
+
+def _why(secret: Secret, content: dict[str, Any]) -> str:
+    """Which of secret, commitment and document was changed."""
+    if commitment_of(secret.document, secret.seed, secret.salt) != secret.commitment:
+        return "seed, salt or document in the secret are not those of its commitment"
+    changed = list(changes(flatten(secret.document), flatten(content)))
+    if changed:
+        some = "; ".join(changed[:_SHOWN]) + ("; …" if len(changed) > _SHOWN else "")
+        return f"the document was changed after the commitment ({some})"
+    return f"its commitment is not that of the secret, {secret.commitment}"
