@@ -42,6 +42,7 @@ class Expansion:
         metrics: names or patterns of the metrics to score; None means all.
         trees: id -> the merged tree of the scenario, which knows where each value is written.
         axes: id -> axis -> label, in the suite's order; no axes in a document without a matrix.
+        run_seeds: seeds of the runs that a bundle consists of.
     """
 
     suite_id: str
@@ -50,12 +51,18 @@ class Expansion:
     metrics: tuple[str, ...] | None = None
     trees: dict[str, Node] = field(default_factory=dict, repr=False)
     axes: dict[str, dict[str, str]] = field(default_factory=dict, repr=False)
+    run_seeds: tuple[int, ...] = (0,)
 
     @property
     def single(self) -> bool:
         """Whether the document holds one scenario by itself, no matrix of them."""
         ids = [s.id.partition("+")[0] for s in self.scenarios]
         return ids == [self.suite_id]
+
+    @property
+    def folder(self) -> str:
+        """Name of the folder of its runs: one for all documents that hold a single scenario."""
+        return "scenarios" if self.single else self.suite_id
 
 
 def load_document(
@@ -163,7 +170,9 @@ class _Expander:
         if problems:
             raise SpecError(_sorted(problems))
         suite = self._suite
-        return Expansion(suite.id, suite.title, scenarios, suite.metrics, trees, axes)
+        return Expansion(
+            suite.id, suite.title, scenarios, suite.metrics, trees, axes, suite.run_seeds
+        )
 
     def _trees(self) -> Iterator[_Bare]:
         """The combinations that stay, as trees."""

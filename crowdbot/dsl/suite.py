@@ -38,6 +38,7 @@ FORMAT = 1
 
 MAX_REFERENCES = 16
 MAX_FIELDS = 10_000_000
+MAX_RUN_SEEDS = 1000
 
 #: Fields of a scenario that a document never writes there.
 _ELSEWHERE = {
@@ -74,7 +75,18 @@ class SuiteHead(Spec):
 class Seeds(Spec):
     """Which axes change the random numbers; combinations that differ in others share them."""
 
-    crowd: tuple[str, ...] = Field(strict=False, description="Axes that change the drawn crowd.")
+    crowd: tuple[str, ...] | None = Field(
+        default=None,
+        strict=False,
+        description="Axes that change the drawn crowd; default: all.",
+    )
+    runs: tuple[Annotated[int, Ge(0), Le(2**63 - 1)], ...] = Field(
+        default=(0,),
+        strict=False,
+        min_length=1,
+        max_length=MAX_RUN_SEEDS,
+        description="Run seeds that a bundle of this suite consists of, in rising order.",
+    )
 
 
 class SuiteDocument(Spec):
@@ -124,6 +136,7 @@ class ParsedSuite:
         seed: root seed with the place where it is written, or None for a single scenario.
         crowd_axes: names of the axes whose labels make the crowd's seed key.
         kept: labels of the combinations that stay; None: all.
+        run_seeds: seeds of the runs that a bundle consists of.
         problems: errors found so far.
         finder: finds the files that the document names; None: assets are not looked for.
     """
@@ -140,6 +153,7 @@ class ParsedSuite:
     problems: tuple[Diagnostic, ...]
     kept: Kept | None = None
     finder: Finder | None = None
+    run_seeds: tuple[int, ...] = (0,)
 
 
 def read_suite(
@@ -203,7 +217,7 @@ def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite:
     _check_size(root, body, axes, problems)
     return ParsedSuite(
         name, title, name, seed, body, axes, crowd_axes, _metrics(root), _references(root),
-        tuple(problems), kept,
+        tuple(problems), kept, run_seeds=_run_seeds(root, problems),
     )  # fmt: skip
 
 
@@ -262,6 +276,20 @@ def _crowd_axes(root: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) 
             problems.append(Diagnostic("E208", text, item.mark, hint))
     wanted = {item.value for item in listed.value if isinstance(item.value, str)}
     return tuple(name for name in known if name in wanted or name == DRAW)
+
+
+def _run_seeds(root: Node, problems: list[Diagnostic]) -> tuple[int, ...]:
+    """The seeds of an edition; 0 where the document names none."""
+    seeds = root.child("seeds")
+    listed = seeds.child("runs") if seeds else None
+    if listed is None or not isinstance(listed.value, tuple):
+        return (0,)
+    found = tuple(i.value for i in listed.value if type(i.value) is int and i.value >= 0)
+    if list(found) != sorted(set(found)):
+        text = "the seeds of runs are not in rising order, each once"
+        hint = f"write {sorted(set(found))}"
+        problems.append(Diagnostic("E112", text, listed.mark, hint))
+    return found or (0,)
 
 
 def _check_elsewhere(body: Node, names: tuple[str, ...], problems: list[Diagnostic]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -183,3 +184,29 @@ def reusable_record(request: Request, run_id: str, *, compared: bool) -> dict[st
     if request.replay and not (request.directory / files.REPLAY).exists():
         return None
     return record
+
+
+def recorded_otherwise(request: Request, identity: Mapping[str, Any]) -> tuple[str, ...]:
+    """In what the run that is there now differs from the one that is wanted, by dotted keys.
+
+    Empty where none is there, or the very same.
+    """
+    before = files.read_record(request.directory)
+    if before is None:
+        return ()
+    keys = (*identity, *(k for k in ("step_budget",) if k in before and k not in identity))
+    wanted = json.loads(json.dumps({**identity, "recorded": request.record}))
+    found = []
+    for key in (*keys, "recorded"):
+        a, b = _flat(key, before.get(key)), _flat(key, wanted.get(key))
+        if key == "hashes":
+            a.pop("hashes.trajectory", None)
+        found += sorted(name for name in a.keys() | b.keys() if a.get(name) != b.get(name))
+    return tuple(found)
+
+
+def _flat(name: str, value: Any) -> dict[str, Any]:
+    """A document as dotted key -> value; lists are values, as JSON says them."""
+    if isinstance(value, Mapping):
+        return {k: v for key in value for k, v in _flat(f"{name}.{key}", value[key]).items()}
+    return {name: list(value) if isinstance(value, (list, tuple)) else value}

@@ -11,6 +11,7 @@ from typing import Any, Literal
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.recording import read_trajectories
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.scoring.metric import References
@@ -29,11 +30,14 @@ class Run:
         record: ``run.json``.
         scores: what was computed when it was made.
         reused: it had been there already.
+        replaced: in what the run that was there before was recorded otherwise; empty where none
+            was, or the same one.
     """
 
     directory: Path
     record: Mapping[str, Any] = field(repr=False)
     reused: bool = False
+    replaced: tuple[str, ...] = ()
     _keep: object = field(default=None, repr=False, compare=False)
 
     @property
@@ -115,15 +119,30 @@ def read_references(paths: Mapping[str, Path]) -> References:
     return References(**runs)
 
 
+def reference_hashes(paths: Mapping[str, Path]) -> dict[str, str]:
+    """Hashes of the calibration runs' trajectories, by name; kept as long as the files stay."""
+    return {name: _kept_hash(*_state_of(path)) for name, path in paths.items()}
+
+
 def _read_kept(path: Path) -> Trajectories:
     try:
-        state = path.stat()
+        state = _state_of(path)
     except OSError:
         return read_trajectories(path)  # says what is wrong
-    return _kept(path.resolve(), state.st_ino, state.st_mtime_ns, state.st_size)
+    return _kept(*state)
+
+
+def _state_of(path: Path) -> tuple[Path, int, int, int]:
+    state = path.stat()
+    return path.resolve(), state.st_ino, state.st_mtime_ns, state.st_size
 
 
 @lru_cache(maxsize=4)  # with 200 people for 180 s one takes 18 MB
 def _kept(path: Path, *state: int) -> Trajectories:
     del state  # another one is another recording
     return read_trajectories(path)
+
+
+@lru_cache(maxsize=64)
+def _kept_hash(path: Path, *state: int) -> str:
+    return provenance.trajectory_hash(_kept(path, *state))

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import CROWD_ALONE, Reference
 from crowdbot.core.runs.outcome import INTERRUPTED, PLANNER_FAILED, Outcome
@@ -74,6 +75,7 @@ def setup_of(request: Request, reference: Reference, folder: Path) -> RunSetup:
         stop=request.stop,
         on_hang=request.on_hang,
         step_budget=request.step_budget,
+        hashes=provenance.recording_hashes(reference.run_id, reference.key),
     )
 
 

@@ -18,12 +18,19 @@ from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import (
     Prepared,
     prepare,
+    recorded_otherwise,
     references_of,
     reusable_record,
     run_identity,
 )
 from crowdbot.core.runs.outcome import Progress
-from crowdbot.core.runs.request import Recorded, Request, Run, read_references
+from crowdbot.core.runs.request import (
+    Recorded,
+    Request,
+    Run,
+    read_references,
+    reference_hashes,
+)
 from crowdbot.core.runs.run_record import run_record, write_scenario
 from crowdbot.core.scoring.evaluate import Scores, metric_specs, score
 from crowdbot.core.scoring.scores_csv import write_scores_csv
@@ -145,10 +152,11 @@ def make_run(request: Request, prepared: Prepared, keep: object = None) -> Run:
         record = reusable_record(request, run_id, compared=bool(references))
         if record is not None:
             return Run(request.directory, record, reused=True, _keep=keep)
+    replaced = recorded_otherwise(request, identity)
     with gc_frozen():
         paths = make_references(request, references)
         record = _record_run(request, prepared, built, identity, paths)
-    return Run(request.directory, record, _keep=keep)
+    return Run(request.directory, record, replaced=replaced, _keep=keep)
 
 
 # --------------------------------------------------------------------------- the run
@@ -161,7 +169,7 @@ def _record_run(
 ) -> dict[str, Any]:
     final = request.directory
     with partial(final) as folder:
-        outcome = record_robot(_setup(request, prepared, folder), built)
+        outcome = record_robot(_setup(request, prepared, folder, identity), built)
         check_interrupted(outcome, folder)
         run, scans = read_run(folder / files.RECORDING, REPLAY_RATE)
         calibration = read_references(references)
@@ -174,6 +182,7 @@ def _record_run(
         )
         record = run_record(request, identity, references, outcome, run, scores, parts=built.parts)
         record["agents"] = prepared.run.people.source
+        record["reference_hashes"] = reference_hashes(references)
         _write_files(request, folder, run, scans, scores, record)
         files.publish(folder, final)
     return record
@@ -223,7 +232,9 @@ def _write_replay(
     )
 
 
-def _setup(request: Request, prepared: Prepared, folder: Path) -> RunSetup:
+def _setup(
+    request: Request, prepared: Prepared, folder: Path, identity: Mapping[str, Any]
+) -> RunSetup:
     return RunSetup(
         scenario=request.scenario,
         agents=prepared.run.people.agents,
@@ -237,4 +248,5 @@ def _setup(request: Request, prepared: Prepared, folder: Path) -> RunSetup:
         stop=request.stop,
         on_hang=request.on_hang,
         step_budget=request.step_budget,
+        hashes=provenance.recording_hashes(provenance.digest(identity), identity),
     )
