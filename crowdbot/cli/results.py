@@ -79,7 +79,8 @@ def show(
     summaries = [s for m in wanted for s in summarise(found, m, groups, variant)]
     _print([_line(s) for s in summaries], as_csv=as_csv, as_json=as_json)
     if not (as_csv or as_json):
-        typer.echo(f"{len(found.runs)} runs, {len(found.failures)} failures")
+        damaged = f", {len(found.damaged)} damaged" if found.damaged else ""
+        typer.echo(f"{len(found.runs)} runs, {len(found.failures)} failures{damaged}")
 
 
 @results.command()

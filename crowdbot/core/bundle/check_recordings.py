@@ -18,7 +18,7 @@ from crowdbot.errors import InputError
 #: What the record of a calibration run has besides what its id is the hash of.
 _ENDING = (
     "run_id", "reference", "status", "reason", "goal_time", "sim_time", "wall_time", "cpu_time",
-    "real_time_factor", "planner_step_time", "clamped_commands",
+    "real_time_factor", "planner_step_time", "clamped_commands", "files",
 )  # fmt: skip
 
 

@@ -42,9 +42,8 @@ class Collected:
 
     @property
     def complete(self) -> bool:
-        """Whether the run said that it came to its end."""
-        ends = self._by_topic[Topic.END]
-        return bool(ends) and bool(ends[-1].complete)
+        """Whether the run came to its end, or, in recordings of others, does not say so."""
+        return all(bool(end.complete) for end in self._by_topic[Topic.END])
 
     def header(self, path: Path) -> RecordingHeader:
         """The constants of the run.

@@ -107,13 +107,27 @@ class FailureRow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class DamagedRun:
+    """A run that is left out, because something of it is missing, cut or malformed.
+
+    Attributes:
+        directory: relative to the results' root.
+        reason: what is wrong with it.
+    """
+
+    directory: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Results:
     """Everything at one moment.
 
     Runs are sorted by suite, scenario in the suite's order, planner and seed; scores by run,
-    metric and variant.
+    metric and variant. ``damaged`` runs are not among the others.
     """
 
     runs: tuple[RunRow, ...] = ()
+    damaged: tuple[DamagedRun, ...] = ()
     scores: tuple[ScoreRow, ...] = ()
     failures: tuple[FailureRow, ...] = ()

@@ -65,7 +65,9 @@ class RecordModel(_Part):
     metrics: dict[str, MetricPart]
     references: dict[str, str]
     machine: dict[str, str]
-    reason: str = ""
+    reason: str
+    sim_time: Seconds
+    wall_time: Seconds
     role: Literal["floor", "baseline", "ceiling", "candidate"] = "candidate"
     recorded: Literal["all", "used", "none"] = "all"
     agents: Literal["locked", "drawn", "none"] = "none"
@@ -75,8 +77,7 @@ class RecordModel(_Part):
     allowed_plugins: list[str] | None = None
     position: Count = 0
     density: float | None = None
-    sim_time: Seconds = 0.0
-    wall_time: Seconds = 0.0
+    files: dict[str, Count] = {}
     cpu_time: Seconds = 0.0
     real_time_factor: float = 0.0
     clamped_commands: Count = 0

@@ -47,7 +47,8 @@ def make_reference(request: Request, reference: Reference) -> Outcome:
             _LOG.warning("%s: the planner failed: %s", reference.name, outcome.reason)
         write_scenario(folder, reference.trial.scenario, request.registry)
         names = {"run_id": reference.run_id, "reference": reference.name}
-        files.write_json(folder / files.RECORD, {**names, **reference.key, **ending(outcome)})
+        record = {**names, **reference.key, **ending(outcome), "files": files.sizes(folder)}
+        files.write_json(folder / files.RECORD, record)
         files.publish(folder, reference.directory)
     return outcome
 

@@ -201,7 +201,7 @@ def _write_files(
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
     if request.replay:
         _write_replay(request, folder / files.REPLAY, run, scans, scores, record)
-    files.write_json(folder / files.RECORD, record)
+    files.write_json(folder / files.RECORD, {**record, "files": files.sizes(folder)})
 
 
 def _write_replay(

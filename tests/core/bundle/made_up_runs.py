@@ -96,7 +96,7 @@ def make_runs(
                 "run_id": provenance.digest(identity), **identity,
                 "hashes": {**identity["hashes"], "trajectory": f"cb1-sha256:{number}{seed}"},
                 "pinned": choice.pinned, "privileged": choice.privileged, "status": "arrived",
-                "goal_time": 0.5,
+                "goal_time": 0.5, "reason": "", "sim_time": 1.0, "wall_time": 0.1,
                 "metrics": versions(), "density": 0.1, "reference_hashes": {},
                 "machine": provenance.machine(), "references": {}, **more,
             }  # fmt: skip
