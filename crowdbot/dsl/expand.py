@@ -17,6 +17,7 @@ from crowdbot.dsl.installed import Installed
 from crowdbot.dsl.matrix import DRAW, combinations
 from crowdbot.dsl.merge import merge, nest, undot
 from crowdbot.dsl.nodes import Entry, Node, parse, to_data
+from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.dsl.suite import ParsedSuite, read_suite
 from crowdbot.dsl.validation import locate, validate
@@ -156,6 +157,11 @@ class _Expander:
             if self._noted > _ENOUGH:
                 break
             self._total += 1
+            if bare.name != self._suite.scenario_id and (why := path_problem(bare.name)):
+                self._note(
+                    Diagnostic("E116", f"the id {why}", self._suite.base.mark), bare.name, ""
+                )
+                continue
             tree = self._complete(bare)
             scenario = self._validate(bare.name, tree)
             references = {

@@ -28,6 +28,7 @@ from crowdbot.dsl.finder import Finder
 from crowdbot.dsl.installed import Installed, check_metrics, check_versions
 from crowdbot.dsl.matrix import DRAW, MAX_COMBINATIONS, Axis, read_axes
 from crowdbot.dsl.nodes import Node, count, to_data
+from crowdbot.dsl.path_names import PathName
 from crowdbot.dsl.selection import Kept, read_selection
 from crowdbot.dsl.spec import Spec
 from crowdbot.dsl.validation import validate
@@ -65,7 +66,7 @@ _Versions = Annotated[
 class SuiteHead(Spec):
     """Who a suite is."""
 
-    id: str = Field(pattern=r"^[A-Za-z0-9_.-]+$", description="Name of the suite.")
+    id: PathName = Field(pattern=r"^[A-Za-z0-9_.-]+$", description="Name of the suite.")
     title: str = Field(default="", description="For people.")
     seed: Annotated[int, Ge(0), Le(2**63 - 1)] = Field(
         default=0, description="Root of every crowd's random numbers."

@@ -16,7 +16,9 @@ from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.scoring.metric import References
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
+from crowdbot.errors import InputError
 
 Recorded = Literal["all", "used", "none"]
 
@@ -106,7 +108,14 @@ class Request:
 
     @property
     def directory(self) -> Path:
-        """Where the run goes."""
+        """Where the run goes.
+
+        Raises:
+            InputError: a name leads out of the root, or is one that crowdbot needs itself.
+        """
+        for name in (self.suite, self.scenario.id, self.choice.label):
+            if why := path_problem(name):
+                raise InputError(f"no folder can be called '{name[:80]}': it {why}")
         return self.out / self.suite / self.scenario.id / self.choice.label / f"seed-{self.seed}"
 
 

@@ -41,6 +41,7 @@ from crowdbot.core.sim.record import record_robot
 from crowdbot.core.sim.record_crowd import RunSetup
 from crowdbot.core.sim.references import check_interrupted, make_references, partial
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
 
@@ -124,7 +125,7 @@ def _check_options(seed: int, suite: str, record: str, step_budget: float | None
     """
     if seed < 0:
         raise InputError(f"the seed of a run must not be negative: {seed}")
-    if suite != Path(suite).name:
+    if suite != Path(suite).name or path_problem(suite):
         raise InputError(f"suite '{suite}' is not the name of a folder")
     if record not in get_args(Recorded):
         choices = " or ".join(map(repr, get_args(Recorded)))
