@@ -250,11 +250,14 @@ def _print_csv(lines: list[dict[str, Any]]) -> None:
     import csv
     import sys
 
+    from crowdbot.core.scoring.scores_csv import safe_cell
+
     writer = csv.writer(sys.stdout)
     if lines:
-        writer.writerow(lines[0])
+        writer.writerow(map(safe_cell, lines[0]))
     for line in lines:
-        writer.writerow(["" if v is None else v for v in line.values()])
+        cells = ["" if v is None else v for v in line.values()]
+        writer.writerow([safe_cell(c) if isinstance(c, str) else c for c in cells])
 
 
 def _print_table(lines: list[dict[str, Any]]) -> None:

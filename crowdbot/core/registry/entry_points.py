@@ -20,6 +20,7 @@ from pathlib import Path
 
 from crowdbot.core.registry.loader import failed, load_plugin
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
+from crowdbot.core.registry.plugin_errors import telling_interrupts
 from crowdbot.core.registry.plugin_path import GROUP, PluginEntry, entries_at, place_digest
 from crowdbot.errors import PluginError
 
@@ -67,8 +68,10 @@ def find_plugins(
             continue  # the path given by hand is this very plugin
         allowed = ours or names is None or entry.plugin.name in names
         (wanted if allowed else excluded).append(entry)
+    with telling_interrupts():
+        loaded = tuple(_load([*wanted, *given]))
     return Discovery(
-        plugins=tuple(_load([*wanted, *given])),
+        plugins=loaded,
         excluded=tuple(e.plugin for e in excluded),
         allowed=names,
     )
