@@ -50,7 +50,7 @@ def failed_plugins(registry: Registry, name: str | None) -> list[Result]:
     return [
         Result(plugin=p.name, kind="", check="loading", result="failed", reason=p.error)
         for p in registry.plugins
-        if p.error and (not p.pinned if name is None else name.partition(".")[0] == p.name)
+        if p.error and (p.given if name is None else name.partition(".")[0] == p.name)
     ]
 
 
@@ -63,7 +63,7 @@ def chosen(registry: Registry, name: str | None) -> list[Component[Any]]:
     """
     plugins = {p.name: p for p in registry.plugins}
     if name is None:
-        found = [c for p in registry.plugins if not p.pinned for c in p.components]
+        found = [c for p in registry.plugins if p.given for c in p.components]
     elif name in plugins:
         found = list(plugins[name].components)
     else:
@@ -86,7 +86,7 @@ def run_checks(component: Component[Any], registry: Registry) -> Iterator[Result
     for check in _checks(component):
         name = check.__name__
         expected = _exceptions(component).get(name, "")
-        if name in _INSTALLED_ONLY and not owner.pinned:
+        if name in _INSTALLED_ONLY and owner.given:
             result, reason = "skipped", "given by --plugin, not installed"
         else:
             result, reason = _outcome(_bind(check, component, registry), expected)

@@ -45,7 +45,8 @@ def as_text(component: Component[Any], registry: Registry) -> str:
     about = as_dict(component, registry)
     marks = ", experimental" * component.experimental
     marks += f", retired for {component.successor}" if component.successor else ""
-    where = "" if about["pinned"] else ", not installed"
+    loose = ", not installed" if registry.owner(component).given else ", installed to be edited"
+    where = "" if about["pinned"] else loose
     lines = [
         f"{component.kind}: {component.category}, {component.summary}{marks}",
         f"from {about['distribution']} (plugin {about['plugin']}{where}), "
@@ -75,7 +76,7 @@ def reference(component: Component[Any], owner: Plugin) -> str:
 
 def _documentation(owner: Plugin) -> str:
     """The address of the documentation that a distribution declares, or its home page."""
-    if not owner.pinned:
+    if owner.given:
         return ""
     try:
         listed = metadata.metadata(owner.distribution.rpartition(" ")[0]).get_all("Project-URL")

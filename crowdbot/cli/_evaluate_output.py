@@ -30,6 +30,8 @@ def as_document(result: Rescored) -> dict[str, Any]:
         "planner": source.planner,
         "seed": source.seed,
         "error": result.error,
+        "complete": result.complete,
+        "until": result.until,
         "scores": [_fields(s) for s in result.scores],
     }
 
@@ -46,6 +48,8 @@ def print_table(result: Rescored) -> None:
     title = " ".join(filter(None, (source.scenario, source.planner, seed)))
     console = Console(highlight=False)
     console.print(Text(title or str(source.path), style="bold"), soft_wrap=True)
+    if not result.complete:
+        console.print(f"incomplete: read until {result.until:g} s", soft_wrap=True)
     console.print(scores_table(result.scores))
 
 

@@ -53,7 +53,7 @@ def installed(
     for line in registry.unknown_allowed():
         log.warning(line)
     for found in registry.plugins:
-        if strict and found.error and not found.pinned:
+        if strict and found.error and found.given:
             log.debug(found.traceback)
             raise PluginError(f"--plugin {found.distribution}: {found.error}")
     return registry

@@ -32,6 +32,19 @@ def bundle(
     recordings: Annotated[
         bool, typer.Option("--recordings", help="Pack the recordings, too.")
     ] = False,
+    check: Annotated[
+        bool, typer.Option("--check", help="Do what the organiser's verify does, too.")
+    ] = False,
+    sample: Annotated[
+        int, typer.Option(min=0, metavar="N", help="--check: how many runs to make again.")
+    ] = 5,
+    seed: Annotated[
+        int | None, typer.Option(min=0, metavar="S", help="--check: which ones; default: new.")
+    ] = None,
+    source: Annotated[
+        str | None,
+        typer.Option(metavar="FILE.py:CLASS", help="--check: the planner, if not installed."),
+    ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[
@@ -43,9 +56,10 @@ def bundle(
     The same runs give the same bytes. crowdbot verify checks the archive and makes some of its
     runs again.
 
-    Example: crowdbot bundle runs --suite challenge-2020 --planner dwa --out team.cbz --team Us
+    Example: crowdbot bundle runs --suite challenge-2020 --planner dwa --out team.cbz --check
     """
-    from crowdbot.core.bundle.pack import Submission, pack
+    from crowdbot.cli.verify import print_verdict, verify_bundle
+    from crowdbot.core.bundle.pack import Submission, other_seeds, pack
     from crowdbot.core.scenarios.library import open_suite
 
     registry = installed(plugin, no_plugins)
@@ -56,14 +70,20 @@ def bundle(
     )  # fmt: skip
     target = out or Path(f"{expansion.suite_id}-{planner}.cbz")
     manifest = pack(submission, expansion, lock, registry, target)
+    if more := other_seeds(submission, expansion):
+        seeds = ", ".join(map(str, more))
+        typer.echo(f"warning: left out: seeds {seeds}, which the suite does not name", err=True)
+    verdict = verify_bundle(target, registry, suite, source, sample, seed) if check else None
     if as_json:
-        typer.echo(
-            json.dumps({"bundle": str(target), **manifest.model_dump(mode="json")}, indent=2)
-        )
-        return
+        document = {"bundle": str(target), **manifest.model_dump(mode="json")}
+        typer.echo(json.dumps(document | ({"check": verdict} if verdict else {}), indent=2))
+        raise typer.Exit(0 if verdict is None or verdict["ok"] else 1)
     lacking = f", {len(manifest.missing)} missing" if manifest.missing else ""
     typer.echo(
-        f"{manifest.edition.name}: {manifest.label}, {len(manifest.runs)} runs{lacking}, "
+        f"{manifest.edition_name}: {manifest.label}, {len(manifest.runs)} runs{lacking}, "
         f"{len(manifest.members)} files, {target.stat().st_size / 1e6:.1f} MB"
     )
     typer.echo(f"wrote {target}")
+    if verdict is not None:
+        print_verdict(verdict)
+        raise typer.Exit(0 if verdict["ok"] else 1)

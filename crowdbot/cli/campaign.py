@@ -28,7 +28,10 @@ _Planner = Annotated[
     typer.Option(metavar="NAME|FILE|file.py:Class", help="A planner; repeatable."),
 ]
 _Only = Annotated[str | None, typer.Option(metavar="GLOB", help="Only scenarios that match.")]
-_Seeds = Annotated[str, typer.Option(metavar="0,1,2|0..4", help="Run seeds.")]
+_Seeds = Annotated[
+    str | None,
+    typer.Option(metavar="0,1,2|0..4", help="Run seeds; default: those of the suite, or 0."),
+]
 _Out = Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")]
 _Jobs = Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")]
 _Record = Annotated[RecordChoice, typer.Option(help="Sensors to simulate and record.")]
@@ -37,7 +40,7 @@ _Record = Annotated[RecordChoice, typer.Option(help="Sensors to simulate and rec
 def campaign(
     suites: Annotated[list[str], typer.Argument(metavar="SUITE...", help="Files or names.")],
     planner: _Planner = None,
-    seeds: _Seeds = "0",
+    seeds: _Seeds = None,
     only: _Only = None,
     out: _Out = Path("runs"),
     jobs: _Jobs = 0,
@@ -51,6 +54,9 @@ def campaign(
     ] = True,
     retry_failed: Annotated[
         bool, typer.Option("--retry-failed", help="Run again where the planner failed.")
+    ] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Run everything again, calibration runs too.")
     ] = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Print the plan only.")] = False,
     cluster: Annotated[
@@ -72,7 +78,7 @@ def campaign(
         suites=suites,
         planners=planner or (),
         floors=floors,
-        seeds=read_seeds(seeds),
+        seeds=None if seeds is None else read_seeds(seeds),
         only=only,
         out=out,
         record=record.value,
@@ -81,6 +87,7 @@ def campaign(
         planner_settings=planner_set or (),
         plugins=plugin or (),
         retry_failed=retry_failed,
+        force=force,
     )
     plan = make_plan(request, registry)
     size = worker_count(jobs)

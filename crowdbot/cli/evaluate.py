@@ -62,6 +62,9 @@ _Answers = Annotated[
     Path | None, typer.Option(metavar="FILE", help="CSV questionnaire,item,value: NASA-TLX, USE.")
 ]
 _Jobs = Annotated[int, typer.Option(metavar="N", min=0, help="Processes; 0: one for each core.")]
+_Incomplete = Annotated[
+    bool, typer.Option("--allow-incomplete", help="Score cut recordings as far as they go.")
+]
 _Out = Annotated[
     Path | None, typer.Option(metavar="FILE", help="Write all scores to FILE.csv or FILE.json.")
 ]
@@ -85,6 +88,7 @@ def evaluate(
     questionnaires: _Answers = None,
     jobs: _Jobs = 1,
     out: _Out = None,
+    allow_incomplete: _Incomplete = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: _Json = False,
@@ -94,7 +98,7 @@ def evaluate(
     Example: crowdbot evaluate runs/challenge-2020/counter-d0500-fast-c20-r05/dwa/seed-0
     """
     from crowdbot.core.runs.recordings import expand_paths
-    from crowdbot.core.runs.rescore import RescoreRequest, available_cores, rescore
+    from crowdbot.core.runs.rescore import RescoreRequest, available_cores
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
     paths: list[Path | None] = [*expand_paths(runs or [])] or [None]
@@ -114,6 +118,7 @@ def evaluate(
             questionnaires=questionnaires,
             metrics=chosen,
             variants=variant,
+            allow_incomplete=allow_incomplete,
             plugins=tuple(plugin or ()),
             allow=registry.allowed,
         )
@@ -121,10 +126,27 @@ def evaluate(
     ]
     with stdout_to_stderr():
         if len(requests) == 1:
-            results = [rescore(requests[0], registry)]
+            results = [_one(requests[0], registry, as_json)]
         else:
             results = _each(requests, registry, jobs or available_cores())
     _tell(results, out, as_json)
+
+
+def _one(request: RescoreRequest, registry: Registry, as_json: bool) -> Rescored:
+    """The only run; what is wrong with it is an error, and with --json a document, too."""
+    from crowdbot.core.runs.recordings import RecordingSource
+    from crowdbot.core.runs.rescore import IncompleteError, Rescored, rescore
+
+    try:
+        return rescore(request, registry)
+    except IncompleteError as error:
+        if not as_json or request.path is None:
+            raise
+        print(f"error: {error}", file=sys.stderr)
+        source = RecordingSource(path=request.path, recording=request.path)
+        return Rescored(
+            source=source, error=str(error), exit_code=1, until=error.until, complete=False
+        )
 
 
 def _check_usage(

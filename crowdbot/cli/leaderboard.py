@@ -41,7 +41,7 @@ def leaderboard(
     """
     from crowdbot.core.bundle.entries import load_entries
     from crowdbot.core.bundle.leaderboard import write_leaderboard
-    from crowdbot.core.bundle.standings import standings
+    from crowdbot.core.bundle.standings import set_apart, standings
     from crowdbot.core.scoring.score_scale import score_scales
     from crowdbot.core.statistics.audit import AUDIT, read_audit
     from crowdbot.errors import UnknownNameError
@@ -50,6 +50,8 @@ def leaderboard(
     if by not in registry.components("metric"):
         raise UnknownNameError("metric", by, registry.components("metric"), registry.why_absent(by))
     entries, left_out = load_entries(folder, registry)
+    entries, apart = set_apart(entries, accept or ())
+    left_out = dict(sorted((left_out | apart).items()))
     audits = [read_audit(path) for path in audit or sorted(folder.glob(f"*{AUDIT}"))]
     tables = standings(entries, by, accept or (), audits, score_scales(registry))
     write_leaderboard(out, tables, left_out, title)

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from crowdbot.core.statistics.audit import Audit
 
 _REFERENCE = " (reference)"
+#: So many damaged runs are named.
+_SHOWN = 3
 
 
 def report(
@@ -81,12 +83,19 @@ def report(
         made=f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
         command=shlex.join(["crowdbot", *sys.argv[1:]]),
         accepted=tuple(str(f) for f in findings if f.accepted),
-        warnings=tuple(str(f) for f in findings if not f.accepted),
+        warnings=(*(str(f) for f in findings if not f.accepted), *_left_out(results)),
         references=known,
         audit=_audit(audit, root / results.runs[0].suite),
     )
     contents = gather(results, installed(plugin, no_plugins), heading, links)
     _tell(write_report(out, contents), contents, findings, as_json)
+
+
+def _left_out(results: Results) -> list[str]:
+    """What the page says of damaged runs."""
+    lost = [d.directory for d in results.damaged]
+    some = ", ".join(lost[:_SHOWN]) + (", …" if len(lost) > _SHOWN else "")
+    return [f"damaged: {len(lost)} runs are left out: {some}"] if lost else []
 
 
 def _chosen(results: Results, suite: str | None, planners: Sequence[str], root: Path) -> Results:

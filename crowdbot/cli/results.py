@@ -79,7 +79,8 @@ def show(
     summaries = [s for m in wanted for s in summarise(found, m, groups, variant)]
     _print([_line(s) for s in summaries], as_csv=as_csv, as_json=as_json)
     if not (as_csv or as_json):
-        typer.echo(f"{len(found.runs)} runs, {len(found.failures)} failures")
+        damaged = f", {len(found.damaged)} damaged" if found.damaged else ""
+        typer.echo(f"{len(found.runs)} runs, {len(found.failures)} failures{damaged}")
 
 
 @results.command()
@@ -257,11 +258,14 @@ def _print_csv(lines: list[dict[str, Any]]) -> None:
     import csv
     import sys
 
+    from crowdbot.core.scoring.scores_csv import safe_cell
+
     writer = csv.writer(sys.stdout)
     if lines:
-        writer.writerow(lines[0])
+        writer.writerow(map(safe_cell, lines[0]))
     for line in lines:
-        writer.writerow(["" if v is None else v for v in line.values()])
+        cells = ["" if v is None else v for v in line.values()]
+        writer.writerow([safe_cell(c) if isinstance(c, str) else c for c in cells])
 
 
 def _print_table(lines: list[dict[str, Any]]) -> None:

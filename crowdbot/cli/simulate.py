@@ -169,6 +169,11 @@ def _print(run: Run, *, as_json: bool) -> None:
     from crowdbot.core.scoring.scores_csv import headlines, read_scores_csv, scores_table
 
     rows = read_scores_csv(run.directory / SCORES)
+    if run.replaced:
+        print(
+            f"note: it replaces a run that was recorded differently: {', '.join(run.replaced)}",
+            file=sys.stderr,
+        )
     if run.record["status"] == "planner_failed":
         print(f"error: {run.record['reason']}", file=sys.stderr)
     if as_json:
@@ -188,7 +193,7 @@ def _print(run: Run, *, as_json: bool) -> None:
         typer.echo(
             json.dumps(
                 {**run.record, "directory": str(run.directory), "reused": run.reused,
-                 "scores": scores},
+                 "replaced": list(run.replaced), "scores": scores},
                 indent=2,
             )
         )  # fmt: skip

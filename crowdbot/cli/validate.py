@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+from collections.abc import Iterator
 from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,6 +16,7 @@ from crowdbot.errors import SpecError, UnknownNameError
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
     from crowdbot.dsl.diagnostics import Diagnostic
+    from crowdbot.dsl.lock import LockFiles
 
 _LOG = logging.getLogger(__name__)
 
@@ -57,15 +59,30 @@ def validate(
 
 def _check(spec: str, registry: Registry) -> tuple[int, list[Diagnostic]]:
     """Number of scenarios, errors."""
-    from crowdbot.core.scenarios.library import open_spec
+    from crowdbot.core.scenarios.library import open_suite
     from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
 
     try:
-        return len(open_spec(spec, registry).scenarios), []
+        expansion, files = open_suite(spec, registry)
+        return len(expansion.scenarios), list(_lock_problems(files))
     except SpecError as error:
         return 0, list(error.diagnostics)
     except UnknownNameError as error:
         return 0, [Diagnostic("E001", str(error), Mark(Source(spec)))]
+
+
+def _lock_problems(files: LockFiles) -> Iterator[Diagnostic]:
+    """What is wrong with the files of a lock as such; whether it fits is 'lock --check'."""
+    from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
+    from crowdbot.errors import InputError
+
+    if not files.lock_path.exists():
+        return
+    for path, what in ((files.lock_path, "lock"), (files.agents_path, "tables")):
+        try:
+            getattr(files, what)
+        except InputError as error:
+            yield Diagnostic("E001", str(error), Mark(Source(str(path))))
 
 
 def _print_text(results: dict[str, tuple[int, list[Diagnostic]]], errors: list[Diagnostic]) -> None:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 _SAYS = {
     "verified": "every run that was made again is the same, bit by bit",
     "within tolerance": "runs differ no more than processors and software explain",
+    "not comparable": "scores are of other versions of metrics than those that are installed here",
     "suspicious": "ask the team before anything else; see above what does not fit",
     "cannot be re-run": "nothing was simulated",
     "invalid": "the archive is damaged, or its parts contradict each other",
@@ -57,25 +58,48 @@ def verify(
 
     Example: crowdbot verify team.cbz --sample 10 --seed 7
     """
-    from crowdbot.core.bundle.archive import open_archive
-    from crowdbot.core.bundle.verification import content_hash, save_verification
-    from crowdbot.core.support.stdout_guard import stdout_to_stderr
+    from crowdbot.core.bundle.verification import save_verification
 
     registry = installed(plugin, no_plugins)
-    seed = secrets.randbelow(2**32) if seed is None else seed
     size = None if everything else sample
-    with open_archive(bundle) as archive, stdout_to_stderr():
-        digest = content_hash(bundle)
-        verdict = _verify(archive, registry, suite, planner, (size, seed, digest))
-        label, edition = archive.manifest.label, archive.manifest.edition.name
-    document = _document(verdict, seed, digest)
+    document = verify_bundle(bundle, registry, suite, planner, size, seed)
     if save:
         save_verification(bundle, document)
     if as_json:
-        typer.echo(json.dumps({"bundle": str(bundle), "planner": label, **document}, indent=2))
+        typer.echo(json.dumps({"bundle": str(bundle), **document}, indent=2))
     else:
-        _print(f"{edition}: {label}", document)
+        print_verdict(document)
     raise typer.Exit(0 if document["ok"] else 1)
+
+
+def verify_bundle(
+    bundle: Path,
+    registry: Registry,
+    suite: str | None,
+    planner: str | None,
+    sample: int | None,
+    seed: int | None,
+) -> dict[str, Any]:
+    """What is said about a bundle, as a document: `crowdbot bundle --check` says the same.
+
+    Args:
+        bundle: the archive.
+        registry: the installed components.
+        suite, planner: as the options of the same name.
+        sample: how many runs to make again; None: all.
+        seed: which ones; None: a new one.
+    """
+    from crowdbot.core.bundle.archive import open_archive
+    from crowdbot.core.bundle.verification import content_hash
+    from crowdbot.core.support.stdout_guard import stdout_to_stderr
+
+    seed = secrets.randbelow(2**32) if seed is None else seed
+    with open_archive(bundle) as archive, stdout_to_stderr():
+        digest = content_hash(bundle)
+        verdict = _verify(archive, registry, suite, planner, (sample, seed, digest))
+        manifest = archive.manifest
+    names = {"planner": manifest.label, "edition": manifest.edition_name}
+    return names | _document(verdict, seed, digest)
 
 
 def _verify(
@@ -85,14 +109,11 @@ def _verify(
     planner: str | None,
     sample: tuple[int | None, int, str],
 ) -> RerunVerdict:
-    from crowdbot.core.bundle.check import check_members, check_suite, claimed_runs
+    from crowdbot.core.bundle.check import problems_of
     from crowdbot.core.bundle.rerun_verdict import RerunVerdict
 
-    problems = list(check_members(archive))
-    runs, wrong = claimed_runs(archive)
     expansion = _suite(archive, registry, suite)
-    problems += [p for p in wrong if p not in problems]
-    problems += [p for p in check_suite(archive, expansion, registry) if p not in problems]
+    runs, problems = problems_of(archive, expansion, registry)
     if problems:
         return RerunVerdict(outcome="invalid", findings=tuple(problems))
     if sample[0] == 0:
@@ -163,17 +184,19 @@ def _document(verdict: RerunVerdict, seed: int, digest: str) -> dict[str, Any]:
         "sha256": digest,
         "seed": seed,
         "findings": list(verdict.findings),
+        "not_comparable": list(verdict.not_comparable),
         "runs": dict(verdict.relations),
         "crowdbot": provenance.versions()["crowdbot"],
         "machine": provenance.machine(),
     }
 
 
-def _print(head: str, document: dict[str, Any]) -> None:
+def print_verdict(document: dict[str, Any]) -> None:
+    """What was found, for people."""
     for finding in document["findings"]:
         typer.echo(finding)
     for name, relation in document["runs"].items():
         typer.echo(f"{name}: {relation}")
-    outcome = document["outcome"]
+    head, outcome = f"{document['edition']}: {document['planner']}", document["outcome"]
     chosen = f", sample seed {document['seed']}" if document["runs"] else ""
     typer.echo(f"{head}: {outcome}: {_SAYS[outcome]}{chosen}")

@@ -17,6 +17,7 @@ from crowdbot.dsl.installed import Installed
 from crowdbot.dsl.matrix import DRAW, combinations
 from crowdbot.dsl.merge import merge, nest, undot
 from crowdbot.dsl.nodes import Entry, Node, parse, to_data
+from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.dsl.suite import ParsedSuite, read_suite
 from crowdbot.dsl.validation import locate, validate
@@ -44,6 +45,7 @@ class Expansion:
         axes: id -> axis -> label, in the suite's order; no axes in a document without a matrix.
         commitment: to the suite's seed; empty if there is none. While the seed is hidden, the
             scenarios say so; once it is revealed, it has been checked.
+        run_seeds: seeds of the runs that a bundle consists of.
     """
 
     suite_id: str
@@ -53,12 +55,18 @@ class Expansion:
     trees: dict[str, Node] = field(default_factory=dict, repr=False)
     axes: dict[str, dict[str, str]] = field(default_factory=dict, repr=False)
     commitment: str = ""
+    run_seeds: tuple[int, ...] = (0,)
 
     @property
     def single(self) -> bool:
         """Whether the document holds one scenario by itself, no matrix of them."""
         ids = [s.id.partition("+")[0] for s in self.scenarios]
         return ids == [self.suite_id]
+
+    @property
+    def folder(self) -> str:
+        """Name of the folder of its runs: one for all documents that hold a single scenario."""
+        return "scenarios" if self.single else self.suite_id
 
 
 def load_document(
@@ -152,6 +160,11 @@ class _Expander:
             if self._noted > _ENOUGH:
                 break
             self._total += 1
+            if bare.name != self._suite.scenario_id and (why := path_problem(bare.name)):
+                self._note(
+                    Diagnostic("E116", f"the id {why}", self._suite.base.mark), bare.name, ""
+                )
+                continue
             tree = self._complete(bare)
             scenario = self._validate(bare.name, tree)
             references = {
@@ -167,7 +180,8 @@ class _Expander:
             raise SpecError(_sorted(problems))
         suite = self._suite
         return Expansion(
-            suite.id, suite.title, scenarios, suite.metrics, trees, axes, suite.commitment
+            suite.id, suite.title, scenarios, suite.metrics, trees, axes, suite.commitment,
+            suite.run_seeds,
         )
 
     def _trees(self) -> Iterator[_Bare]:

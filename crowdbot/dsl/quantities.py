@@ -19,7 +19,7 @@ from typing import Annotated, Any
 
 from annotated_types import Ge, Gt
 from pydantic import GetCoreSchemaHandler
-from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
 
 from crowdbot.errors import did_you_mean, nearest
 
@@ -58,6 +58,9 @@ _TEXT = re.compile(rf"({_NUMBER})( *)(.*)", re.DOTALL)
 _SPELLINGS = {"²": "^2", "µ": "u", "μ": "u", "°": "deg"}
 #: Longer numbers are nobody's measurement, and powers of ten beyond a float's cost memory.
 _MAX_DIGITS, _MAX_EXPONENT = 100, 400
+#: Dimension -> largest amount, in SI units. Beyond, squares of lengths, which geometry is full of,
+#: leave a float no digits for people.
+MOST = {"length": 1e6}
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +95,18 @@ class Quantity:
         if result is None:
             raise self._error(value, "the number is too large, too small or too long")
         return result
+
+    def within_reach(self, value: float) -> float:
+        """The value, unless no world is that large.
+
+        Raises:
+            PydanticKnownError: it is beyond `MOST` of this dimension.
+        """
+        most = MOST.get(self.dimension, math.inf)
+        if math.isfinite(value) and abs(value) > most:
+            kind: Any = "less_than_equal" if value > 0.0 else "greater_than_equal"
+            raise PydanticKnownError(kind, {kind[0] + "e": math.copysign(most, value)})
+        return value
 
     def _error(self, text: str, hint: str) -> PydanticCustomError:
         return PydanticCustomError(
@@ -128,7 +143,7 @@ class Quantity:
         text = core_schema.str_schema(pattern=self.pattern(number.get("gt"), number.get("ge")))
         return core_schema.no_info_before_validator_function(
             self.parse,
-            number,
+            core_schema.no_info_after_validator_function(self.within_reach, number),
             json_schema_input_schema=core_schema.union_schema([number, text]),
         )
 

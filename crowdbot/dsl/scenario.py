@@ -31,6 +31,7 @@ from crowdbot.dsl.component_specs import (
 )
 from crowdbot.dsl.lock import LockFiles
 from crowdbot.dsl.parameters import SpeedDistribution
+from crowdbot.dsl.path_names import PathName
 from crowdbot.dsl.quantities import (
     Angle,
     Length,
@@ -215,7 +216,9 @@ class Locked:
 class Scenario(Spec):
     """One fully explicit trial. ``id``, ``title`` and ``references`` are outside the hash."""
 
-    id: str = Field(description="Stable name, unique in its suite.", pattern=r"^[A-Za-z0-9_.+/-]+$")
+    id: PathName = Field(
+        description="Stable name, unique in its suite.", pattern=r"^[A-Za-z0-9_.+/-]+$"
+    )
     title: str = Field(default="", description="For people.")
     environment: SerializeAsAny[EnvironmentSpec]
     crowd: Crowd | None = None

@@ -29,6 +29,7 @@ from crowdbot.dsl.finder import Finder
 from crowdbot.dsl.installed import Installed, check_metrics, check_versions
 from crowdbot.dsl.matrix import DRAW, MAX_COMBINATIONS, Axis, read_axes
 from crowdbot.dsl.nodes import Node, count, to_data
+from crowdbot.dsl.path_names import PathName
 from crowdbot.dsl.selection import Kept, read_selection
 from crowdbot.dsl.spec import Spec
 from crowdbot.dsl.validation import validate
@@ -39,6 +40,7 @@ FORMAT = 1
 
 MAX_REFERENCES = 16
 MAX_FIELDS = 10_000_000
+MAX_RUN_SEEDS = 1000
 
 #: Fields of a scenario that a document never writes there.
 _ELSEWHERE = {
@@ -65,7 +67,7 @@ _Versions = Annotated[
 class SuiteHead(Spec):
     """Who a suite is."""
 
-    id: str = Field(pattern=r"^[A-Za-z0-9_.-]+$", description="Name of the suite.")
+    id: PathName = Field(pattern=r"^[A-Za-z0-9_.-]+$", description="Name of the suite.")
     title: str = Field(default="", description="For people.")
     seed: Annotated[int, Ge(0), Le(2**63 - 1)] = Field(
         default=0, description="Root of every crowd's random numbers."
@@ -85,7 +87,18 @@ class SuiteHead(Spec):
 class Seeds(Spec):
     """Which axes change the random numbers; combinations that differ in others share them."""
 
-    crowd: tuple[str, ...] = Field(strict=False, description="Axes that change the drawn crowd.")
+    crowd: tuple[str, ...] | None = Field(
+        default=None,
+        strict=False,
+        description="Axes that change the drawn crowd; default: all.",
+    )
+    runs: tuple[Annotated[int, Ge(0), Le(2**63 - 1)], ...] = Field(
+        default=(0,),
+        strict=False,
+        min_length=1,
+        max_length=MAX_RUN_SEEDS,
+        description="Run seeds that a bundle of this suite consists of, in rising order.",
+    )
 
 
 class SuiteDocument(Spec):
@@ -137,6 +150,7 @@ class ParsedSuite:
         kept: labels of the combinations that stay; None: all.
         commitment: to the seed; empty if there is none.
         hidden: whether the seed has not been revealed; ``seed`` is a node of None then.
+        run_seeds: seeds of the runs that a bundle consists of.
         problems: errors found so far.
         tree: the whole document, all it extends included.
         finder: finds the files that the document names; None: assets are not looked for.
@@ -157,6 +171,7 @@ class ParsedSuite:
     finder: Finder | None = None
     commitment: str = ""
     hidden: bool = False
+    run_seeds: tuple[int, ...] = (0,)
 
 
 def read_suite(
@@ -220,9 +235,10 @@ def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite:
     crowd_axes = _crowd_axes(root, axes, problems)
     kept = read_selection(root, axes, problems)
     _check_size(root, body, axes, problems)
+    run_seeds = _run_seeds(root, problems)
     return ParsedSuite(
         name, title, name, seed, body, axes, crowd_axes, _metrics(root), _references(root),
-        tuple(problems), root, kept, None, commitment, hidden,
+        tuple(problems), root, kept, None, commitment, hidden, run_seeds,
     )  # fmt: skip
 
 
@@ -281,6 +297,20 @@ def _crowd_axes(root: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) 
             problems.append(Diagnostic("E208", text, item.mark, hint))
     wanted = {item.value for item in listed.value if isinstance(item.value, str)}
     return tuple(name for name in known if name in wanted or name == DRAW)
+
+
+def _run_seeds(root: Node, problems: list[Diagnostic]) -> tuple[int, ...]:
+    """The seeds of an edition; 0 where the document names none."""
+    seeds = root.child("seeds")
+    listed = seeds.child("runs") if seeds else None
+    if listed is None or not isinstance(listed.value, tuple):
+        return (0,)
+    found = tuple(i.value for i in listed.value if type(i.value) is int and i.value >= 0)
+    if list(found) != sorted(set(found)):
+        text = "the seeds of runs are not in rising order, each once"
+        hint = f"write {sorted(set(found))}"
+        problems.append(Diagnostic("E112", text, listed.mark, hint))
+    return found or (0,)
 
 
 def _check_elsewhere(body: Node, names: tuple[str, ...], problems: list[Diagnostic]) -> None:

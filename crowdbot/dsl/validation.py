@@ -228,6 +228,8 @@ def _bad_value(error: Error, kind: str, place: Place) -> tuple[str, str, str]:
         return "E114", f"{name}: {_lower(text)}", ""
     if kind.startswith(_RANGE):
         return "E112", f"{name}: {_lower(text).replace('input should', 'must')}, not {given}", ""
+    if kind == "path_name":
+        return "E116", f"{name} {text}", "it is the name of a folder"
     if kind == "string_pattern_mismatch":
         return "E116", f"{name}: {given} {_form(context['pattern'])}", ""
     wanted = _TYPES.get(kind.split("_")[0])

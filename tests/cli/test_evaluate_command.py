@@ -145,10 +145,30 @@ def test_an_interrupted_run(tmp_path: Path, capsys: Captured) -> None:
     partial = tmp_path / "seed-0.partial"
     partial.mkdir()
     record(partial / "run.mcap", CROWDED, complete=False)
-    (run,) = evaluated(capsys, partial)
-    assert run["scenario"] == ""
-    assert main(["evaluate", str(partial)]) == 0
-    assert capsys.readouterr().out.splitlines()[0] == str(partial)
+    until = CROWDED.t[-1]
+    said = f"run.mcap: the recording is cut: it can be read until {until:g} s; --allow-incomplete"
+    assert said in failure(capsys, partial)
+    assert main(["evaluate", str(partial), "--json"]) == 1
+    captured = capsys.readouterr()
+    (run,) = json.loads(captured.out)
+    assert (run["complete"], run["until"], run["scores"]) == (False, until, [])
+    assert said in run["error"]
+    assert said in captured.err
+    (run,) = evaluated(capsys, partial, "--allow-incomplete")
+    assert (run["scenario"], run["complete"], run["until"]) == ("", False, until)
+    assert main(["evaluate", str(partial), "--allow-incomplete"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[:2] == [str(partial), f"incomplete: read until {until:g} s"]
+
+
+def test_a_cut_recording_among_others(folder: Path, tmp_path: Path, capsys: Captured) -> None:
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes((folder / "run.mcap").read_bytes()[:-60])
+    assert main(["evaluate", str(cut), str(folder / "run.mcap"), "--json"]) == 1
+    first, second = json.loads(capsys.readouterr().out)
+    assert (first["complete"], second["complete"]) == (False, True)
+    assert first["until"] == second["until"]
+    assert "is cut" in first["error"]
 
 
 def test_nothing_is_written(folder: Path, capsys: Captured) -> None:

@@ -178,7 +178,9 @@ def test_runs_on_a_disk_are_reported(tmp_path: Path, capsys: pytest.CaptureFixtu
             "axes": dict(run.axes),
             "pinned": True,
             "conditions": {"rates.log": "16 Hz"},
-            "metrics": {"risk": {"horizon": 5.0}},
+            "metrics": {"risk": {"spec_version": 1, "horizon": 5.0}},
+            "privileged": False,
+            "references": {},
             "hashes": {
                 "spec": run.spec_hash,
                 "realisation": run.realisation_hash,
@@ -186,6 +188,8 @@ def test_runs_on_a_disk_are_reported(tmp_path: Path, capsys: pytest.CaptureFixtu
             },
         }
         (folder / "run.json").write_text(json.dumps(record), encoding="utf-8")
+        for name in ("run.mcap", "scenario.yaml"):
+            (folder / name).touch()
         names = ("metric", "symbol", "category", "variant", "unit", "better", "status", "value",
                  "reason", "lower", "upper")  # fmt: skip
         scores = [

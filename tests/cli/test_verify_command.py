@@ -35,6 +35,17 @@ class Other(Steady):
     pass
 """
 
+WEIGHTED = """\
+from pathlib import Path
+class Weighted:
+    needs = ()
+    data = ("weights.txt",)
+    def reset(self, task, limits, sensors, seed):
+        self.speed = float(Path(__file__).with_name("weights.txt").read_text())
+    def step(self, obs):
+        return (self.speed, 0.0)
+"""
+
 EMPTY = """\
 crowdbot: 1
 suite: {id: empty}
@@ -136,7 +147,8 @@ def test_a_forged_record_is_suspicious(world: Path, verify: Verify) -> None:
         def change(content: bytes) -> bytes:
             return json.dumps(json.loads(content) | changes).encode()
 
-        return rewrite_stored(world, {n: change for n in names if n.endswith("run.json")})
+        own = [n for n in names if n.endswith("run.json") and "/references/" not in n]
+        return rewrite_stored(world, dict.fromkeys(own, change))
 
     code, found = verify(forge(status="arrived", goal_time=0.5), "--sample", "0")
     assert (code, found["outcome"]) == (1, "invalid")  # success says something else
@@ -271,3 +283,52 @@ def test_suites_that_are_not_installed_must_be_named(
     assert cli.main(["verify", str(bundle), "--suite", "challenge-2020"]) == 1
     assert "is of suite 'tiny', not of 'challenge-2020'" in capsys.readouterr().err
     assert cli.main(["verify", str(tmp_path / "none.cbz")]) == 1
+
+
+def test_other_weights_are_another_run(
+    empty: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine.py").write_text(WEIGHTED, encoding="utf-8")
+    planner = ["--planner", f"{tmp_path / 'mine.py'}:Weighted", "--out", str(tmp_path / "runs")]
+
+    def simulate(weights: str) -> Any:
+        (tmp_path / "weights.txt").write_text(weights)
+        capsys.readouterr()
+        arguments = ["-q", "simulate", str(empty / "empty.yaml"), "slow", "--record", "used"]
+        assert cli.main([*arguments, "--json", *planner]) == 0
+        return json.loads(capsys.readouterr().out)
+
+    def to_run(*more: str) -> tuple[int, int]:
+        capsys.readouterr()
+        arguments = ["campaign", str(empty / "empty.yaml"), "--only", "slow", "--no-floors"]
+        assert cli.main([*arguments, "--dry-run", "--json", *planner, *more]) == 0
+        plan = json.loads(capsys.readouterr().out)
+        return plan["complete"], plan["to_run"]
+
+    first = simulate("0.2")
+    assert (first["reused"], first["replaced"]) == (False, [])
+    assert (to_run(), to_run("--force")) == ((1, 0), (0, 1))
+    second = simulate("0.4")
+    assert (second["reused"], second["replaced"]) == (False, ["planner.sha256"])
+    assert second["hashes"]["trajectory"] != first["hashes"]["trajectory"]
+    assert simulate("0.4")["reused"]
+    (tmp_path / "weights.txt").write_text("0.5")
+    assert to_run() == (0, 1)
+
+
+def test_bundle_check_says_what_verify_says(
+    empty: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["bundle", str(empty / "runs"), "--suite", str(empty / "empty.yaml"), "--planner",
+                 "Steady", "--out", str(tmp_path / "a.cbz"), "--check", "--sample", "1", "--seed",
+                 "3", "--json"]  # fmt: skip
+    source = f"{empty / 'mine.py'}:Steady"
+    capsys.readouterr()
+    code = cli.main([*arguments, "--source", source])
+    said = json.loads(capsys.readouterr().out)["check"]
+    assert (code, said["outcome"], len(said["runs"])) == (0, "verified", 1)
+    again = ["--suite", str(empty / "empty.yaml"), "--sample", "1", "--seed", "3", "--json"]
+    assert cli.main(["verify", str(tmp_path / "a.cbz"), *again, "--planner", source]) == 0
+    assert json.loads(capsys.readouterr().out) == {"bundle": str(tmp_path / "a.cbz"), **said}
+    assert cli.main(arguments) == 1
+    assert json.loads(capsys.readouterr().out)["check"]["outcome"] == "cannot be re-run"

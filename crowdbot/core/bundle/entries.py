@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import posixpath
-import tempfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -11,12 +9,18 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.bundle.archive import Archive, open_archive
-from crowdbot.core.bundle.check import ClaimedRun, check_members, claimed_runs
+from crowdbot.core.bundle.check import check_members, claimed_runs
+from crowdbot.core.bundle.check_recordings import (
+    ownership_problems,
+    read_member,
+    reference_members,
+)
+from crowdbot.core.bundle.check_run import ClaimedRun, declared_problems
 from crowdbot.core.bundle.manifest import Manifest
 from crowdbot.core.bundle.verification import content_hash, read_verification
-from crowdbot.core.recording import read_trajectories
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.provenance import trajectory_hash
 from crowdbot.core.scoring.evaluate import score
 from crowdbot.errors import InputError
 
@@ -71,6 +75,8 @@ def load_entries(folder: Path, registry: Registry) -> tuple[list[LeaderboardEntr
             entries.append(_entry(path, registry))
         except InputError as error:
             left_out[path.name] = str(error).removeprefix(f"{path}: ")
+        except Exception as error:  # whatever somebody thought of: it is one bundle, not all
+            left_out[path.name] = f"malformed: {type(error).__name__}: {str(error)[:200]}"
     return _named_apart(entries), left_out
 
 
@@ -78,10 +84,11 @@ def _entry(path: Path, registry: Registry) -> LeaderboardEntry:
     with open_archive(path) as archive:
         problems = list(check_members(archive))
         runs, wrong = claimed_runs(archive)
-        if problems or wrong:
-            raise InputError(f"{path}: {[*problems, *wrong][0]}")
-        if not runs:
-            raise InputError(f"{path}: there is no run in it")
+        problems += wrong
+        for run in [] if problems else runs:
+            problems += [f"{run.entry.directory}: {p}" for p in declared_problems(run, registry)]
+        if problems:
+            raise InputError(f"{path}: {problems[0]}")
         manifest = archive.manifest
         entry = LeaderboardEntry(
             path=path,
@@ -148,19 +155,22 @@ def _scored_again(
 def _score(
     archive: Archive, run: ClaimedRun, metrics: Sequence[str], registry: Registry
 ) -> list[Any]:
-    """Scores from the recordings in the archive, with the calibration runs that are there."""
-    listed = run.record.get("references")
-    listed = listed if isinstance(listed, Mapping) else {}
-    names = {"run": f"{run.entry.directory}/{files.RECORDING}"}
-    names |= {k: posixpath.normpath(f"{run.entry.directory}/{p}") for k, p in listed.items()}
-    with tempfile.TemporaryDirectory(prefix="crowdbot-rescore-") as folder:
-        read = {}
-        for key, name in names.items():
-            if name in archive.names:
-                archive.unpack(name, Path(folder) / files.RECORDING)
-                read[key] = read_trajectories(Path(folder) / files.RECORDING)
+    """Scores from the recordings in the archive, with the calibration runs that are there.
+
+    Raises:
+        InputError: a recording cannot be read, or is not that of the run.
+    """
+    own = read_member(archive, f"{run.entry.directory}/{files.RECORDING}")
+    for problem in ownership_problems(run, own):
+        raise InputError(f"{run.entry.directory}/{files.RECORDING}: {problem}")
+    read = {
+        key: read_member(archive, name).run
+        for key, name in reference_members(run).items()
+        if name in archive.names
+    }
+    for key, found in read.items():
+        if trajectory_hash(found) != run.record.get("reference_hashes", {}).get(key):
+            raise InputError(f"{run.entry.directory}: its {key} is not the one that it names")
     return list(
-        score(
-            registry, read["run"], read.get("robot_alone"), read.get("crowd_alone"), metrics=metrics
-        )
+        score(registry, own.run, read.get("robot_alone"), read.get("crowd_alone"), metrics=metrics)
     )

@@ -15,10 +15,10 @@ BUNDLE = 1
 MANIFEST, LOCK = "bundle.json", "suite.lock.json"
 
 #: The rules that a bundle is made by; their number is raised when they change.
-RULES = 1
+RULES = 2
 RULES_TEXT = (
     "One planner with one set of parameters drives all scenarios of the suite.",
-    "Every scenario is run with the same seeds; no run is left out, whatever came of it.",
+    "Every scenario is run with the seeds of the suite; no run is left out, whatever came of it.",
     "A planner that reads ground truth says so and is ranked apart.",
     "A planner is deterministic: the same observations and seed give the same commands.",
     "Scenarios, rates and metrics are those of the suite, unchanged.",
@@ -56,7 +56,7 @@ class Edition(_Model):
 
     @property
     def name(self) -> str:
-        """For people: bundles with equal names may be ranked together."""
+        """For people; that of the manifest has the seeds, too."""
         return f"{self.suite} · {self.lock[:8] or 'no lock'} · rules {self.rules}"
 
 
@@ -77,6 +77,7 @@ class Manifest(_Model):
         planner: as in ``run.json``: kind, name, label and every parameter.
         classed: whether the planner senses or knows.
         versions: of the software, the same in all runs.
+        seeds: of the edition; each scenario has a run with each.
         missing: ``ID seed-N`` of the runs that a partial bundle lacks.
     """
 
@@ -95,6 +96,12 @@ class Manifest(_Model):
     members: dict[str, Member]
 
     @property
+    def edition_name(self) -> str:
+        """For people: bundles with equal names may be ranked together."""
+        seeds = "" if self.seeds == [0] else f" · seeds {_ranges(self.seeds)}"
+        return f"{self.edition.name}{seeds}"
+
+    @property
     def label(self) -> str:
         """Of the planner."""
         return str(self.planner.get("label", ""))
@@ -102,6 +109,17 @@ class Manifest(_Model):
     def text(self) -> str:
         """The file."""
         return json.dumps(self.model_dump(mode="json"), indent=1, ensure_ascii=False) + "\n"
+
+
+def _ranges(seeds: list[int]) -> str:
+    """``0-4, 7``, whatever the numbers are."""
+    parts: list[list[int]] = []
+    for seed in sorted(set(seeds)):
+        if parts and seed == parts[-1][-1] + 1:
+            parts[-1].append(seed)
+        else:
+            parts.append([seed])
+    return ", ".join(str(p[0]) if len(p) == 1 else f"{p[0]}-{p[-1]}" for p in parts)
 
 
 def parse_manifest(text: str) -> Manifest:

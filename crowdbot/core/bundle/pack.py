@@ -11,9 +11,11 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from crowdbot.core.bundle.archive import members_of, write_archive
+from crowdbot.core.bundle.check_edition import missing_runs
 from crowdbot.core.bundle.manifest import BUNDLE, LOCK, RULES, BundledRun, Edition, Manifest
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.record_model import record_problems
 from crowdbot.core.scenarios.lock_check import spec_of
 from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.lock import LockFiles
@@ -72,7 +74,9 @@ def pack(
         UnknownNameError: no run of this planner is there.
     """
     found = _runs(submission, expansion)
-    missing = _missing(found, expansion)
+    missing = missing_runs(
+        expansion, {(str(f.record.get("scenario")), int(f.record["seed"])) for f in found}
+    )
     if missing and not submission.partial:
         some = "\n".join(f"  {name}" for name in missing[:_SHOWN])
         more = f"\n  … and {len(missing) - _SHOWN} more" if len(missing) > _SHOWN else ""
@@ -93,7 +97,7 @@ def pack(
 # ------------------------------------------------------------------------ finding
 def _runs(submission: Submission, expansion: Expansion) -> list[_Found]:
     """Complete runs of the planner, in the suite's order."""
-    base = submission.root / expansion.suite_id
+    base = submission.root / expansion.folder
     labels = {p.parent.name for p in base.glob("*/*/seed-*") if p.is_dir()}
     if submission.planner not in labels:
         if not labels:
@@ -102,12 +106,19 @@ def _runs(submission: Submission, expansion: Expansion) -> list[_Found]:
     found = []
     for scenario in expansion.scenarios:
         folder = base / scenario.id / submission.planner
-        for place in sorted(folder.glob("seed-*"), key=_seed):
-            record = files.read_record(place) if place.name.count(".") == 0 else None
+        for seed in expansion.run_seeds:
+            place = folder / f"seed-{seed}"
+            record = files.read_record(place)
             if record is not None:
                 name = PurePosixPath(place.relative_to(submission.root).as_posix())
-                found.append(_Found(name, record))
+                found.append(_Found(name, _checked(record, place)))
     if not found:
+        seeds = other_seeds(submission, expansion)
+        if seeds:
+            raise InputError(
+                f"{base}: there are runs with seeds {', '.join(map(str, seeds[:_SHOWN]))} only; "
+                f"those of {expansion.suite_id} are {', '.join(map(str, expansion.run_seeds))}"
+            )
         there = min(p.parent.parent.name for p in base.glob(f"*/{submission.planner}/seed-*"))
         raise InputError(
             f"{base}: no run of '{submission.planner}' is complete and of a scenario as "
@@ -117,20 +128,19 @@ def _runs(submission: Submission, expansion: Expansion) -> list[_Found]:
     return found
 
 
-def _seed(folder: Path) -> tuple[int, str]:
-    number = folder.name.removeprefix("seed-")
-    return (int(number) if number.isdigit() else -1, number)
+def other_seeds(submission: Submission, expansion: Expansion) -> list[int]:
+    """Seeds of runs that are there and that the edition does not have."""
+    base = submission.root / expansion.folder
+    names = {p.name for p in base.glob(f"*/{submission.planner}/seed-*") if p.is_dir()}
+    numbers = {n.removeprefix("seed-") for n in names}
+    return sorted({int(n) for n in numbers if n.isdecimal()} - set(expansion.run_seeds))
 
 
-def _missing(found: Sequence[_Found], expansion: Expansion) -> list[str]:
-    there = {(str(f.record.get("scenario")), f.record.get("seed")) for f in found}
-    seeds = sorted({seed for _, seed in there if isinstance(seed, int)}) or [0]
-    return [
-        f"{scenario.id} seed-{seed}"
-        for scenario in expansion.scenarios
-        for seed in seeds
-        if (scenario.id, seed) not in there
-    ]
+def _checked(record: dict[str, Any], place: Path) -> dict[str, Any]:
+    """A record that is what a record looks like."""
+    if wrong := record_problems(record):
+        raise InputError(f"{place / files.RECORD}: damaged: {wrong[0]}; run it again")
+    return record
 
 
 # ----------------------------------------------------------------------- checking
@@ -214,7 +224,7 @@ def _manifest(
         classed="privileged" if is_privileged(first) else "sensors only",
         pinned=bool(first.get("pinned")),
         versions=first["versions"],
-        seeds=sorted({int(f.record["seed"]) for f in found}),
+        seeds=list(expansion.run_seeds),
         missing=list(missing),
         runs=[
             BundledRun(

@@ -11,7 +11,13 @@ from crowdbot.core.bundle.tolerances import SPREADS, WALL_CLOCK, are_equal, mean
 from crowdbot.core.types.score import Score
 
 Outcome = Literal[
-    "verified", "within tolerance", "suspicious", "cannot be re-run", "invalid", "not re-run"
+    "verified",
+    "within tolerance",
+    "not comparable",
+    "suspicious",
+    "cannot be re-run",
+    "invalid",
+    "not re-run",
 ]
 #: What a bundle may be accepted with.
 FINE: tuple[Outcome, ...] = ("verified", "within tolerance", "not re-run")
@@ -64,11 +70,16 @@ class Rerun:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RerunVerdict:
-    """The outcome, and why: one line for each thing that was found."""
+    """The outcome, and why: one line for each thing that was found.
+
+    Attributes:
+        not_comparable: metrics whose version or parameters are not those that are here.
+    """
 
     outcome: Outcome
     findings: tuple[str, ...] = ()
     relations: Mapping[str, Relation] = field(default_factory=dict)
+    not_comparable: tuple[str, ...] = ()
 
 
 def verdict_of(reruns: Sequence[Rerun]) -> RerunVerdict:
@@ -81,18 +92,27 @@ def verdict_of(reruns: Sequence[Rerun]) -> RerunVerdict:
         if a.relation == "different"
     ]
     for rerun in reruns:
+        findings += _other_people(rerun)
         findings += _other_conditions(rerun)
         if rerun.relation == "identical":
             findings += _other_ending(rerun)
             findings += _unequal(rerun)
     others = [a for a in reruns if a.relation != "identical" or not a.same_platform]
     findings += _beyond(others)
-    if findings:
-        return RerunVerdict(outcome="suspicious", findings=tuple(findings), relations=relations)
+    apart = _not_comparable(reruns)
     outcome: Outcome = "within tolerance" if others else "verified"
     if all(r == "identical" for r in relations.values()):
         outcome = "verified"
-    return RerunVerdict(outcome=outcome, relations=relations)
+    if apart:
+        outcome = "not comparable"
+    if findings:
+        outcome = "suspicious"
+    return RerunVerdict(
+        outcome=outcome,
+        findings=(*findings, *apart.values()),
+        relations=relations,
+        not_comparable=tuple(apart),
+    )
 
 
 def same_platform(claimed: Mapping[str, Any], record: Mapping[str, Any]) -> bool:
@@ -117,6 +137,46 @@ def _other_ending(rerun: Rerun) -> Iterator[str]:
             yield f"{rerun.claimed.name}: {key} is claimed to be {said!r}, but is {found!r}"
 
 
+def _other_people(rerun: Rerun) -> Iterator[str]:
+    """People who are not those of the scenario, in a suite that has no lock to compare with.
+
+    On another platform they may be drawn differently; then the trajectory is another one, too.
+    """
+    said, found = (_realisation(r) for r in (rerun.claimed.record, rerun.record))
+    if said != found and (rerun.same_platform or rerun.relation == "identical"):
+        yield (
+            f"{rerun.claimed.name}: its people are claimed to have the hash {said[:30]}, but those "
+            f"of the scenario have {found[:30]}"
+        )
+
+
+def _realisation(record: Mapping[str, Any]) -> str:
+    return str(_mapping(record, "hashes").get("realisation", ""))
+
+
+def _not_comparable(reruns: Sequence[Rerun]) -> dict[str, str]:
+    """Metrics that were scored otherwise than here -> what to say of each."""
+    found: dict[str, str] = {}
+    for rerun in reruns:
+        for metric in sorted({s.metric for s in rerun.claimed.scores}):
+            if metric in found or _same_metric(rerun, metric):
+                continue
+            said, here = (_mapping(r, "metrics").get(metric) for r in (
+                rerun.claimed.record, rerun.record))  # fmt: skip
+            found[metric] = f"{metric} is not comparable: {_versions(said, here)}"
+    return found
+
+
+def _versions(said: object, here: object) -> str:
+    """How two entries of a metric differ, in words."""
+    a, b = (x.get("spec_version") if isinstance(x, Mapping) else None for x in (said, here))
+    if b is None:
+        return f"version {a} was scored; here there is no such metric among those of the suite"
+    if a != b:
+        return f"version {a} was scored; here it has version {b}"
+    return f"version {a} was scored with other parameters than those of the suite here"
+
+
 def _other_conditions(rerun: Rerun) -> Iterator[str]:
     """Parameters of metrics and conditions that are not those of the same software here.
 
@@ -124,7 +184,7 @@ def _other_conditions(rerun: Rerun) -> Iterator[str]:
     and have no rank.
     """
     claimed, here = rerun.claimed.record, rerun.record
-    if any(claimed.get(n) != here.get(n) for n in ("versions", "plugins")):
+    if claimed.get("versions") != here.get("versions"):
         return
     for key in ("metrics", "conditions"):
         said, found = (_mapping(r, key) for r in (claimed, here))
@@ -140,7 +200,9 @@ def _other_conditions(rerun: Rerun) -> Iterator[str]:
 
 
 def _other_version(a: Any, b: Any) -> bool:
-    """Whether these are two versions of a metric."""
+    """Whether these are two versions of a metric, or one that is there on one side only."""
+    if isinstance(a, Mapping) != isinstance(b, Mapping):
+        return True  # told as a score that is not comparable, or that was left out
     versions = [x.get("spec_version") if isinstance(x, Mapping) else None for x in (a, b)]
     return None not in versions and versions[0] != versions[1]
 
@@ -167,7 +229,8 @@ def _unequal(rerun: Rerun) -> Iterator[str]:
             )
     claimed = {(s.metric, s.variant) for s in rerun.claimed.scores}
     for name in sorted(set(computed) - claimed):
-        yield f"{rerun.claimed.name}: {'.'.join(name)} was left out"
+        if _same_metric(rerun, name[0]) or name[0] not in _mapping(rerun.claimed.record, "metrics"):
+            yield f"{rerun.claimed.name}: {'.'.join(name)} was left out"
 
 
 def _comparable(rerun: Rerun, score: Score) -> bool:
@@ -178,8 +241,9 @@ def _comparable(rerun: Rerun, score: Score) -> bool:
 
 
 def _agree(a: Score, b: Score) -> bool:
-    if (a.status, a.unit, a.better, a.reason) != (b.status, b.unit, b.better, b.reason):
-        return False
+    for name in ("status", "symbol", "category", "unit", "better", "reason"):
+        if getattr(a, name) != getattr(b, name):
+            return False
     ends = ((a.value, b.value), (a.lower, b.lower), (a.upper, b.upper))
     return all(
         x is y is None or (x is not None and y is not None and are_equal(x, y)) for x, y in ends

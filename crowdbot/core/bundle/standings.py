@@ -77,7 +77,7 @@ def standings(
     """
     groups: dict[tuple[str, str], list[LeaderboardEntry]] = {}
     for entry in entries:
-        groups.setdefault((entry.manifest.edition.name, entry.manifest.classed), []).append(entry)
+        groups.setdefault((entry.manifest.edition_name, entry.manifest.classed), []).append(entry)
     accepted, audited = tuple(accept), _by_suite(audits)
     return [
         _table(
@@ -89,6 +89,76 @@ def standings(
         )
         for key in sorted(groups, reverse=True)
     ]
+
+
+def set_apart(
+    entries: Sequence[LeaderboardEntry], accept: Iterable[str]
+) -> tuple[list[LeaderboardEntry], dict[str, str]]:
+    """Entries that may be compared with each other, and why the others may not, by file name.
+
+    Those stay that can be compared with the most others of their edition and class; of equally
+    many the ones that were verified, then those that come first.
+
+    Raises:
+        UnknownNameError: there is no such confound.
+    """
+    accepted = tuple(accept)
+    confounds(results_of(()), accepted)  # a wrong name is the user's, not a bundle's
+    groups: dict[tuple[str, str], list[LeaderboardEntry]] = {}
+    for entry in entries:
+        groups.setdefault((entry.manifest.edition_name, entry.manifest.classed), []).append(entry)
+    why: dict[str, str] = {}
+    for group in groups.values():
+        why |= _strangers(group, accepted)
+    return [e for e in entries if e.path.name not in why], why
+
+
+def _strangers(group: Sequence[LeaderboardEntry], accept: tuple[str, ...]) -> dict[str, str]:
+    """Why entries of one table cannot be compared with most others of it."""
+    why = dict[str, str]()
+    for entry in group:
+        if text := _own_trouble(entry, accept):
+            why[entry.path.name] = text
+    left = [e for e in group if e.path.name not in why]
+    if not _difference(left, accept):
+        return why
+    fits = {
+        frozenset((a.path, b.path))
+        for i, a in enumerate(left)
+        for b in left[:i]
+        if not _difference((a, b), accept)
+    }
+
+    def liked(entry: LeaderboardEntry) -> tuple[int, bool]:
+        verified = bool(entry.verification and entry.verification.get("ok"))
+        return sum(frozenset((entry.path, o.path)) in fits for o in left), verified
+
+    kept: list[LeaderboardEntry] = []
+    for entry in sorted(left, key=liked, reverse=True):  # equal ones stay in their order
+        if text := _difference([*kept, entry], accept):
+            why[entry.path.name] = f"cannot be compared with {kept[0].path.name}: {text}"
+        else:
+            kept.append(entry)
+    return why
+
+
+def _own_trouble(entry: LeaderboardEntry, accept: tuple[str, ...]) -> str:
+    """Why an entry cannot even stand alone; empty where it can."""
+    try:
+        if text := _difference((entry,), accept):
+            return f"its own runs cannot be compared: {text}"
+        summarise(results_of((entry.name, run) for run in entry.runs))
+    except Exception as error:  # whatever somebody thought of: it is one bundle, not all
+        return f"malformed: {type(error).__name__}: {str(error)[:200]}"
+    return ""
+
+
+def _difference(entries: Sequence[LeaderboardEntry], accept: tuple[str, ...]) -> str:
+    """The first thing besides the planner in which entries differ; empty where there is none."""
+    results = results_of((e.name, run) for e in entries if e.ranked for run in e.runs)
+    errors = [f for f in confounds(results, accept) if f.severity == "error" and not f.accepted]
+    kinds = ", ".join(dict.fromkeys(f.kind for f in errors))
+    return f"{str(errors[0])[:300]}; to compare all the same, --accept {kinds}" if errors else ""
 
 
 def _by_suite(audits: Iterable[Audit]) -> dict[str, Audit]:
@@ -123,7 +193,7 @@ def _table(
         return not entry.ranked, ranks.get(name, 1), entry.failed, mean, name
 
     return Standings(
-        edition=entries[0].manifest.edition.name,
+        edition=entries[0].manifest.edition_name,
         classed=entries[0].manifest.classed,
         entries=tuple(sorted(entries, key=order)),
         findings=findings,

@@ -72,7 +72,8 @@ def _execute(
         return make_run(request, prepared).status
     for reference in references_of(request, prepared):
         if reference.run_id == job.key:
-            there = files.read_record(reference.directory) if reference.complete else None
+            complete = reference.complete and not job.force
+            there = files.read_record(reference.directory) if complete else None
             return str(there["status"]) if there else make_reference(request, reference).status
     raise InputError(f"{job.source.spec} changed since the campaign began")
 
@@ -97,8 +98,9 @@ def _request(job: Job) -> Request:
         metrics=expansion.metrics,
         axes=expansion.axes.get(scenario.id, {}),
         position=job.index,
+        force=job.force,
     )
-    if job.retry_failed and job.kind == "run":
+    if job.retry_failed and job.kind == "run" and not job.force:
         with suppress(KeyError, TypeError):
             status = (files.read_record(request.directory) or {})["status"]
             return replace(request, force=status == "planner_failed")

@@ -39,6 +39,7 @@ class Job:
         label: the planner's folder.
         out: absolute root of the results.
         directory: what is made, relative to ``out``.
+        force: make it again although it is there.
         depends_on: keys of the calibration runs that must have ended before.
         cost: expected processor time, s.
     """
@@ -59,6 +60,7 @@ class Job:
     record: Recorded
     replay: bool
     retry_failed: bool = False
+    force: bool = False
     depends_on: tuple[str, ...] = ()
     cost: float = 0.0
 

@@ -155,7 +155,8 @@ class _PlanBuilder:
         planners: Sequence[PlannerEntry],
     ) -> Iterator[tuple[PlannerEntry, Request]]:
         scenario = prepared.run.scenario
-        seeds = tuple(dict.fromkeys(self._campaign.seeds))
+        given = self._campaign.seeds
+        seeds = suite.expansion.run_seeds if given is None else tuple(dict.fromkeys(given))
         for entry in planners:
             for seed in seeds[:1] if entry.sampled else seeds:
                 request = Request(
@@ -180,7 +181,8 @@ class _PlanBuilder:
         record = reusable_record(request, key, compared=bool(references))
         if record is not None:
             self._learn(request, record, prepared)
-            if self._campaign.retry_failed and record["status"] == PLANNER_FAILED:
+            failed = self._campaign.retry_failed and record["status"] == PLANNER_FAILED
+            if failed or self._campaign.force:
                 record = None
         if record is None and not self._can_run(entry, request):
             return
@@ -217,7 +219,8 @@ class _PlanBuilder:
     ) -> bool:
         """Whether a calibration run has to be made first; then there is a job for it."""
         if reference.run_id not in self._jobs:
-            if self._references[reference.run_id] or reference.complete:
+            there = reference.complete and not self._campaign.force
+            if self._references[reference.run_id] or there:
                 self._references[reference.run_id] = True
                 return False
             kind: Kind = "crowd_alone" if reference.name == "crowd_alone" else "robot_alone"
@@ -259,6 +262,7 @@ class _PlanBuilder:
             record=request.record,
             replay=request.replay,
             retry_failed=self._campaign.retry_failed,
+            force=self._campaign.force,
             depends_on=tuple(r.run_id for r in depends_on),
             cost=expected_seconds(kind, people, _limit(request)),
         )

@@ -23,6 +23,7 @@ class CampaignRequest:
 
     Attributes:
         suites: paths or names of packaged suites.
+        seeds: of the runs; None: those that each suite names, else 0.
         roles: planners with these roles are run as well, where the robot has what they need.
         floors: run floors and ceilings besides, in a sample of the scenarios and at the first
             seed, where the robot has what they need.
@@ -30,11 +31,12 @@ class CampaignRequest:
         sample: run so many scenarios of each suite, drawn; None: all.
         planner_settings: ``key=value`` texts, for all planners.
         retry_failed: run again what ended with a planner that failed.
+        force: run everything again, calibration runs too.
     """
 
     suites: Sequence[str]
     planners: Sequence[str]
-    seeds: Sequence[int] = (0,)
+    seeds: Sequence[int] | None = None
     roles: Sequence[PlannerRole] = ()
     floors: bool = False
     only: str | None = None
@@ -46,6 +48,7 @@ class CampaignRequest:
     planner_settings: Sequence[str] = ()
     plugins: Sequence[Path] = ()
     retry_failed: bool = False
+    force: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +62,7 @@ class SelectedSuite:
     @property
     def name(self) -> str:
         """The folder of its runs."""
-        return "scenarios" if self.expansion.single else self.expansion.suite_id
+        return self.expansion.folder
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -133,7 +133,7 @@ def _simulate(setup: RerunSetup, claimed: ClaimedRun) -> Rerun:
             registry=setup.registry,
             seed=claimed.entry.seed,
             out=Path(folder),
-            suite=setup.expansion.suite_id,
+            suite=setup.expansion.folder,
             metrics=setup.expansion.metrics,
             record="none",
             references=compared,
@@ -141,6 +141,7 @@ def _simulate(setup: RerunSetup, claimed: ClaimedRun) -> Rerun:
             progress=setup.progress,
             stop=setup.stop,
             on_hang=setup.on_hang,
+            step_budget=claimed.record.get("step_budget"),
         )
         run = make_run(request, prepare(scenario, setup.registry, references=compared))
         rows = read_scores_csv(run.directory / files.SCORES)

@@ -23,8 +23,10 @@ from crowdbot.core.crowd.velocity_search.cost import (
     Neighbours,
     NumpyCost,
 )
+from crowdbot.core.registry.plugin import BUILTIN
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.support.immutable import immutable_fields
 from crowdbot.core.types.arrays import Array
 from crowdbot.dsl.component_specs import CostFunctionSpec, CrowdPolicySpec
 from crowdbot.errors import PluginError
@@ -52,6 +54,8 @@ def build_policy(
         PluginError: it cannot be built, or is not a policy.
     """
     call = registry.plugin_call(spec)
+    if registry.owner(registry.find("crowd policy", spec.kind)).name != BUILTIN:
+        agents = immutable_fields(agents)
     return registry.build(
         spec, lambda policy: CheckedPolicy(policy, call), costs, agents, call=call
     )
@@ -64,7 +68,9 @@ def build_cost(registry: Registry, spec: CostFunctionSpec) -> CompiledCost | Num
         PluginError: it cannot be built, or does not fit its contract.
     """
     call = registry.plugin_call(spec)
-    return registry.build(spec, lambda cost: checked_cost(cost, call), call=call)
+    return registry.build(
+        spec, lambda cost: replace(checked_cost(cost, call), call=call), call=call
+    )
 
 
 def checked_cost(cost: object, call: PluginCall) -> CompiledCost | NumpyCost:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from crowdbot.core.crowd.response.parameters import Human
 from crowdbot.core.crowd.routes import head_for
 from crowdbot.core.crowd.step import tick, ticks_without_robots
 from crowdbot.core.crowd.world import CrowdWorld
+from crowdbot.core.support.immutable import immutable, immutable_fields
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array
 
@@ -40,6 +41,12 @@ class _Group:
     policy: CrowdPolicy
     members: NDArray[np.bool_]
     sees_robot: bool
+
+    @property
+    def foreign(self) -> bool:
+        """Whether the policy is not crowdbot's own, which writes to nothing that it is given."""
+        policy = getattr(self.policy, "_policy", self.policy)  # without its checks
+        return not type(policy).__module__.startswith("crowdbot.")
 
 
 class CrowdEngine:
@@ -67,6 +74,11 @@ class CrowdEngine:
         made = [p(agents) if callable(p) else p for p in given]
         if len(agents) and not 0 <= agents.policy.min() <= agents.policy.max() < len(made):
             raise ValueError(f"agents follow policy {agents.policy.max()} of {len(made)}")
+        self._kept: dict[str, Any] = {
+            "agents": immutable_fields(agents),
+            "walls": immutable(world.walls),
+            "pillars": immutable(world.pillars),
+        }
         self._groups = _groups(made, agents, _who_plans(agents, world))
         self._groups_alone = _groups(made, agents, np.zeros(len(agents), np.bool_))
         strength = [getattr(p, "contact_stiffness", CONTACT_STIFFNESS) for p in made]
@@ -180,6 +192,8 @@ class CrowdEngine:
         for group in self._groups if len(robots) else self._groups_alone:
             view = self._view(flat, rows, group.members, seen if group.sees_robot else nobody)
             decides = np.asarray(view.decides)[:, np.newaxis]
+            if group.foreign:
+                view = replace(immutable_fields(view), **self._kept)
             np.copyto(
                 rows[:, s.AX : s.AY + 1], desired_acceleration(group.policy, view), where=decides
             )

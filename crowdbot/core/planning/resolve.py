@@ -23,7 +23,7 @@ from crowdbot.core.planning.python_file import (
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.support.source_digest import source_digest
+from crowdbot.core.support.source_digest import declared_data, source_digest
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.component import Component
 from crowdbot.dsl.component_specs import PlannerRole, PlannerSpec
@@ -276,7 +276,7 @@ def _from_class(path: Path, name: str, parameters: Mapping[str, Any]) -> Planner
     kind = planner_class(path, name)
     dump = {
         "kind": f"{path.name}:{name}",
-        "sha256": source_digest(path),
+        "sha256": source_digest(path, declared_data(kind)),
         **({"parameters": dict(parameters)} if parameters else {}),
     }
     check_parameters(kind, parameters, f"{path}:{name}")

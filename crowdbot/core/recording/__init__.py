@@ -4,11 +4,13 @@ from crowdbot.core.recording.commands import read_commands
 from crowdbot.core.recording.header import AgentsHeader, RecordingHeader, RobotHeader
 from crowdbot.core.recording.reader import (
     RecordingInfo,
+    WholeRecording,
     holds_run,
     read_cones,
     read_run,
     read_scans,
     read_trajectories,
+    read_whole,
     recording_info,
 )
 from crowdbot.core.recording.writer import RecordingWriter
@@ -19,11 +21,13 @@ __all__ = [
     "RecordingInfo",
     "RecordingWriter",
     "RobotHeader",
+    "WholeRecording",
     "holds_run",
     "read_commands",
     "read_cones",
     "read_run",
     "read_scans",
     "read_trajectories",
+    "read_whole",
     "recording_info",
 ]

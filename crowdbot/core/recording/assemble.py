@@ -40,17 +40,30 @@ class Collected:
         """Take one message of one of `TOPICS`."""
         self._by_topic[topic].append(message)
 
+    @property
+    def complete(self) -> bool:
+        """Whether the run came to its end, or, in recordings of others, does not say so."""
+        return all(bool(end.complete) for end in self._by_topic[Topic.END])
+
+    def header(self, path: Path) -> RecordingHeader:
+        """The constants of the run.
+
+        Raises:
+            InputError: there is no header, or it contradicts itself.
+        """
+        if not self._by_topic[Topic.HEADER]:
+            raise InputError(f"{path}: no recording of crowdbot: {Topic.HEADER} is missing")
+        return RecordingHeader.from_message(self._by_topic[Topic.HEADER][0])
+
     def trajectories(self, path: Path) -> Trajectories:
         """All of it as arrays.
 
         Raises:
             InputError: header or samples are missing, or do not fit each other.
         """
-        if not self._by_topic[Topic.HEADER]:
-            raise InputError(f"{path}: no recording of crowdbot: {Topic.HEADER} is missing")
+        header = self.header(path)
         if not self._by_topic[Topic.STATE]:
             raise InputError(f"{path}: the recording holds no sample")
-        header = RecordingHeader.from_message(self._by_topic[Topic.HEADER][0])
         try:
             people = 0 if header.agents is None else len(header.agents.id)
             states = StatesReader(people).states(self._by_topic[Topic.STATE])

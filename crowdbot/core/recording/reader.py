@@ -53,11 +53,38 @@ def read_trajectories(path: Path, robot: str | None = None) -> Trajectories:
         InputError: no recording of crowdbot, damaged, or without a single sample.
         UnknownNameError: there is no such robot.
     """
-    collected = Collected()
-    for topic, record in _of_robot(path, robot):
+    return read_whole(path, robot).run
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WholeRecording:
+    """Everything in a run's own recording that says what happened, and whose it is.
+
+    Attributes:
+        header: names the scenario, and has the hashes of run and planner.
+        complete: the run came to its end and the file has its footer.
+        until: time of the last sample, s.
+    """
+
+    header: RecordingHeader
+    run: Trajectories
+    complete: bool
+    until: float
+
+
+def read_whole(path: Path, robot: str | None = None) -> WholeRecording:
+    """Trajectories together with header and end; arguments and errors as `read_trajectories`."""
+    collected, records = Collected(), Records(path)
+    for topic, record in _of_robot(path, robot, records):
         _check_type(path, record, Collected.TOPICS[topic])
         collected.add(topic, decode(path, record))
-    return collected.trajectories(path)
+    run = collected.trajectories(path)
+    return WholeRecording(
+        header=collected.header(path),
+        run=run,
+        complete=records.finished and collected.complete,
+        until=float(run.t[-1]),
+    )
 
 
 def read_run(path: Path, max_rate: float) -> tuple[Trajectories, list[ReplayScan]]:
@@ -96,10 +123,12 @@ def holds_run(path: Path) -> bool:
     )
 
 
-def _of_robot(path: Path, robot: str | None) -> list[tuple[str, Record]]:
+def _of_robot(
+    path: Path, robot: str | None, records: Records | None = None
+) -> list[tuple[str, Record]]:
     """Scoring topic and message of one robot; of other topics only the names are looked at."""
     by_prefix: dict[str, list[tuple[str, Record]]] = {}
-    for record in Records(path):
+    for record in records or Records(path):
         for topic in Collected.TOPICS:
             if record.topic.endswith(topic):
                 prefix = record.topic.removesuffix(topic)

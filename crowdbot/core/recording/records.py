@@ -10,6 +10,7 @@ import mmap
 import struct
 from collections.abc import Iterator
 from io import BytesIO
+from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -29,6 +30,9 @@ from crowdbot.errors import InputError
 MAX_CHUNK = 64 * 2**20
 MAX_RECORD = 2 * MAX_CHUNK
 MAX_TOTAL = 4 * 2**30
+#: So many records, and two more for each byte of the file. Ours have some hundred bytes for each
+#: message, and clocks that are packed well have four.
+MAX_RECORDS = 1_000_000
 _PREFIX = struct.Struct("<BQ")  # opcode and length of a record
 _MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, both times
 _BROKEN = (
@@ -60,6 +64,7 @@ class Records:
         self._schemas: dict[int, Schema] = {}
         self._channels: dict[int, Channel] = {}
         self._total = 0
+        self._left = MAX_RECORDS
 
     def __iter__(self) -> Iterator[Record]:
         """Messages in the order they were written.
@@ -69,6 +74,7 @@ class Records:
         """
         try:
             with self._path.open("rb") as file, _mapped(file.fileno()) as data:
+                self._left = MAX_RECORDS + 2 * len(data)
                 yield from self._records(data)
         except OSError as error:
             raise InputError(f"{self._path}: cannot be read: {error.strerror}") from error
@@ -83,6 +89,7 @@ class Records:
                 broken = inner is None
                 yield from self._messages(inner or [])
             elif isinstance(record, Schema | Channel | Message):
+                self._count(1)
                 yield from self._messages([record])
 
     def _top_level(self, data: mmap.mmap) -> Iterator[McapRecord]:
@@ -108,9 +115,17 @@ class Records:
             plain = _decompress(chunk)
             if chunk.uncompressed_crc not in (0, crc32(plain)):
                 return None
-            return list(_split(plain))
+            found = list(islice(_split(plain), self._left + 1))
         except _BROKEN:
             return None
+        self._count(len(found))
+        return found
+
+    def _count(self, records: int) -> None:
+        """A small file can hold more messages than anybody can look at."""
+        self._left -= records
+        if self._left < 0:
+            raise InputError(f"{self._path}: refused: holds more messages than a recording may")
 
     def _messages(self, records: list[McapRecord]) -> Iterator[Record]:
         for record in records:

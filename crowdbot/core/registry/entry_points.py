@@ -7,6 +7,7 @@ of those that share a name.
 
 from __future__ import annotations
 
+import json
 import os
 import re
 from collections import Counter
@@ -19,7 +20,8 @@ from pathlib import Path
 
 from crowdbot.core.registry.loader import failed, load_plugin
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
-from crowdbot.core.registry.plugin_path import GROUP, PluginEntry, entries_at
+from crowdbot.core.registry.plugin_errors import telling_interrupts
+from crowdbot.core.registry.plugin_path import GROUP, PluginEntry, entries_at, place_digest
 from crowdbot.errors import PluginError
 
 #: Environment variable with the names of the plugins that may be loaded.
@@ -66,8 +68,10 @@ def find_plugins(
             continue  # the path given by hand is this very plugin
         allowed = ours or names is None or entry.plugin.name in names
         (wanted if allowed else excluded).append(entry)
+    with telling_interrupts():
+        loaded = tuple(_load([*wanted, *given]))
     return Discovery(
-        plugins=tuple(_load([*wanted, *given])),
+        plugins=loaded,
         excluded=tuple(e.plugin for e in excluded),
         allowed=names,
     )
@@ -127,11 +131,36 @@ def _entries(
     """The entries of one distribution; one that is written twice is one."""
     listed = {(e.name, e.value): e for e in distribution.entry_points if e.group == GROUP}
     for (name, value), entry in listed.items():
-        plugin = Plugin(name=name, distribution=title, file=_file(distribution, value))
+        file = _file(distribution, value)
+        plugin = Plugin(name=name, distribution=title, file=file)
+        if not ours and _is_editable(distribution):
+            plugin = _loose(plugin, value)
         if name == BUILTIN and not ours:
             wrong = PluginError(f"the name '{BUILTIN}' is crowdbot's own")
             plugin = replace(failed(plugin, wrong), traceback="")
         yield PluginEntry(plugin=plugin, load=partial(_import, entry))
+
+
+def _is_editable(distribution: metadata.Distribution) -> bool:
+    """Whether it is installed with ``pip install -e``, so that its version says nothing."""
+    try:
+        document = json.loads(distribution.read_text("direct_url.json") or "{}")
+        return bool(document.get("dir_info", {}).get("editable", False))
+    except (OSError, ValueError, AttributeError):
+        return False
+
+
+def _loose(plugin: Plugin, value: str) -> Plugin:
+    """A plugin of a folder that may change: not pinned, with the hash of its files."""
+    if not plugin.file:
+        return replace(plugin, pinned=False)
+    file = Path(plugin.file)
+    depth = value.partition(":")[0].count(".") + (file.name == "__init__.py")
+    place = file.parents[depth - 1] if depth else file
+    try:
+        return replace(plugin, pinned=False, sha256=place_digest(place))
+    except PluginError as error:
+        return replace(failed(plugin, error), pinned=False)
 
 
 def _import(entry: metadata.EntryPoint) -> object:

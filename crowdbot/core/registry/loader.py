@@ -8,6 +8,7 @@ import traceback
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from importlib import metadata
+from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import pluggy
@@ -17,6 +18,7 @@ from crowdbot import hookspecs
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.plugin_errors import is_user_interrupt
+from crowdbot.core.support.source_digest import data_files, declared_data, digest_of_files
 from crowdbot.dsl.component import Component
 from crowdbot.dsl.component_specs import CATEGORIES
 from crowdbot.dsl.metric_component import MetricComponent
@@ -130,7 +132,23 @@ def _ask(plugin: Plugin, module: Any) -> Plugin:
                 f"{_DIRS} returned {_shown(folder)}; write importlib.resources.files(__name__) "
                 "/ 'suites', or a pathlib.Path"
             )
-    return replace(plugin, components=tuple(components), scenario_dirs=dirs)
+    data = _data_digest(components)
+    return replace(plugin, components=tuple(components), scenario_dirs=dirs, data=data)
+
+
+def _data_digest(components: Sequence[Component[Any]]) -> str:
+    """SHA-256 of the files that specs declare in ``data``, relative to where they are written.
+
+    Raises:
+        InputError: a name matches no file.
+    """
+    found: dict[str, Path] = {}
+    for component in components:
+        if patterns := declared_data(component.spec):
+            folder = Path(inspect.getfile(component.spec)).parent
+            files = data_files(folder, patterns)
+            found |= {f"{component.kind}/{name}": file for name, file in files.items()}
+    return digest_of_files(found) if found else ""
 
 
 def _check_hooks(manager: pluggy.PluginManager, module: Any) -> None:

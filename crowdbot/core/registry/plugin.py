@@ -18,10 +18,13 @@ class Plugin:
     Attributes:
         name: of its entry point; the kinds of its components begin with it.
         distribution: name and version of the package, or the path it was loaded from.
-        pinned: whether it comes from an installed distribution.
+        pinned: whether it comes from an installed distribution, whose version says what it is;
+            one that was installed to be edited is not.
+        given: whether somebody named its path; it need not be installed.
         file: the file of its module, empty where nothing is known.
         api: the version of the hooks that it was written for; None if that is not known.
         sha256: of the files of a plugin that is not pinned; empty otherwise.
+        data: SHA-256 of the files that its components declare as their data; empty without any.
         error: why it provides nothing; empty for a healthy one.
         traceback: of the error, where there is one.
     """
@@ -29,9 +32,11 @@ class Plugin:
     name: str
     distribution: str
     pinned: bool = True
+    given: bool = False
     file: str = ""
     api: int | None = None
     sha256: str = ""
+    data: str = ""
     components: tuple[Component[Any], ...] = ()
     scenario_dirs: tuple[Any, ...] = ()
     error: str = ""

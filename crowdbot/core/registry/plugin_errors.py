@@ -5,7 +5,8 @@ from __future__ import annotations
 import signal
 import sysconfig
 import traceback
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from importlib.resources import files
 from pathlib import Path
 
@@ -39,6 +40,33 @@ def is_user_interrupt(error: BaseException) -> bool:
         return False
     default = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     return default or type(error) is not KeyboardInterrupt
+
+
+class _Pressed(KeyboardInterrupt):
+    """Ctrl-C, as opposed to a plugin that raises KeyboardInterrupt itself."""
+
+
+@contextmanager
+def telling_interrupts() -> Iterator[None]:
+    """Ctrl-C raises a class of its own inside, so that a plugin's own interrupt can be told.
+
+    Does nothing where somebody handles Ctrl-C already, or in another thread than the main one.
+    """
+
+    def press(number: int, frame: object) -> None:
+        del number, frame
+        raise _Pressed
+
+    try:
+        theirs = signal.getsignal(signal.SIGINT) is not signal.default_int_handler
+        previous = None if theirs else signal.signal(signal.SIGINT, press)
+    except ValueError:  # not the main thread
+        previous = None
+    try:
+        yield
+    finally:
+        if previous is not None:
+            signal.signal(signal.SIGINT, previous)
 
 
 def _text(error: BaseException) -> str:

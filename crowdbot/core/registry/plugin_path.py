@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 import importlib
 import importlib.util
 import sys
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from importlib.machinery import PathFinder
@@ -16,8 +15,8 @@ from types import ModuleType
 from typing import Any
 
 from crowdbot.core.registry.plugin import Plugin
-from crowdbot.core.support.source_digest import source_digest
-from crowdbot.errors import PluginError
+from crowdbot.core.support.source_digest import digest_of_files, package_files, source_digest
+from crowdbot.errors import InputError, PluginError
 
 #: Group of entry points in which a distribution says which module is its plugin.
 GROUP = "crowdbot"
@@ -44,7 +43,7 @@ def entries_at(path: Path) -> list[PluginEntry]:
         root, declared = project
         return [_entry(path, name, *_located(root, value)) for name, value in declared.items()]
     except PluginError as error:
-        plugin = Plugin(name=path.resolve().stem, distribution=str(path), pinned=False)
+        plugin = Plugin(name=path.resolve().stem, distribution=str(path), pinned=False, given=True)
         return [PluginEntry(plugin=plugin, load=partial(_fail, str(error)))]
 
 
@@ -105,8 +104,9 @@ def _entry(given: Path, name: str, place: Path, value: str) -> PluginEntry:
         name=name,
         distribution=str(given),
         pinned=False,
+        given=True,
         file=str(file.resolve()) if file.is_file() else "",
-        sha256=_digest(place),
+        sha256=place_digest(place),
     )
     return PluginEntry(plugin=plugin, load=partial(_load, place, value))
 
@@ -180,19 +180,13 @@ def _located(root: Path, value: str) -> tuple[Path, str]:
     raise PluginError(f"{root}: no module '{top}', which its entry point names, here or in src/")
 
 
-def _digest(place: Path) -> str:
-    """Hash of the file and its helpers, or of all files of the package: names and contents."""
-    if place.is_file():
-        return source_digest(place)
-    sha = hashlib.sha256()
-    for name, file in _files(place):
-        sha.update(f"{name}\0{file.stat().st_size}\0".encode())
-        sha.update(file.read_bytes())
-    return sha.hexdigest()
+def place_digest(place: Path) -> str:
+    """Hash of the file, or of all files of the package, and of the modules beside it that it needs.
 
-
-def _files(place: Path) -> Iterator[tuple[str, Path]]:
-    for file in sorted(place.rglob("*")):
-        parts = file.relative_to(place).parts
-        if file.is_file() and not any(p == "__pycache__" or p.startswith(".") for p in parts):
-            yield "/".join(parts), file
+    Raises:
+        PluginError: a file cannot be read.
+    """
+    try:
+        return source_digest(place) if place.is_file() else digest_of_files(package_files(place))
+    except InputError as error:
+        raise PluginError(str(error)) from None

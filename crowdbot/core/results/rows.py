@@ -109,15 +109,30 @@ class FailureRow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class DamagedRun:
+    """A run that is left out, because something of it is missing, cut or malformed.
+
+    Attributes:
+        directory: relative to the results' root.
+        reason: what is wrong with it.
+    """
+
+    directory: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Results:
     """Everything at one moment.
 
     Runs are sorted by suite, scenario in the suite's order, planner and seed; scores by run,
     metric and variant. ``scales`` are those of the metrics that are installed, from
     `crowdbot.core.scoring.score_scale.score_scales`: intervals do not leave bounds that are known.
+    ``damaged`` runs are not among the others.
     """
 
     runs: tuple[RunRow, ...] = ()
+    damaged: tuple[DamagedRun, ...] = ()
     scores: tuple[ScoreRow, ...] = ()
     failures: tuple[FailureRow, ...] = ()
     scales: Scales = field(default_factory=dict, repr=False)

@@ -1,29 +1,32 @@
 """results.sqlite: an index of the run directories below a root, which can always be rebuilt.
 
-The directories are the truth. One process writes the index at a time, the one that holds
-``results.lock``; who does not get the lock, or may not write, brings a copy in memory up to date.
+The directories are the truth. One process writes the index at a time, a campaign, which holds
+``results.lock``; who only reads brings a copy in memory up to date, and writes nothing.
 """
 
 from __future__ import annotations
 
 import fcntl
 import json
+import logging
 import os
 import sqlite3
-from collections.abc import Iterator
-from contextlib import ExitStack, closing, contextmanager, suppress
+from collections.abc import Iterable, Iterator
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from crowdbot.core.results.failure import SUFFIX, read_failure
-from crowdbot.core.results.rows import FailureRow, Results, RunRow, ScoreRow
+from crowdbot.core.results.rows import DamagedRun, FailureRow, Results, RunRow, ScoreRow
 from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.record_model import record_problems
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.errors import InputError
 
+_LOG = logging.getLogger("crowdbot")
 INDEX, LOCK = "results.sqlite", "results.lock"
 #: Of the tables; an index of another version is rebuilt.
-VERSION = 2
+VERSION = 3
 
 _TABLES = """
 CREATE TABLE IF NOT EXISTS runs (
@@ -49,20 +52,21 @@ CREATE TABLE IF NOT EXISTS failures (
 
 
 def load(root: Path) -> Results:
-    """All runs, scores and failures below a root as they are now.
+    """All runs, scores and failures below a root as they are now; nothing is written there.
+
+    A run that is damaged is left out, with a warning.
 
     Raises:
-        InputError: there is no such folder, or a run in it is damaged.
+        InputError: there is no such folder.
     """
     if not root.is_dir():
         raise InputError(f"{root}: no folder of results; 'crowdbot campaign' makes one")
-    with ExitStack() as stack:
-        try:
-            store = stack.enter_context(index(root))
-        except (InputError, sqlite3.DatabaseError):
-            store = stack.enter_context(_copy(root))
+    with _copy(root) as store:
         store.synchronise()
-        return store.results()
+        found = store.results()
+    for run in found.damaged:
+        _LOG.warning("%s is left out: %s", root / run.directory, run.reason)
+    return found
 
 
 @contextmanager
@@ -92,7 +96,7 @@ def index(root: Path) -> Iterator[Store]:
 def _copy(root: Path) -> Iterator[Store]:
     """The index in memory; an empty one where there is none that can be read."""
     with closing(sqlite3.connect(":memory:")) as database:
-        with suppress(sqlite3.Error), closing(_reader(root / INDEX)) as original:
+        with suppress(sqlite3.Error, OSError), closing(_reader(root / INDEX)) as original:
             if original.execute("PRAGMA user_version").fetchone()[0] == VERSION:
                 original.backup(database)
         _prepare(database)
@@ -100,7 +104,19 @@ def _copy(root: Path) -> Iterator[Store]:
 
 
 def _reader(file: Path) -> sqlite3.Connection:
-    return sqlite3.connect(f"{file.resolve().as_uri()}?mode=ro", uri=True)
+    """The index, opened so that nothing appears beside it.
+
+    SQLite makes files beside an index with a log (WAL) even for somebody who only reads. Where a
+    campaign has them open they are there; elsewhere the file is whole, and is read as bytes that
+    say that they have no log.
+    """
+    if file.with_name(f"{file.name}-wal").exists():
+        return sqlite3.connect(f"{file.resolve().as_uri()}?mode=ro", uri=True)
+    content = bytearray(file.read_bytes())
+    content[18:20] = b"\1\1"
+    database = sqlite3.connect(":memory:")
+    database.deserialize(bytes(content))
+    return database
 
 
 def _opened(file: Path) -> sqlite3.Connection:
@@ -135,15 +151,16 @@ class Store:
 
     def __init__(self, root: Path, database: sqlite3.Connection) -> None:
         self._root, self._database = root, database
+        self._damaged: list[DamagedRun] = []
         database.row_factory = sqlite3.Row
 
     def synchronise(self) -> None:
         """Add what is new or changed, remove what is gone; a run that is unchanged is not read.
 
-        Raises:
-            InputError: a run is damaged.
+        A run that is damaged is removed, and told with the results.
         """
-        found = dict(_scan(self._root))
+        self._damaged = []
+        found = dict(self._whole(_scan(self._root)))
         for table in ("runs", "failures"):
             there = {d: s for d, s in found.items() if d.endswith(SUFFIX) == (table == "failures")}
             known = dict(self._database.execute(f"SELECT directory, stamp FROM {table}").fetchall())
@@ -156,7 +173,7 @@ class Store:
 
     def add(self, directory: str) -> None:
         """A run has been made; its failure, if there was one, is over."""
-        stamp = _stamp(self._root / directory / files.RECORD)
+        stamp = _stamp_of_run(self._root / directory)
         with self._database:
             failure = directory + SUFFIX
             self._database.execute("DELETE FROM failures WHERE directory = ?", [failure])
@@ -181,19 +198,34 @@ class Store:
             runs=tuple(_run(row) for row in runs),
             scores=tuple(s for directory in ids for s in scores[directory]),
             failures=tuple(_failure(row) for row in failures),
+            damaged=tuple(self._damaged),
         )
+
+    def _whole(self, found: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+        """What was found, without runs of which a file is missing."""
+        for directory, stamp in found:
+            if stamp:
+                yield directory, stamp
+            else:
+                reason = f"{files.RECORD} is missing"
+                self._damaged.append(DamagedRun(directory=directory, reason=reason))
 
     def _insert(self, directory: str, stamp: str) -> None:
         if directory.endswith(SUFFIX):
             self._insert_failure(directory, stamp)
             return
         run = self._root / directory
-        record = files.read_record(run)
-        if record is None:
-            return  # replaced at this very moment; the next look finds it
         self._database.execute("DELETE FROM runs WHERE directory = ?", [directory])
-        self._put("runs", {"directory": directory, "stamp": stamp, **_columns(run, record)})
-        for number, row in enumerate(read_scores_csv(run / files.SCORES)):
+        if not (run / files.RECORD).exists():
+            return  # replaced at this very moment; the next look finds it
+        try:
+            columns, rows = _columns(run), read_scores_csv(run / files.SCORES)
+        except InputError as error:
+            reason = str(error).removeprefix(f"{run}/")
+            self._damaged.append(DamagedRun(directory=directory, reason=reason))
+            return
+        self._put("runs", {"directory": directory, "stamp": stamp, **columns})
+        for number, row in enumerate(rows):
             values = {n: getattr(row.score, n) for n in _SCORE}
             self._put("scores", {"directory": directory, "row": number, **values})
 
@@ -227,7 +259,11 @@ def _scan(root: Path) -> Iterator[tuple[str, str]]:
         if files.RECORD in names:
             below.clear()
             with suppress(OSError):
-                yield here.relative_to(root).as_posix(), _stamp(here / files.RECORD)
+                yield here.relative_to(root).as_posix(), _stamp_of_run(here)
+            continue
+        if files.RECORDING in names or files.SCORES in names:
+            below.clear()
+            yield here.relative_to(root).as_posix(), ""
             continue
         if here == root:
             below[:] = [b for b in below if b != "references"]
@@ -244,7 +280,28 @@ def _stamp(file: Path) -> str:
     return f"{about.st_mtime_ns} {about.st_size} {about.st_ino}"
 
 
-def _columns(run: Path, record: dict[str, Any]) -> dict[str, Any]:
+def _stamp_of_run(run: Path) -> str:
+    """Changes when the record does, or when another file of the run is cut or gone."""
+    parts = [_stamp(run / files.RECORD)]
+    for name in (files.RECORDING, files.SCORES):
+        try:
+            parts.append(str((run / name).stat().st_size))
+        except OSError:
+            parts.append("-")
+    return " ".join(parts)
+
+
+def _columns(run: Path) -> dict[str, Any]:
+    """The row of a run.
+
+    Raises:
+        InputError: something of it is missing, cut or malformed.
+    """
+    record = files.read_record(run)
+    if record is None:
+        raise InputError(f"{run / files.RECORD}: cut, or not a record of a run")
+    if wrong := files.damage(run, record) or next(iter(record_problems(record)), ""):
+        raise InputError(wrong)
     try:
         return {
             **{n: record[n] for n in ("run_id", "suite", "scenario", "seed", "status", "reason")},

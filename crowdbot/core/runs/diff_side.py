@@ -17,7 +17,8 @@ from crowdbot.errors import InputError
 
 #: What a run says about itself that two equal runs need not have in common.
 _PASSING = (
-    "cpu_time", "machine", "planner_step_time", "real_time_factor", "references", "wall_time",
+    "cpu_time", "files", "machine", "planner_step_time", "real_time_factor", "references",
+    "wall_time",
 )  # fmt: skip
 
 

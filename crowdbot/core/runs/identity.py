@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,11 +13,14 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.outcome import PLANNER_FAILED
+from crowdbot.core.runs.record_model import record_problems
 from crowdbot.core.runs.request import Request
 from crowdbot.core.scenarios.lock import Population, population
 from crowdbot.dsl.canonical import content_hash
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
+
+_LOG = logging.getLogger("crowdbot")
 
 ROBOT_ALONE, CROWD_ALONE = "robot_alone", "crowd_alone"
 #: How the people of a scenario are found.
@@ -76,7 +81,7 @@ class Reference:
     def complete(self) -> bool:
         """Whether it is there and no planner failed in it, which may have a passing cause."""
         record = files.read_record(self.directory) or {}
-        return record.get("run_id") == self.run_id and record["status"] != PLANNER_FAILED
+        return self.finished and record.get("status") != PLANNER_FAILED
 
 
 def prepare(
@@ -177,9 +182,40 @@ def reusable_record(request: Request, run_id: str, *, compared: bool) -> dict[st
     """
     record = files.read_record(request.directory)
     if record is None or record.get("run_id") != run_id:
+        if record is None and request.directory.is_dir():
+            _LOG.warning("%s: run.json is missing or cut; it is made again", request.directory)
+        return None
+    if wrong := files.damage(request.directory, record) or next(iter(record_problems(record)), ""):
+        _LOG.warning("%s: %s; it is made again", request.directory, wrong)
         return None
     if record.get("recorded") != request.record or (compared and not record.get("references")):
         return None
     if request.replay and not (request.directory / files.REPLAY).exists():
         return None
     return record
+
+
+def recorded_otherwise(request: Request, identity: Mapping[str, Any]) -> tuple[str, ...]:
+    """In what the run that is there now differs from the one that is wanted, by dotted keys.
+
+    Empty where none is there, or the very same.
+    """
+    before = files.read_record(request.directory)
+    if before is None:
+        return ()
+    keys = (*identity, *(k for k in ("step_budget",) if k in before and k not in identity))
+    wanted = json.loads(json.dumps({**identity, "recorded": request.record}))
+    found = []
+    for key in (*keys, "recorded"):
+        a, b = _flat(key, before.get(key)), _flat(key, wanted.get(key))
+        if key == "hashes":
+            a.pop("hashes.trajectory", None)
+        found += sorted(name for name in a.keys() | b.keys() if a.get(name) != b.get(name))
+    return tuple(found)
+
+
+def _flat(name: str, value: Any) -> dict[str, Any]:
+    """A document as dotted key -> value; lists are values, as JSON says them."""
+    if isinstance(value, Mapping):
+        return {k: v for key in value for k, v in _flat(f"{name}.{key}", value[key]).items()}
+    return {name: list(value) if isinstance(value, (list, tuple)) else value}

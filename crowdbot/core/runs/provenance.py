@@ -28,6 +28,17 @@ def digest(document: Mapping[str, Any]) -> str:
     return f"cb1-sha256:{hashlib.sha256(text.encode()).hexdigest()}"
 
 
+def recording_hashes(run_id: str, identity: Mapping[str, Any]) -> dict[str, str]:
+    """What the header of a recording says about whose it is.
+
+    Args:
+        run_id: of the run, or of the calibration run.
+        identity: what that is the hash of.
+    """
+    found = {"run": run_id}
+    return found | ({"planner": digest(identity["planner"])} if "planner" in identity else {})
+
+
 def trajectory_hash(run: Trajectories) -> str:
     """Hash of every simulated number of a run; wall times are left out.
 
@@ -66,13 +77,14 @@ def _versions() -> tuple[tuple[str, str], ...]:
 
 
 def plugins(registry: Registry) -> list[dict[str, Any]]:
-    """The plugins that were loaded; of those that are not installed, the hash of their files."""
+    """The plugins that were loaded; of those that are not pinned, the hash of their files."""
     return [
         {
             "name": p.name,
             "distribution": p.distribution,
             "pinned": p.pinned,
             **({} if p.pinned else {"sha256": p.sha256}),
+            **({"data": p.data} if p.data else {}),
         }
         for p in registry.plugins
         if not p.error

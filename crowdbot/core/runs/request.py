@@ -11,11 +11,14 @@ from typing import Any, Literal
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.recording import read_trajectories
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.scoring.metric import References
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
+from crowdbot.errors import InputError
 
 Recorded = Literal["all", "used", "none"]
 
@@ -29,11 +32,14 @@ class Run:
         record: ``run.json``.
         scores: what was computed when it was made.
         reused: it had been there already.
+        replaced: in what the run that was there before was recorded otherwise; empty where none
+            was, or the same one.
     """
 
     directory: Path
     record: Mapping[str, Any] = field(repr=False)
     reused: bool = False
+    replaced: tuple[str, ...] = ()
     _keep: object = field(default=None, repr=False, compare=False)
 
     @property
@@ -102,7 +108,14 @@ class Request:
 
     @property
     def directory(self) -> Path:
-        """Where the run goes."""
+        """Where the run goes.
+
+        Raises:
+            InputError: a name leads out of the root, or is one that crowdbot needs itself.
+        """
+        for name in (self.suite, self.scenario.id, self.choice.label):
+            if why := path_problem(name):
+                raise InputError(f"no folder can be called '{name[:80]}': it {why}")
         return self.out / self.suite / self.scenario.id / self.choice.label / f"seed-{self.seed}"
 
 
@@ -115,15 +128,30 @@ def read_references(paths: Mapping[str, Path]) -> References:
     return References(**runs)
 
 
+def reference_hashes(paths: Mapping[str, Path]) -> dict[str, str]:
+    """Hashes of the calibration runs' trajectories, by name; kept as long as the files stay."""
+    return {name: _kept_hash(*_state_of(path)) for name, path in paths.items()}
+
+
 def _read_kept(path: Path) -> Trajectories:
     try:
-        state = path.stat()
+        state = _state_of(path)
     except OSError:
         return read_trajectories(path)  # says what is wrong
-    return _kept(path.resolve(), state.st_ino, state.st_mtime_ns, state.st_size)
+    return _kept(*state)
+
+
+def _state_of(path: Path) -> tuple[Path, int, int, int]:
+    state = path.stat()
+    return path.resolve(), state.st_ino, state.st_mtime_ns, state.st_size
 
 
 @lru_cache(maxsize=4)  # with 200 people for 180 s one takes 18 MB
 def _kept(path: Path, *state: int) -> Trajectories:
     del state  # another one is another recording
     return read_trajectories(path)
+
+
+@lru_cache(maxsize=64)
+def _kept_hash(path: Path, *state: int) -> str:
+    return provenance.trajectory_hash(_kept(path, *state))

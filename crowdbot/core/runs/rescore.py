@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.recording.commands import read_commands
-from crowdbot.core.recording.reader import holds_run, read_trajectories
+from crowdbot.core.recording.reader import WholeRecording, holds_run, read_whole
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.runs.recordings import RecordingSource, find_source
 from crowdbot.core.scoring.evaluate import score
@@ -34,6 +34,7 @@ class RescoreRequest:
         commands, commands_baseline: CSV files, or recordings with the two topics.
         limits: largest speed (m/s) and yaw rate (rad/s) that can be commanded.
         questionnaires: CSV file.
+        allow_incomplete: score a recording that is cut as far as it can be read.
         plugins, allow: what a process of its own has to load: paths, and the allow-list.
     """
 
@@ -48,44 +49,82 @@ class RescoreRequest:
     questionnaires: Path | None = None
     metrics: tuple[str, ...] = ("*",)
     variants: str = "all"
+    allow_incomplete: bool = False
     plugins: tuple[Path, ...] = ()
     allow: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rescored:
-    """Scores of one run, or why there are none."""
+    """Scores of one run, or why there are none.
+
+    Attributes:
+        until: s, how far the recording could be read; None where none was read.
+        complete: whether it goes to the end of the run.
+    """
 
     source: RecordingSource
     scores: tuple[Score, ...] = ()
+    until: float | None = None
+    complete: bool = True
     error: str = ""
     exit_code: int = 0
+
+
+class IncompleteError(InputError):
+    """A recording is cut; ``until`` says how far it can be read, s."""
+
+    def __init__(self, text: str, until: float) -> None:
+        super().__init__(text)
+        self.until = until
 
 
 def rescore(request: RescoreRequest, registry: Registry) -> Rescored:
     """Score one run again from what was recorded.
 
     Raises:
+        IncompleteError: a recording is cut, and that is not allowed.
         CrowdbotError: it cannot be read, or a metric failed.
     """
     source, run = RecordingSource(path=Path(), recording=Path()), None
+    found: list[WholeRecording] = []
+
+    def read(file: Path | None, robot: str | None = None) -> Trajectories | None:
+        if file is None:
+            return None
+        found.append(_read(file, robot, allowed=request.allow_incomplete))
+        return found[-1].run
+
     if request.path is not None:
         source = find_source(request.path, request.robot_alone, request.crowd_alone)
         # a recording of nothing but commands is not a run, and need not be one
         if request.topics is None or holds_run(source.recording):
-            run = read_trajectories(source.recording, request.robot)
+            run = read(source.recording, request.robot)
     scores = score(
         registry,
         run,
-        _reference(source.robot_alone),
-        _reference(source.crowd_alone),
+        read(source.robot_alone),
+        read(source.crowd_alone),
         commands=_commands(request, request.commands, source),
         commands_baseline=_commands(request, request.commands_baseline, None),
         questionnaires=_answers(request.questionnaires),
         metrics=request.metrics,
         variants=request.variants,
     )
-    return Rescored(source=source, scores=tuple(scores))
+    return Rescored(
+        source=source,
+        scores=tuple(scores),
+        until=None if run is None else found[0].until,
+        complete=all(one.complete for one in found),
+    )
+
+
+def _read(file: Path, robot: str | None, *, allowed: bool) -> WholeRecording:
+    found = read_whole(file, robot)
+    if not found.complete and not allowed:
+        text = f"{file}: the recording is cut: it can be read until {found.until:g} s"
+        raise IncompleteError(f"{text}; --allow-incomplete scores what is there", found.until)
+    return found
 
 
 def rescore_all(
@@ -116,7 +155,14 @@ def _guarded(request: RescoreRequest, registry: Registry | None = None) -> Resco
         if str(path) not in text:
             text = f"{path}: {text}"
         source = RecordingSource(path=path, recording=path)
-        return Rescored(source=source, error=text, exit_code=error.exit_code)
+        until = error.until if isinstance(error, IncompleteError) else None
+        return Rescored(
+            source=source,
+            error=text,
+            exit_code=error.exit_code,
+            until=until,
+            complete=until is None,
+        )
 
 
 @cache
@@ -141,10 +187,6 @@ def _commands(
     if recording is None:
         return None
     return read_commands(recording, *request.topics, v_max=v_max, w_max=w_max)
-
-
-def _reference(file: Path | None) -> Trajectories | None:
-    return None if file is None else read_trajectories(file)
 
 
 def _answers(file: Path | None) -> Questionnaires | None:

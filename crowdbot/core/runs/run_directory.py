@@ -19,6 +19,7 @@ RECORD, RECORDING, SCENARIO, SCORES, REPLAY = (
     "run.json", "run.mcap", "scenario.yaml", "scores.csv", "replay.html",
 )  # fmt: skip
 _LOCK = ".lock"
+_NEEDED = (RECORDING, SCENARIO, SCORES)
 
 
 def read_record(directory: Path) -> dict[str, Any] | None:
@@ -33,7 +34,33 @@ def read_record(directory: Path) -> dict[str, Any] | None:
 def is_complete(directory: Path, run_id: str) -> bool:
     """Whether a directory holds the complete run of this id."""
     record = read_record(directory)
-    return record is not None and record.get("run_id") == run_id
+    return record is not None and record.get("run_id") == run_id and not damage(directory, record)
+
+
+def sizes(folder: Path) -> dict[str, int]:
+    """Name -> bytes of the files that a run cannot do without, for its record."""
+    return {name: (folder / name).stat().st_size for name in _NEEDED if (folder / name).is_file()}
+
+
+def damage(directory: Path, record: Mapping[str, Any]) -> str:
+    """What is missing or cut in the directory of a run, in words; empty where nothing is.
+
+    Args:
+        directory: of a run, or of a calibration run.
+        record: its ``run.json``, which says how large its files are.
+    """
+    listed = record.get("files")
+    for name in _NEEDED:
+        if name == SCORES and "reference" in record:
+            continue
+        try:
+            size = (directory / name).stat().st_size
+        except OSError:
+            return f"{name} is missing"
+        wanted = listed.get(name) if isinstance(listed, Mapping) else None
+        if isinstance(wanted, int) and size != wanted:
+            return f"{name} has {size} bytes instead of {wanted}"
+    return ""
 
 
 def write_json(path: Path, document: Mapping[str, Any]) -> None:

@@ -42,6 +42,24 @@ class Population:
     source: Literal["locked", "drawn", "none"]
 
 
+def _check_draw(files: LockFiles, scenario: Scenario, origin: Scenario, name: str | None) -> None:
+    """Whether the people of a scenario are those that the lock names for it.
+
+    Raises:
+        InputError: somebody edited the lock.
+    """
+    locked = files.lock.scenarios[origin.id]
+    if population_inputs(scenario) != population_inputs(origin) or locked.draw is None:
+        return  # changed with --set, or a calibration run with people of its own
+    found = files.lock.draws[name].realisation if name is not None else "none"
+    if name != locked.draw or found != locked.realisation:
+        raise InputError(
+            f"{files.lock_path.name}: the realisation of {origin.id} is {locked.realisation[:30]}, "
+            f"that of its table '{locked.draw}' is {found[:30]}: the lock was edited; restore it, "
+            f"or run {files.command}"
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class Made:
     """A new lock, its tables by name, and how many of these were drawn just now."""
@@ -68,6 +86,7 @@ def population(scenario: Scenario, registry: Registry) -> Population:
     files = scenario.locked.files
     check_fits(files, scenario.locked.origin(), registry)
     name = files.lock.table_of(population_inputs(scenario))
+    _check_draw(files, scenario, scenario.locked.origin(), name)
     if name is None:
         return Population(realise(scenario), "drawn")
     text = files.table(name)

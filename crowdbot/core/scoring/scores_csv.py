@@ -72,8 +72,19 @@ def write_table(path: Path, rows: Iterable[Sequence[str]]) -> None:
         InputError: it cannot be written there.
     """
     text = io.StringIO(newline="")
-    csv.writer(text).writerows(rows)
+    csv.writer(text).writerows([safe_cell(cell) for cell in row] for row in rows)
     atomic_write(path, text.getvalue())
+
+
+def safe_cell(cell: str) -> str:
+    """A cell that no spreadsheet takes for a formula: such a text gets an apostrophe in front."""
+    if not cell.startswith(("=", "+", "-", "@", "\t", "\r")):
+        return cell
+    try:
+        float(cell)
+    except ValueError:
+        return f"'{cell}"
+    return cell
 
 
 def read_scores_csv(path: str | os.PathLike[str]) -> list[RunScore]:

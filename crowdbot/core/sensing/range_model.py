@@ -16,6 +16,7 @@ from crowdbot.core.sensing.mount import mount_pose, sensor_pose_in_world
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sensing.sensor import NoiseGenerator
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.immutable import immutable
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 from crowdbot.dsl.range_sensor import RangeSensorSpec
@@ -58,7 +59,7 @@ class RangeModel:
         """
         spec, lost = self._spec, _KEPT
         for generator in self._noise:
-            distance += generator.errors(distance, rng)
+            distance += generator.errors(immutable(distance), rng)
         if spec.dropout > 0.0:
             lost = rng.random(len(distance)) < spec.dropout
         _finish(distance, lost, spec.range_min, spec.range_max, self._step)

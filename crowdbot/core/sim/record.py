@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import cast
 
 from crowdbot.core.crowd import CrowdEngine
@@ -40,7 +41,7 @@ def record_robot(setup: RunSetup, built: BuiltRun) -> Outcome:
         built.scenario, setup.agents, built.parts, setup.registry, built.model.skin_stiffness
     )
     check_start(built.parts, built.model, built.task.start, engine, built.name)
-    header = _header(built, engine)
+    header = replace(_header(built, engine), hashes=setup.hashes)
     with recording(setup, header) as (writer, ending), _watchdog(setup) as watchdog:
         sideways = isinstance(built.model.drive, HolonomicDrive)
         log = RunLog(writer, ids(engine), sideways=sideways)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
@@ -28,7 +28,7 @@ from crowdbot.errors import InputError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunSetup:
-    """What one recording needs."""
+    """What one recording needs; ``hashes`` say whose it is, and stand in its header."""
 
     scenario: Scenario
     agents: Realisation
@@ -42,6 +42,7 @@ class RunSetup:
     stop: Callable[[], bool]
     on_hang: Callable[[], object] | None
     step_budget: float | None = None
+    hashes: Mapping[str, str] = field(default_factory=dict)
 
 
 def record_crowd(setup: RunSetup, duration: float) -> Outcome:
@@ -55,7 +56,9 @@ def record_crowd(setup: RunSetup, duration: float) -> Outcome:
     engine = build_crowd(scenario, setup.agents, parts, registry)
     if engine is None:
         raise InputError(f"{scenario.id} has no crowd")
-    header = RecordingHeader(scenario=scenario.id, agents=agents(engine), walls=parts.walls)
+    header = RecordingHeader(
+        scenario=scenario.id, hashes=setup.hashes, agents=agents(engine), walls=parts.walls
+    )
     begin, cpu = time.perf_counter(), time.process_time()
     now = 0.0
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import CROWD_ALONE, Reference
 from crowdbot.core.runs.outcome import INTERRUPTED, PLANNER_FAILED, Outcome
@@ -46,7 +47,8 @@ def make_reference(request: Request, reference: Reference) -> Outcome:
             _LOG.warning("%s: the planner failed: %s", reference.name, outcome.reason)
         write_scenario(folder, reference.trial.scenario, request.registry)
         names = {"run_id": reference.run_id, "reference": reference.name}
-        files.write_json(folder / files.RECORD, {**names, **reference.key, **ending(outcome)})
+        record = {**names, **reference.key, **ending(outcome), "files": files.sizes(folder)}
+        files.write_json(folder / files.RECORD, record)
         files.publish(folder, reference.directory)
     return outcome
 
@@ -74,6 +76,7 @@ def setup_of(request: Request, reference: Reference, folder: Path) -> RunSetup:
         stop=request.stop,
         on_hang=request.on_hang,
         step_budget=request.step_budget,
+        hashes=provenance.recording_hashes(reference.run_id, reference.key),
     )
 
 

@@ -18,12 +18,19 @@ from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import (
     Prepared,
     prepare,
+    recorded_otherwise,
     references_of,
     reusable_record,
     run_identity,
 )
 from crowdbot.core.runs.outcome import Progress
-from crowdbot.core.runs.request import Recorded, Request, Run, read_references
+from crowdbot.core.runs.request import (
+    Recorded,
+    Request,
+    Run,
+    read_references,
+    reference_hashes,
+)
 from crowdbot.core.runs.run_record import run_record, write_scenario
 from crowdbot.core.scoring.evaluate import Scores, metric_specs, score
 from crowdbot.core.scoring.scores_csv import write_scores_csv
@@ -34,6 +41,7 @@ from crowdbot.core.sim.record import record_robot
 from crowdbot.core.sim.record_crowd import RunSetup
 from crowdbot.core.sim.references import check_interrupted, make_references, partial
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
 
@@ -117,7 +125,7 @@ def _check_options(seed: int, suite: str, record: str, step_budget: float | None
     """
     if seed < 0:
         raise InputError(f"the seed of a run must not be negative: {seed}")
-    if suite != Path(suite).name:
+    if suite != Path(suite).name or path_problem(suite):
         raise InputError(f"suite '{suite}' is not the name of a folder")
     if record not in get_args(Recorded):
         choices = " or ".join(map(repr, get_args(Recorded)))
@@ -145,10 +153,11 @@ def make_run(request: Request, prepared: Prepared, keep: object = None) -> Run:
         record = reusable_record(request, run_id, compared=bool(references))
         if record is not None:
             return Run(request.directory, record, reused=True, _keep=keep)
+    replaced = recorded_otherwise(request, identity)
     with gc_frozen():
         paths = make_references(request, references)
         record = _record_run(request, prepared, built, identity, paths)
-    return Run(request.directory, record, _keep=keep)
+    return Run(request.directory, record, replaced=replaced, _keep=keep)
 
 
 # --------------------------------------------------------------------------- the run
@@ -161,7 +170,7 @@ def _record_run(
 ) -> dict[str, Any]:
     final = request.directory
     with partial(final) as folder:
-        outcome = record_robot(_setup(request, prepared, folder), built)
+        outcome = record_robot(_setup(request, prepared, folder, identity), built)
         check_interrupted(outcome, folder)
         run, scans = read_run(folder / files.RECORDING, REPLAY_RATE)
         calibration = read_references(references)
@@ -174,6 +183,7 @@ def _record_run(
         )
         record = run_record(request, identity, references, outcome, run, scores, parts=built.parts)
         record["agents"] = prepared.run.people.source
+        record["reference_hashes"] = reference_hashes(references)
         _write_files(request, folder, run, scans, scores, record)
         files.publish(folder, final)
     return record
@@ -192,7 +202,7 @@ def _write_files(
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
     if request.replay:
         _write_replay(request, folder / files.REPLAY, run, scans, scores, record)
-    files.write_json(folder / files.RECORD, record)
+    files.write_json(folder / files.RECORD, {**record, "files": files.sizes(folder)})
 
 
 def _write_replay(
@@ -223,7 +233,9 @@ def _write_replay(
     )
 
 
-def _setup(request: Request, prepared: Prepared, folder: Path) -> RunSetup:
+def _setup(
+    request: Request, prepared: Prepared, folder: Path, identity: Mapping[str, Any]
+) -> RunSetup:
     return RunSetup(
         scenario=request.scenario,
         agents=prepared.run.people.agents,
@@ -237,4 +249,5 @@ def _setup(request: Request, prepared: Prepared, folder: Path) -> RunSetup:
         stop=request.stop,
         on_hang=request.on_hang,
         step_budget=request.step_budget,
+        hashes=provenance.recording_hashes(provenance.digest(identity), identity),
     )

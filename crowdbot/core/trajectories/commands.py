@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crowdbot.core.support.csv_columns import read_columns
+from crowdbot.core.support.immutable import immutable
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
@@ -97,5 +98,4 @@ def _column(name: str, values: ArrayLike) -> Array:
         raise InputError(f"commands: {name}: {error}") from error
     if column.ndim != 1 or not np.all(np.isfinite(column)):
         raise InputError(f"commands: {name} must be a row of finite numbers")
-    column.setflags(write=False)
-    return column
+    return immutable(column)

@@ -13,6 +13,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crowdbot.core.support.immutable import immutable
 from crowdbot.core.trajectories.csv_tables import read_tables
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
@@ -28,8 +29,7 @@ def _read_only(values: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
         array = np.array(values, dtype=dtype)
     except (TypeError, ValueError) as error:
         raise InputError(f"trajectories: not an array of numbers: {error}") from error
-    array.setflags(write=False)
-    return array
+    return immutable(array)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -271,7 +271,18 @@ class Trajectories:
             signals={k: _read_only(v) for k, v in (signals or {}).items()},
         )
         _check(run)
+        _check_travellers(run)
         return run
+
+
+def _check_travellers(run: Trajectories) -> None:
+    """Trips of people who do not exist would be counted, and lengths looked up for others."""
+    if run.trips is None or run.agents is None:
+        return
+    unknown = np.setdiff1d(run.trips.agent, run.agents.id)
+    if len(unknown):
+        some = ", ".join(map(str, unknown[:3])) + (", …" if len(unknown) > 3 else "")
+        raise InputError(f"trajectories: trip_agent has ids that no agent_id has: {some}")
 
 
 def _path(path: Path | str | None) -> Path | None:

@@ -7,20 +7,28 @@ import zipfile
 from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from crowdbot.core.bundle.manifest import MANIFEST
 from crowdbot.core.bundle.pack import Submission, pack
 from crowdbot.core.planning.resolve import resolve_planner
+from crowdbot.core.recording import (
+    RecordingHeader,
+    RecordingWriter,
+    RobotHeader,
+    read_trajectories,
+)
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.scenarios.library import open_suite
 from crowdbot.core.scenarios.lock import make_lock, write_lock
 from crowdbot.core.scenarios.lock_check import spec_of
+from crowdbot.core.scoring.score_factory import ScoreFactory
 from crowdbot.core.scoring.scores_csv import write_scores_csv
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.canonical import dump_scenario_yaml
+from crowdbot.dsl.metric_component import MetricComponent
 
 TINY = """\
 crowdbot: 1
@@ -48,11 +56,16 @@ def write_suite(folder: Path) -> Path:
 
 
 def scores(*values: float) -> list[Score]:
+    known = registry().components("metric")
     return [
-        Score(metric=m, symbol=m, category="task", variant="corrected", unit="1",
-              better="higher", value=v)
+        ScoreFactory(cast(MetricComponent[Any], known[m])).ok("corrected", v)
         for m, v in zip(METRICS, values, strict=True)
-    ]  # fmt: skip
+    ]
+
+
+def versions() -> dict[str, Any]:
+    known = registry().components("metric")
+    return {m: {"spec_version": known[m].spec_version} for m in METRICS}
 
 
 def make_runs(
@@ -83,8 +96,8 @@ def make_runs(
                 "run_id": provenance.digest(identity), **identity,
                 "hashes": {**identity["hashes"], "trajectory": f"cb1-sha256:{number}{seed}"},
                 "pinned": choice.pinned, "privileged": choice.privileged, "status": "arrived",
-                "goal_time": 0.5,
-                "metrics": {m: {"spec_version": 1} for m in METRICS}, "density": 0.1,
+                "goal_time": 0.5, "reason": "", "sim_time": 1.0, "wall_time": 0.1,
+                "metrics": versions(), "density": 0.1, "reference_hashes": {},
                 "machine": provenance.machine(), "references": {}, **more,
             }  # fmt: skip
             files.write_json(folder / files.RECORD, record)
@@ -96,6 +109,32 @@ def make_runs(
             )  # fmt: skip
 
 
+def write_recording(
+    path: Path, scenario: str, hashes: Mapping[str, str], speed: float, *, whole: bool = True
+) -> str:
+    """A recording of a second in which a robot drives straight on; the hash of what happens."""
+    robot = RobotHeader(radius=0.2, mass=10.0)
+    writer = RecordingWriter(
+        path, RecordingHeader(scenario=scenario, hashes=hashes, robot=robot), record="none"
+    )
+    for i in range(17):
+        writer.state(i / 16, (speed * i / 16, 0.0, 0.0, speed, 0.0), None)
+    writer.close(0.5, whole, "arrived")
+    return provenance.trajectory_hash(read_trajectories(path))
+
+
+def record_runs(root: Path) -> None:
+    """Give every run a recording, and its record the hash of that."""
+    for number, file in enumerate(sorted(root.rglob("run.json"))):
+        record = json.loads(file.read_text())
+        hashes = provenance.recording_hashes(record["run_id"], record)
+        recording = file.with_name("run.mcap")
+        record["hashes"]["trajectory"] = write_recording(
+            recording, record["scenario"], hashes, 0.1 * number
+        )
+        files.write_json(file, record)
+
+
 def make_bundle(folder: Path, planner: str = "dwa", name: str = "team.cbz", **more: Any) -> Path:
     """A bundle of made-up runs."""
     suite = folder / "tiny.yaml"
@@ -103,6 +142,8 @@ def make_bundle(folder: Path, planner: str = "dwa", name: str = "team.cbz", **mo
     root = folder / f"runs-{name}"
     options = {k: more.pop(k) for k in ("team", "partial", "recordings") if k in more}
     make_runs(root, suite, planner, **more)
+    if options.get("recordings"):
+        record_runs(root)
     expansion, lock = open_suite(str(suite), registry())
     label = resolve_planner(planner, registry()).label
     pack(Submission(root=root, planner=label, **options), expansion, lock, registry(),
@@ -142,5 +183,7 @@ def rewrite(
     target = bundle.with_name(f"changed-{bundle.name}")
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as file:
         for name, content in members.items():
-            file.writestr(name, content)
+            stored = honest and name.endswith(".mcap")
+            kind = zipfile.ZIP_STORED if stored else zipfile.ZIP_DEFLATED
+            file.writestr(name, content, kind)
     return target

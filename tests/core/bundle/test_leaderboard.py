@@ -14,7 +14,7 @@ import pytest
 
 from crowdbot import cli
 from crowdbot.core.bundle.entries import load_entries, old_metrics
-from crowdbot.core.bundle.standings import standings
+from crowdbot.core.bundle.standings import set_apart, standings
 from crowdbot.core.bundle.verification import content_hash, record_path, save_verification
 from crowdbot.core.statistics.audit import Audit, audit, write_audit
 from crowdbot.errors import InputError
@@ -171,14 +171,18 @@ def changed_records(bundle: Path, **changes: Any) -> bytes:
     return rewrite(bundle, change, honest=True).read_bytes()
 
 
-def test_confounds_are_refused_unless_they_are_accepted(folder: Path, tmp_path: Path) -> None:
+def test_confounds_are_left_out_unless_they_are_accepted(folder: Path, tmp_path: Path) -> None:
     own = tmp_path / "own"
     own.mkdir()
     (own / "one.cbz").write_bytes((folder / "one.cbz").read_bytes())
     content = changed_records(folder / "two.cbz", conditions={"rates.log": "8 Hz"})
     (own / "two.cbz").write_bytes(content)
-    assert board(own, tmp_path / "page.html")[0] == 1
-    assert not (tmp_path / "page.html").exists()
+    code, page = board(own, tmp_path / "page.html")
+    assert code == 0
+    assert any("cannot be compared with one.cbz: rates" in w for w in page.words)
+    entries, _ = load_entries(own, registry())
+    assert [e.path.name for e in set_apart(entries, ())[0]] == ["one.cbz"]
+    assert len(set_apart(entries, ["rates"])[0]) == 2
     code, page = board(own, tmp_path / "page.html", "--accept", "rates")
     assert code == 0
     assert any("rates.log" in w and "accepted" in w for w in page.words)

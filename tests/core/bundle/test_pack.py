@@ -46,7 +46,7 @@ def test_a_whole_set_is_packed_and_fits(tmp_path: Path) -> None:
     with open_archive(bundle) as archive:
         manifest = archive.manifest
     assert (manifest.team, manifest.label, manifest.classed) == ("Us", "dwa", "sensors only")
-    assert (len(manifest.runs), manifest.seeds, manifest.missing) == (12, [0, 1], [])
+    assert (len(manifest.runs), manifest.seeds, manifest.missing) == (6, [0], [])
     assert manifest.edition.scenarios == 6
     assert manifest.edition.name.startswith("tiny · ")
 
@@ -61,12 +61,15 @@ def test_missing_runs_are_listed_and_refused(tmp_path: Path, runs: Path) -> None
     assert problems(tmp_path / "team.cbz") == []
 
 
-def test_every_scenario_has_the_same_seeds(tmp_path: Path, runs: Path) -> None:
-    folder = next((runs / "tiny").glob("*/dwa"))
-    shutil.copytree(folder / "seed-0", folder / "seed-1")
-    record = json.loads((folder / "seed-1" / "run.json").read_text())
-    (folder / "seed-1" / "run.json").write_text(json.dumps({**record, "seed": 1}))
-    with pytest.raises(InputError, match="5 of 12 runs are missing"):
+def test_every_scenario_has_the_seeds_of_the_suite(tmp_path: Path, runs: Path) -> None:
+    suite = tmp_path / "tiny.yaml"
+    suite.write_text(suite.read_text() + "seeds.runs: [0, 3]\n")
+    with pytest.raises(InputError, match=r"6 of 12 runs are missing:\n  .* seed-3"):
+        packed(tmp_path, runs)
+    for folder in (runs / "tiny").glob("*/dwa"):
+        (folder / "seed-0").rename(folder / "seed-3")
+    suite.write_text(suite.read_text().replace("seeds.runs: [0, 3]\n", ""))
+    with pytest.raises(InputError, match="with seeds 3 only; those of tiny are 0"):
         packed(tmp_path, runs)
 
 
@@ -105,10 +108,16 @@ def test_runs_of_another_state_of_the_suite_are_refused(tmp_path: Path, runs: Pa
         packed(tmp_path, runs)
 
 
-@pytest.mark.parametrize("key", ["versions", "planner", "pinned"])
-def test_runs_that_are_not_alike_are_refused(tmp_path: Path, runs: Path, key: str) -> None:
+@pytest.mark.parametrize(("key", "value"), [
+    ("versions", {"crowdbot": "9"}),
+    ("planner", {"kind": "dwa", "name": "dwa", "label": "dwa", "horizon": 9}),
+    ("pinned", False),
+])  # fmt: skip
+def test_runs_that_are_not_alike_are_refused(
+    tmp_path: Path, runs: Path, key: str, value: Any
+) -> None:
     folder = sorted((runs / "tiny").glob("*/dwa/seed-0"))[-1]
-    edit(folder, **{key: {"crowdbot": "9"}})
+    edit(folder, **{key: value})
     with pytest.raises(InputError, match=f"have different '{key}'"):
         packed(tmp_path, runs)
 
@@ -157,13 +166,15 @@ def test_a_changed_score_is_noticed(bundle: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(("change", "why"), [
     ({"seed": 5}, "its run_id is not the hash"),
-    ({"planner": {"kind": "dwa", "label": "dwa"}}, "its planner is not that of the manifest"),
+    ({"planner": {"kind": "dwa", "label": "dwa"}}, "run.json: 'planner.name': field required"),
+    ({"planner": {"kind": "dwa", "label": "dwa", "name": "dwa"}}, "its planner is"),
     ({"versions": {"crowdbot": "9.9"}}, "its versions are not those of the manifest"),
     ({"privileged": True}, "the manifest says 'sensors only', the run does not"),
-    ({"hashes": {"spec": "a", "trajectory": "b"}}, "the trajectory's hash"),
+    ({"hashes": {"spec": "a", "trajectory": "b"}}, "'hashes.realisation': field required"),
+    ({"hashes": {"spec": "a", "realisation": "c", "trajectory": "b"}}, "the trajectory's hash"),
     ({"hashes": {"realisation": "a"}}, "its people are not those of the lock"),
     ({"hashes": {"spec": "a"}}, "its hash is not that of the scenario that is installed here"),
-    ({"hashes": 3}, "its run_id is not the hash"),
+    ({"hashes": 3}, "run.json: 'hashes': input should be"),
     ({"goal_time": None}, "its status is 'arrived', but it has no time of arrival"),
 ])  # fmt: skip
 def test_a_forged_record_contradicts_itself(bundle: Path, change: Any, why: str) -> None:
@@ -190,7 +201,7 @@ def test_runs_that_the_manifest_forgets_are_noticed(bundle: Path) -> None:
         return json.dumps(manifest).encode()
 
     found = problems(rewrite(bundle, {MANIFEST: forget}))
-    assert any("1 scenarios are missing that the manifest says are there" in p for p in found)
+    assert any("1 runs are missing that the manifest says are there" in p for p in found)
 
 
 @pytest.mark.parametrize("content", [b"", b"\xff\xfe", b"{", b"[]"])

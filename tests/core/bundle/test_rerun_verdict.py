@@ -91,7 +91,21 @@ def test_times_of_the_wall_clock_are_nobodys_fault() -> None:
 
 def test_other_versions_of_a_metric_are_not_compared() -> None:
     run = claimed(scored(value=0.5), metrics={"risk": {"spec_version": 2}})
-    assert verdict_of([rerun(run)]).outcome == "verified"
+    found = verdict_of([rerun(run)])
+    assert (found.outcome, found.not_comparable) == ("not comparable", ("risk",))
+    assert found.findings == (
+        "risk is not comparable: version 2 was scored; here it has version 1",
+    )
+    elsewhere = rerun(run, trajectory="x", machine={"processor": "skylake"})
+    assert verdict_of([elsewhere]).outcome == "not comparable"
+
+
+def test_people_of_an_unlocked_suite_are_those_that_are_drawn() -> None:
+    true = {"hashes": {"realisation": "cb1-sha256:aa", "trajectory": "t"}}
+    run = claimed(hashes={"realisation": "cb1-sha256:bb", "trajectory": "t"})
+    found = verdict_of([rerun(run, **true)])
+    assert found.outcome == "suspicious"
+    assert "its people are claimed to have the hash cb1-sha256:bb" in found.findings[0]
 
 
 def test_another_trajectory_on_the_same_platform_is_suspicious() -> None:
@@ -160,3 +174,10 @@ def test_scores_that_are_all_too_good_are_noticed() -> None:
 def test_one_impossible_score_is_noticed() -> None:
     found = verdict_of(on_different_platform(np.array([0.0, -11.0 * SPREADS["risk"], 0.0])))
     assert found.findings[0].startswith("s1 seed-0: risk is off by -")
+
+
+def test_a_metric_that_does_not_exist_here_is_never_verified() -> None:
+    run = claimed(scored(), scored("glory"), metrics={"risk": {"spec_version": 1}, "glory": {}})
+    found = verdict_of([rerun(run)])
+    assert (found.outcome, found.not_comparable) == ("not comparable", ("glory",))
+    assert "here there is no such metric" in found.findings[0]

@@ -20,6 +20,7 @@ from mcap.records import Chunk, Header
 from mcap.writer import MCAP0_MAGIC, Writer
 
 from crowdbot.core.recording import RecordingWriter, read_scans, read_trajectories, recording_info
+from crowdbot.core.recording import records as records_module
 from crowdbot.core.recording.records import MAX_CHUNK
 from crowdbot.errors import InputError
 from tests.core.recording.recording_cases import (
@@ -216,3 +217,26 @@ def test_a_message_that_does_not_decode_is_named(tmp_path: Path) -> None:
     path.write_bytes(stream.getvalue())
     with pytest.raises(InputError, match=r"/crowdbot/header: .* cannot be decoded"):
         recording_info(path)
+
+
+def test_numbers_of_messages_are_bounded_like_bytes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Some hundred bytes of zeros packed well are more messages than anybody can look at."""
+    monkeypatch.setattr(records_module, "MAX_RECORDS", 1000)
+    path = tmp_path / "many.mcap"
+    empty = struct.pack("<BQHIQQ", 0x05, 22, 1, 0, 0, 0)
+    for count, refused in ((800, False), (40_000, True)):
+        plain = empty * count
+        packed = zstandard.ZstdCompressor().compress(plain)
+        builder = RecordBuilder()
+        Header(profile="", library="").write(builder)
+        Chunk(
+            compression="zstd", data=packed, message_start_time=0, message_end_time=0,
+            uncompressed_crc=0, uncompressed_size=len(plain),
+        ).write(builder)  # fmt: skip
+        path.write_bytes(MCAP0_MAGIC + builder.end())  # type: ignore[no-untyped-call]
+        why = "holds more messages than a recording may" if refused else "belongs to no topic"
+        with pytest.raises(InputError, match=why):
+            read_trajectories(path)
+    assert path.stat().st_size < 2000

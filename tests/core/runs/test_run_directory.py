@@ -29,7 +29,8 @@ def test_published_under_the_final_name_only(tmp_path: Path) -> None:
         files.publish(folder, final)
     assert sorted(p.name for p in final.iterdir()) == ["run.json", "run.mcap"]
     assert [p.name for p in final.parent.iterdir()] == ["seed-0"]
-    assert files.is_complete(final, "data")
+    assert (files.read_record(final) or {})["run_id"] == "data"
+    assert not files.is_complete(final, "data")  # it has no scenario and no scores
     assert not files.is_complete(final, "other")
 
 

@@ -46,6 +46,7 @@ import numpy as np
 from numba import carray, njit, types  # type: ignore[attr-defined]
 from numpy.typing import NDArray
 
+from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.types.arrays import Array
 
 #: What compiled code is handed instead of an array; indexed like one.
@@ -65,13 +66,14 @@ LOWER_BOUND = types.int64(_I, _P, _P, _P, _P, _P, _P)
 # acceleration; the policy's relaxation time; the weight (1 unless a case of the original says
 # otherwise, without unit) that divides forces; 1 if the original's defects are wanted; state of
 # the agent's random numbers (see `crowdbot.core.crowd.velocity_search.minstd`), which functions
-# may advance.
+# may advance; whether gradients are followed; whether some function returned NaN, which the search
+# notes there for itself.
 (
     PX, PY, VX, VY, RADIUS, PREFERRED, FASTEST, TIME_STEP,
     GX, GY, PVX, PVY, MAX_SPEED, MAX_ACCELERATION, RELAXATION, WEIGHT, PARITY, RANDOM,
-    DESCENDS,
-) = range(19)  # fmt: skip
-AGENT_SIZE = 19
+    DESCENDS, BROKEN,
+) = range(20)  # fmt: skip
+AGENT_SIZE = 20
 # Columns of ``near``, in no particular order: squared centre distance, relative position,
 # velocity, sum of radii; preferred velocity; 1 for a pillar (a disc that never moves).
 D2, RX, RY, NVX, NVY, REACH, NPX, NPY, STATIC = range(9)
@@ -97,6 +99,7 @@ class CompiledCost:
         gradient, optimum, lower_bound: numba functions of the signatures above, or None.
         ordered: excess has to be called for every candidate and in their order, because it draws
             random numbers.
+        call: the boundary to its plugin, which says its name; None without one.
     """
 
     base: Callable[..., Any]
@@ -108,6 +111,7 @@ class CompiledCost:
     optimum: Callable[..., Any] | None = None
     lower_bound: Callable[..., Any] | None = None
     ordered: bool = False
+    call: PluginCall | None = None
 
     def reach(self, radius: float, largest_radius: float) -> float:
         """Centre distance beyond which no neighbour counts, m."""
@@ -163,12 +167,14 @@ class NumpyCost:
         range: which neighbours and walls it is given, m.
         from_surface: whether the range is measured between surfaces.
         weight: factor of the cost, >= 0.
+        call: as of `CompiledCost`.
     """
 
     evaluate: Callable[[Array, AgentView, Neighbours], Array]
     range: float
     weight: float
     from_surface: bool = False
+    call: PluginCall | None = None
 
     def reach(self, radius: float, largest_radius: float) -> float:
         """Centre distance beyond which no neighbour counts, m."""

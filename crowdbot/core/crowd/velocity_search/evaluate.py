@@ -48,6 +48,7 @@ from crowdbot.core.crowd.velocity_search.neighbours import Starts, gather, gathe
 from crowdbot.core.crowd.velocity_search.surroundings import Surroundings, describe
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.immutable import immutable, immutable_fields
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 
@@ -89,10 +90,12 @@ class Evaluator:
                 around.table, around.starts, around.low, around.height, b, around.reach, around.near
             )
             walls = gather_walls(around.walls, agent[PX], agent[PY], around.reach, around.found)
-            seen = _agent_view(agent)
+            seen, tried = immutable_fields(_agent_view(agent)), immutable(velocities[i])
             for cost in self.costs.vectorised:
-                others = _neighbours(cost, agent, around.near[:count], around.found[:walls])
-                found = np.asarray(cost.evaluate(velocities[i], seen, others), np.float64)
+                others = immutable_fields(
+                    _neighbours(cost, agent, around.near[:count], around.found[:walls])
+                )
+                found = np.asarray(cost.evaluate(tried, seen, others), np.float64)
                 if found.shape != total[i].shape or np.any(np.isnan(found)):
                     raise ValueError(
                         f"a cost function returned {found.shape} numbers with "

@@ -16,7 +16,8 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
     cost_of,
     prepare,
 )
-from crowdbot.core.crowd.velocity_search.cost import DESCENDS, FASTEST, RANDOM, VX, VY
+from crowdbot.core.crowd.velocity_search.broken import check_numbers
+from crowdbot.core.crowd.velocity_search.cost import BROKEN, DESCENDS, FASTEST, RANDOM, VX, VY
 from crowdbot.core.crowd.velocity_search.cost_calls import call_gradient
 from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
 from crowdbot.core.crowd.velocity_search.neighbours import Starts
@@ -45,6 +46,7 @@ class Descent:
         costs, around = self.costs, self.costs.surroundings(view)
         found = np.zeros_like(view.position)
         _descend(*around, costs.functions, costs.weights, costs.active, np.zeros(2), found)
+        check_numbers(costs, view, around)
         if costs.vectorised:
             points = view.velocity[:, np.newaxis] + _AROUND
             total = Evaluator(costs).total(view, points, compiled=False)
@@ -96,6 +98,8 @@ def _descend(
                 )  # fmt: skip
             else:
                 _differences(costs, k, vx, vy, out)
+            if math.isnan(out[0]) or math.isnan(out[1]):
+                agent[BROKEN] = 1.0
             gx += weights[k] * out[0]
             gy += weights[k] * out[1]
         result[i, 0] = 0.0 if math.isnan(gx) else -gx  # two functions may forbid opposite sides

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -14,8 +15,9 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
     Functions,
     prepare,
 )
+from crowdbot.core.crowd.velocity_search.broken import check_numbers
 from crowdbot.core.crowd.velocity_search.candidates import EVERYWHERE
-from crowdbot.core.crowd.velocity_search.cost import RANDOM
+from crowdbot.core.crowd.velocity_search.cost import BROKEN, RANDOM
 from crowdbot.core.crowd.velocity_search.cost_calls import call_optimum
 from crowdbot.core.crowd.velocity_search.neighbours import Starts
 from crowdbot.core.crowd.velocity_search.sampling import Sampler
@@ -42,6 +44,7 @@ class Optimum:
         costs, around = self.costs, self.costs.surroundings(view)
         chosen, unknown = np.zeros_like(view.position), np.zeros(len(view.position), np.bool_)
         _solve(*around, costs.functions, costs.weights, costs.active, np.zeros(2), unknown, chosen)
+        check_numbers(costs, view, around)
         if np.any(unknown):
             chosen[unknown] = self.search.choose(replace(view, decides=unknown))[unknown]
         return chosen
@@ -78,4 +81,6 @@ def _solve(
         if known == 0:
             unknown[i] = True
         else:
+            if math.isnan(out[0]) or math.isnan(out[1]):
+                agent[BROKEN] = 1.0
             chosen[i, 0], chosen[i, 1] = out[0], out[1]

@@ -20,6 +20,7 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
     in_preferred_frame,
     prepare,
 )
+from crowdbot.core.crowd.velocity_search.broken import check_numbers, report_broken
 from crowdbot.core.crowd.velocity_search.candidates import (
     ALONG_PREFERRED,
     ZERO,
@@ -99,6 +100,7 @@ class Sampler:
             self._candidates, self._polar, self._tabulated, self._bound, self._index, self._first,
             self._frame, self._world, costs.active, self._tried, chosen,
         )  # fmt: skip
+        check_numbers(costs, view, around)
         return chosen
 
     def candidates(self, view: CrowdView) -> Array:
@@ -114,6 +116,8 @@ class Sampler:
         """Every candidate by every function, where some of these are vectorised."""
         found = self.candidates(view)
         total = Evaluator(self.costs).total(view, found)
+        if np.any(np.isnan(total)):
+            report_broken(self.costs, view, "a cost")
         best = np.argmin(total, axis=1)
         rows = np.arange(len(found))
         chosen = found[rows, best]
@@ -130,6 +134,8 @@ class Sampler:
             self._candidates, costs.traits, self._options.radius, dt, costs.functions,
             costs.weights, np.zeros(AGENT_SIZE), total,
         )  # fmt: skip
+        if np.any(np.isnan(total)):
+            report_broken(costs, None, "base")
         self._index = np.argsort(total, axis=1, kind="stable")
         self._bound = np.take_along_axis(total, self._index, axis=1)
         self._table_dt = dt

@@ -19,7 +19,7 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
     in_preferred_frame,
 )
 from crowdbot.core.crowd.velocity_search.candidates import draw_candidates
-from crowdbot.core.crowd.velocity_search.cost import MAX_SPEED, PREFERRED, PVX, PVY
+from crowdbot.core.crowd.velocity_search.cost import BROKEN, MAX_SPEED, PREFERRED, PVX, PVY
 from crowdbot.core.crowd.velocity_search.cost_calls import call_lower_bound
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices
@@ -56,6 +56,8 @@ def set_bounds(
         ux = x + candidates[c, 0] * along - candidates[c, 1] * across
         uy = y + candidates[c, 0] * across + candidates[c, 1] * along
         bound[c] = base_cost(ux, uy, preferred, fastest, functions, weights)
+        if math.isnan(bound[c]):
+            agent[BROKEN] = 1.0
         if bound[c] < bound[least]:
             least = c
     return least
@@ -113,7 +115,11 @@ def cost_within(ux: float, uy: float, base: float, best: float, costs: AgentCost
     for term in range(costs.active.shape[0]):
         k = costs.active[term]
         weight = costs.weights[k]
-        cost += weight * excess_of(costs, k, ux, uy, (most - cost) / weight)
+        budget = (most - cost) / weight
+        excess = excess_of(costs, k, ux, uy, budget)
+        if math.isnan(excess) and not math.isnan(budget):
+            costs.agent[BROKEN] = 1.0
+        cost += weight * excess
         if cost > best:
             break
     return cost
@@ -156,6 +162,8 @@ def try_in_order(
         for term in range(costs.active.shape[0]):
             k = costs.active[term]
             cost += costs.weights[k] * excess_of(costs, k, ux, uy, math.inf)
+        if math.isnan(cost):
+            agent[BROKEN] = 1.0
         if cost < best:
             best, place = cost, c
     return best, place

@@ -1,0 +1,83 @@
+"""Whether a bundle is of the edition that is installed here: suite, lock, rules, seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from crowdbot.core.bundle.manifest import LOCK, RULES, Manifest
+from crowdbot.core.bundle.verification import content_hash
+from crowdbot.dsl.expand import Expansion
+
+_SHOWN = 3
+
+
+def missing_runs(expansion: Expansion, there: set[tuple[str, int]]) -> list[str]:
+    """``ID seed-N`` of the edition's runs that are not there, in the suite's order.
+
+    Args:
+        expansion: of the suite, which says the seeds.
+        there: scenario and seed of the runs.
+    """
+    return [
+        f"{scenario.id} seed-{seed}"
+        for scenario in expansion.scenarios
+        for seed in expansion.run_seeds
+        if (scenario.id, seed) not in there
+    ]
+
+
+def lock_of(expansion: Expansion) -> Path | None:
+    """The lock file of a suite; None where it has none."""
+    found = (s.locked.files.lock_path for s in expansion.scenarios if s.locked is not None)
+    path = next(found, None)
+    return path if path is not None and path.exists() else None
+
+
+def edition_problems(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
+    """Everything that a manifest says about its edition and that does not hold."""
+    edition, name = manifest.edition, expansion.suite_id
+    lock = lock_of(expansion)
+    wanted = {
+        "suite": name,
+        "title": expansion.title,
+        "lock": content_hash(lock) if lock else "",
+        "scenarios": len(expansion.scenarios),
+        "rules": RULES,
+    }
+    for key, value in wanted.items():
+        said = getattr(edition, key)
+        if said != value:
+            yield f"the edition's {key} is {_shown(said)}, that of {name} here is {_shown(value)}"
+    member = manifest.members.get(LOCK)
+    if edition.lock != (member.sha256 if member else ""):
+        yield f"the edition is not that of {LOCK}"
+    if tuple(manifest.seeds) != expansion.run_seeds:
+        seeds = ", ".join(map(str, manifest.seeds[:10]))
+        own = ", ".join(map(str, expansion.run_seeds[:10]))
+        yield f"its seeds are {seeds or 'none'}; the edition's are {own}"
+    if manifest.versions.get("crowdbot") != manifest.crowdbot:
+        yield "the manifest names two versions of crowdbot"
+    yield from _missing(manifest, expansion)
+
+
+def _missing(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
+    """Runs that are neither there nor said to be missing, and the other way round."""
+    there = {(r.scenario, r.seed) for r in manifest.runs}
+    lacking, said = missing_runs(expansion, there), set(manifest.missing)
+    hidden = [n for n in lacking if n not in said]
+    if hidden:
+        yield f"{len(hidden)} runs are missing that the manifest says are there: " \
+              f"{', '.join(hidden[:_SHOWN])}"  # fmt: skip
+    invented = sorted(said - set(lacking))
+    if invented or len(said) < len(manifest.missing):
+        some = ", ".join(n[:100] for n in invented[:_SHOWN]) or "one run twice"
+        yield f"the manifest's list of missing runs is wrong: {some}"
+    for run in manifest.runs:
+        if run.seed not in expansion.run_seeds:
+            yield f"{run.scenario[:200]} seed-{run.seed} is not a run of the edition"
+
+
+def _shown(value: object) -> str:
+    text = str(value)
+    return f"'{text[:60]}'" if isinstance(value, str) else text

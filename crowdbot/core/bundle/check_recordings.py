@@ -1,0 +1,125 @@
+"""Whether the recordings of a bundle are those of its runs: each is read, and hashed again."""
+
+from __future__ import annotations
+
+import posixpath
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from crowdbot.core.bundle.archive import Archive
+from crowdbot.core.bundle.check_run import ClaimedRun
+from crowdbot.core.bundle.pack import read_json
+from crowdbot.core.recording import WholeRecording, read_whole
+from crowdbot.core.runs import provenance
+from crowdbot.core.runs import run_directory as files
+from crowdbot.errors import InputError
+
+#: What the record of a calibration run has besides what its id is the hash of.
+_ENDING = (
+    "run_id", "reference", "status", "reason", "goal_time", "sim_time", "wall_time", "cpu_time",
+    "real_time_factor", "planner_step_time", "clamped_commands", "files",
+)  # fmt: skip
+
+
+def recording_problems(archive: Archive, runs: Sequence[ClaimedRun]) -> Iterator[str]:
+    """What is wrong with the recordings that are in a bundle; nothing where there are none.
+
+    Args:
+        archive: members and records of it fit each other already.
+        runs: all runs of it.
+    """
+    used: dict[str, str] = {}
+    for run in runs:
+        name = f"{run.entry.directory}/{files.RECORDING}"
+        if name not in archive.names:
+            continue
+        yield from (f"{name}: {text}" for text in _run_problems(archive, run, name))
+        for reference, place in reference_members(run).items():
+            wanted = run.record.get("reference_hashes", {}).get(reference)
+            if place not in archive.names:
+                yield f"{run.name}: its {reference} is not there: {place[:200]}"
+            elif wanted is None or used.setdefault(place, wanted) != wanted:
+                yield f"{run.name}: {files.RECORD} has no right hash of its {reference}"
+    for place, wanted in sorted(used.items()):
+        yield from (f"{place}: {text}" for text in _reference_problems(archive, place, wanted))
+    yield from _strangers(archive, set(used))
+
+
+def reference_members(run: ClaimedRun) -> dict[str, str]:
+    """Names of the members that are the recordings of a run's calibration runs."""
+    listed = run.record.get("references") or {}
+    return {k: posixpath.normpath(f"{run.entry.directory}/{p}") for k, p in listed.items()}
+
+
+def read_member(archive: Archive, name: str) -> WholeRecording:
+    """A recording of a bundle, by way of a temporary file.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    with tempfile.TemporaryDirectory(prefix="crowdbot-bundle-") as folder:
+        file = Path(folder) / files.RECORDING
+        archive.unpack(name, file)
+        try:
+            return read_whole(file)
+        except InputError as error:
+            raise InputError(str(error).removeprefix(f"{file}: ")) from None
+
+
+def ownership_problems(run: ClaimedRun, found: WholeRecording) -> Iterator[str]:
+    """Where a recording is not that of a run."""
+    header, record = found.header, run.record
+    hashes = provenance.recording_hashes(record["run_id"], record)
+    if header.scenario != run.entry.scenario:
+        yield f"it is of scenario '{header.scenario[:100]}', not of {run.entry.scenario}"
+    for key, wanted in hashes.items():
+        said = header.hashes.get(key)
+        if said is None:
+            yield f"it does not say of which {key} it is"
+        elif said != wanted:
+            yield f"it is of another {key}: {said[:40]} instead of {wanted[:40]}"
+    if provenance.trajectory_hash(found.run) != run.entry.trajectory:
+        yield "what happens in it has another hash than the run: it is the recording of another one"
+    if not found.complete:
+        yield f"it is cut: it can be read until {found.until:g} s"
+
+
+def _run_problems(archive: Archive, run: ClaimedRun, name: str) -> Iterator[str]:
+    try:
+        found = read_member(archive, name)
+    except InputError as error:
+        yield str(error)
+        return
+    yield from ownership_problems(run, found)
+
+
+def _reference_problems(archive: Archive, name: str, wanted: str) -> Iterator[str]:
+    try:
+        found = read_member(archive, name)
+        record = f"{posixpath.dirname(name)}/{files.RECORD}"
+        document = read_json(archive.text(record), record)
+    except InputError as error:
+        yield str(error).removeprefix(f"{archive.path}: ")
+        return
+    if provenance.trajectory_hash(found.run) != wanted:
+        yield "what happens in it has another hash than the runs say"
+    key = {k: v for k, v in document.items() if k not in _ENDING}
+    run_id = provenance.digest({"reference": document.get("reference"), **key})
+    if not run_id == document.get("run_id") == found.header.hashes.get("run"):
+        yield f"its run_id is not the hash of what {files.RECORD} says"
+    if not found.complete:
+        yield f"it is cut: it can be read until {found.until:g} s"
+
+
+def _strangers(archive: Archive, used: set[str]) -> Iterator[str]:
+    """Members among the calibration runs that no run was compared with."""
+    own = {posixpath.dirname(name) for name in used}
+    for name in sorted(archive.names):
+        inside = name.startswith("runs/references/")
+        known = posixpath.dirname(name) in own and posixpath.basename(name) in (
+            files.RECORD,
+            files.RECORDING,
+        )
+        if inside and not known:
+            yield f"{name[:200]} belongs to no run of the manifest"

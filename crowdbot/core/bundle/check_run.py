@@ -1,0 +1,130 @@
+"""Whether the record, the scores and the manifest of one bundled run fit each other."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from crowdbot.core.bundle.manifest import BundledRun, Manifest
+from crowdbot.core.bundle.pack import is_privileged
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs import provenance
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.record_model import record_problems
+from crowdbot.core.types.score import Score
+from crowdbot.dsl.metric_component import MetricComponent
+
+#: Keys of run.json that the run's id is the hash of; ``hashes`` without the trajectory.
+_IDENTITY = ("scenario", "suite", "planner", "seed", "hashes", "versions", "plugins")
+#: The same, in runs that have them only.
+_SOMETIMES = ("step_budget",)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClaimedRun:
+    """One run as the bundle has it.
+
+    Attributes:
+        planners: names that its rows of scores give the planner.
+    """
+
+    entry: BundledRun
+    record: dict[str, Any] = field(repr=False)
+    scores: tuple[Score, ...] = field(repr=False)
+    planners: frozenset[str] = frozenset()
+
+    @property
+    def name(self) -> str:
+        """For people."""
+        return f"{self.entry.scenario} seed-{self.entry.seed}"
+
+
+def run_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:
+    """Where record, manifest and hashes contradict each other."""
+    wrong = record_problems(run.record)
+    if wrong:
+        yield from (f"{files.RECORD}: {text}" for text in wrong)
+        return
+    yield from _identity_problems(run, manifest)
+    yield from _ending_problems(run)
+    yield from _score_problems(run, manifest)
+
+
+def declared_problems(run: ClaimedRun, registry: Registry) -> Iterator[str]:
+    """Scores whose unit, direction or category is not the one that their metric declares."""
+    known = registry.components("metric")
+    for score in run.scores:
+        metric = known.get(score.metric)
+        version = _map(_map(run.record, "metrics"), score.metric).get("spec_version")
+        if not isinstance(metric, MetricComponent) or metric.spec_version != version:
+            continue  # not comparable, which is told where scores are compared
+        declared = metric.variants.get(score.variant)
+        if declared is None:
+            yield f"{score.metric} has no variant '{score.variant[:60]}'"
+            continue
+        said = (score.symbol, score.category, score.unit, score.better)
+        wanted = (metric.symbol, metric.score_category, declared.unit, declared.better)
+        if said != wanted:
+            yield f"{score.metric}.{score.variant} is {', '.join(said)} there, here " \
+                  f"{', '.join(wanted)}"  # fmt: skip
+
+
+def _identity_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:
+    record, entry = run.record, run.entry
+    hashes, single = record["hashes"], manifest.edition.scenarios == 1
+    identity = {k: record[k] for k in _IDENTITY} | {k: record[k] for k in _SOMETIMES if k in record}
+    identity["hashes"] = {k: v for k, v in hashes.items() if k != "trajectory"}
+    if not record["run_id"] == provenance.digest(identity) == entry.run_id:
+        yield f"its run_id is not the hash of what {files.RECORD} says"
+    if hashes["trajectory"] != entry.trajectory:
+        yield f"the trajectory's hash in {files.RECORD} is not that of the manifest"
+    if (record["scenario"], record["seed"]) != (entry.scenario, entry.seed):
+        yield "its record is of another scenario or seed"
+    if record["suite"] not in (manifest.edition.suite, *["scenarios"] * single):
+        yield f"its record is of suite '{record['suite'][:60]}'"
+    if entry.directory != _directory(run, manifest):
+        yield f"its folder should be {_directory(run, manifest)[:200]}"
+    if record["planner"] != manifest.planner:
+        yield "its planner is not that of the manifest"
+    if record["versions"] != manifest.versions:
+        yield "its versions are not those of the manifest"
+    if record["pinned"] != manifest.pinned:
+        yield f"the manifest says pinned: {manifest.pinned}, the run does not"
+    if is_privileged(record) != (manifest.classed == "privileged"):
+        yield f"the manifest says '{manifest.classed}', the run does not"
+
+
+def _directory(run: ClaimedRun, manifest: Manifest) -> str:
+    entry = run.entry
+    return f"runs/{run.record['suite']}/{entry.scenario}/{manifest.label}/seed-{entry.seed}"
+
+
+def _ending_problems(run: ClaimedRun) -> Iterator[str]:
+    """Where status, time of arrival and success contradict each other."""
+    arrived = run.record["goal_time"] is not None
+    if (run.record["status"] == "arrived") > arrived:
+        yield "its status is 'arrived', but it has no time of arrival"
+    for score in run.scores:
+        if (score.metric, score.status) == ("success", "ok") and score.value != arrived:
+            yield f"its success is {score.value:g}, which its time of arrival contradicts"
+
+
+def _score_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:
+    times = Counter((s.metric, s.variant) for s in run.scores)
+    for (metric, variant), count in times.items():
+        if count > 1:
+            yield f"{files.SCORES}: {metric}.{variant} is there {count} times"
+    for planner in sorted(run.planners - {manifest.label}):
+        yield f"{files.SCORES}: scores of another planner: '{planner[:60]}'"
+    scored, versions = {s.metric for s in run.scores}, run.record["metrics"].keys()
+    for metric in sorted(scored - versions):
+        yield f"{files.RECORD} does not say which version of {metric[:60]} was scored"
+    for metric in sorted(versions - scored):
+        yield f"{files.SCORES}: {metric[:60]} was scored, but is not there"
+
+
+def _map(record: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    value = record.get(name)
+    return value if isinstance(value, Mapping) else {}

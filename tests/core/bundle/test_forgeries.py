@@ -1,0 +1,265 @@
+"""Bundles that somebody thought about: each is refused, with what does not fit by name."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from crowdbot import cli
+from crowdbot.core.bundle.archive import open_archive
+from crowdbot.core.bundle.check import problems_of
+from crowdbot.core.bundle.entries import load_entries
+from crowdbot.core.bundle.manifest import MANIFEST
+from crowdbot.core.runs.record_model import record_problems
+from crowdbot.core.scenarios.library import open_suite
+from crowdbot.dsl.expand import Expansion
+from tests.core.bundle.made_up_runs import make_bundle, registry, rewrite, write_recording
+
+pytestmark = pytest.mark.slow
+
+Change = Callable[[bytes], bytes | None]
+
+
+@pytest.fixture(scope="module")
+def bundle(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """With recordings."""
+    return make_bundle(tmp_path_factory.mktemp("forge"), recordings=True, team="Us")
+
+
+def problems(bundle: Path) -> list[str]:
+    with open_archive(bundle) as archive:
+        return problems_of(archive, expansion(bundle.parent / "tiny.yaml"), registry())[1]
+
+
+@cache
+def expansion(suite: Path) -> Expansion:
+    return open_suite(str(suite), registry())[0]
+
+
+def members(bundle: Path, suffix: str) -> list[str]:
+    with open_archive(bundle) as archive:
+        return sorted(n for n in archive.names if n.endswith(suffix))
+
+
+def in_json(**changes: Any) -> Change:
+    return lambda content: json.dumps(json.loads(content) | changes).encode()
+
+
+def in_edition(**changes: Any) -> Change:
+    def change(content: bytes) -> bytes:
+        document = json.loads(content)
+        document["edition"] |= changes
+        return json.dumps(document).encode()
+
+    return change
+
+
+def test_an_honest_bundle_with_recordings_fits(bundle: Path) -> None:
+    assert problems(bundle) == []
+
+
+# ---------------------------------------------------------------------- recordings
+def test_a_recording_of_another_run_is_named(bundle: Path) -> None:
+    names = members(bundle, "run.mcap")
+    with open_archive(bundle) as archive:
+        other = archive.read(names[3])
+    found = problems(rewrite(bundle, {names[0]: lambda _: other}, honest=True))
+    assert any("it is of scenario" in p for p in found)
+    assert any("it is of another run" in p for p in found)
+    assert any("has another hash than the run" in p for p in found)
+    assert all(names[0] in p for p in found)
+
+
+@pytest.mark.parametrize("header", [{}, {"run": "cb1-sha256:0"}])
+def test_a_recording_of_nobody_is_named(
+    bundle: Path, tmp_path: Path, header: dict[str, str]
+) -> None:
+    """The very numbers of the run, in a recording that is not the run's."""
+    name = members(bundle, "run.mcap")[0]
+    write_recording(tmp_path / "a.mcap", name.split("/")[2], header, 0.0)
+    content = (tmp_path / "a.mcap").read_bytes()
+    found = problems(rewrite(bundle, {name: lambda _: content}, honest=True))
+    said = "it is of another run" if header else "it does not say of which run it is"
+    assert any(said in p for p in found)
+    assert not any("another hash" in p for p in found)
+
+
+@pytest.mark.parametrize("content", [b"", b"junk", b"\x89MCAP0\r\n" + b"\0" * 200])
+def test_junk_is_named(bundle: Path, content: bytes) -> None:
+    name = members(bundle, "run.mcap")[2]
+    found = problems(rewrite(bundle, {name: lambda _: content}, honest=True))
+    assert len(found) == 1
+    assert found[0].startswith(f"{name}: ")
+
+
+def test_a_cut_recording_is_named(bundle: Path) -> None:
+    name = members(bundle, "run.mcap")[0]
+    found = problems(rewrite(bundle, {name: lambda c: c[:-40]}, honest=True))
+    assert found == [f"{name}: it is cut: it can be read until 1 s"]
+
+
+def test_some_recordings_are_not_all(bundle: Path) -> None:
+    found = problems(rewrite(bundle, {members(bundle, "run.mcap")[0]: lambda _: None}, honest=True))
+    assert len(found) == 1
+    assert "recordings of some runs are there, not of all" in found[0]
+
+
+def test_files_of_no_run_are_named(bundle: Path) -> None:
+    more = {"runs/references/robot_alone-0/run.mcap": b"junk", "readme.json": b"{}"}
+    found = problems(rewrite(bundle, {}, more, honest=True))
+    assert "readme.json belongs to no run of the manifest" in found
+    found = problems(rewrite(bundle, {}, dict([*more.items()][:1]), honest=True))
+    assert found == [f"{next(iter(more))} belongs to no run of the manifest"]
+
+
+# ------------------------------------------------------------------------ manifest
+@pytest.mark.parametrize(("change", "why"), [
+    ({"title": "A tiny suit"}, "the edition's title is 'A tiny suit'"),
+    ({"scenarios": 5}, "the edition's scenarios is 5, that of tiny here is 6"),
+    ({"rules": 1}, "the edition's rules is 1"),
+    ({"lock": "0" * 64}, "the edition's lock is '0000"),
+])  # fmt: skip
+def test_a_forged_edition_is_named(bundle: Path, change: dict[str, Any], why: str) -> None:
+    found = problems(rewrite(bundle, {MANIFEST: in_edition(**change)}))
+    assert any(why in p for p in found), found
+
+
+@pytest.mark.parametrize(("change", "why"), [
+    ({"seeds": [1]}, "its seeds are 1; the edition's are 0"),
+    ({"seeds": []}, "its seeds are none"),
+    ({"missing": ["nothing seed-0"]}, "list of missing runs is wrong: nothing seed-0"),
+    ({"pinned": False}, "the manifest says pinned: False"),
+    ({"crowdbot": "9.9"}, "two versions of crowdbot"),
+    ({"runs": []}, "there is no run in it"),
+])  # fmt: skip
+def test_a_forged_manifest_is_named(bundle: Path, change: dict[str, Any], why: str) -> None:
+    found = problems(rewrite(bundle, {MANIFEST: in_json(**change)}))
+    assert any(why in p for p in found), found
+
+
+def test_runs_that_are_said_to_be_missing_and_are_not(bundle: Path) -> None:
+    def hide(content: bytes) -> bytes:
+        manifest = json.loads(content)
+        gone = manifest["runs"].pop()
+        manifest["missing"] = [f"{gone['scenario']} seed-0"] * 2
+        return json.dumps(manifest).encode()
+
+    found = problems(rewrite(bundle, {MANIFEST: hide}))
+    assert any("list of missing runs is wrong: one run twice" in p for p in found)
+    assert any("belongs to no run of the manifest" in p for p in found)
+
+
+def test_two_runs_of_one_folder(bundle: Path) -> None:
+    def share(content: bytes) -> bytes:
+        manifest = json.loads(content)
+        manifest["runs"][1]["directory"] = manifest["runs"][0]["directory"]
+        return json.dumps(manifest).encode()
+
+    found = problems(rewrite(bundle, {MANIFEST: share}))
+    assert any("two runs have the same directory" in p for p in found)
+
+
+# -------------------------------------------------------------------------- scores
+def change_row(content: bytes, old: bytes, new: bytes) -> bytes:
+    rows = content.split(b"\r\n")
+    return b"\r\n".join(r.replace(old, new) if b",risk," in r else r for r in rows)
+
+
+@pytest.mark.parametrize(("change", "why"), [
+    (lambda c: c + c.split(b"\r\n")[1] + b"\r\n", "risk.corrected is there 2 times"),
+    (lambda c: change_row(c, b",dwa,", b",other,"), "scores of another planner: 'other'"),
+    (lambda c: re.sub(rb",(lower|higher),ok", b",none,ok", c), ", none there, here "),
+    (lambda c: change_row(c, b",corrected,", b",better,"), "risk has no variant 'better'"),
+    (lambda c: change_row(c, b",risk,", b",riskk,"), "which version of riskk was scored"),
+    (lambda c: re.sub(rb",corrected,[^,]*,", b",corrected,nan,", c), "must not escape"),
+])  # fmt: skip
+def test_forged_scores_are_named(bundle: Path, change: Change, why: str) -> None:
+    name = members(bundle, "scores.csv")[0]
+    found = problems(rewrite(bundle, {name: change}, honest=True))
+    assert any(why in p for p in found), found
+
+
+# -------------------------------------------------------------------- wrong types
+WRONG: tuple[dict[str, Any], ...] = (
+    {"metrics": {"risk": 3, "spl": {"spec_version": 1}}},
+    {"metrics": {"risk": {"spec_version": "1"}, "spl": {"spec_version": 1}}},
+    {"metrics": {"risk": {"spec_version": True}, "spl": {"spec_version": 1}}},
+    {"metrics": []},
+    {"versions": {"crowdbot": 1}},
+    {"planner": "dwa"},
+    {"planner": {"kind": "dwa", "name": "dwa", "label": ["dwa"]}},
+    {"plugins": {"a": 1}},
+    {"plugins": [3]},
+    {"references": ["x"]},
+    {"references": {"robot_alone": 3}},
+    {"seed": "0"},
+    {"seed": -1},
+    {"seed": 1e400},
+    {"seed": 10**40},
+    {"status": "perfect"},
+    {"goal_time": "0.5"},
+    {"goal_time": float("nan")},
+    {"goal_time": -1.0},
+    {"sim_time": float("inf")},
+    {"privileged": 0},
+    {"machine": None},
+    {"conditions": {"rates.log": 8}},
+    {"axes": 3},
+    {"role": "winner"},
+    {"run_id": None},
+)
+
+
+@pytest.mark.parametrize("change", WRONG, ids=[str(w)[:50] for w in WRONG])
+def test_wrong_types_are_named(bundle: Path, change: dict[str, Any]) -> None:
+    name = members(bundle, "run.json")[1]
+    with open_archive(bundle) as archive:
+        record = json.loads(archive.text(name))
+    (key,) = change
+    assert record_problems(record) == []
+    assert any(p.startswith(f"'{key}") for p in record_problems(record | change))
+
+
+@pytest.mark.parametrize("change", WRONG[::5], ids=[str(w)[:50] for w in WRONG[::5]])
+def test_wrong_types_in_a_bundle_are_named(bundle: Path, change: dict[str, Any]) -> None:
+    name = members(bundle, "run.json")[1]
+    (key,) = change
+    found = problems(rewrite(bundle, {name: in_json(**change)}, honest=True))
+    assert any(f"run.json: '{key}" in p for p in found), found
+
+
+def test_each_malformed_bundle_is_one_line_of_the_leaderboard(
+    bundle: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "board"
+    folder.mkdir()
+    (folder / "good.cbz").write_bytes(bundle.read_bytes())
+    record, table = members(bundle, "run.json")[1], members(bundle, "scores.csv")[1]
+    changes: list[dict[str, Change]] = [{record: in_json(**w)} for w in WRONG[::6]]
+    changes += [{table: lambda _: b"\xff"}, {record: lambda _: b"[" * 100_000}]
+    for number, change in enumerate(changes):
+        forged = rewrite(bundle, change, honest=True)
+        (folder / f"bad-{number}.cbz").write_bytes(forged.read_bytes())
+    entries, left_out = load_entries(folder, registry())
+    assert [e.path.name for e in entries] == ["good.cbz"]
+    assert len(left_out) == len(changes)
+    assert all(left_out.values())
+    page = tmp_path / "page.html"
+    assert cli.main(["leaderboard", str(folder), "--out", str(page), "--by", "spl"]) == 0
+    assert "Traceback" not in capsys.readouterr().err
+    assert page.read_text().count("bad-") >= len(changes)
+
+
+def test_something_that_nobody_thought_of_is_one_line(
+    bundle: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "a.cbz").write_bytes(bundle.read_bytes())
+    monkeypatch.setattr("crowdbot.core.bundle.entries.claimed_runs", lambda _: 1 / 0)
+    _, left_out = load_entries(tmp_path, registry())
+    assert left_out == {"a.cbz": "malformed: ZeroDivisionError: division by zero"}

@@ -1,0 +1,112 @@
+"""Damage stays local: a damaged run is left out and told, and reading writes nothing."""
+
+from __future__ import annotations
+
+import json
+import logging
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from crowdbot import cli
+from crowdbot.core.results.store import INDEX, index, load
+from crowdbot.core.runs import run_directory as files
+from tests.core.bundle.made_up_runs import make_runs, record_runs, write_suite
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("made")
+    make_runs(folder / "runs", write_suite(folder))
+    record_runs(folder / "runs")
+    for file in (folder / "runs").rglob("run.json"):
+        record = json.loads(file.read_text())
+        files.write_json(file, {**record, "files": files.sizes(file.parent)})
+    return folder / "runs"
+
+
+@pytest.fixture
+def root(made: Path, tmp_path: Path) -> Path:
+    import shutil
+
+    return Path(shutil.copytree(made, tmp_path / "runs"))
+
+
+def state(root: Path) -> dict[str, tuple[int, int]]:
+    return {str(p): (p.stat().st_size, p.stat().st_mtime_ns) for p in root.rglob("*")}
+
+
+def cut(file: Path) -> None:
+    file.write_bytes(file.read_bytes()[:-30])
+
+
+DAMAGE: tuple[tuple[Callable[[Path], object], str], ...] = (
+    (lambda run: (run / "run.json").unlink(), "run.json is missing"),
+    (lambda run: cut(run / "run.json"), "cut, or not a record of a run"),
+    (lambda run: (run / "run.json").write_text("[]"), "cut, or not a record of a run"),
+    (lambda run: (run / "run.json").write_text("{}"), "'run_id': field required"),
+    (lambda run: (run / "run.mcap").unlink(), "run.mcap is missing"),
+    (lambda run: cut(run / "run.mcap"), "run.mcap has "),
+    (lambda run: (run / "scores.csv").unlink(), "scores.csv is missing"),
+    (lambda run: cut(run / "scores.csv"), "scores.csv has "),
+    (lambda run: (run / "scenario.yaml").unlink(), "scenario.yaml is missing"),
+)
+
+
+@pytest.mark.parametrize("indexed", [False, True])
+def test_a_damaged_run_is_one_warning(
+    root: Path, caplog: pytest.LogCaptureFixture, indexed: bool
+) -> None:
+    if indexed:
+        with index(root) as store:
+            store.synchronise()
+    runs = sorted(root.glob("tiny/*/dwa/seed-0"))
+    assert len(load(root).runs) == len(runs) == 6
+    for number, (damage, why) in enumerate(DAMAGE):
+        run = runs[number % 6]
+        before = {f.name: f.read_bytes() for f in run.iterdir()}
+        damage(run)
+        caplog.clear()
+        with caplog.at_level(logging.WARNING, "crowdbot"):
+            found = load(root)
+        assert [d.directory for d in found.damaged] == [run.relative_to(root).as_posix()]
+        assert why in found.damaged[0].reason
+        assert len(found.runs) == 5
+        assert len(found.scores) == 10
+        assert [r.message for r in caplog.records] == [f"{run} is left out: "
+                                                       f"{found.damaged[0].reason}"]  # fmt: skip
+        for name, content in before.items():
+            (run / name).write_bytes(content)
+    assert load(root).damaged == ()
+
+
+@pytest.mark.parametrize("indexed", [False, True])
+def test_reading_writes_nothing(
+    root: Path, tmp_path: Path, indexed: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if indexed:
+        with index(root) as store:
+            store.synchronise()
+        assert (root / INDEX).exists()
+    (next(root.glob("tiny/*/dwa/seed-0")) / "run.json").unlink()
+    before = state(root)
+    assert len(load(root).runs) == 5
+    out = tmp_path / "page.html"
+    assert cli.main(["report", str(root), "--out", str(out)]) == 0
+    assert "damaged: 1 runs are left out: tiny/" in out.read_text(encoding="utf-8")
+    assert cli.main(["results", "--out", str(root)]) == 0
+    said = capsys.readouterr()
+    assert "5 runs, 0 failures, 1 damaged" in said.out
+    assert said.err.count("is left out: run.json is missing") == 2
+    assert cli.main(["results", "export", "--out", str(root), "--csv", str(out)]) == 0
+    assert state(root) == before
+
+
+def test_a_campaign_that_writes_is_read_beside(root: Path) -> None:
+    with index(root) as store:
+        store.synchronise()
+        (next(root.glob("tiny/*/dwa/seed-0")) / "run.json").unlink()
+        assert len(load(root).runs) == 5
