@@ -10,12 +10,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.cli._options import (
+    MEMORY_GIB,
+    InProcess,
+    NoPlugins,
+    PlannerMemory,
+    Plugins,
+    installed,
+    planner_place,
+)
 
 if TYPE_CHECKING:
     from crowdbot.core.bundle.archive import Archive
     from crowdbot.core.bundle.check import ClaimedRun
     from crowdbot.core.bundle.rerun_verdict import RerunVerdict
+    from crowdbot.core.planning.choice import PlannerPlace
     from crowdbot.core.registry.registry import Registry
     from crowdbot.dsl.expand import Expansion
 
@@ -41,7 +50,9 @@ def verify(
     ] = None,
     planner: Annotated[
         str | None,
-        typer.Option(metavar="FILE.py:CLASS", help="The planner, where it is not installed."),
+        typer.Option(
+            metavar="FILE.py:CLASS|FILE.yaml", help="The planner, where it is not installed."
+        ),
     ] = None,
     suite: Annotated[
         str | None, typer.Option(metavar="SPEC", help="The suite, where it is not a packaged one.")
@@ -49,6 +60,8 @@ def verify(
     save: Annotated[
         bool, typer.Option("--save", help="Write the outcome to NAME.verified.json beside it.")
     ] = False,
+    in_process: InProcess = None,
+    planner_memory: PlannerMemory = MEMORY_GIB,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
@@ -61,12 +74,13 @@ def verify(
     from crowdbot.core.bundle.verification import content_hash, save_verification
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
+    place = planner_place(in_process, planner_memory)
     registry = installed(plugin, no_plugins)
     seed = secrets.randbelow(2**32) if seed is None else seed
     size = None if everything else sample
     with open_archive(bundle) as archive, stdout_to_stderr():
         digest = content_hash(bundle)
-        verdict = _verify(archive, registry, suite, planner, (size, seed, digest))
+        verdict = _verify(archive, registry, suite, (planner, place), (size, seed, digest))
         label, edition = archive.manifest.label, archive.manifest.edition.name
     document = _document(verdict, seed, digest)
     if save:
@@ -82,7 +96,7 @@ def _verify(
     archive: Archive,
     registry: Registry,
     suite: str | None,
-    planner: str | None,
+    planner: tuple[str | None, PlannerPlace],
     sample: tuple[int | None, int, str],
 ) -> RerunVerdict:
     from crowdbot.core.bundle.check import check_members, check_suite, claimed_runs
@@ -119,7 +133,7 @@ def _make_reruns(
     archive: Archive,
     expansion: Expansion,
     registry: Registry,
-    planner: str | None,
+    planner: tuple[str | None, PlannerPlace],
     runs: Sequence[ClaimedRun],
     sample: tuple[int | None, int, str],
 ) -> RerunVerdict:
@@ -137,7 +151,7 @@ def _make_reruns(
     )
 
     try:
-        choice = choose_planner(archive.manifest, registry, planner)
+        choice = choose_planner(archive.manifest, registry, *planner)
     except NotRunnable as error:
         return RerunVerdict(outcome="cannot be re-run", findings=(str(error),))
     size, seed, content = sample

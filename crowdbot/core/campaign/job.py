@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.runs.request import Recorded
 
 Kind = Literal["crowd_alone", "robot_alone", "run"]
@@ -41,6 +42,7 @@ class Job:
         directory: what is made, relative to ``out``.
         depends_on: keys of the calibration runs that must have ended before.
         cost: expected processor time, s.
+        place: where the planner runs.
     """
 
     key: str
@@ -61,6 +63,7 @@ class Job:
     retry_failed: bool = False
     depends_on: tuple[str, ...] = ()
     cost: float = 0.0
+    place: PlannerPlace = ANYWHERE
 
     @property
     def title(self) -> str:

@@ -259,6 +259,7 @@ class _PlanBuilder:
             record=request.record,
             replay=request.replay,
             retry_failed=self._campaign.retry_failed,
+            place=self._campaign.place,
             depends_on=tuple(r.run_id for r in depends_on),
             cost=expected_seconds(kind, people, _limit(request)),
         )

@@ -27,6 +27,11 @@ def source_digest(file: Path) -> str:
     return sha.hexdigest()
 
 
+def imported_names(file: Path) -> set[str]:
+    """First parts of the names of all modules that a file, or one beside it, imports."""
+    return {name for one in _with_helpers(file) for name in _imported(one)}
+
+
 def _with_helpers(file: Path) -> set[Path]:
     found, waiting = {file}, [file]
     while waiting:
