@@ -6,10 +6,12 @@ import hashlib
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from crowdbot.core.planning.planner import Planner
 from crowdbot.dsl.component_specs import PlannerRole
+
+if TYPE_CHECKING:
+    from crowdbot.core.planning.planner import Planner
 
 #: Where a planner runs, as records say it.
 OWN, IN_PROCESS = "own", "in_process"

@@ -18,6 +18,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from crowdbot.core.registry.plugin_path import path_without_plugins
 from crowdbot.errors import PlannerError
 
 _HEAD = struct.Struct("<I")
@@ -47,7 +48,13 @@ class ServerHandle:
     def __init__(self) -> None:
         ours, theirs = socket.socketpair()
         self._mark = f"{_MARK}={secrets.token_hex(16)}"
-        command = [sys.executable, "-c", _START, json.dumps(sys.path), str(theirs.fileno())]
+        command = [
+            sys.executable,
+            "-c",
+            _START,
+            json.dumps(path_without_plugins()),
+            str(theirs.fileno()),
+        ]
         with theirs:
             self._process = subprocess.Popen(
                 command,

@@ -112,7 +112,7 @@ def test_arrays_and_images_in_both_kinds_of_python(tmp_path: Path) -> None:
         ros_type="sensor_msgs/msg/Image",
         camera=Pinhole(width=64, height=48, focal=60.0, colour=True),
     )  # fmt: skip
-    depth = np.full((48, 64), 0.125, np.float32)
+    depth: Any = np.full((48, 64), 0.125, np.float32)
     colour = np.full((48, 64, 3), 25, np.uint8)
     plain = observation()
     seen = Observation(
@@ -208,7 +208,7 @@ def test_small_msgpack_is_msgpack() -> None:
 
     from crowdbot.core.planning.process import small_msgpack
 
-    plain = st.none() | st.booleans() | st.integers(-(2**63), 2**64 - 1)
+    plain: Any = st.none() | st.booleans() | st.integers(-(2**63), 2**64 - 1)
     plain = plain | st.floats(allow_nan=False) | st.text() | st.binary()
     values = st.recursive(
         plain, lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner), max_leaves=30
