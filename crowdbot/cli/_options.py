@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
+    from crowdbot.core.planning.choice import PlannerPlace
     from crowdbot.core.registry.registry import Registry
 
 Plugins = Annotated[
@@ -23,6 +24,42 @@ Plugins = Annotated[
 NoPlugins = Annotated[
     bool, typer.Option("--no-plugins", help="Only crowdbot's own, and those of --plugin.")
 ]
+InProcess = Annotated[
+    bool | None,
+    typer.Option(
+        "--in-process/--own-process",
+        help="Where planners run; default: crowdbot's own inside, all others in their own.",
+        show_default=False,
+    ),
+]
+PlannerMemory = Annotated[
+    float,
+    typer.Option(metavar="GIB", min=0.0, help="Memory of a planner's process; 0: any."),
+]
+#: A Python with numpy needs about a third of it.
+_LEAST_GIB = 0.5
+#: Default of `PlannerMemory`, GiB.
+MEMORY_GIB = 4.0
+
+
+def planner_place(in_process: bool | None, memory: float, *, lenient: bool = False) -> PlannerPlace:
+    """Where planners are to run.
+
+    Args:
+        in_process: as `InProcess`.
+        memory: as `PlannerMemory`.
+        lenient: as in `PlannerPlace`.
+
+    Raises:
+        UsageError: no process can start with so little.
+    """
+    from crowdbot.core.planning.choice import PlannerPlace
+    from crowdbot.errors import UsageError
+
+    if not memory < 2**20 or 0.0 < memory < _LEAST_GIB:
+        raise UsageError(f"--planner-memory {memory:g}: 0, or at least {_LEAST_GIB:g} GiB")
+    limit = round(memory * 2**30) if memory else None
+    return PlannerPlace(in_process=in_process, memory=limit, lenient=lenient)
 
 
 def installed(

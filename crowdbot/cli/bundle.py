@@ -60,6 +60,7 @@ def bundle(
     """
     from crowdbot.cli.verify import print_verdict, verify_bundle
     from crowdbot.core.bundle.pack import Submission, other_seeds, pack
+    from crowdbot.core.planning.choice import ANYWHERE
     from crowdbot.core.scenarios.library import open_suite
 
     registry = installed(plugin, no_plugins)
@@ -73,7 +74,9 @@ def bundle(
     if more := other_seeds(submission, expansion):
         seeds = ", ".join(map(str, more))
         typer.echo(f"warning: left out: seeds {seeds}, which the suite does not name", err=True)
-    verdict = verify_bundle(target, registry, suite, source, sample, seed) if check else None
+    verdict = (
+        verify_bundle(target, registry, suite, (source, ANYWHERE), sample, seed) if check else None
+    )
     if as_json:
         document = {"bundle": str(target), **manifest.model_dump(mode="json")}
         typer.echo(json.dumps(document | ({"check": verdict} if verdict else {}), indent=2))

@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli._campaign_run import print_plan, read_seeds, run_plan, worker_count
-from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.cli._options import (
+    MEMORY_GIB,
+    InProcess,
+    NoPlugins,
+    PlannerMemory,
+    Plugins,
+    installed,
+    planner_place,
+)
 from crowdbot.cli.simulate import RecordChoice
 
 if TYPE_CHECKING:
@@ -62,6 +70,8 @@ def campaign(
     cluster: Annotated[
         str | None, typer.Option(metavar="tcp://HOST:PORT", help="A Dask scheduler.")
     ] = None,
+    in_process: InProcess = None,
+    planner_memory: PlannerMemory = MEMORY_GIB,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
@@ -73,6 +83,7 @@ def campaign(
     from crowdbot.core.campaign.plan import make_plan
     from crowdbot.core.campaign.request import CampaignRequest
 
+    place = planner_place(in_process, planner_memory, lenient=True)
     registry = installed(plugin, no_plugins)
     request = CampaignRequest(
         suites=suites,
@@ -88,6 +99,7 @@ def campaign(
         plugins=plugin or (),
         retry_failed=retry_failed,
         force=force,
+        place=place,
     )
     plan = make_plan(request, registry)
     size = worker_count(jobs)

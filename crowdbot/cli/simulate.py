@@ -15,7 +15,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.cli._options import (
+    MEMORY_GIB,
+    InProcess,
+    NoPlugins,
+    PlannerMemory,
+    Plugins,
+    installed,
+    planner_place,
+)
 
 if TYPE_CHECKING:
     from crowdbot.core.runs.request import Run
@@ -60,6 +68,8 @@ def simulate(
         float | None,
         typer.Option(metavar="SECONDS", help="Wall time that a planner step may take."),
     ] = None,
+    in_process: InProcess = None,
+    planner_memory: PlannerMemory = MEMORY_GIB,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
@@ -72,6 +82,7 @@ def simulate(
     from crowdbot.core.scenarios.library import open_spec, pick
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
+    place = planner_place(in_process, planner_memory)
     with stdout_to_stderr():
         registry = installed(plugin, no_plugins)
         expansion = open_spec(spec, registry, overrides or ())
@@ -96,6 +107,7 @@ def simulate(
                 stop=stop,
                 on_hang=_end_hung_process,
                 step_budget=step_budget,
+                place=place,
             )
     _print(run, as_json=as_json)
     if run.status == "planner_failed":

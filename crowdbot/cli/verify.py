@@ -10,12 +10,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.cli._options import (
+    MEMORY_GIB,
+    InProcess,
+    NoPlugins,
+    PlannerMemory,
+    Plugins,
+    installed,
+    planner_place,
+)
 
 if TYPE_CHECKING:
     from crowdbot.core.bundle.archive import Archive
     from crowdbot.core.bundle.check import ClaimedRun
     from crowdbot.core.bundle.rerun_verdict import RerunVerdict
+    from crowdbot.core.planning.choice import PlannerPlace
     from crowdbot.core.registry.registry import Registry
     from crowdbot.dsl.expand import Expansion
 
@@ -42,7 +51,9 @@ def verify(
     ] = None,
     planner: Annotated[
         str | None,
-        typer.Option(metavar="FILE.py:CLASS", help="The planner, where it is not installed."),
+        typer.Option(
+            metavar="FILE.py:CLASS|FILE.yaml", help="The planner, where it is not installed."
+        ),
     ] = None,
     suite: Annotated[
         str | None, typer.Option(metavar="SPEC", help="The suite, where it is not a packaged one.")
@@ -50,6 +61,8 @@ def verify(
     save: Annotated[
         bool, typer.Option("--save", help="Write the outcome to NAME.verified.json beside it.")
     ] = False,
+    in_process: InProcess = None,
+    planner_memory: PlannerMemory = MEMORY_GIB,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
@@ -60,9 +73,10 @@ def verify(
     """
     from crowdbot.core.bundle.verification import save_verification
 
+    place = planner_place(in_process, planner_memory)
     registry = installed(plugin, no_plugins)
     size = None if everything else sample
-    document = verify_bundle(bundle, registry, suite, planner, size, seed)
+    document = verify_bundle(bundle, registry, suite, (planner, place), size, seed)
     if save:
         save_verification(bundle, document)
     if as_json:
@@ -76,7 +90,7 @@ def verify_bundle(
     bundle: Path,
     registry: Registry,
     suite: str | None,
-    planner: str | None,
+    planner: tuple[str | None, PlannerPlace],
     sample: int | None,
     seed: int | None,
 ) -> dict[str, Any]:
@@ -85,7 +99,8 @@ def verify_bundle(
     Args:
         bundle: the archive.
         registry: the installed components.
-        suite, planner: as the options of the same name.
+        suite: as the option of the same name.
+        planner: as the option of the same name, and where it runs.
         sample: how many runs to make again; None: all.
         seed: which ones; None: a new one.
     """
@@ -106,7 +121,7 @@ def _verify(
     archive: Archive,
     registry: Registry,
     suite: str | None,
-    planner: str | None,
+    planner: tuple[str | None, PlannerPlace],
     sample: tuple[int | None, int, str],
 ) -> RerunVerdict:
     from crowdbot.core.bundle.check import problems_of
@@ -142,7 +157,7 @@ def _make_reruns(
     archive: Archive,
     expansion: Expansion,
     registry: Registry,
-    planner: str | None,
+    planner: tuple[str | None, PlannerPlace],
     runs: Sequence[ClaimedRun],
     sample: tuple[int | None, int, str],
 ) -> RerunVerdict:
@@ -160,7 +175,7 @@ def _make_reruns(
     )
 
     try:
-        choice = choose_planner(archive.manifest, registry, planner)
+        choice = choose_planner(archive.manifest, registry, *planner)
     except NotRunnable as error:
         return RerunVerdict(outcome="cannot be re-run", findings=(str(error),))
     size, seed, content = sample

@@ -13,8 +13,8 @@ from unittest import SkipTest
 
 import numpy as np
 
-from crowdbot.core.planning.host import PlannerHost, named_signal
-from crowdbot.core.planning.planner import Observation, Planner, Task, Truth
+from crowdbot.core.planning.host import PlannerHost
+from crowdbot.core.planning.planner import Observation, Planner, Task, Truth, named_signal
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sensing.noise import sensor_rng

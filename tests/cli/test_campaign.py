@@ -153,6 +153,23 @@ def test_failures_are_on_record_and_stop_nobody(tmp_path: Path) -> None:
     argv = [word for name in planners for word in ("--planner", name)]
     only = ["--only", "in-d0125-slow-c01-r02"]
     code, summary, _ = run(tmp_path / "runs", *only, *argv, "--planner", "goal_seek")
+    assert code == 3
+    assert summary["statuses"] == {"planner_failed": 3, "timeout": 1}
+    reasons = {r.planner: r.reason for r in load(tmp_path / "runs").runs}
+    assert "its process was ended by signal 9 (SIGKILL)" in reasons["Dies"]
+    assert "did not return from step within 10 s; its process was ended" in reasons["Hangs"]
+    assert {
+        r.planner_process for r in load(tmp_path / "runs").runs if r.planner != "goal_seek"
+    } == {"own"}
+
+
+def test_failures_of_planners_in_the_workers_are_on_record_and_stop_nobody(tmp_path: Path) -> None:
+    file = tmp_path / "bad.py"
+    file.write_text(BAD)
+    planners = [f"{file}:{name}" for name in ("Dies", "Hangs", "Raises")]
+    argv = [word for name in planners for word in ("--planner", name)]
+    only = ["--only", "in-d0125-slow-c01-r02", "--in-process"]
+    code, summary, _ = run(tmp_path / "runs", *only, *argv, "--planner", "goal_seek")
     assert code == 4
     assert summary["statuses"] == {"failed": 2, "planner_failed": 1, "timeout": 1}
     results = load(tmp_path / "runs")

@@ -166,7 +166,15 @@ def test_prints_of_a_planner_keep_off_stdout(place: str, shell: Shell, tmp_path:
     assert "thinking" in answer.err
 
 
-HANGS = {"sleeps": "time.sleep(1e6)", "loops": "exec('while True: pass')"}
+HANGS = {
+    "sleeps": "time.sleep(1e6)",
+    "loops": "exec('while True: pass')",
+    "keeps the interpreter lock": "__import__('ctypes').PyDLL(None).sleep(1000)",
+}
+
+
+def _hanging(case: str) -> str:
+    return f"{HANGS[case]} if obs.t > 0.5 else None\n        return (0.2, 0.0)"
 
 
 @pytest.mark.parametrize("case", list(HANGS))
@@ -174,8 +182,24 @@ def test_a_planner_that_never_returns(
     case: str, shell: Shell, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Watchdog.__init__, "__defaults__", (0.4, 1.0, None))
-    step = f"{HANGS[case]} if obs.t > 0.5 else None\n        return (0.2, 0.0)"
-    answer = shell("--planner", planner_file(tmp_path, step), "--no-references")
+    answer = shell("--planner", planner_file(tmp_path, _hanging(case)), "--no-references", "--json")
+    assert answer.code == 3
+    record = answer.json
+    assert record["status"] == "planner_failed"
+    assert "did not return from step within 0.4 s; its process was ended" in record["reason"]
+    assert "mine.py:8)" in record["reason"]
+    assert record["planner_process"] == "own"
+    assert {p.name for p in Path(record["directory"]).iterdir()} == FILES
+    assert shell.leftovers() == []
+
+
+@pytest.mark.parametrize("case", list(HANGS)[:2])
+def test_a_planner_that_never_returns_in_our_process(
+    case: str, shell: Shell, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Watchdog.__init__, "__defaults__", (0.4, 1.0, None))
+    planner = planner_file(tmp_path, _hanging(case))
+    answer = shell("--planner", planner, "--no-references", "--in-process")
     assert answer.code == 3
     assert "did not return from step" in answer.err
     assert shell.runs() == []
@@ -190,11 +214,15 @@ def test_a_planner_that_swallows_every_interruption(tmp_path: Path) -> None:
         "            except BaseException:\n                pass\n        return (0.2, 0.0)"
     )
     out = tmp_path / "runs"
-    running = process(out, "--planner", planner_file(tmp_path, step), "--no-references")
-    answer = finished(running)
+    options = ("--planner", planner_file(tmp_path, step), "--no-references")
+    answer = finished(process(out, *options, "--in-process"))
     assert answer.code == 3
     assert ".partial" in answer.err
     assert not list(out.rglob("run.json"))
+    answer = finished(process(out, *options))
+    assert answer.code == 3
+    assert "its process was ended" in answer.err
+    assert len(list(out.rglob("run.json"))) == 1
 
 
 # --------------------------------------------------------------------- interrupted

@@ -10,6 +10,7 @@ from typing import Any
 from crowdbot.core.bundle.entries import LeaderboardEntry
 from crowdbot.core.bundle.manifest import RULES, RULES_TEXT
 from crowdbot.core.bundle.standings import Standings
+from crowdbot.core.results.rows import processes
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main
 from crowdbot.core.statistics import OUTCOMES, Estimate
 from crowdbot.core.support.atomic_write import atomic_write
@@ -69,6 +70,7 @@ def _entry(table: Standings, entry: LeaderboardEntry) -> dict[str, Any]:
         "failed": entry.failed,
         "missing": len(manifest.missing),
         "pinned": manifest.pinned,
+        "process": processes(run.record for run in entry.runs),
         "state": _state(entry),
         "hash": entry.sha256[:12],
         "crowdbot": manifest.versions.get("crowdbot", ""),

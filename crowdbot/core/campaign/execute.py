@@ -12,6 +12,7 @@ from pathlib import Path
 
 from crowdbot.core.campaign.job import Done, Job, SuiteSource
 from crowdbot.core.campaign.population_cache import cached_population
+from crowdbot.core.planning.choice import PlannerPlace
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.runs import run_directory as files
@@ -87,7 +88,7 @@ def _request(job: Job) -> Request:
     out = Path(job.out)
     request = Request(
         scenario=scenario,
-        choice=_choice(job.planner, job.settings, job.source),
+        choice=_choice(job.planner, job.settings, job.source, job.place),
         registry=registry,
         seed=job.seed,
         out=out,
@@ -128,5 +129,7 @@ def _populate(source: SuiteSource) -> Populate:
 
 
 @cache
-def _choice(planner: str, settings: tuple[str, ...], source: SuiteSource) -> PlannerChoice:
-    return resolve_planner(planner, _registry(source), settings)
+def _choice(
+    planner: str, settings: tuple[str, ...], source: SuiteSource, place: PlannerPlace
+) -> PlannerChoice:
+    return resolve_planner(planner, _registry(source), settings, place)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.runs.request import Recorded
 
 Kind = Literal["crowd_alone", "robot_alone", "run"]
@@ -42,6 +43,7 @@ class Job:
         force: make it again although it is there.
         depends_on: keys of the calibration runs that must have ended before.
         cost: expected processor time, s.
+        place: where the planner runs.
     """
 
     key: str
@@ -63,6 +65,7 @@ class Job:
     force: bool = False
     depends_on: tuple[str, ...] = ()
     cost: float = 0.0
+    place: PlannerPlace = ANYWHERE
 
     @property
     def title(self) -> str:

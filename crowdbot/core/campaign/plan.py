@@ -263,6 +263,7 @@ class _PlanBuilder:
             replay=request.replay,
             retry_failed=self._campaign.retry_failed,
             force=self._campaign.force,
+            place=self._campaign.place,
             depends_on=tuple(r.run_id for r in depends_on),
             cost=expected_seconds(kind, people, _limit(request)),
         )

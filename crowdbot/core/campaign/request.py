@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crowdbot.core.campaign.job import SuiteSource
+from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.planning.resolve import PlannerChoice, kinds_of_role, resolve_planner
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.request import Recorded
@@ -32,6 +33,7 @@ class CampaignRequest:
         planner_settings: ``key=value`` texts, for all planners.
         retry_failed: run again what ended with a planner that failed.
         force: run everything again, calibration runs too.
+        place: where planners run.
     """
 
     suites: Sequence[str]
@@ -49,6 +51,7 @@ class CampaignRequest:
     plugins: Sequence[Path] = ()
     retry_failed: bool = False
     force: bool = False
+    place: PlannerPlace = ANYWHERE
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -122,7 +125,9 @@ def open_planners(request: CampaignRequest, registry: Registry) -> list[PlannerE
     settings = tuple(request.planner_settings)
     entries = [
         PlannerEntry(
-            text=_planner(p), choice=resolve_planner(p, registry, settings), settings=settings
+            text=_planner(p),
+            choice=resolve_planner(p, registry, settings, request.place),
+            settings=settings,
         )
         for p in dict.fromkeys(request.planners)
     ]
@@ -146,7 +151,7 @@ def _by_role(request: CampaignRequest, registry: Registry) -> list[PlannerEntry]
     found = []
     for role in (*request.roles, *(r for r in sampled if r not in request.roles)):
         for kind in kinds_of_role(role, registry):
-            choice = resolve_planner(kind, registry)
+            choice = resolve_planner(kind, registry, place=request.place)
             is_sampled = role not in request.roles
             found.append(PlannerEntry(text=kind, choice=choice, optional=True, sampled=is_sampled))
     return found

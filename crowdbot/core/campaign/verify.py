@@ -13,6 +13,7 @@ from typing import Any
 from crowdbot.core.bundle.check import ClaimedRun
 from crowdbot.core.bundle.manifest import Manifest
 from crowdbot.core.bundle.rerun_verdict import Rerun
+from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
@@ -52,13 +53,17 @@ class RerunSetup:
     on_hang: Callable[[], object] | None = None
 
 
-def choose_planner(manifest: Manifest, registry: Registry, given: str | None) -> PlannerChoice:
+def choose_planner(
+    manifest: Manifest, registry: Registry, given: str | None, place: PlannerPlace = ANYWHERE
+) -> PlannerChoice:
     """The planner that a bundle was made with.
 
     Args:
         manifest: of the bundle.
         registry: the installed components.
-        given: what to use in place of the kind that the bundle names: ``file.py:Class``.
+        given: what to use in place of the kind that the bundle names: ``file.py:Class``, or the
+            document of a program.
+        place: where it is to run.
 
     Raises:
         NotRunnable: it is not here, or what is here is not what the bundle was made with.
@@ -71,7 +76,7 @@ def choose_planner(manifest: Manifest, registry: Registry, given: str | None) ->
             "the team and name it: --planner FILE.py:CLASS"
         )
     try:
-        choice = resolve_planner(given or kind, registry, _settings(record))
+        choice = resolve_planner(given or kind, registry, _settings(record), place)
     except InputError as error:
         raise NotRunnable(
             f"{error}; install the planner, load it with --plugin DIR, or name its class with "

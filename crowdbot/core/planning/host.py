@@ -3,26 +3,24 @@
 from __future__ import annotations
 
 import contextlib
-import inspect
 import math
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
-from numbers import Real
 from types import MappingProxyType
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.planning.guarded import GuardedPlanner, planner_title
 from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Task
 from crowdbot.core.planning.watchdog import Watchdog
-from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import Reading, SensorInfo
-from crowdbot.errors import PlannerError, PlannerHungError
+from crowdbot.errors import PlannerHungError
 
 T = TypeVar("T", bound=np.generic)
 
@@ -69,16 +67,8 @@ class PlannerHost:
         origin: str = "",
     ) -> None:
         self._planner, self._limits = planner, limits
-        who = f"planner '{name}'" + (f" ({origin})" if origin else "")
-        self._reset_call = PluginCall(
-            who, sources=self._sources, error=PlannerError, passes=PlannerError
-        )
-        self._step_call = PluginCall(
-            who,
-            sources=self._sources,
-            error=PlannerError,
-            passes=(PlannerError, NoValidCommand),
-        )
+        self._who = planner_title(name, origin)
+        self._guarded = GuardedPlanner(planner, self._who, watchdog)
         self._budget, self._watchdog = budget, watchdog
         self.steps = self.clamped = self.stops = 0
 
@@ -93,8 +83,8 @@ class PlannerHost:
         task = replace(task, goal_zone=_read_only(task.goal_zone))
         sensors = MappingProxyType({n: _constant(i) for n, i in sensors.items()})
         patience = self._watchdog.patience(RESET_LIMIT) if self._watchdog else None
-        with patience or contextlib.nullcontext(), self._guarded(self._reset_call, "reset"):
-            self._planner.reset(task, self._limits, sensors, seed)
+        with patience or contextlib.nullcontext(), self._named("reset"):
+            self._guarded.reset(task, replace(self._limits), sensors, seed)
 
     def step(self, obs: Observation) -> HostedCommand:
         """Ask for the next command.
@@ -110,51 +100,29 @@ class PlannerHost:
         seen = _protected(obs)
         begin = time.perf_counter()
         try:
-            with self._guarded(self._step_call, "step"):
-                answer = self._planner.step(seen)
+            with self._named("step"):
+                wanted = self._guarded.step(seen)
         except NoValidCommand:
-            answer = STOP
+            wanted = STOP
             self.stops += 1
         seconds = time.perf_counter() - begin
         self.steps += 1
         if self._budget is not None and seconds > self._budget:
-            self._step_call.fail(f"step took {seconds:.3g} s; the budget is {self._budget:g} s")
-        command, clamped = self._clamp(self._checked(answer))
+            self._guarded.fail(f"step took {seconds:.3g} s; the budget is {self._budget:g} s")
+        command, clamped = self._clamp(wanted)
         self.clamped += clamped
         return HostedCommand(command, clamped, seconds)
 
     @contextmanager
-    def _guarded(self, call: PluginCall, method: str) -> Iterator[None]:
-        """A call into the planner, under the watchdog."""
+    def _named(self, method: str) -> Iterator[None]:
+        """Who it was that the watchdog ended."""
         try:
-            with self._watchdog or contextlib.nullcontext(), call(method):
-                yield
+            yield
         except PlannerHungError:
             limit = self._watchdog.limit if self._watchdog else math.nan
             raise PlannerHungError(
-                f"{call.who} did not return from {method} within {limit:g} s"
+                f"{self._who} did not return from {method} within {limit:g} s"
             ) from None
-
-    def _sources(self) -> frozenset[str]:
-        """Files in which the planner's class and its bases are written."""
-        found = set()
-        for base in type(self._planner).__mro__[:-1]:
-            with contextlib.suppress(TypeError, OSError):
-                found.add(inspect.getfile(base))
-        return frozenset(found)
-
-    def _checked(self, answer: Any) -> Command:
-        """The answer as a command of finite floats."""
-        shaped = isinstance(answer, tuple) and len(answer) in (2, 3)
-        if not shaped or not all(isinstance(x, Real) and not isinstance(x, bool) for x in answer):
-            self._step_call.fail(
-                f"step returned {_shown(answer)}; a Command(v, w) or a tuple of 2 or 3 numbers "
-                "is wanted"
-            )
-        command = Command(*(float(x) for x in answer))
-        if not all(math.isfinite(x) for x in command):
-            self._step_call.fail(f"step returned {_shown(answer)}; a command must be finite")
-        return command
 
     def _clamp(self, command: Command) -> tuple[Command, bool]:
         """Into the limits; that of vy is 0 for a robot without sideways drive."""
@@ -195,23 +163,3 @@ def _protected(obs: Observation) -> Observation:
         log=obs.log,
         truth=obs.truth and obs.truth.copy(),
     )
-
-
-def _shown(value: Any) -> str:
-    try:
-        text = repr(value)
-    except Exception as error:
-        text = f"something whose repr raises {type(error).__name__}"
-    text = text if len(text) <= 80 else text[:77] + "..."
-    return f"{text} ({type(value).__name__})"
-
-
-def named_signal(name: str, value: float) -> tuple[str, float]:
-    """A signal that can be recorded.
-
-    Raises:
-        TypeError, ValueError: what the planner wants to log is not a named number.
-    """
-    if not isinstance(name, str) or not name:
-        raise TypeError(f"log: the name of a signal is text, not {name!r}")
-    return name, float(value)

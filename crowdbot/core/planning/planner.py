@@ -84,6 +84,17 @@ class Observation:
     truth: Truth | None = None
 
 
+def named_signal(name: str, value: float) -> tuple[str, float]:
+    """A signal that can be recorded.
+
+    Raises:
+        TypeError, ValueError: what the planner wants to log is not a named number.
+    """
+    if not isinstance(name, str) or not name:
+        raise TypeError(f"log: the name of a signal is text, not {name!r}")
+    return name, float(value)
+
+
 class NoValidCommand(Exception):  # noqa: N818 - a word of the planner contract
     """A planner may raise this when it knows no command; the robot is told to stop."""
 

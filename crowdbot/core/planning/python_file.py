@@ -10,12 +10,16 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, cast
 
+from crowdbot.core.planning.planner import Planner
 from crowdbot.core.registry.plugin_boundary import PluginCall
+from crowdbot.core.support.source_digest import imported_names
 from crowdbot.errors import InputError, PlannerError, did_you_mean, nearest
 
 _METHODS = ("reset", "step")
+#: Libraries that take long to import and start no threads by that.
+_SLOW = ("numba", "scipy", "torch")
 
 
 def planner_class(path: Path, name: str) -> type[Any]:
@@ -64,6 +68,37 @@ def _import(path: Path) -> ModuleType:
     return module
 
 
+def build_of_class(
+    kind: type[Any], parameters: Mapping[str, Any], path: Path, name: str
+) -> Planner:
+    """A planner of a class.
+
+    Raises:
+        PlannerError: it cannot be made, or lacks a method.
+    """
+    call = PluginCall(
+        f"planner '{name}' ({path})",
+        sources=lambda: {str(path.resolve())},
+        error=PlannerError,
+        passes=PlannerError,
+    )
+    with call("cannot be built"):
+        return checked_planner(kind(**parameters))
+
+
+def checked_planner(planner: object) -> Planner:
+    """A planner, as far as that can be seen before it is called.
+
+    Raises:
+        PlannerError: it lacks a method.
+    """
+    missing = missing_methods(planner)
+    if missing:
+        what = type(planner).__name__
+        raise PlannerError(f"what was built, a {what}, has no {' and no '.join(missing)}")
+    return cast(Planner, planner)
+
+
 def missing_methods(planner: object) -> list[str]:
     """What a planner, or its class, lacks to be one."""
     return [m for m in _METHODS if not callable(getattr(planner, m, None))]
@@ -96,3 +131,11 @@ def guess_class(path: Path) -> str:
             if methods >= set(_METHODS):
                 return node.name
     return "Class"
+
+
+def preloads(path: Path) -> tuple[str, ...]:
+    """Slow libraries that a file or a module beside it imports, and that are worth importing once.
+
+    A process that has them can be forked for every run.
+    """
+    return tuple(n for n in _SLOW if n in imported_names(path))

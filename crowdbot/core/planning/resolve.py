@@ -2,70 +2,56 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any, cast, get_args
+from typing import Any
 
 from pydantic import ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
+from crowdbot.core.planning.choice import ANYWHERE, PlannerChoice, PlannerPlace, label_of
+from crowdbot.core.planning.description import described, role_of
+from crowdbot.core.planning.external import external_choice, is_external
+from crowdbot.core.planning.guarded import planner_title
 from crowdbot.core.planning.planner import Planner
+from crowdbot.core.planning.process.process_planner import ProcessPlan, describe
 from crowdbot.core.planning.python_file import (
+    build_of_class,
     check_parameters,
     guess_class,
-    missing_methods,
     planner_class,
+    preloads,
 )
+from crowdbot.core.planning.registered import build_of_kind, find_kind, spec_of_kind
 from crowdbot.core.registry.build_reference import load_build
-from crowdbot.core.registry.plugin_boundary import PluginCall
+from crowdbot.core.registry.plugin import BUILTIN
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.support.source_digest import declared_data, source_digest
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.component import Component
 from crowdbot.dsl.component_specs import PlannerRole, PlannerSpec
-from crowdbot.errors import InputError, PlannerError, UnknownNameError, did_you_mean, nearest
+from crowdbot.errors import InputError
+
+__all__ = ["PlannerChoice", "PlannerPlace", "kinds_of_role", "resolve_planner", "select_sensors"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlannerChoice:
-    """A planner that can be built any number of times.
-
-    Attributes:
-        name: its kind, or the class' name.
-        spec_dump: everything that defines it, as JSON values.
-        build: makes a new one; raises `PlannerError` or `PluginError`.
-        pinned: whether it comes from an installed distribution.
-        needs: sensors it reads, by name or category; None asks for all.
-        label: ``name``, with ``+`` and four hex digits when parameters are not the defaults, and
-            with ``+privileged`` where that holds: scores carry it.
-        privileged: whether it may read what no sensor of a real robot could tell.
-        role: what it is there for: floor, baseline, ceiling or candidate. One with other
-            parameters than its defaults is a candidate.
-        origin: the distribution, or the file, that it comes from.
-    """
-
-    name: str
-    spec_dump: dict[str, Any]
-    build: Callable[[], Planner]
-    pinned: bool
-    needs: tuple[str, ...] | None
-    label: str
-    privileged: bool = False
-    role: PlannerRole = "candidate"
-    origin: str = ""
-
-
-def resolve_planner(text: str, registry: Registry, settings: Sequence[str] = ()) -> PlannerChoice:
+def resolve_planner(
+    text: str,
+    registry: Registry,
+    settings: Sequence[str] = (),
+    place: PlannerPlace = ANYWHERE,
+) -> PlannerChoice:
     """Find a planner and check its parameters, without building it.
+
+    Nothing of a planner that runs in a process of its own is imported here.
 
     Args:
         text: a kind (``dwa``), a YAML file with ``kind`` and parameters, or ``file.py:Class``.
         registry: the installed components.
         settings: ``key=value``, values in YAML; they come after those of a file.
+        place: where it is to run.
 
     Raises:
         UnknownNameError: no planner of that kind is installed.
@@ -75,18 +61,20 @@ def resolve_planner(text: str, registry: Registry, settings: Sequence[str] = ())
     given = _settings(settings)
     path, colon, name = text.rpartition(":")
     if colon and path.endswith(".py"):
-        return _from_class(Path(path), name, given)
+        return _from_class(Path(path), name, given, place)
     if text.endswith(".py"):
         raise InputError(f"{text}: which class? Write {text}:{guess_class(Path(text))}")
     if colon and Path(f"{path}.py").is_file():
         raise InputError(f"{text}: no such file; did you mean {path}.py:{name}?")
     if text.endswith((".yaml", ".yml")) or "/" in text:
         document = _read(Path(text))
+        if is_external(document):
+            return external_choice(Path(text), document, given, place)
         kind = document.pop("kind", None)
         if not isinstance(kind, str):
             raise InputError(f"{text}: 'kind' is missing: which planner is it?")
-        return _from_kind(kind, {**document, **given}, registry, f"{text}: ")
-    return _from_kind(text, given, registry, "")
+        return _from_kind(kind, {**document, **given}, registry, f"{text}: ", place)
+    return _from_kind(text, given, registry, "", place)
 
 
 def kinds_of_role(role: PlannerRole, registry: Registry) -> list[str]:
@@ -137,56 +125,52 @@ def select_sensors(
 
 # ------------------------------------------------------------------ registered kinds
 def _from_kind(
-    kind: str, parameters: Mapping[str, Any], registry: Registry, where: str
+    kind: str, parameters: Mapping[str, Any], registry: Registry, where: str, place: PlannerPlace
 ) -> PlannerChoice:
-    try:
-        component = registry.find("planner", kind)
-    except UnknownNameError as error:
-        known, why = registry.components("planner"), registry.why_absent(kind)
-        raise UnknownNameError(f"{where}planner", kind, known, why) from error
-    spec = _validated(component, parameters, where)
-    # Imported at once, so that one that cannot be is refused before a run begins.
-    load_build(component, registry.plugin_call(spec))
+    component = find_kind(kind, registry, where)
+    spec = spec_of_kind(component, parameters, where)
     owner = registry.owner(component)
     as_given = _is_default(component, spec)
-
-    def build() -> Planner:
-        call = registry.plugin_call(spec, error=PlannerError, passes=PlannerError)
-        return registry.build(spec, checked_planner, call=call)
-
+    in_process = place.in_process
+    if in_process is None:  # ours are known; of a registry made by hand, no process knows
+        in_process = owner.name == BUILTIN or registry.source is None
+    if not in_process and registry.source is None:
+        raise InputError(
+            f"planner '{kind}' cannot run in a process of its own: its plugin is known to this "
+            "process only"
+        )
+    description, dump = described(component.spec), spec.model_dump(mode="json")
+    build: Callable[[], Planner]
+    if in_process or registry.source is None:
+        # Imported at once, so that one that cannot be is refused before a run begins.
+        load_build(component, registry.plugin_call(spec))
+        build = partial(build_of_kind, spec, registry)
+    else:
+        plan = ProcessPlan(
+            who=planner_title(kind, owner.distribution),
+            what={
+                "name": kind,
+                "origin": owner.distribution,
+                "kind": kind,
+                "parameters": dict(parameters),
+                "plugins": registry.source,
+            },
+            memory=place.memory,
+        )
+        _, build = describe(plan, lenient=place.lenient)
     return PlannerChoice(
         name=kind,
-        spec_dump=spec.model_dump(mode="json"),
+        spec_dump=dump,
         build=build,
         pinned=owner.pinned,
         origin=owner.distribution,
-        needs=_needs(component.spec),
-        label=_label(kind if as_given else f"{kind}+{_digest(spec)}", spec),
+        needs=description.needs,
+        label=label_of(kind, {} if as_given else dump, _is_privileged(spec)),
         privileged=_is_privileged(spec),
-        role=role_of(component.spec) if as_given else "candidate",
+        role=description.role if as_given else "candidate",
+        in_process=in_process,
+        memory=place.own_memory(in_process),
     )
-
-
-def _validated(component: Component[Any], parameters: Mapping[str, Any], where: str) -> PlannerSpec:
-    try:
-        spec: PlannerSpec = component.spec.model_validate({**parameters, "kind": component.kind})
-    except ValidationError as error:
-        known = component.spec.model_fields
-        raise InputError("\n".join(_lines(error, component.kind, known, where))) from None
-    return spec
-
-
-def _lines(error: ValidationError, kind: str, known: Mapping[str, Any], where: str) -> list[str]:
-    lines = []
-    for item in error.errors(include_url=False):
-        field = ".".join(str(part) for part in item["loc"])
-        if item["type"] == "extra_forbidden":
-            near = did_you_mean(nearest(field, known))
-            lines.append(f"{where}planner '{kind}' has no parameter '{field}'{near}")
-        else:
-            name = f"{field}: " if field else ""
-            lines.append(f"{where}planner '{kind}': {name}{item['msg']}")
-    return lines
 
 
 def _is_default(component: Component[Any], spec: PlannerSpec) -> bool:
@@ -200,39 +184,9 @@ def _has_defaults(component: Component[Any]) -> bool:
     return not any(f.is_required() for f in component.spec.model_fields.values())
 
 
-def _digest(value: Any) -> str:
-    """Four hex digits of some parameters."""
-    dump = value.model_dump(mode="json") if isinstance(value, PlannerSpec) else value
-    text = json.dumps(dump, sort_keys=True, separators=(",", ":"), default=repr)
-    return hashlib.sha256(text.encode()).hexdigest()[:4]
-
-
-def _needs(holder: type) -> tuple[str, ...] | None:
-    needs = getattr(holder, "needs", None)
-    return None if needs is None else tuple(str(n) for n in needs)
-
-
 def _is_privileged(holder: object) -> bool:
     """Whether a planner class, or a spec, in a class variable or a field, says so."""
     return getattr(holder, "privileged", False) is True
-
-
-def role_of(holder: type) -> PlannerRole:
-    """What a planner class, or a spec, says that it is there for.
-
-    Raises:
-        InputError: there is no such role.
-    """
-    role = getattr(holder, "role", "candidate")
-    if role not in get_args(PlannerRole):
-        known = get_args(PlannerRole)
-        near = did_you_mean(nearest(str(role), known)) or f"; there are {', '.join(known)}"
-        raise InputError(f"planner '{holder.__name__}': no role '{role}'{near}")
-    return cast(PlannerRole, role)
-
-
-def _label(label: str, holder: object) -> str:
-    return f"{label}+privileged" if _is_privileged(holder) else label
 
 
 # ------------------------------------------------------------------------ documents
@@ -272,46 +226,47 @@ def _first(error: YAMLError) -> str:
 
 
 # --------------------------------------------------------------------- Python files
-def _from_class(path: Path, name: str, parameters: Mapping[str, Any]) -> PlannerChoice:
-    kind = planner_class(path, name)
+def _from_class(
+    path: Path, name: str, parameters: Mapping[str, Any], place: PlannerPlace
+) -> PlannerChoice:
+    if not path.is_file():
+        raise InputError(f"{path}: no such file")
+    in_process = place.in_process is True
+    build: Callable[[], Planner]
+    if in_process:
+        kind = planner_class(path, name)
+        check_parameters(kind, parameters, f"{path}:{name}")
+        description = described(kind)
+        build = partial(build_of_class, kind, parameters, path, name)
+    else:
+        plan = ProcessPlan(
+            who=planner_title(name, str(path)),
+            what={
+                "name": name,
+                "origin": str(path),
+                "file": str(path),
+                "class": name,
+                "parameters": dict(parameters),
+            },
+            preload=preloads(path),
+            memory=place.memory,
+        )
+        description, build = describe(plan, lenient=place.lenient)
     dump = {
         "kind": f"{path.name}:{name}",
         "sha256": source_digest(path, declared_data(kind)),
         **({"parameters": dict(parameters)} if parameters else {}),
     }
-    check_parameters(kind, parameters, f"{path}:{name}")
-
-    def build() -> Planner:
-        call = PluginCall(
-            f"planner '{name}' ({path})",
-            sources=lambda: {str(path.resolve())},
-            error=PlannerError,
-            passes=PlannerError,
-        )
-        with call("cannot be built"):
-            return checked_planner(kind(**parameters))
-
     return PlannerChoice(
         name=name,
         spec_dump=dump,
         build=build,
         pinned=False,
         origin=str(path),
-        needs=_needs(kind),
-        label=_label(f"{name}+{_digest(dict(parameters))}" if parameters else name, kind),
-        privileged=_is_privileged(kind),
-        role="candidate" if parameters else role_of(kind),
+        needs=description.needs,
+        label=label_of(name, parameters, description.privileged),
+        privileged=description.privileged,
+        role="candidate" if parameters else description.role,
+        in_process=in_process,
+        memory=place.own_memory(in_process),
     )
-
-
-def checked_planner(planner: object) -> Planner:
-    """A planner, as far as that can be seen before it is called.
-
-    Raises:
-        PlannerError: it lacks a method.
-    """
-    missing = missing_methods(planner)
-    if missing:
-        what = type(planner).__name__
-        raise PlannerError(f"what was built, a {what}, has no {' and no '.join(missing)}")
-    return cast(Planner, planner)

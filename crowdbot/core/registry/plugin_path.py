@@ -47,6 +47,11 @@ def entries_at(path: Path) -> list[PluginEntry]:
         return [PluginEntry(plugin=plugin, load=partial(_fail, str(error)))]
 
 
+def path_without_plugins() -> list[str]:
+    """``sys.path`` as it was before plugins that are not installed brought their folders."""
+    return [p for p in sys.path if p not in _ADDED]
+
+
 def load_path(path: Path) -> ModuleType:
     """Import a Python file or a package folder under its own name, without installing it.
 
@@ -74,7 +79,7 @@ def _is_installed(name: str, file: Path) -> bool:
     """Whether an import of that name would find something else."""
     if name in sys.stdlib_module_names:
         return True
-    found = PathFinder.find_spec(name, [p for p in sys.path if p not in _ADDED])
+    found = PathFinder.find_spec(name, path_without_plugins())
     return found is not None and found.origin != str(file)
 
 

@@ -35,6 +35,15 @@ __all__ = ["Plugin", "Registry", "assemble", "discover"]
 Built = TypeVar("Built")
 
 
+@dataclass(frozen=True, slots=True)
+class Source:
+    """What `discover` was asked for."""
+
+    extra: tuple[Path, ...]
+    allow: tuple[str, ...] | None
+    entry_points: bool
+
+
 @dataclass(frozen=True)
 class Registry:
     """All plugins, and the healthy ones' components by category and kind.
@@ -43,12 +52,14 @@ class Registry:
         plugins: all that were found and may be loaded; some may have failed.
         excluded: installed plugins that are not on the allow-list; nothing of them was imported.
         allowed: the allow-list; None allows all.
+        source: how another process discovers the same; None of one that was put together by hand.
     """
 
     plugins: tuple[Plugin, ...]
     _by_category: Mapping[str, Mapping[str, Component[Any]]] = field(repr=False)
     excluded: tuple[Plugin, ...] = ()
     allowed: tuple[str, ...] | None = None
+    source: Source | None = None
 
     def components(self, category: str) -> Mapping[str, Component[Any]]:
         """Kind -> component, sorted by kind."""
@@ -241,8 +252,11 @@ def discover(
         allow: only these plugin names; default: ``CROWDBOT_PLUGINS``, else all.
         entry_points: False reads no entry points except crowdbot's own.
     """
-    found = find_plugins(extra=extra, allow=allow, entry_points=entry_points)
-    return replace(assemble(found.plugins), excluded=found.excluded, allowed=found.allowed)
+    names = None if allow is None else tuple(allow)
+    found = find_plugins(extra=extra, allow=names, entry_points=entry_points)
+    source = Source(tuple(Path(p).resolve() for p in extra), names, entry_points)
+    registry = assemble(found.plugins)
+    return replace(registry, excluded=found.excluded, allowed=found.allowed, source=source)
 
 
 def assemble(found: Sequence[Plugin]) -> Registry:

@@ -12,7 +12,7 @@ from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import encode_runs, encode_scores, pack
 from crowdbot.core.report.figures import FIELDS, VERDICTS
 from crowdbot.core.report.tables import chance, family
-from crowdbot.core.results.rows import RunRow
+from crowdbot.core.results.rows import RunRow, processes
 from crowdbot.core.scoring.scores_csv import write_table
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import render_page
@@ -73,6 +73,7 @@ def _planner(contents: Contents, planner: str) -> dict[str, Any]:
         "counts": contents.counts(tried),
         "privileged": contents.is_privileged(planner),
         "pinned": contents.is_pinned(planner),
+        "process": processes(a.record for a in tried if isinstance(a, RunRow)),
         "reference": planner in contents.heading.references,
         "role": contents.role(planner),
         "facts": provenance.planner_facts([a for a in tried if isinstance(a, RunRow)]),

@@ -5,7 +5,7 @@ Plain values, so that statistics, report, linter and bundle need neither a store
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,6 +19,8 @@ WITHOUT_RUN: Mapping[str, float] = {
     "success_no_collision": 0.0,
     "safe_efficiency": 0.0,
 }
+
+_PLACES = {"own": "own process", "in_process": "in the simulator's process"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,6 +70,25 @@ class RunRow:
     conditions: Mapping[str, str]
     record: Mapping[str, Any] = field(default_factory=dict, repr=False)
     role: str = "candidate"
+
+    @property
+    def planner_process(self) -> str:
+        """As `process_of` says it."""
+        return process_of(self.record)
+
+
+def process_of(record: Mapping[str, Any]) -> str:
+    """Where the planner of a run ran: ``own``, or ``in_process``, inside the simulator.
+
+    Args:
+        record: ``run.json``; those before planners had processes do not say it.
+    """
+    return "own" if record.get("planner_process") == "own" else "in_process"
+
+
+def processes(records: Iterable[Mapping[str, Any]]) -> str:
+    """Where the planner of some runs ran, in words."""
+    return " or ".join(sorted({_PLACES[process_of(record)] for record in records}))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -25,8 +25,8 @@ Line = dict[str, Any]
 _Place = tuple[str, str, str]
 _RUN = (
     "suite", "scenario", "planner", "seed", "status", "reason", "goal_time", "sim_time",
-    "wall_time", "density", "privileged", "pinned", "spec_hash", "realisation_hash",
-    "trajectory_hash", "run_id", "directory",
+    "wall_time", "density", "privileged", "pinned", "planner_process", "spec_hash",
+    "realisation_hash", "trajectory_hash", "run_id", "directory",
 )  # fmt: skip
 _SCORE = (
     "category", "metric", "symbol", "variant", "value", "unit", "better", "status", "reason",
@@ -62,6 +62,7 @@ def score_lines(results: Results) -> list[Line]:
                 **{n: getattr(run, n) for n in ("suite", "scenario", "planner", "seed")},
                 **{f"axis_{a}": run.axes.get(a) for a in axes},
                 "run_status": run.status,
+                "planner_process": run.planner_process,
                 **{n: getattr(score, n) for n in _SCORE},
                 "run_id": run.run_id,
             }

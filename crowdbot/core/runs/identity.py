@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from crowdbot.core.planning.choice import IN_PROCESS, MEMORY
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
@@ -157,8 +158,14 @@ def references_of(request: Request, prepared: Prepared) -> tuple[Reference, ...]
     )
 
 
-def _budget(request: Request) -> dict[str, float]:
-    return {} if request.step_budget is None else {"step_budget": request.step_budget}
+def _budget(request: Request) -> dict[str, float | None]:
+    """What a planner may take, where that is not the usual."""
+    found: dict[str, float | None] = {}
+    if request.step_budget is not None:
+        found["step_budget"] = request.step_budget
+    if not request.choice.in_process and request.choice.memory != MEMORY:
+        found["planner_memory"] = request.choice.memory
+    return found
 
 
 def _reference(
@@ -187,6 +194,8 @@ def reusable_record(request: Request, run_id: str, *, compared: bool) -> dict[st
         return None
     if wrong := files.damage(request.directory, record) or next(iter(record_problems(record)), ""):
         _LOG.warning("%s: %s; it is made again", request.directory, wrong)
+        return None
+    if record.get("planner_process", IN_PROCESS) != request.choice.process:
         return None
     if record.get("recorded") != request.record or (compared and not record.get("references")):
         return None

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.core.planning.choice import IN_PROCESS
 from crowdbot.core.registry.plugin import BUILTIN
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.support.float_fingerprint import fingerprint
@@ -106,12 +107,26 @@ def remarks(record: Mapping[str, Any]) -> dict[str, str]:
     found = {}
     if record.get("privileged"):
         found["Privileged"] = "the planner sees the truth"
+    if runs_inside(record):
+        found["In process"] = "the planner ran inside the simulator, where nothing contains it"
     if not record.get("pinned", True):
         loose = [p["distribution"] for p in record.get("plugins", ()) if not p["pinned"]]
         if "sha256" in record["planner"]:
             loose.append(record["planner"]["kind"])
         found["Not pinned"] = f"{', '.join(loose)}: not from an installed distribution"
     return found
+
+
+def runs_inside(record: Mapping[str, Any]) -> bool:
+    """Whether a planner that is not crowdbot's own ran inside the simulator.
+
+    Args:
+        record: ``run.json``, or what will be; of runs before planners had processes, None is said.
+    """
+    if record.get("planner_process") != IN_PROCESS:
+        return False
+    kind = str(record.get("planner", {}).get("kind", ""))
+    return "sha256" in record.get("planner", {}) or "." in kind
 
 
 def machine() -> dict[str, str]:

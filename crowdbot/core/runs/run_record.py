@@ -43,6 +43,7 @@ def run_record(
         "pinned": request.pinned,
         "privileged": request.choice.privileged,
         "role": request.choice.role,
+        "planner_process": request.choice.process,
         "allowed_plugins": request.registry.allowed,
         "recorded": request.record,
         **ending(outcome),

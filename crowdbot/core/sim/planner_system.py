@@ -21,8 +21,8 @@ from pydrake.systems.framework import (
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as crowd_state
-from crowdbot.core.planning.host import HostedCommand, PlannerHost, named_signal
-from crowdbot.core.planning.planner import Observation, Task, Truth
+from crowdbot.core.planning.host import HostedCommand, PlannerHost
+from crowdbot.core.planning.planner import Observation, Task, Truth, named_signal
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.topics import is_odometry
 from crowdbot.core.sim import ports

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -10,6 +11,7 @@ from typing import cast
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.planning.host import RESET_LIMIT, HostedCommand, PlannerHost
 from crowdbot.core.planning.planner import Observation, Planner
+from crowdbot.core.planning.process.process_planner import ProcessPlanner
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.planning.watchdog import Watchdog
 from crowdbot.core.recording import RecordingHeader, RobotHeader
@@ -42,10 +44,14 @@ def record_robot(setup: RunSetup, built: BuiltRun) -> Outcome:
     )
     check_start(built.parts, built.model, built.task.start, engine, built.name)
     header = replace(_header(built, engine), hashes=setup.hashes)
-    with recording(setup, header) as (writer, ending), _watchdog(setup) as watchdog:
+    with (
+        recording(setup, header) as (writer, ending),
+        _watchdog(setup) as watchdog,
+        contextlib.ExitStack() as stack,
+    ):
         sideways = isinstance(built.model.drive, HolonomicDrive)
         log = RunLog(writer, ids(engine), sideways=sideways)
-        host = _host(setup, built, watchdog)
+        host = stack.enter_context(_host(setup, built, watchdog))
         if engine is not None:
             engine.advance(engine.initial_state())  # compiles kernels before the clock starts
         blocks = build_diagram(
@@ -78,7 +84,11 @@ def _header(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
 
 
 @contextmanager
-def _watchdog(setup: RunSetup) -> Iterator[Watchdog]:
+def _watchdog(setup: RunSetup) -> Iterator[Watchdog | None]:
+    """Over a planner in this process; one in a process of its own is simply ended."""
+    if not setup.choice.in_process:
+        yield None
+        return
     watchdog = Watchdog(on_hang=setup.on_hang)
     try:
         yield watchdog
@@ -86,10 +96,16 @@ def _watchdog(setup: RunSetup) -> Iterator[Watchdog]:
         watchdog.close()
 
 
-def _host(setup: RunSetup, built: BuiltRun, watchdog: Watchdog) -> PlannerHost:
-    """The planner, built and reset; one that fails in this fails again in its first step."""
+@contextmanager
+def _host(setup: RunSetup, built: BuiltRun, watchdog: Watchdog | None) -> Iterator[PlannerHost]:
+    """The planner, built and reset; one that fails in this fails again in its first step.
+
+    A process of its own is ended afterwards; what it does too long, it does within that.
+    """
     choice, limits = setup.choice, built.model.limits
     sensors = {n: built.infos[n] for n in built.visible}
+    planner: Planner | None = None
+    host: PlannerHost
     try:
         planner = _build(choice, watchdog)
         host = PlannerHost(
@@ -99,12 +115,18 @@ def _host(setup: RunSetup, built: BuiltRun, watchdog: Watchdog) -> PlannerHost:
         # Halved, so that planners may hand the seed to generators of signed integers.
         host.reset(built.task, sensors, stream_seed(setup.seed, built.name, "planner") >> 1)
     except PlannerError as error:
-        return _FailedHost(error, choice.name, limits)
-    return host
+        host = _FailedHost(error, choice.name, limits)
+    try:
+        yield host
+    finally:
+        if isinstance(planner, ProcessPlanner):
+            planner.close()
 
 
-def _build(choice: PlannerChoice, watchdog: Watchdog) -> Planner:
+def _build(choice: PlannerChoice, watchdog: Watchdog | None) -> Planner:
     """The planner itself; its constructor may load models, but not for ever."""
+    if watchdog is None:
+        return choice.build()
     try:
         with watchdog.patience(RESET_LIMIT), watchdog:
             return choice.build()

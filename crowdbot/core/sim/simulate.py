@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_args
 
+from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.planning.watchdog import STEP_LIMIT
 from crowdbot.core.recording import read_run
@@ -66,6 +67,7 @@ def simulate(
     stop: Callable[[], bool] = lambda: False,
     on_hang: Callable[[], object] | None = None,
     step_budget: float | None = None,
+    place: PlannerPlace = ANYWHERE,
 ) -> Run:
     """Simulate and score one run; a complete run with the same hashes is reused.
 
@@ -79,16 +81,18 @@ def simulate(
             result.
         suite, record, references, force, metrics, axes, position, replay: as in `Request`.
         progress, stop, on_hang, step_budget: as in `Request`.
+        place: where the planner runs: by default in a process of its own, but for crowdbot's.
 
     Raises:
         InputError: the scenario has no robot, the planner, the folder or an option is wrong, or
             the lock of the suite does not fit it any more.
         UnknownNameError: no metric answers to a pattern.
-        PlannerHungError: a planner step never returned; a ``.partial`` directory is left.
+        PlannerHungError: a step of a planner in this process never returned; a ``.partial``
+            directory is left.
         Interrupted: ``stop`` said so; a ``.partial`` directory is left.
     """
-    choice = resolve_planner(planner, registry, planner_settings)
     _check_options(seed, suite, record, step_budget)
+    choice = resolve_planner(planner, registry, planner_settings, place)
     if metrics is not None:
         metric_specs(registry, metrics, {})  # a wrong name ends the run before it begins
     keep = None

@@ -117,6 +117,11 @@ def package_files(folder: Path) -> dict[str, Path]:
     return own | {f"../{f.relative_to(folder.parent).as_posix()}": f for f in beside}
 
 
+def imported_names(file: Path) -> set[str]:
+    """First parts of the names of all modules that a file, or one beside it, imports."""
+    return {name for one in _with_helpers(file) for name in _imported(one)}
+
+
 def _with_helpers(file: Path) -> set[Path]:
     return {file} | _helpers_of(file.parent, [file], set())
 

@@ -10,6 +10,7 @@ import pytest
 from pydantic import Field
 
 from crowdbot.core.interfaces import SensorInfo
+from crowdbot.core.planning.choice import PlannerPlace
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner, select_sensors
 from crowdbot.core.registry.registry import Plugin, Registry, assemble, discover
 from crowdbot.dsl import Component, PlannerSpec, PositiveLength
@@ -192,6 +193,9 @@ def function(): pass
 """
 
 
+INSIDE = PlannerPlace(in_process=True)
+
+
 @pytest.fixture
 def source(tmp_path: Path) -> Path:
     (tmp_path / "helper_beside.py").write_text("HALF = 0.5\n")
@@ -201,7 +205,7 @@ def source(tmp_path: Path) -> Path:
 
 
 def test_class_in_a_file(registry: Registry, source: Path) -> None:
-    choice = resolve_planner(f"{source}:Mine", registry)
+    choice = resolve_planner(f"{source}:Mine", registry, place=INSIDE)
     assert (choice.name, choice.label, choice.pinned) == ("Mine", "Mine", False)
     assert choice.needs == ("front_lidar",)
     assert choice.spec_dump["kind"] == "json.py:Mine"
@@ -213,16 +217,16 @@ def test_class_in_a_file(registry: Registry, source: Path) -> None:
 
 
 def test_class_with_settings(registry: Registry, source: Path) -> None:
-    choice = resolve_planner(f"{source}:Mine", registry, ["speed=0.8"])
+    choice = resolve_planner(f"{source}:Mine", registry, ["speed=0.8"], INSIDE)
     assert choice.label.startswith("Mine+")
     assert choice.spec_dump["parameters"] == {"speed": 0.8}
     assert choice.build().step(None).v == 0.4  # type: ignore[arg-type]
 
 
 def test_an_edited_file_is_read_again(registry: Registry, source: Path) -> None:
-    before = resolve_planner(f"{source}:Mine", registry)
+    before = resolve_planner(f"{source}:Mine", registry, place=INSIDE)
     source.write_text(SOURCE.replace("speed=0.5", "speed=0.25  "))
-    after = resolve_planner(f"{source}:Mine", registry)
+    after = resolve_planner(f"{source}:Mine", registry, place=INSIDE)
     assert after.build().step(None).v == 0.125  # type: ignore[arg-type]
     assert before.spec_dump["sha256"] != after.spec_dump["sha256"]
 
@@ -289,11 +293,41 @@ def test_python_files_that_cannot_be_imported(
 
 
 def test_a_class_that_cannot_be_made(registry: Registry, source: Path) -> None:
-    choice = resolve_planner(f"{source}:Mine", registry, ["speed=-1"])
+    choice = resolve_planner(f"{source}:Mine", registry, ["speed=-1"], INSIDE)
     with pytest.raises(
         PlannerError, match=r"'Mine' .*: cannot be built: ValueError: too slow .*py:\d+"
     ):
         choice.build()
+
+
+def test_nothing_of_a_planner_in_its_own_process_is_imported_here(
+    registry: Registry, tmp_path: Path
+) -> None:
+    import sys
+
+    (tmp_path / "told.py").write_text(
+        "class Told:\n"
+        "    needs, role, privileged = ('front',), 'floor', True\n"
+        "    def reset(self, *a): ...\n"
+        "    def step(self, obs): ...\n"
+    )
+    before = set(sys.modules)
+    choice = resolve_planner(f"{tmp_path}/told.py:Told", registry)
+    assert (choice.needs, choice.role, choice.privileged) == (("front",), "floor", True)
+    assert (choice.in_process, choice.process, choice.memory) == (False, "own", 4 << 30)
+    assert not any("crowdbot_planner_" in name for name in set(sys.modules) - before)
+
+
+def test_our_own_run_inside_unless_they_are_told_otherwise() -> None:
+    ours = discover(allow=())
+    assert resolve_planner("dwa", ours).process == "in_process"
+    assert resolve_planner("dwa", ours, place=PlannerPlace(in_process=False)).process == "own"
+
+
+def test_a_registry_that_no_other_process_can_make(registry: Registry) -> None:
+    assert resolve_planner("tiny", registry).in_process
+    with pytest.raises(InputError, match="known to this process only"):
+        resolve_planner("tiny", registry, place=PlannerPlace(in_process=False))
 
 
 # --------------------------------------------------------------------------- sensors

@@ -1,0 +1,81 @@
+"""What a planner class, or its spec, says of itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, cast, get_args
+
+from crowdbot.dsl.component_specs import PlannerRole
+from crowdbot.errors import InputError, did_you_mean, nearest
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlannerDescription:
+    """What must be known of a planner before it runs.
+
+    Attributes:
+        needs: sensors it reads, by name or category; None asks for all.
+        privileged: whether it may read what no sensor of a real robot could tell.
+        role: what it is there for.
+        runtime: what it runs in, where that is not crowdbot's own Python.
+    """
+
+    needs: tuple[str, ...] | None = None
+    privileged: bool = False
+    role: PlannerRole = "candidate"
+    runtime: str = ""
+
+
+def described(holder: type) -> PlannerDescription:
+    """What a class says.
+
+    Raises:
+        InputError: there is no such role.
+    """
+    needs = getattr(holder, "needs", None)
+    return PlannerDescription(
+        needs=None if needs is None else tuple(str(n) for n in needs),
+        privileged=getattr(holder, "privileged", False) is True,
+        role=role_of(holder),
+    )
+
+
+def read_description(said: Mapping[str, Any], who: str) -> PlannerDescription:
+    """What a planner process said; anything may be wrong in it.
+
+    Raises:
+        InputError: it is not what a planner says of itself.
+    """
+    needs, runtime = said.get("needs"), said.get("runtime", "")
+    if needs is not None and not (isinstance(needs, list) and all(map(_is_name, needs))):
+        raise InputError(f"{who}: hello: 'needs' is a list of names of sensors, or nil")
+    if not isinstance(runtime, str):
+        raise InputError(f"{who}: hello: 'runtime' is text")
+    return PlannerDescription(
+        needs=None if needs is None else tuple(needs),
+        privileged=said.get("privileged", False) is True,
+        role=_role(said.get("role", "candidate"), who),
+        runtime=runtime[:80],
+    )
+
+
+def role_of(holder: type) -> PlannerRole:
+    """What a planner class, or a spec, says that it is there for.
+
+    Raises:
+        InputError: there is no such role.
+    """
+    return _role(getattr(holder, "role", "candidate"), f"planner '{holder.__name__}'")
+
+
+def _role(role: object, who: str) -> PlannerRole:
+    known = get_args(PlannerRole)
+    if role not in known:
+        near = did_you_mean(nearest(str(role), known)) or f"; there are {', '.join(known)}"
+        raise InputError(f"{who}: no role '{role}'{near}")
+    return cast(PlannerRole, role)
+
+
+def _is_name(value: object) -> bool:
+    return isinstance(value, str) and bool(value)

@@ -1,0 +1,173 @@
+"""Planners of another Python, or of another language: documents with ``python`` or ``command``."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+import shutil
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NoReturn
+
+from crowdbot.core.planning.choice import PlannerChoice, PlannerPlace, label_of
+from crowdbot.core.planning.guarded import planner_title
+from crowdbot.core.planning.process import foreign_main
+from crowdbot.core.planning.process.process_planner import ProcessPlan, describe
+from crowdbot.core.support.source_digest import source_digest
+from crowdbot.errors import InputError, did_you_mean, nearest
+
+_FIELDS = ("command", "python", "planner", "name", "parameters", "files")
+_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}")
+
+
+def is_external(document: Mapping[str, Any]) -> bool:
+    """Whether a planner's document names a program rather than a kind."""
+    return "kind" not in document and any(name in document for name in ("command", "python"))
+
+
+def external_choice(
+    path: Path, document: Mapping[str, Any], settings: Mapping[str, Any], place: PlannerPlace
+) -> PlannerChoice:
+    """The planner of a document that names a program.
+
+    Args:
+        path: of the document; names of files are relative to its folder.
+        document: what it says.
+        settings: parameters that come after those of the document.
+        place: where it is to run, which cannot be inside the simulator.
+
+    Raises:
+        InputError: the document is wrong.
+        PlannerError: the program does not start, or does not answer.
+    """
+    if place.in_process:
+        raise InputError(f"{path}: another program cannot run in the simulator's process")
+    program = _Program(path, document)
+    parameters = {**program.parameters, **settings}
+    plan = ProcessPlan(
+        who=planner_title(program.name, str(path)),
+        command=program.command,
+        folder=str(path.resolve().parent),
+        parameters=parameters,
+        memory=place.memory,
+    )
+    said, build = describe(plan, lenient=place.lenient)
+    dump: dict[str, Any] = {
+        "kind": f"{path.name}:{program.name}",
+        "sha256": program.sha256,
+        **({"runtime": said.runtime} if said.runtime else {}),
+        **({"parameters": parameters} if parameters else {}),
+    }
+    return PlannerChoice(
+        name=program.name,
+        spec_dump=dump,
+        build=build,
+        pinned=False,
+        origin=str(path),
+        needs=said.needs,
+        label=label_of(program.name, parameters, said.privileged),
+        privileged=said.privileged,
+        role="candidate" if parameters else said.role,
+        in_process=False,
+        memory=place.memory,
+    )
+
+
+class _Program:
+    """What a document says, checked.
+
+    Attributes:
+        name: of the planner.
+        command: words that start it; the first is the absolute path of a program.
+        sha256: of the document's words and of every file that they name.
+    """
+
+    def __init__(self, path: Path, document: Mapping[str, Any]) -> None:
+        self._path, self._document = path, document
+        self._folder = path.resolve().parent
+        for field in document:
+            if field not in _FIELDS:
+                self._fail(
+                    f"a program has no field '{field}'{did_you_mean(nearest(field, _FIELDS))}"
+                )
+        if ("command" in document) == ("python" in document):
+            self._fail("give 'command', or 'python' and 'planner'")
+        self.parameters = self._mapping()
+        files = dict(self._named_files())
+        if "command" in document:
+            words = self._words("command")
+            self.name = str(document.get("name", path.stem))
+            if "planner" in document:
+                self._fail("'planner' goes with 'python'; a command names its program itself")
+            files |= {w: self._folder / w for w in words if (self._folder / w).is_file()}
+            self.command: Sequence[str] = [self._found(words[0]), *words[1:]]
+        else:
+            words, file, name = self._python()
+            self.name = str(document.get("name", name))
+            self.command = [words[0], str(Path(foreign_main.__file__).resolve()), str(file), name]
+            files[file.name] = file
+        if not _NAME.fullmatch(self.name):
+            self._fail(f"'{self.name}' cannot be a planner's name: letters, digits, '_', '-', '.'")
+        self.sha256 = _digest(words if "command" in document else [], files)
+
+    def _mapping(self) -> dict[str, Any]:
+        given = self._document.get("parameters", {})
+        if not isinstance(given, dict) or not all(isinstance(k, str) for k in given):
+            self._fail("'parameters' is a mapping with names")
+        return dict(given)
+
+    def _words(self, field: str) -> list[str]:
+        words = self._document[field]
+        if not isinstance(words, list) or not words or not all(isinstance(w, str) for w in words):
+            self._fail(f"'{field}' is a list of words, such as [./my_planner, --fast]")
+        return list(words)
+
+    def _python(self) -> tuple[list[str], Path, str]:
+        """The interpreter, the file and the class."""
+        python, planner = self._document["python"], self._document.get("planner")
+        if not isinstance(python, str) or not isinstance(planner, str):
+            self._fail("'python' is the path of an interpreter, and 'planner' is FILE.py:CLASS")
+        file, colon, name = planner.rpartition(":")
+        if not colon or not name.isidentifier():
+            self._fail(f"planner '{planner}': write FILE.py:CLASS")
+        found = self._folder / file
+        if not found.is_file():
+            self._fail(f"planner '{planner}': {found}: no such file")
+        return [self._found(python)], found, name
+
+    def _found(self, program: str) -> str:
+        """A program in the folder, or on the search path."""
+        here = self._folder / Path(program).expanduser()
+        if ("/" in program) and here.is_file():
+            return str(here)
+        elsewhere = None if "/" in program else shutil.which(program)
+        if elsewhere is None:
+            self._fail(
+                f"no program '{program}'" + (f" in {self._folder}" if "/" in program else "")
+            )
+        return elsewhere
+
+    def _named_files(self) -> Iterator[tuple[str, Path]]:
+        patterns = self._words("files") if "files" in self._document else []
+        for pattern in patterns:
+            found = [p for p in sorted(self._folder.glob(pattern)) if p.is_file()]
+            if not found:
+                self._fail(f"files: nothing in {self._folder} fits '{pattern}'")
+            yield from ((p.relative_to(self._folder).as_posix(), p) for p in found)
+
+    def _fail(self, what: str) -> NoReturn:
+        raise InputError(f"{self._path}: {what}")
+
+
+def _digest(words: Sequence[str], files: Mapping[str, Path]) -> str:
+    """SHA-256 of words and files, whose places do not count."""
+    named = {name: _file_digest(path) for name, path in sorted(files.items())}
+    text = json.dumps({"command": list(words), "files": named}, sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _file_digest(path: Path) -> str:
+    if path.suffix == ".py":
+        return source_digest(path)
+    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -1,0 +1,127 @@
+"""A planner whose exceptions and answers are made sense of, whatever they are.
+
+Both sides use it: the host for a planner in its own process, and the child process that a planner
+runs in by itself. So messages are the same.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import inspect
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
+from numbers import Real
+from typing import Any
+
+from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Task
+from crowdbot.core.registry.plugin_boundary import PluginCall
+from crowdbot.core.registry.plugin_errors import is_user_interrupt
+from crowdbot.core.types.motion import Command
+from crowdbot.core.types.robot import RobotLimits
+from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.errors import PlannerError
+
+_SHOWN = 80
+
+
+def planner_title(name: str, origin: str) -> str:
+    """How messages call a planner."""
+    return f"planner '{name}'" + (f" ({origin})" if origin else "")
+
+
+class GuardedPlanner:
+    """Calls a planner; what comes out is a command, `NoValidCommand` or a `PlannerError`.
+
+    Args:
+        planner: anything with ``reset`` and ``step``.
+        who: begins every message.
+        around: entered around each call, such as a watchdog.
+    """
+
+    def __init__(
+        self,
+        planner: Planner,
+        who: str,
+        around: AbstractContextManager[Any] | None = None,
+    ) -> None:
+        self._planner = planner
+        self._around = around or contextlib.nullcontext()
+        self._reset_call = PluginCall(
+            who, sources=self._sources, error=PlannerError, passes=PlannerError
+        )
+        self._step_call = PluginCall(
+            who,
+            sources=self._sources,
+            error=PlannerError,
+            passes=(PlannerError, NoValidCommand),
+        )
+
+    def reset(
+        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+    ) -> None:
+        """As `Planner.reset`.
+
+        Raises:
+            PlannerError: the planner raised.
+        """
+        with self._guarded(self._reset_call, "reset"):
+            self._planner.reset(task, limits, sensors, seed)
+
+    def step(self, obs: Observation) -> Command:
+        """As `Planner.step`; the command is one of finite floats.
+
+        Raises:
+            PlannerError: the planner raised, or returned something that is not a command.
+            NoValidCommand: it knows none.
+        """
+        with self._guarded(self._step_call, "step"):
+            return self._checked(self._planner.step(obs))
+
+    def fail(self, what: str) -> None:
+        """Say what is wrong with a step.
+
+        Raises:
+            PlannerError: always.
+        """
+        self._step_call.fail(what)
+
+    @contextmanager
+    def _guarded(self, call: PluginCall, method: str) -> Iterator[None]:
+        with self._around, call(method):
+            yield
+
+    def _sources(self) -> frozenset[str]:
+        """Files in which the planner's class and its bases are written."""
+        found = set()
+        for base in type(self._planner).__mro__[:-1]:
+            with contextlib.suppress(TypeError, OSError):
+                found.add(inspect.getfile(base))
+        return frozenset(found)
+
+    def _checked(self, answer: Any) -> Command:
+        """The answer as a command of finite floats; numbers of odd classes may run code here."""
+        shaped = isinstance(answer, tuple) and len(answer) in (2, 3)
+        if not shaped or not all(isinstance(x, Real) and not isinstance(x, bool) for x in answer):
+            self.fail(
+                f"step returned {_shown(answer)}; a Command(v, w) or a tuple of 2 or 3 numbers "
+                "is wanted"
+            )
+        try:
+            command = Command(*(float(x) for x in answer))
+        except OverflowError:  # a whole number above 1.8e308
+            command = Command(math.inf, 0.0)
+        if not all(math.isfinite(x) for x in command):
+            self.fail(f"step returned {_shown(answer)}; a command must be finite")
+        return command
+
+
+def _shown(value: Any) -> str:
+    try:
+        text = str(repr(value))
+    except BaseException as error:
+        if is_user_interrupt(error):
+            raise
+        text = f"something whose repr raises {type(error).__name__}"
+    text = text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
+    return f"{text} ({type(value).__name__})"

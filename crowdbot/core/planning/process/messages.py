@@ -1,0 +1,105 @@
+"""What the simulator tells a planner process, as maps of plain values.
+
+docs/reference/planner_messages.md describes them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.planning.planner import Observation, Task, Truth
+from crowdbot.core.planning.process.shared_memory import SharedMemory, in_message
+from crowdbot.core.types.robot import RobotLimits
+from crowdbot.core.types.sensor import Reading, SensorInfo
+
+_INFO = ("category", "frame", "rate", "ros_type", "range_min", "range_max", "privileged")
+
+
+def reset_message(
+    task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+) -> dict[str, Any]:
+    """``reset``, but for the size of the memory."""
+    return {
+        "type": "reset",
+        "task": {
+            "start": [float(x) for x in task.start],
+            "goal": [float(x) for x in task.goal],
+            "goal_zone": _array(task.goal_zone),
+            "time_limit": float(task.time_limit),
+        },
+        "limits": {name: float(value) for name, value in asdict(limits).items()},
+        "sensors": {name: _sensor(info) for name, info in sensors.items()},
+        "seed": int(seed),
+        "memory": 0,
+    }
+
+
+def observe_message(step: int, obs: Observation, memory: SharedMemory | None) -> dict[str, Any]:
+    """``observe``: what the planner sees in one step."""
+    message = {
+        "type": "observe",
+        "step": step,
+        "t": float(obs.t),
+        "pose": [float(x) for x in obs.pose],
+        "twist": [float(x) for x in obs.twist],
+        "vy": float(obs.vy),
+        "goal": [float(x) for x in obs.goal],
+        "goal_zone": _array(obs.goal_zone),
+        "readings": {n: _reading(n, r, memory) for n, r in obs.readings.items()},
+    }
+    if obs.truth is not None:
+        message["truth"] = _truth(obs.truth)
+    return message
+
+
+def reserve(memory: SharedMemory, sensors: Mapping[str, SensorInfo]) -> None:
+    """A place for each array that sensors read."""
+    for name, info in sensors.items():
+        width = 4 if info.camera else 8
+        memory.place(name, "values", int(np.prod(info.shape)) * width)
+        if info.camera and info.camera.colour:
+            memory.place(name, "colour", 3 * info.camera.width * info.camera.height)
+
+
+def _sensor(info: SensorInfo) -> dict[str, Any]:
+    return {
+        **{name: getattr(info, name) for name in _INFO},
+        "mount": [float(x) for x in info.mount],
+        "shape": [int(n) for n in info.shape],
+        "angles": None if info.angles is None else _array(info.angles),
+        "camera": None if info.camera is None else asdict(info.camera),
+    }
+
+
+def _reading(name: str, reading: Reading, memory: SharedMemory | None) -> dict[str, Any]:
+    put = _in_message if memory is None else memory.put
+    message: dict[str, Any] = {
+        "stamp": float(reading.stamp),
+        "values": put(name, "values", np.ascontiguousarray(reading.values)),
+    }
+    if reading.colour is not None:
+        message["colour"] = put(name, "colour", np.ascontiguousarray(reading.colour))
+    return message
+
+
+def _in_message(name: str, part: str, array: NDArray[Any]) -> dict[str, Any]:
+    del name, part
+    return in_message(array)
+
+
+def _truth(truth: Truth) -> dict[str, Any]:
+    arrays = {n: _array(getattr(truth, n)) for n in Truth.__slots__ if n.startswith("people")}
+    return {
+        "pose": [float(x) for x in truth.pose],
+        "velocity": [float(x) for x in truth.velocity],
+        **arrays,
+    }
+
+
+def _array(values: Any) -> dict[str, Any]:
+    return in_message(np.ascontiguousarray(values))

@@ -1,0 +1,133 @@
+"""What a planner's process does when it runs in crowdbot's own Python.
+
+It was forked from `fork_server`, and holds nothing of the simulator: what it knows of the run came
+through the line.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import io
+import signal
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import msgpack
+
+from crowdbot.core.planning.guarded import GuardedPlanner, planner_title
+from crowdbot.core.planning.planner import (
+    NoValidCommand,
+    Observation,
+    Planner,
+    Task,
+    Truth,
+    named_signal,
+)
+from crowdbot.core.planning.process import serving
+from crowdbot.core.planning.python_file import build_of_class, check_parameters, planner_class
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.robot import RobotLimits
+from crowdbot.core.types.sensor import Pinhole, Reading, SensorInfo
+from crowdbot.errors import CrowdbotError, InputError
+
+_TYPES = SimpleNamespace(
+    Task=Task, Pose=Pose, RobotLimits=RobotLimits, SensorInfo=SensorInfo, Pinhole=Pinhole,
+    Reading=Reading, Observation=Observation, Truth=Truth,
+)  # fmt: skip
+
+
+class OwnSide:
+    """One planner of our Python: how it is found, made and asked.
+
+    Args:
+        what: ``name`` and ``origin`` for messages; ``file`` and ``class``, or ``kind`` and where
+            plugins are found; ``parameters``.
+    """
+
+    def __init__(self, what: Mapping[str, Any]) -> None:
+        self._what = what
+        self._decoder = serving.Decoder(_TYPES, serving.numpy_array)
+        self._build: Callable[[], Planner] | None = None
+        self._guarded: GuardedPlanner | None = None
+        self._signals: list[tuple[str, float]] = []
+
+    def hello(self, sent: Mapping[str, Any]) -> dict[str, Any]:
+        """Find the planner and say what it is."""
+        del sent
+        find = self._file if "file" in self._what else self._kind
+        holder, self._build = find()
+        return {
+            "type": "hello",
+            "protocol": serving.PROTOCOL,
+            "arrays": "shared",
+            **serving.described(holder),
+        }
+
+    def reset(self, sent: Mapping[str, Any]) -> dict[str, Any]:
+        """Make the planner and reset it."""
+        assert self._build is not None
+        self._decoder.open_memory(sent["memory"])
+        who = planner_title(self._what["name"], self._what["origin"])
+        self._guarded = GuardedPlanner(self._build(), who)
+        decode = self._decoder
+        self._guarded.reset(
+            decode.task(sent["task"]),
+            decode.limits(sent["limits"]),
+            decode.sensors(sent["sensors"]),
+            sent["seed"],
+        )
+        return {"type": "ready"}
+
+    def observe(self, sent: dict[str, Any]) -> dict[str, Any]:
+        """One step."""
+        assert self._guarded is not None
+        self._signals = []
+        obs = self._decoder.observation(sent, self._log)
+        v, w, vy = self._guarded.step(obs)
+        return {"type": "command", "v": v, "w": w, "vy": vy, "signals": self._signals}
+
+    def error(self, error: BaseException) -> dict[str, Any]:
+        """What an exception becomes."""
+        signals, self._signals = self._signals, []
+        if isinstance(error, NoValidCommand):
+            return {"type": "stop", "signals": signals}
+        known = isinstance(error, CrowdbotError)
+        text = str(error) if known else f"{type(error).__name__}: {error}"
+        kind = "input" if isinstance(error, InputError) else "planner"
+        return {"type": "error", "text": text, "kind": kind, "whole": known, "signals": signals}
+
+    def _log(self, name: str, value: float) -> None:
+        self._signals.append(named_signal(name, value))
+
+    def _file(self) -> tuple[type, Callable[[], Planner]]:
+        path, name = Path(self._what["file"]), self._what["class"]
+        parameters = self._what["parameters"]
+        kind = planner_class(path, name)
+        check_parameters(kind, parameters, f"{path}:{name}")
+        return kind, lambda: build_of_class(kind, parameters, path, name)
+
+    def _kind(self) -> tuple[type, Callable[[], Planner]]:
+        from crowdbot.core.planning.registered import build_of_kind, load_kind  # they are slow
+        from crowdbot.core.registry.registry import Source, discover
+
+        where: Source = self._what["plugins"]
+        registry = discover(extra=where.extra, allow=where.allow, entry_points=where.entry_points)
+        spec = load_kind(self._what["kind"], self._what["parameters"], registry)
+        return type(spec), lambda: build_of_kind(spec, registry)
+
+
+def main(what: Mapping[str, Any]) -> None:
+    """Serve one planner until the simulator closes the line."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    sys.stdout = sys.__stdout__ = _stream(1)  # type: ignore[misc]
+    sys.stderr = sys.__stderr__ = _stream(2)  # type: ignore[misc]
+    faulthandler.enable()
+    serving.serve(serving.Line(msgpack.packb, msgpack.unpackb), OwnSide(what))
+
+
+def _stream(descriptor: int) -> io.TextIOWrapper:
+    """What is printed appears line by line, in a pipe too."""
+    return open(descriptor, "w", buffering=1, encoding="utf-8", errors="replace", closefd=False)

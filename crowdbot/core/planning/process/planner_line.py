@@ -1,0 +1,202 @@
+"""The simulator's end of the line to a planner process: messages, deadlines, what it prints."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import select
+import struct
+import sys
+import time
+from collections.abc import Mapping
+from typing import Any
+
+import msgpack
+
+_HEAD = struct.Struct("<I")
+#: An answer is a command and some signals; more than this is not one.
+LONGEST_ANSWER = 1 << 20
+#: So much of what a planner prints in a run is shown, bytes.
+LONGEST_OUTPUT = 1 << 20
+_TAIL = 16_384
+_CRASH = re.compile(r"Fatal Python error: .*?File \"([^\"]+)\", line (\d+) in", re.DOTALL)
+
+
+class LineClosed(Exception):  # noqa: N818 - what happened, told by who knows the planner
+    """The planner's end of the line is closed."""
+
+
+class LineTimeout(Exception):  # noqa: N818 - as above
+    """There was no answer in time."""
+
+
+class WrongAnswer(Exception):  # noqa: N818 - as above
+    """What came is not an answer."""
+
+
+class PlannerLine:
+    """Three pipes: messages to a planner, messages from it, and what it prints.
+
+    What it prints goes to ``sys.stderr`` while an answer is waited for, so that a planner which
+    prints more than a pipe holds does not wait for ever; beyond a bound it is dropped.
+
+    Args:
+        write, read, output: descriptors, which it closes.
+        name: how messages call the planner.
+    """
+
+    def __init__(self, write: int, read: int, output: int, name: str) -> None:
+        self._write, self._read, self._output, self._name = write, read, output, name
+        for one in (write, read, output):
+            os.set_blocking(one, False)
+        self._poll = select.poll()
+        self._poll.register(read, select.POLLIN)
+        self._poll.register(output, select.POLLIN)
+        self._shown = 0
+        self._tail = b""
+        self._came = bytearray()
+
+    def ask(self, message: Mapping[str, Any], limit: float) -> dict[str, Any]:
+        """Send a message and wait for the answer.
+
+        Args:
+            limit: seconds that both may take.
+
+        Raises:
+            LineClosed, LineTimeout, WrongAnswer: there is none.
+        """
+        if self._came or self._readable():
+            raise WrongAnswer("answered before it was asked")
+        until = time.monotonic() + limit
+        raw = msgpack.packb(message)
+        self._send(memoryview(_HEAD.pack(len(raw)) + raw), until)
+        return self._answer(until)
+
+    def tell(self, message: Mapping[str, Any]) -> None:
+        """Send a message that has no answer, if it can be sent at once."""
+        raw = msgpack.packb(message)
+        with contextlib.suppress(OSError):
+            os.write(self._write, _HEAD.pack(len(raw)) + raw)
+
+    def drain(self) -> None:
+        """Show what was printed up to now."""
+        before = -1
+        while self._output >= 0 and before != self._shown:
+            before = self._shown
+            if not self._show():
+                return
+
+    def close(self) -> None:
+        """Close the descriptors."""
+        for one in (self._write, self._read, self._output):
+            if one >= 0:
+                os.close(one)
+        self._write = self._read = self._output = -1
+
+    @property
+    def last_words(self) -> str:
+        """The last line that was printed, or where Python says that it crashed."""
+        text = self._tail.decode(errors="replace")
+        if crash := _CRASH.search(text):
+            return f"{crash[1]}:{crash[2]}"
+        lines = [line.strip() for line in text.splitlines() if line.strip()]
+        return lines[-1][:200] if lines else ""
+
+    def _readable(self) -> bool:
+        events = self._poll.poll(0)
+        if any(one == self._output for one, _ in events):
+            self._show()
+        return any(one == self._read and event & select.POLLIN for one, event in events)
+
+    def _send(self, left: memoryview, until: float) -> None:
+        """Write all of it; a planner that does not read is one that does not answer."""
+        while left:
+            try:
+                left = left[os.write(self._write, left) :]
+            except BlockingIOError:
+                waiting = select.poll()
+                waiting.register(self._write, select.POLLOUT)
+                waiting.register(self._output if self._output >= 0 else self._read, select.POLLIN)
+                waiting.poll(1000.0 * max(0.0, min(0.1, until - time.monotonic())))
+                self._show()
+                if time.monotonic() >= until:
+                    raise LineTimeout from None
+            except OSError:
+                raise LineClosed from None
+
+    def _answer(self, until: float) -> dict[str, Any]:
+        while True:
+            events = self._poll.poll(1000.0 * max(0.0, until - time.monotonic()))
+            for one, _ in events:
+                if one == self._output:
+                    self._show()
+                elif one == self._read:
+                    self._receive()
+            answer = self._whole()
+            if answer is not None:
+                return answer
+            if time.monotonic() >= until:
+                raise LineTimeout
+
+    def _receive(self) -> None:
+        try:
+            piece = os.read(self._read, 65_536)
+        except BlockingIOError:
+            return
+        except OSError:
+            piece = b""
+        if not piece:
+            raise LineClosed
+        self._came += piece
+
+    def _whole(self) -> dict[str, Any] | None:
+        """The answer, once all of it has come."""
+        if len(self._came) < _HEAD.size:
+            return None
+        (size,) = _HEAD.unpack_from(self._came)
+        if size > LONGEST_ANSWER:
+            raise WrongAnswer(f"sent an answer of {size} bytes; {LONGEST_ANSWER} are allowed")
+        if len(self._came) < _HEAD.size + size:
+            return None
+        if len(self._came) > _HEAD.size + size:
+            raise WrongAnswer("sent more than one answer")
+        raw = bytes(self._came[_HEAD.size :])
+        self._came.clear()
+        try:
+            answer = msgpack.unpackb(raw)
+        except Exception as error:  # whatever a library makes of what a stranger sent
+            raise WrongAnswer(f"sent something that is not msgpack: {error}") from None
+        if not isinstance(answer, dict):
+            raise WrongAnswer(f"sent a {type(answer).__name__}, not a map")
+        return answer
+
+    def _show(self) -> bool:
+        """Pass on some of what was printed; whether there may be more."""
+        if self._output < 0:
+            return False
+        try:
+            piece = os.read(self._output, 65_536)
+        except BlockingIOError:
+            return False
+        except OSError:
+            piece = b""
+        if not piece:
+            self._poll.unregister(self._output)
+            os.close(self._output)
+            self._output = -1
+            return False
+        self._tail = (self._tail + piece)[-_TAIL:]
+        room = LONGEST_OUTPUT - self._shown
+        self._shown += len(piece)
+        if room > 0:
+            _to_stderr(piece[:room].decode(errors="replace"))
+            if len(piece) >= room:
+                _to_stderr(f"\n{self._name}: printed more than 1 MB; the rest is left out\n")
+        return True
+
+
+def _to_stderr(text: str) -> None:
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        sys.stderr.write(text)
+        sys.stderr.flush()

@@ -1,0 +1,321 @@
+"""A planner in a process of its own, called like any other."""
+
+from __future__ import annotations
+
+import math
+import os
+import signal
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from importlib import metadata
+from typing import Any, NoReturn
+
+import msgpack
+
+from crowdbot.core.planning.description import PlannerDescription, read_description
+from crowdbot.core.planning.host import RESET_LIMIT
+from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Task
+from crowdbot.core.planning.process.messages import observe_message, reserve, reset_message
+from crowdbot.core.planning.process.planner_line import (
+    LineClosed,
+    LineTimeout,
+    PlannerLine,
+    WrongAnswer,
+)
+from crowdbot.core.planning.process.server_handle import POOL, ServerGone, ServerHandle
+from crowdbot.core.planning.process.serving import PROTOCOL
+from crowdbot.core.planning.process.shared_memory import SharedMemory, has_shared_memory
+from crowdbot.core.planning.watchdog import Watchdog
+from crowdbot.core.types.motion import Command
+from crowdbot.core.types.robot import RobotLimits
+from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.errors import InputError, PlannerError
+
+#: Seconds that a process has to go by itself, and to be gone after it closed its line.
+_LEAVES, _DIES = 1.0, 0.3
+_GIB = 1 << 30
+#: In place of an exit code: the fork server was ended as well.
+_KILLED_ALL = -(1 << 16)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProcessPlan:
+    """What a planner process runs.
+
+    Attributes:
+        who: begins every message about it.
+        what: for a planner of our Python, as `OwnSide` takes it.
+        command: for any other program, its words.
+        folder: where it is started; empty: where the simulator is.
+        parameters: what it is told of itself; of another program, in ``hello``.
+        preload: installed modules that are imported before the process is forked.
+        memory: largest address space, bytes; None sets no limit.
+    """
+
+    who: str
+    what: Mapping[str, Any] | None = None
+    command: Sequence[str] = ()
+    folder: str = ""
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    preload: Sequence[str] = ()
+    memory: int | None = 4 * _GIB
+
+
+class ProcessLostError(PlannerError):
+    """A planner's process died, hung or said something that is not an answer."""
+
+
+def describe(
+    plan: ProcessPlan, *, lenient: bool = False
+) -> tuple[PlannerDescription, Callable[[], Planner]]:
+    """What a planner says of itself, asked in a process that ends at once, and what makes it.
+
+    One whose process dies or hangs while it is loaded is a planner that fails in every run.
+
+    Args:
+        plan: what to run.
+        lenient: so is one that raises.
+
+    Raises:
+        InputError: it is not there, or what it says is wrong.
+        PlannerError: it cannot be loaded.
+    """
+    try:
+        planner = ProcessPlanner(plan)
+    except PlannerError as error:
+        if not (lenient or isinstance(error, ProcessLostError)):
+            raise
+        return PlannerDescription(needs=()), partial(_fail, str(error))
+    planner.close()
+    return planner.description, partial(ProcessPlanner, plan)
+
+
+def _fail(text: str) -> NoReturn:
+    raise PlannerError(text)
+
+
+class ProcessPlanner:
+    """A planner that is reached through messages; nothing but these gets to it.
+
+    Its process is ended by `close`, by a failure of whatever kind, and by our own end.
+
+    Args:
+        plan: what to run.
+
+    Raises:
+        InputError, PlannerError: it cannot be loaded.
+    """
+
+    def __init__(self, plan: ProcessPlan) -> None:
+        self._plan, self._step = plan, 0
+        _check_parameters(plan)
+        self._server: ServerHandle | None = None
+        self._memory = SharedMemory() if has_shared_memory() else None
+        self._line = self._start()
+        said = self._ask("load", self._hello(), RESET_LIMIT, "hello")
+        try:
+            if said.get("protocol") != PROTOCOL:
+                self._fail(
+                    f"hello: it speaks protocol {said.get('protocol')!r:.40}, not {PROTOCOL}"
+                )
+            self.description = read_description(said, plan.who)
+        except InputError:
+            self.close()
+            raise
+        self._shares = said.get("arrays") == "shared" and self._memory is not None
+
+    def reset(
+        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+    ) -> None:
+        """As `Planner.reset`; the planner is made now.
+
+        Raises:
+            PlannerError: it failed.
+        """
+        message = reset_message(task, limits, sensors, seed)
+        if self._shares and self._memory is not None:
+            reserve(self._memory, sensors)
+            message["memory"] = self._memory.open()
+        self._ask("return from reset", message, RESET_LIMIT, "ready")
+
+    def step(self, obs: Observation) -> Command:
+        """As `Planner.step`.
+
+        Raises:
+            NoValidCommand: it knows none.
+            PlannerError: it failed.
+        """
+        self._step += 1
+        memory = self._memory if self._shares else None
+        message = observe_message(self._step, obs, memory)
+        said = self._ask("return from step", message, Watchdog().limit, "command", "stop")
+        self._pass_on(said, obs)
+        if said["type"] == "stop":
+            raise NoValidCommand
+        return self._command(said)
+
+    def close(self) -> None:
+        """End its process, which has a second to go by itself, and all that it left."""
+        if self._server is not None:
+            self._line.tell({"type": "close"})
+            self._end(grace=_LEAVES)
+
+    def __del__(self) -> None:
+        """As `close`, of one that nobody closed."""
+        if getattr(self, "_server", None) is not None:
+            self.close()
+
+    # ----------------------------------------------------------------- its process
+    def _start(self) -> PlannerLine:
+        """Start it, once more where the server that does it was ended meanwhile."""
+        try:
+            return self._started()
+        except ServerGone:
+            return self._started()
+
+    def _started(self) -> PlannerLine:
+        plan = self._plan
+        server = POOL.take(own=plan.what is not None)
+        theirs_in, ours_out = os.pipe()
+        ours_in, theirs_out = os.pipe()
+        output, theirs_output = os.pipe()
+        memory = [] if self._memory is None else [self._memory.descriptor]
+        try:
+            server.has_imported(plan.preload)
+            server.start(
+                {
+                    "what": plan.what,
+                    "command": list(plan.command),
+                    "folder": plan.folder,
+                    "memory": plan.memory,
+                },
+                [theirs_in, theirs_out, *memory, theirs_output],
+            )
+        except BaseException:
+            for one in (ours_out, ours_in, output):
+                os.close(one)
+            raise
+        finally:
+            for one in (theirs_in, theirs_out, theirs_output):
+                os.close(one)
+        self._server = server
+        return PlannerLine(ours_out, ours_in, output, plan.who)
+
+    def _hello(self) -> dict[str, Any]:
+        return {
+            "type": "hello",
+            "protocol": PROTOCOL,
+            "crowdbot": metadata.version("crowdbot"),
+            "parameters": dict(self._plan.parameters) if self._plan.command else {},
+        }
+
+    def _ask(
+        self, doing: str, message: dict[str, Any], limit: float, *wanted: str
+    ) -> dict[str, Any]:
+        """Ask, and get an answer of a wanted type; whatever else comes ends the process."""
+        try:
+            said = self._line.ask(message, limit)
+        except LineTimeout:
+            where = self._end(ask=True)[1]
+            self._raise(f"did not {doing} within {limit:g} s; its process was ended{where}")
+        except LineClosed:
+            self._raise(self._gone(doing))
+        except WrongAnswer as error:
+            self._fail(f"{error}")
+        except BaseException:  # the user's interrupt
+            self.close()
+            raise
+        if said.get("type") == "error":
+            self._failed(said)
+        if said.get("type") not in wanted or said.get("step", 0) != message.get("step", 0):
+            self._fail(f"answered {said.get('type')!r:.40} to '{message['type']}'")
+        return said
+
+    def _failed(self, said: Mapping[str, Any]) -> NoReturn:
+        """What the planner raised, as it tells it itself."""
+        self.close()
+        text = str(said.get("text", ""))[:2000]
+        if "MemoryError" in text and self._plan.memory is not None:
+            text += f"; the limit of its memory is {self._plan.memory / _GIB:g} GiB"
+        error = InputError if said.get("kind") == "input" else PlannerError
+        raise error(text if said.get("whole") is True else f"{self._plan.who}: {text}")
+
+    def _gone(self, doing: str) -> str:
+        """How a process ended that did not answer."""
+        status, where = self._end(grace=_DIES)
+        if status is None:
+            how = "its process closed the descriptors of its messages"
+        elif status == _KILLED_ALL:
+            how = "its process was ended, and with it the one that had started it"
+        elif status < 0:
+            how = f"its process was ended by signal {-status} ({_signal(-status)})"
+        else:
+            how = f"its process ended with exit code {status}"
+        return f"did not {doing}: {how}{where}"
+
+    def _end(self, *, grace: float = 0.0, ask: bool = False) -> tuple[int | None, str]:
+        """End the process: its exit code, None if it was killed now, and its last words."""
+        server, self._server = self._server, None
+        assert server is not None
+        try:
+            status: int | None = server.end(grace=grace, ask=ask)["status"]
+            POOL.give_back(server)
+        except ServerGone:
+            status = _KILLED_ALL
+            server.sweep()
+        self._line.drain()
+        words = self._line.last_words
+        self._line.close()
+        memory, self._memory = self._memory, None
+        if memory is not None:
+            memory.close()
+        return status, f" ({words})" if words else ""
+
+    def _fail(self, what: str) -> NoReturn:
+        """End the process and say why.
+
+        Raises:
+            PlannerError: always.
+        """
+        if self._server is not None:
+            self._end()
+        self._raise(what)
+
+    def _raise(self, what: str) -> NoReturn:
+        raise ProcessLostError(f"{self._plan.who}: {what}")
+
+    # --------------------------------------------------------------------- answers
+    def _pass_on(self, said: Mapping[str, Any], obs: Observation) -> None:
+        signals = said.get("signals") or ()
+        try:
+            for name, value in signals:
+                obs.log(name, value)
+        except (TypeError, ValueError):
+            self._fail(f"step: 'signals' are pairs of a name and a number, not {signals!r:.80}")
+
+    def _command(self, said: Mapping[str, Any]) -> Command:
+        numbers = [said.get("v"), said.get("w"), said.get("vy", 0.0)]
+        fine = all(isinstance(x, int | float) and not isinstance(x, bool) for x in numbers)
+        if not fine or not all(math.isfinite(x) for x in numbers if x is not None):
+            self._fail(f"step: v, w and vy are finite numbers, not {numbers!r:.80}")
+        return Command(*(float(x) for x in numbers if x is not None))
+
+
+def _check_parameters(plan: ProcessPlan) -> None:
+    """Whether they can be told.
+
+    Raises:
+        InputError: one has a type of YAML that msgpack does not have, such as a date.
+    """
+    try:
+        msgpack.packb(dict(plan.parameters))
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError(f"{plan.who}: its parameters cannot be sent: {error}") from None
+
+
+def _signal(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return "unknown"

@@ -1,0 +1,184 @@
+"""Fork servers as the simulator sees them: started when needed, used again, ended with it."""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import json
+import os
+import pickle
+import secrets
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import threading
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.registry.plugin_path import path_without_plugins
+from crowdbot.errors import PlannerError
+
+_HEAD = struct.Struct("<I")
+_START = (
+    "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
+    "from crowdbot.core.planning.process.fork_server import main; main(int(sys.argv[2]))"
+)
+#: Planners think with one thread, as they do in campaigns; a value of the user's own wins.
+_ONE_THREAD = (
+    "NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS",
+)  # fmt: skip
+#: Seconds that a server has to end its planner and itself.
+_GOES = 30.0
+#: Variable by which processes are known that came from one server.
+_MARK = "CROWDBOT_PLANNER_SERVER"
+#: What every planner of our own Python needs.
+_OWN = ("crowdbot.core.planning.process.own_child",)
+
+
+class ServerGone(PlannerError):  # noqa: N818 - what happened
+    """The fork server does not answer any more: somebody ended it."""
+
+
+class ServerHandle:
+    """One fork server. Has at most one planner."""
+
+    def __init__(self) -> None:
+        ours, theirs = socket.socketpair()
+        self._mark = f"{_MARK}={secrets.token_hex(16)}"
+        command = [
+            sys.executable,
+            "-c",
+            _START,
+            json.dumps(path_without_plugins()),
+            str(theirs.fileno()),
+        ]
+        with theirs:
+            self._process = subprocess.Popen(
+                command,
+                pass_fds=[theirs.fileno()],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                start_new_session=True,
+                env={
+                    **dict.fromkeys(_ONE_THREAD, "1"),
+                    **os.environ,
+                    _MARK: self._mark.partition("=")[2],
+                },
+            )
+        self._line = ours
+        self._owner = os.getpid()
+        self._imported: set[str] = set()
+        self._unanswered = 0
+
+    def has_imported(self, modules: Sequence[str]) -> None:
+        """See to it that modules are imported before the next planner is forked."""
+        new = [m for m in modules if m not in self._imported]
+        if new:
+            self._imported |= set(new)
+            self._send({"do": "import", "modules": new})
+
+    def start(self, request: Mapping[str, Any], descriptors: Sequence[int]) -> int:
+        """Fork a planner; its process number.
+
+        Raises:
+            ServerGone: the server was ended.
+        """
+        self._send({"do": "start", **request}, descriptors)
+        return int(self._answer()["pid"])
+
+    def end(self, *, grace: float, ask: bool = False) -> dict[str, Any]:
+        """End the planner and all that it left; how its process ended.
+
+        Args:
+            grace: seconds that it may take to go by itself.
+            ask: afterwards, let it say where it is before it is killed.
+        """
+        self._send({"do": "end", "grace": grace, "ask": ask})
+        return self._answer()
+
+    def sweep(self) -> None:
+        """Kill what a server left that was killed itself, as far as it can be told apart."""
+        self.close()
+        for folder in Path("/proc").glob("[0-9]*"):
+            with contextlib.suppress(OSError):
+                if self._mark.encode() in (folder / "environ").read_bytes().split(b"\0"):
+                    os.kill(int(folder.name), signal.SIGKILL)
+
+    def close(self) -> None:
+        """End the server, and with it everything below it."""
+        if os.getpid() == self._owner:
+            self._line.close()
+            self._process.wait(_GOES)
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether it is there, and was started by this process."""
+        return os.getpid() == self._owner and self._process.poll() is None
+
+    def _send(self, request: Mapping[str, Any], descriptors: Sequence[int] = ()) -> None:
+        raw = pickle.dumps(dict(request))
+        try:
+            socket.send_fds(self._line, [_HEAD.pack(len(raw))], list(descriptors))
+            self._line.sendall(raw)
+        except OSError:
+            raise ServerGone("the process that starts planners was ended") from None
+        self._unanswered += 1
+
+    def _answer(self) -> dict[str, Any]:
+        """The answer to the latest request, after those that nobody waited for."""
+        answer: dict[str, Any] = {}
+        while self._unanswered:
+            answer = json.loads(self._read())
+            self._unanswered -= 1
+        return answer
+
+    def _read(self) -> bytes:
+        raw = b""
+        while not raw.endswith(b"\n"):
+            more = b""
+            with contextlib.suppress(OSError):
+                more = self._line.recv(1)
+            if not more:
+                raise ServerGone("the process that starts planners was ended")
+            raw += more
+        return raw
+
+
+class ServerPool:
+    """Idle fork servers; each planner takes one, and gives it back."""
+
+    def __init__(self) -> None:
+        self._idle: list[ServerHandle] = []
+        self._lock = threading.Lock()
+
+    def take(self, *, own: bool) -> ServerHandle:
+        """A server without a planner.
+
+        Args:
+            own: whether the planner is one of our Python.
+        """
+        with self._lock:
+            self._idle = [s for s in self._idle if s.is_alive]
+            server = self._idle.pop() if self._idle else ServerHandle()
+        if own:
+            server.has_imported(_OWN)
+        return server
+
+    def give_back(self, server: ServerHandle) -> None:
+        """Say that a server has no planner any more."""
+        with self._lock:
+            self._idle.append(server)
+
+    def close(self) -> None:
+        """End all that are idle."""
+        with self._lock:
+            idle, self._idle = self._idle, []
+        for server in idle:
+            server.close()
+
+
+POOL = ServerPool()
+atexit.register(POOL.close)

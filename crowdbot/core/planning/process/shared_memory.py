@@ -1,0 +1,78 @@
+"""Memory through which scans and images reach a planner process, which can only read it."""
+
+from __future__ import annotations
+
+import fcntl
+import mmap
+import os
+import sys
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: Arrays below this size travel in the message, bytes.
+SMALLEST = 1024
+_ALIGN = 64
+#: Linux: no process may change the size or write through a mapping of its own from now on.
+_SEALS = 0x0001 | 0x0002 | 0x0004 | 0x0010
+_F_ADD_SEALS = 1033
+
+
+class SharedMemory:
+    """One block, made before the planner's process, sized when its sensors are known.
+
+    Each place in it belongs to one array of one sensor. The planner's side copies what it hands
+    out, since the next reading overwrites this one.
+    """
+
+    def __init__(self) -> None:
+        self.descriptor = os.memfd_create("crowdbot-planner", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
+        self._block: mmap.mmap | None = None
+        self._places: dict[tuple[str, str], int] = {}
+        self._size = 0
+
+    def place(self, sensor: str, part: str, size: int) -> None:
+        """Reserve a place for an array of so many bytes; small ones get none."""
+        if size >= SMALLEST:
+            self._places[sensor, part] = self._size
+            self._size += -(-size // _ALIGN) * _ALIGN
+
+    def open(self) -> int:
+        """Make the block, which only this process can write to from now on; its size, bytes."""
+        if self._size:
+            os.ftruncate(self.descriptor, self._size)
+            self._block = mmap.mmap(self.descriptor, self._size)
+            fcntl.fcntl(self.descriptor, _F_ADD_SEALS, _SEALS)
+        return self._size
+
+    def put(self, sensor: str, part: str, array: NDArray[Any]) -> dict[str, Any]:
+        """An array as a message tells it: where it lies, or with its bytes."""
+        at = self._places.get((sensor, part))
+        if at is None or self._block is None:
+            return in_message(array)
+        view = np.frombuffer(self._block, array.dtype, array.size, at)
+        view[:] = array.reshape(-1)
+        return {
+            "dtype": array.dtype.str,
+            "shape": list(array.shape),
+            "offset": at,
+            "bytes": array.nbytes,
+        }
+
+    def close(self) -> None:
+        """Give it back."""
+        os.close(self.descriptor)
+        if self._block is not None:
+            self._block.close()
+            self._block = None
+
+
+def in_message(array: NDArray[Any]) -> dict[str, Any]:
+    """An array with its bytes."""
+    return {"dtype": array.dtype.str, "shape": list(array.shape), "data": array.tobytes()}
+
+
+def has_shared_memory() -> bool:
+    """Whether this system has what keeps a planner from changing it."""
+    return sys.platform == "linux" and hasattr(os, "memfd_create")

@@ -1,0 +1,83 @@
+"""Planners that are registered: their spec from a kind and parameters, and what it builds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import ValidationError
+
+from crowdbot.core.planning.planner import Planner
+from crowdbot.core.planning.python_file import checked_planner
+from crowdbot.core.registry.build_reference import load_build
+from crowdbot.core.registry.registry import Registry
+from crowdbot.dsl.component import Component
+from crowdbot.dsl.component_specs import PlannerSpec
+from crowdbot.errors import InputError, PlannerError, UnknownNameError, did_you_mean, nearest
+
+
+def find_kind(kind: str, registry: Registry, where: str = "") -> Component[Any]:
+    """The component of a kind.
+
+    Args:
+        where: begins the message.
+
+    Raises:
+        UnknownNameError: no planner of that kind is installed.
+    """
+    try:
+        return registry.find("planner", kind)
+    except UnknownNameError as error:
+        known, why = registry.components("planner"), registry.why_absent(kind)
+        raise UnknownNameError(f"{where}planner", kind, known, why) from error
+
+
+def spec_of_kind(
+    component: Component[Any], parameters: Mapping[str, Any], where: str = ""
+) -> PlannerSpec:
+    """The spec of a planner with some parameters.
+
+    Raises:
+        InputError: a parameter is wrong.
+    """
+    try:
+        spec: PlannerSpec = component.spec.model_validate({**parameters, "kind": component.kind})
+    except ValidationError as error:
+        known = component.spec.model_fields
+        raise InputError("\n".join(_lines(error, component.kind, known, where))) from None
+    return spec
+
+
+def load_kind(kind: str, parameters: Mapping[str, Any], registry: Registry) -> PlannerSpec:
+    """The spec of a planner whose code is imported.
+
+    Raises:
+        PluginError: it cannot be imported.
+    """
+    component = find_kind(kind, registry)
+    spec = spec_of_kind(component, parameters)
+    load_build(component, registry.plugin_call(spec))
+    return spec
+
+
+def build_of_kind(spec: PlannerSpec, registry: Registry) -> Planner:
+    """A planner of a spec.
+
+    Raises:
+        PlannerError: it cannot be made, or lacks a method.
+    """
+    call = registry.plugin_call(spec, error=PlannerError, passes=PlannerError)
+    return registry.build(spec, checked_planner, call=call)
+
+
+def _lines(error: ValidationError, kind: str, known: Mapping[str, Any], where: str) -> list[str]:
+    lines = []
+    for item in error.errors(include_url=False):
+        field = ".".join(str(part) for part in item["loc"])
+        if item["type"] == "extra_forbidden":
+            near = did_you_mean(nearest(field, known))
+            lines.append(f"{where}planner '{kind}' has no parameter '{field}'{near}")
+        else:
+            name = f"{field}: " if field else ""
+            lines.append(f"{where}planner '{kind}': {name}{item['msg']}")
+    return lines
