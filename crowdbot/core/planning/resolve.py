@@ -46,6 +46,7 @@ class PlannerChoice:
         role: what it is there for: floor, baseline, ceiling or candidate. One with other
             parameters than its defaults is a candidate.
         origin: the distribution, or the file, that it comes from.
+        patience: s after which a step of it counts as hung; None: the usual time.
     """
 
     name: str
@@ -57,6 +58,7 @@ class PlannerChoice:
     privileged: bool = False
     role: PlannerRole = "candidate"
     origin: str = ""
+    patience: float | None = None
 
 
 def resolve_planner(text: str, registry: Registry, settings: Sequence[str] = ()) -> PlannerChoice:

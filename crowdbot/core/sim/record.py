@@ -76,7 +76,9 @@ def _header(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
 
 @contextmanager
 def _watchdog(setup: RunSetup) -> Iterator[Watchdog]:
-    watchdog = Watchdog(on_hang=setup.on_hang)
+    patience = setup.choice.patience
+    limit = {} if patience is None else {"limit": patience}
+    watchdog = Watchdog(on_hang=setup.on_hang, **limit)
     try:
         yield watchdog
     finally:
