@@ -61,6 +61,7 @@ class PlannerChoice:
         origin: the distribution, or the file, that it comes from.
         in_process: whether it runs inside the simulator, where nothing contains it.
         memory: limit of its own process, bytes; None: none.
+        patience: s after which a step in this process counts as hung; None: the usual time.
     """
 
     name: str
@@ -74,6 +75,7 @@ class PlannerChoice:
     origin: str = ""
     in_process: bool = True
     memory: int | None = None
+    patience: float | None = None
 
     @property
     def process(self) -> str:

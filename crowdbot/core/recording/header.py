@@ -78,7 +78,7 @@ class RecordingHeader:
             hashes=list(self.hashes.values()),
             robot=[_robot_message(self.robot)] if self.robot else [],
             agents=[_agents_message(self.agents)] if self.agents else [],
-            sensors=[_sensor_message(name, info) for name, info in self.sensors.items()],
+            sensors=[sensor_message(name, info) for name, info in self.sensors.items()],
             walls=ros.table(self.walls),
             goal_zone=ros.table(self.goal_zone),
             cameras=[_camera_message(n, i.camera) for n, i in self.sensors.items() if i.camera],
@@ -113,7 +113,7 @@ class RecordingHeader:
 
 
 def _robot_message(robot: RobotHeader) -> Any:
-    limits = None if robot.limits is None else _limit_numbers(robot.limits)
+    limits = None if robot.limits is None else limit_numbers(robot.limits)
     return ros.new(
         "crowdbot_msgs/RobotInfo",
         radius=robot.radius,
@@ -126,7 +126,7 @@ def _robot_message(robot: RobotHeader) -> Any:
     )
 
 
-def _limit_numbers(limits: RobotLimits) -> list[float]:
+def limit_numbers(limits: RobotLimits) -> list[float]:
     """The last one, of a robot that goes sideways, came later and is left out where it is 0."""
     numbers = [getattr(limits, name) for name in _LIMITS]
     return numbers if limits.vy_max else numbers[:-1]
@@ -164,7 +164,8 @@ def _agents(message: Any) -> AgentsHeader:
     return AgentsHeader(id=message.id, radius=message.radius, mass=message.mass)
 
 
-def _sensor_message(name: str, info: SensorInfo) -> Any:
+def sensor_message(name: str, info: SensorInfo) -> Any:
+    """What a sensor says of itself, as ``crowdbot_msgs/Sensor``."""
     return ros.new(
         "crowdbot_msgs/Sensor",
         name=name,

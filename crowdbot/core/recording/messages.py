@@ -54,6 +54,23 @@ DEFINITIONS = {
         "float32[] vy\nfloat32[] heading\nfloat32[] radius"
     ),
 }
+#: Messages of live connections, which no recording holds.
+LIVE_DEFINITIONS = {
+    "Reading": "string sensor\nfloat64 stamp\ncrowdbot_msgs/Table values",
+    "Observation": (
+        "std_msgs/Header header\nfloat64 t\nfloat64[3] pose\nfloat64[3] twist\n"
+        "crowdbot_msgs/Reading[] readings"
+    ),
+    "Task": (
+        "string scenario\nint64 seed\nfloat64[3] start\nfloat64[2] goal\n"
+        "crowdbot_msgs/Table goal_zone\nfloat64 time_limit\ncrowdbot_msgs/Table limits\n"
+        "crowdbot_msgs/Sensor[] sensors"
+    ),
+    "LiveStatus": (
+        "string scenario\nuint32 run\nint64 seed\nstring state\nfloat64 t\nfloat64 lag\n"
+        "uint32 steps\nuint32 missed"
+    ),
+}
 #: Messages of formats 1 and 2, which are read and not written any more.
 OLD_DEFINITIONS = {
     "RunState": "float64 t\nfloat64[] robot\nfloat64[] agents\nbool has_jump\nbool[] jump",
@@ -71,7 +88,7 @@ _NO_COVARIANCE = np.zeros(36)
 def _store(*, oldest: bool = False) -> Any:
     store = get_typestore(Stores.ROS2_HUMBLE)
     types: dict[str, Any] = {}
-    for name, text in {**DEFINITIONS, **OLD_DEFINITIONS}.items():
+    for name, text in {**DEFINITIONS, **LIVE_DEFINITIONS, **OLD_DEFINITIONS}.items():
         since = _SINCE_2.get(name, "") if oldest else ""
         types.update(get_types_from_msg(text.removesuffix(since), f"crowdbot_msgs/msg/{name}"))
     store.register(types)
@@ -94,9 +111,54 @@ def definition(msgtype: str) -> bytes:
     return str(_store().generate_msgdef(msgtype, ros_version=2)[0]).encode()
 
 
+def message_type(msgtype: str) -> Any:
+    """The class of a type; both ``package/Name`` and ``package/msg/Name`` are understood.
+
+    Raises:
+        KeyError: there is no such type.
+    """
+    package, _, name = msgtype.replace("/msg/", "/").partition("/")
+    return _store().types[f"{package}/msg/{name}"]
+
+
+def field_types(msgtype: str) -> dict[str, str] | None:
+    """Field -> type (``float32[]``, ``float64[36]``, ``std_msgs/Header``); None: no such type."""
+    package, _, name = msgtype.replace("/msg/", "/").partition("/")
+    found = _store().fielddefs.get(f"{package}/msg/{name}")
+    if found is None:
+        return None
+    return {field: _field_type(*kind) for field, kind in found[1]}
+
+
+def _field_type(node: Any, what: Any) -> str:
+    if node.name == "NAME":
+        return str(what).replace("/msg/", "/")
+    if node.name == "BASE":
+        return str(what[0])
+    (inner, size) = what
+    return f"{_field_type(*inner)}[{size if node.name == 'ARRAY' else ''}]"
+
+
+def definition_text(msgtype: str, ros_version: int) -> str:
+    """The text of a type and of all it consists of; of ROS 1 or ROS 2."""
+    package, _, name = msgtype.replace("/msg/", "/").partition("/")
+    full = f"{package}/msg/{name}"
+    return str(_store().generate_msgdef(full, ros_version=ros_version)[0])
+
+
+def type_hash(msgtype: str) -> str:
+    """The hash by which ROS 2 tells versions of a type apart: ``RIHS01_`` and 64 hex digits."""
+    return f"RIHS01_{_store().hash_rihs01(msgtype).removeprefix('RIHS01_')}"
+
+
 def to_cdr(message: Any) -> bytes:
     """Serialise (little-endian CDR with its four byte head)."""
     return bytes(_store().serialize_cdr(message, message.__msgtype__))
+
+
+def to_ros1(data: bytes, msgtype: str) -> bytes:
+    """CDR as ROS 1 has the same message; ``crowdbot_msgs`` too."""
+    return bytes(_store().cdr_to_ros1(data, msgtype))
 
 
 def from_cdr(data: bytes, msgtype: str) -> Any:

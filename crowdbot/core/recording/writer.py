@@ -14,14 +14,13 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial, wraps
 from pathlib import Path
-from typing import Any, Concatenate, Literal, ParamSpec, cast
+from typing import Concatenate, Literal, ParamSpec, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.geometry.optical_frame import OPTICAL_QUATERNION, optical
 from crowdbot.core.recording import messages as ros
-from crowdbot.core.recording import template
+from crowdbot.core.recording import scenery, template
 from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.header import RecordingHeader
@@ -40,10 +39,6 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.sensor import CameraFrame, Reading
 
-BASE = "base_footprint"
-#: Frames that the recording defines itself; no sensor may own them.
-FRAMES = ("map", "odom", BASE, "base_link")
-_WALL_COLOUR = (0.3, 0.3, 0.3, 1.0)
 #: So many rows, or bytes of images, become messages without a `flush`.
 _MOST_WAITING, _MOST_IMAGE_BYTES = 8192, 4 * 2**20
 
@@ -101,7 +96,8 @@ class RecordingWriter:
         self._cameras = {n: CameraMessages(n, i) for n, i in cameras.items()}
         self._sensors = sensor_topics({n: i for n, i in header.sensors.items() if n not in cameras})
         self._clock, self._twist = template.clock(), template.twist()
-        self._truth, self._pose = template.transform("map", BASE), template.pose_stamped("map")
+        self._truth = template.transform("map", scenery.BASE)
+        self._pose = template.pose_stamped("map")
         seen = {n: i for n, i in header.sensors.items() if is_scan(i) or is_cone(i)}
         self._thinning = {n: Thinning(REPLAY_RATE) for n in (seen if record == "used" else ())}
         self._states = StatesWriter(0 if header.agents is None else len(header.agents.id))
@@ -284,28 +280,10 @@ class RecordingWriter:
 
     def _scenery(self) -> None:
         """What never moves: frames on the robot, walls, goal."""
-        self._file.put(Topic.TF_STATIC, 0, ros.transforms(self._static_frames()), latched=True)
+        frames = ros.transforms(scenery.static_frames(self._header))
+        self._file.put(Topic.TF_STATIC, 0, frames, latched=True)
         walls, zone = self._header.walls, self._header.goal_zone
         if walls is not None and len(walls):
-            ends = np.zeros((2 * len(walls), 3))
-            ends[:, :2] = np.asarray(walls).reshape(-1, 2)
-            lines = ros.marker(0, "walls", "LINE_LIST", (0.1, 0.0, 0.0), _WALL_COLOUR, ends)
-            self._file.put(Topic.WALLS, 0, lines, latched=True)
+            self._file.put(Topic.WALLS, 0, scenery.wall_lines(walls), latched=True)
         if zone is not None and len(zone):
             self._file.put(Topic.GOAL, 0, ros.polygon(0, zone), latched=True)
-
-    def _static_frames(self) -> list[Any]:
-        frames = [ros.transform(0, "map", "odom", (0.0, 0.0, 0.0), 0.0)]
-        robot = self._header.robot
-        if robot is None:
-            return frames
-        frames.append(ros.transform(0, BASE, "base_link", (0.0, 0.0, robot.base_height), 0.0))
-        mounts = {s.frame: s.mount for s in self._header.sensors.values() if s.frame not in FRAMES}
-        for frame, (x, y, z, yaw) in mounts.items():
-            frames.append(ros.transform(0, "base_link", frame, (x, y, z), yaw))
-        for info in (s for s in self._header.sensors.values() if s.camera is not None):
-            here = ros.transform(0, info.frame, optical(info.frame), (0.0, 0.0, 0.0), 0.0)
-            turned = dict(zip("xyzw", OPTICAL_QUATERNION, strict=True))
-            here.transform.rotation = ros.new("geometry_msgs/Quaternion", **turned)
-            frames.append(here)
-        return frames

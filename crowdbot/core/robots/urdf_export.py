@@ -14,7 +14,7 @@ from xml.etree import ElementTree as Xml
 import numpy as np
 
 from crowdbot.core.geometry.optical_frame import OPTICAL_RPY, optical
-from crowdbot.core.recording.writer import FRAMES
+from crowdbot.core.recording.scenery import FRAMES
 from crowdbot.core.robots import Description, read_description
 from crowdbot.core.robots.xml import matrix, name_of, pose_of
 from crowdbot.core.robots.xml import numbers as numbers_in

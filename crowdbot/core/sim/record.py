@@ -89,7 +89,9 @@ def _watchdog(setup: RunSetup) -> Iterator[Watchdog | None]:
     if not setup.choice.in_process:
         yield None
         return
-    watchdog = Watchdog(on_hang=setup.on_hang)
+    patience = setup.choice.patience
+    limit = {} if patience is None else {"limit": patience}
+    watchdog = Watchdog(on_hang=setup.on_hang, **limit)
     try:
         yield watchdog
     finally:

@@ -1,0 +1,150 @@
+"""What the options of ``crowdbot serve`` mean."""
+
+from __future__ import annotations
+
+import math
+import secrets
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from crowdbot.core.live.door import Door
+    from crowdbot.core.live.planner import Manner
+    from crowdbot.core.live.session import Session
+
+
+class ClockChoice(StrEnum):
+    """Who says what time it is."""
+
+    internal = "internal"
+    external = "external"
+
+
+class MissedChoice(StrEnum):
+    """What a step does that gets no command."""
+
+    stop = "stop"
+    hold = "hold"
+    fail = "fail"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Listen:
+    """Where to listen, and for whom."""
+
+    host: str
+    port: int
+    token: str | None
+    ros: int
+
+
+def manner_of(
+    rate: float | None,
+    clock: ClockChoice,
+    missed: MissedChoice,
+    times: Mapping[str, float | None],
+    epoch: int,
+) -> Manner:
+    """How a live run goes on.
+
+    Args:
+        times: of ``budget``, ``hold`` and ``wait``, s.
+
+    Raises:
+        UsageError: two options contradict each other, or a number is out of range.
+    """
+    from crowdbot.core.live.planner import Manner
+    from crowdbot.errors import UsageError
+
+    external = clock is ClockChoice.external
+    if external and rate is not None:
+        raise UsageError("--rate and --clock external exclude each other: who says the time?")
+    for name, value in {"rate": rate, **times}.items():
+        if value is not None and not (math.isfinite(value) and value > 0.0):
+            raise UsageError(f"--{name} must be above 0, not {value:g}")
+    wait = times["wait"]
+    return Manner(
+        rate=rate,
+        external_clock=external,
+        budget=times["budget"] or 0.0,
+        missed=missed.value,
+        hold=times["hold"] or 0.0,
+        wait=math.inf if wait is None else wait,
+        epoch=epoch * 10**9,
+    )
+
+
+@contextmanager
+def listening(session: Session, manner: Manner, listen: Listen) -> Iterator[list[Door]]:
+    """The doors through which programs come in, closed at the end.
+
+    Raises:
+        MissingLibraryError: the extra ``live`` is not installed.
+        InputError: the address cannot be had.
+    """
+    with ExitStack() as stack:
+        doors: list[Door] = [_rosbridge(session, manner, listen)]
+        for door in doors:
+            stack.callback(door.close)
+        yield doors
+
+
+def _rosbridge(session: Session, manner: Manner, listen: Listen) -> Door:
+    from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer, is_loopback
+    from crowdbot.core.live.services import services
+
+    needs("live", "websockets", "cbor2")
+    token = listen.token or ""
+    if not is_loopback(listen.host):
+        token = token or secrets.token_urlsafe(16)
+        _say(
+            f"warning: {listen.host} can be reached from other machines; rosbridge is not "
+            "encrypted, and whoever knows the token drives the robot"
+        )
+    server = RosbridgeServer(
+        session,
+        Address(host=listen.host, port=listen.port, token=token),
+        services(session),
+        ros=1 if listen.ros == 1 else 2,
+        resend=manner.lockstep,
+        external_clock=manner.external_clock,
+    )
+    shown = f"[{listen.host}]" if ":" in listen.host else listen.host
+    query = f"/?token={token}" if token else ""
+    _say(f"rosbridge: ws://{shown}:{server.port}{query}; waiting for a client that drives /cmd_vel")
+    return server
+
+
+def needs(extra: str, *modules: str) -> None:
+    """Make sure that the libraries of an extra are installed.
+
+    Raises:
+        MissingLibraryError: one of them is not.
+    """
+    from importlib.util import find_spec
+
+    from crowdbot.errors import MissingLibraryError
+
+    missing = [m for m in modules if find_spec(m) is None]
+    if missing:
+        raise MissingLibraryError(
+            f"{', '.join(missing)}: not installed; install it with 'pip install crowdbot[{extra}]'"
+        )
+
+
+def report(record: Mapping[str, Any]) -> None:
+    """Say on stderr what only a live run has."""
+    live = record["live"]
+    lag = f", at most {live['largest_lag']:.3g} s behind" if "largest_lag" in live else ""
+    _say(
+        f"live: {live['steps']} steps, {live['missed_steps']} without a command in time, "
+        f"{live['refused_commands']} commands refused{lag}"
+    )
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)

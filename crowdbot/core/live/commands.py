@@ -1,0 +1,53 @@
+"""Commands and times as ROS writes them, read out of plain values that anybody may have sent."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from crowdbot.core.types.motion import Command
+from crowdbot.errors import InputError
+
+#: Seconds that a stamp can have: those of ROS 2.
+_MOST_SECONDS = 2**31
+
+
+def twist(message: Any) -> tuple[Command, int | None]:
+    """A Twist, or a TwistStamped, and its stamp (ns).
+
+    Raises:
+        InputError: it is neither.
+    """
+    stamp = None
+    if isinstance(message, Mapping) and "twist" in message:
+        head = message.get("header")
+        stamp = time_ns(head.get("stamp")) if isinstance(head, Mapping) else None
+        message = message["twist"]
+    if not isinstance(message, Mapping):
+        raise InputError("a command is a geometry_msgs/Twist or a geometry_msgs/TwistStamped")
+    linear, angular = message.get("linear", {}), message.get("angular", {})
+    return Command(_number(linear, "x"), _number(angular, "z"), _number(linear, "y")), stamp
+
+
+def time_ns(message: Any) -> int | None:
+    """A time of ROS 1 or ROS 2 in ns; None where it is not one."""
+    if not isinstance(message, Mapping):
+        return None
+    seconds = message.get("sec", message.get("secs", 0))
+    rest = message.get("nanosec", message.get("nsecs", message.get("nsec", 0)))
+    if not all(isinstance(x, int) and not isinstance(x, bool) for x in (seconds, rest)):
+        return None
+    if not (0 <= seconds < _MOST_SECONDS and 0 <= rest < 10**9):
+        return None
+    return int(seconds) * 10**9 + int(rest)
+
+
+def _number(vector: Any, name: str) -> float:
+    """One component; one that is left out is 0, as in messages of rosbridge."""
+    value = vector.get(name, 0.0) if isinstance(vector, Mapping) else math.nan
+    if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) > 1e300:
+        raise InputError(f"'{name}' of a command must be a number")
+    if not math.isfinite(value):
+        raise InputError(f"'{name}' of a command must be finite")
+    return float(value)

@@ -1,0 +1,45 @@
+"""A message of a live run, serialised once and told in the form that each listener wants."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from crowdbot.core.recording import messages as ros
+
+
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """A topic that a live run publishes; ``latched``: who comes late gets the last message."""
+
+    topic: str
+    msgtype: str
+    latched: bool = False
+
+
+@dataclass(frozen=True)
+class LiveMessage:
+    """One message.
+
+    Attributes:
+        msgtype: ``package/msg/Name``.
+        ns: simulated time, ns.
+        data: as CDR.
+    """
+
+    topic: str
+    msgtype: str
+    ns: int
+    data: bytes
+    latched: bool = False
+
+    @cached_property
+    def fields(self) -> Any:
+        """The message as an object, read back from its bytes."""
+        return ros.from_cdr(self.data, self.msgtype)
+
+
+def told(topic: str, ns: int, message: Any, *, latched: bool = False) -> LiveMessage:
+    """A message object as a live message."""
+    return LiveMessage(topic, message.__msgtype__, ns, ros.to_cdr(message), latched)

@@ -1,0 +1,201 @@
+"""What a planner sees, as the messages that a robot of ROS sends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.live.message import LiveMessage, Offer, told
+from crowdbot.core.planning.planner import Observation
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording import template
+from crowdbot.core.recording.camera import CameraMessages
+from crowdbot.core.recording.scenery import BASE
+from crowdbot.core.recording.topics import SensorTopic, Topic, is_odometry, sensor_topics
+from crowdbot.core.sensing.depth_mm import depth_mm
+from crowdbot.core.types.robot import DifferentialDrive, RobotModel
+from crowdbot.core.types.sensor import CameraFrame, Reading, SensorInfo
+
+OBSERVATION, JOINTS = "/crowdbot/observation", "/joint_states"
+_ODOM = "/odom"
+_JOINTS, _OBSERVED = "sensor_msgs/msg/JointState", "crowdbot_msgs/msg/Observation"
+#: Readings with more numbers are images, which have topics of their own.
+_MOST_NUMBERS = 40_000
+_LIDAR, _IMU = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Imu"
+
+
+class Observed:
+    """Makes the messages of one run's observations; of topics that nobody wants, none.
+
+    Sensors have the topics that they have in recordings. ``/scan`` is the first lidar's, too,
+    ``/scan/NAME`` that of each, and ``/imu/data`` the first IMU's.
+    """
+
+    def __init__(
+        self, sensors: Mapping[str, SensorInfo], model: RobotModel, *, epoch: int = 0
+    ) -> None:
+        """``epoch``: ns that are added to all stamps."""
+        self._sensors, self._epoch = dict(sensors), epoch
+        cameras = {n: i for n, i in sensors.items() if i.camera is not None}
+        self._cameras = {n: CameraMessages(n, i) for n, i in cameras.items()}
+        self._topics = sensor_topics({n: i for n, i in sensors.items() if n not in cameras})
+        self._names = {n: _names(n, t, self._topics) for n, t in self._topics.items()}
+        self._wheels = _Wheels(model)
+        self._odometry = any(is_odometry(i) for i in sensors.values())
+        self._tf = template.transform("odom", BASE)
+        self._odom, self._clock = template.odometry(BASE), template.clock()
+        self._told: dict[str, float] = {}
+
+    def offers(self) -> list[Offer]:
+        """The topics, the clock last."""
+        found = [Offer(n, t.msgtype) for s, t in self._topics.items() for n in self._names[s]]
+        for name, info in self._sensors.items():
+            kinds = () if info.camera is None else ("depth", "colour")[: 1 + info.camera.colour]
+            for kind in kinds:
+                found.append(Offer(f"/{name}/{kind}/image_raw", "sensor_msgs/msg/Image"))
+                found.append(Offer(f"/{name}/{kind}/camera_info", "sensor_msgs/msg/CameraInfo"))
+        if not self._odometry:
+            found.append(Offer(_ODOM, self._odom.msgtype))
+        found.append(Offer(str(Topic.TF), self._tf.msgtype))
+        found.append(Offer(JOINTS, _JOINTS))
+        found.append(Offer(OBSERVATION, _OBSERVED))
+        found.append(Offer(str(Topic.CLOCK), self._clock.msgtype))
+        return found
+
+    def messages(self, obs: Observation, wanted: Callable[[str], bool]) -> Iterator[LiveMessage]:
+        """What is new, the clock last.
+
+        Args:
+            obs: of one step.
+            wanted: whether somebody listens to a topic.
+        """
+        self._wheels.turn(obs)
+        for name, reading in obs.readings.items():
+            if self._told.get(name, -1.0) < reading.stamp:
+                self._told[name] = reading.stamp
+                yield from self._reading(name, reading, wanted)
+        yield from self._state(obs, wanted)
+
+    def again(self, obs: Observation, wanted: Callable[[str], bool]) -> Iterator[LiveMessage]:
+        """The latest of everything, for who came after `messages` were sent."""
+        for name, reading in obs.readings.items():
+            yield from self._reading(name, reading, wanted)
+        yield from self._state(obs, wanted)
+
+    def _state(self, obs: Observation, wanted: Callable[[str], bool]) -> Iterator[LiveMessage]:
+        ns = self._epoch + ros.nanoseconds(obs.t)
+        if not self._odometry and wanted(_ODOM):
+            yield LiveMessage(_ODOM, self._odom.msgtype, ns, self._odometer(ns, obs))
+        if wanted(Topic.TF):
+            parts = template.stamp(ns), template.two(*obs.pose[:2]), template.turn(obs.pose.yaw)
+            yield LiveMessage(str(Topic.TF), self._tf.msgtype, ns, self._tf.fill(*parts))
+        if wanted(JOINTS):
+            yield told(JOINTS, ns, self._wheels.message(ns))
+        if wanted(OBSERVATION):
+            yield told(OBSERVATION, ns, _observation(ns, obs))
+        if wanted(Topic.CLOCK):
+            data = self._clock.fill(template.stamp(ns))
+            yield LiveMessage(str(Topic.CLOCK), self._clock.msgtype, ns, data)
+
+    def _reading(
+        self, name: str, reading: Reading, wanted: Callable[[str], bool]
+    ) -> Iterator[LiveMessage]:
+        ns = self._epoch + ros.nanoseconds(reading.stamp)
+        if name in self._cameras:
+            yield from self._images(name, reading, ns, wanted)
+            return
+        topic = self._topics[name]
+        names = [n for n in self._names[name] if wanted(n)]
+        if names:
+            data = topic.message(ns, reading.values)
+            for each in names:
+                yield LiveMessage(each, topic.msgtype, ns, data)
+
+    def _images(
+        self, name: str, reading: Reading, ns: int, wanted: Callable[[str], bool]
+    ) -> Iterator[LiveMessage]:
+        leaves = ("image_raw", "camera_info")
+        kinds = ("depth", "colour") if reading.colour is not None else ("depth",)
+        if not any(wanted(f"/{name}/{kind}/{leaf}") for kind in kinds for leaf in leaves):
+            return
+        frame = CameraFrame(ns / 1e9, depth_mm(reading.values), reading.colour)
+        for image in self._cameras[name](frame):
+            if wanted(image.topic):
+                yield LiveMessage(image.topic, image.msgtype, ns, b"".join(image.pieces))
+
+    def _odometer(self, ns: int, obs: Observation) -> bytes:
+        """For a robot without odometry, which knows where it started and nothing else."""
+        x, y, yaw = obs.pose
+        speed, turn = template.two(obs.twist[0], obs.vy), template.one(obs.twist[1])
+        return self._odom.fill(
+            template.stamp(ns), template.two(x, y), template.turn(yaw), speed, turn
+        )
+
+
+def _names(name: str, topic: SensorTopic, topics: Mapping[str, SensorTopic]) -> tuple[str, ...]:
+    """Under what names a sensor's messages go out."""
+    first = {t.msgtype: n for n, t in reversed(list(topics.items()))}
+    names = [topic.name]
+    if topic.msgtype == _LIDAR:
+        names.append(f"/scan/{name}")
+        names += ["/scan"] if first[_LIDAR] == name else []
+    elif topic.msgtype == _IMU and first[_IMU] == name:
+        names.append("/imu/data")
+    return tuple(dict.fromkeys(names))
+
+
+class _Wheels:
+    """Angles of the driven wheels, added up from the speeds of odometry."""
+
+    def __init__(self, model: RobotModel) -> None:
+        drive = model.drive
+        self._drive = drive if isinstance(drive, DifferentialDrive) else None
+        self._t = 0.0
+        self._angles, self._rates = [0.0, 0.0], [0.0, 0.0]
+
+    def turn(self, obs: Observation) -> None:
+        """Go on to the time of an observation."""
+        if self._drive is None:
+            return
+        v, w = obs.twist
+        rim = 0.5 * self._drive.track * w
+        self._rates = [x / self._drive.command_radius for x in (v - rim, v + rim)]
+        since, self._t = obs.t - self._t, obs.t
+        self._angles = [a + r * since for a, r in zip(self._angles, self._rates, strict=True)]
+
+    def message(self, ns: int) -> Any:
+        """As ``sensor_msgs/JointState``; without wheels that are driven, one without joints."""
+        drive = self._drive
+        return ros.new(
+            "sensor_msgs/JointState",
+            header=ros.header(ns, ""),
+            name=[] if drive is None else [drive.left_joint, drive.right_joint],
+            position=np.array([] if drive is None else self._angles, np.float64),
+            velocity=np.array([] if drive is None else self._rates, np.float64),
+            effort=np.zeros(0),
+        )
+
+
+def _observation(ns: int, obs: Observation) -> Any:
+    """All numbers of an observation, bit by bit; images are left to their own topics."""
+    readings = [
+        ros.new(
+            "crowdbot_msgs/Reading",
+            sensor=n,
+            stamp=r.stamp,
+            values=ros.table(np.atleast_1d(r.values)),
+        )
+        for n, r in obs.readings.items()
+        if r.values.size <= _MOST_NUMBERS
+    ]
+    v, w = obs.twist
+    return ros.new(
+        "crowdbot_msgs/Observation",
+        header=ros.header(ns, "odom"),
+        t=obs.t,
+        pose=np.array(obs.pose, np.float64),
+        twist=np.array([v, w, obs.vy], np.float64),
+        readings=readings,
+    )

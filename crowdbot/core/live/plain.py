@@ -1,0 +1,69 @@
+"""Message objects as plain values, in the words of ROS 1 or ROS 2, for JSON and CBOR."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Ros = Literal[1, 2]
+_TIMES = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
+_HEADER = "std_msgs/msg/Header"
+
+
+def to_plain(message: Any, ros: Ros, array: Callable[[NDArray[Any]], Any]) -> dict[str, Any]:
+    """A message as nested dicts.
+
+    Args:
+        message: of rosbags' type store.
+        ros: whose names times have: ``secs``, ``nsecs`` or ``sec``, ``nanosec``.
+        array: what becomes of an array of numbers.
+    """
+    kind = type(message)
+    if message.__msgtype__ in _TIMES:
+        names = ("secs", "nsecs") if ros == 1 else ("sec", "nanosec")
+        return dict(zip(names, (message.sec, message.nanosec), strict=True))
+    plain: dict[str, Any] = {"seq": 0} if ros == 1 and message.__msgtype__ == _HEADER else {}
+    for name in _names(message.__msgtype__, kind):
+        plain[name] = _value(getattr(message, name), ros, array)
+    return plain
+
+
+_KNOWN: dict[str, tuple[str, ...]] = {}
+
+
+def _names(msgtype: str, kind: type[Any]) -> tuple[str, ...]:
+    """The fields of a type."""
+    names = _KNOWN.get(msgtype)
+    if names is None:
+        names = _KNOWN[msgtype] = tuple(field.name for field in fields(kind))
+    return names
+
+
+def _value(value: Any, ros: Ros, array: Callable[[NDArray[Any]], Any]) -> Any:
+    if isinstance(value, np.ndarray):
+        return array(value)
+    if isinstance(value, list):
+        return [_value(item, ros, array) for item in value]
+    if hasattr(value, "__msgtype__"):
+        return to_plain(value, ros, array)
+    if isinstance(value, float) and not math.isfinite(value):
+        return None if array is json_array else value
+    return value
+
+
+def json_array(array: NDArray[Any]) -> list[Any]:
+    """Numbers of an array; JSON has no infinity and no NaN, which become None."""
+    values: list[Any] = array.tolist()
+    if array.dtype.kind == "f" and not np.isfinite(array).all():
+        return [x if math.isfinite(x) else None for x in values]
+    return values
+
+
+def ros_type(msgtype: str, ros: Ros) -> str:
+    """``package/msg/Name`` as ROS 1 or 2 spell it."""
+    return msgtype.replace("/msg/", "/") if ros == 1 else msgtype

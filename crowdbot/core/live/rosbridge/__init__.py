@@ -1,0 +1,1 @@
+"""The rosbridge protocol, version 2, without ROS: JSON and CBOR over websockets."""

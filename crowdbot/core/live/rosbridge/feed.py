@@ -1,0 +1,124 @@
+"""What one client gets of one topic: how often, in what form, and how much may wait."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, cast, get_args
+
+from crowdbot.core.live.message import LiveMessage
+from crowdbot.core.live.rosbridge.frames import BadFrame, Form
+
+_LONGEST_THROTTLE = 3_600_000
+
+
+@dataclass(frozen=True, slots=True)
+class Wishes:
+    """Of one subscription.
+
+    Attributes:
+        throttle: least time between two messages, s.
+        queue: so many may wait; 0: the protocol sets no limit.
+        fragment: characters of a piece of text; 0: whole.
+    """
+
+    throttle: float = 0.0
+    queue: int = 0
+    fragment: int = 0
+    form: Form = "none"
+
+
+def wishes(message: Mapping[str, Any]) -> tuple[Wishes, str]:
+    """What a ``subscribe`` wants, and what of it we cannot do.
+
+    Raises:
+        BadFrame: a field is wrong.
+    """
+    throttle = _number(message, "throttle_rate", _LONGEST_THROTTLE)
+    queue, fragment = _number(message, "queue_length", 10**6), _number(message, "fragment_size")
+    form = message.get("compression") or "none"
+    if form in get_args(Form):
+        pieces = fragment if form == "none" else 0
+        return Wishes(throttle / 1e3, queue, pieces, cast(Form, form)), ""
+    why = f"compression '{form}' is not supported: none, cbor and cbor-raw are; none is used"
+    return Wishes(throttle / 1e3, queue, fragment, "none"), why
+
+
+def _number(message: Mapping[str, Any], name: str, most: int = 2**31) -> int:
+    value = message.get(name)
+    if value is None:
+        return 0
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value <= most:
+        raise BadFrame(f"'{name}' must be a number from 0 on")
+    return int(value)
+
+
+Later = Callable[[float, Callable[[], None]], object]
+Send = Callable[[LiveMessage, Wishes], None]
+
+
+class Feed:
+    """One topic for one client, who may have subscribed several times."""
+
+    def __init__(self, send: Send, later: Later, clock: Callable[[], float]) -> None:
+        """``later(s, f)`` calls ``f`` after so long; ``clock`` is the time in s."""
+        self._send, self._later, self._clock = send, later, clock
+        self._by_id: dict[str, Wishes] = {}
+        self._waiting = deque[LiveMessage]()
+        self._last = float("-inf")
+        self._called = False
+        self.wishes = Wishes()
+
+    def subscribe(self, name: str, wishes: Wishes) -> None:
+        """Add or replace one subscription."""
+        self._by_id[name] = wishes
+        self._merge()
+
+    def unsubscribe(self, name: str | None) -> bool:
+        """Take one away, or all; whether nothing is left."""
+        if name is None:
+            self._by_id.clear()
+        self._by_id.pop(name or "", None)
+        self._merge()
+        return not self._by_id
+
+    def _merge(self) -> None:
+        """Of several subscriptions the most eager one counts, and the latest form."""
+        every = list(self._by_id.values()) or [Wishes()]
+        fragments = [w.fragment for w in every if w.fragment]
+        self.wishes = Wishes(
+            min(w.throttle for w in every),
+            min(w.queue for w in every),
+            min(fragments, default=0) if every[-1].form == "none" else 0,
+            every[-1].form,
+        )
+
+    def take(self, message: LiveMessage) -> None:
+        """Send a message, now, later or never."""
+        wish = self.wishes
+        if wish.throttle <= 0.0:
+            self._send(message, wish)
+        elif not self._waiting and self._clock() - self._last >= wish.throttle:
+            self._now(message)
+        elif wish.queue > 0:
+            self._waiting.append(message)
+            while len(self._waiting) > wish.queue:
+                self._waiting.popleft()
+            self._call()
+
+    def _now(self, message: LiveMessage) -> None:
+        self._last = self._clock()
+        self._send(message, self.wishes)
+
+    def _call(self) -> None:
+        if not self._called:
+            self._called = True
+            self._later(max(self._last + self.wishes.throttle - self._clock(), 0.0), self._due)
+
+    def _due(self) -> None:
+        self._called = False
+        if self._waiting and self._by_id:
+            self._now(self._waiting.popleft())
+        if self._waiting and self._by_id:
+            self._call()

@@ -1,0 +1,71 @@
+"""Long text messages in pieces, as the protocol has them."""
+
+from __future__ import annotations
+
+import json
+from collections import OrderedDict
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from crowdbot.core.live.rosbridge.frames import BadFrame
+
+#: A message in pieces may have so many of them and so many characters; so many may be open.
+_MOST_PIECES, _MOST_CHARACTERS, _MOST_OPEN = 4096, 2**20, 8
+
+
+def split(text: str, size: int, number: int) -> Iterator[str]:
+    """A text as messages of at most ``size`` characters of it each; whole where it fits.
+
+    Args:
+        size: > 0.
+        number: names the message; no other one that is on its way may have it.
+    """
+    if len(text) <= size:
+        yield text
+        return
+    total = -(-len(text) // size)
+    for k in range(total):
+        piece = {
+            "op": "fragment", "id": str(number), "data": text[k * size : (k + 1) * size],
+            "num": k, "total": total,
+        }  # fmt: skip
+        yield json.dumps(piece)
+
+
+class Joiner:
+    """Puts together what comes in pieces, in any order; the oldest that never ends is dropped."""
+
+    def __init__(self) -> None:
+        self._open = OrderedDict[str, dict[int, str]]()
+
+    def add(self, message: Mapping[str, Any]) -> str | None:
+        """Take a piece; the whole text when it was the last one.
+
+        Raises:
+            BadFrame: it is not a piece, or the whole would be too long.
+        """
+        name, data = message.get("id"), message.get("data")
+        number, total = message.get("num"), message.get("total")
+        known = isinstance(name, str | int) and isinstance(data, str)
+        if not known or not _is_count(number) or not _is_count(total):
+            raise BadFrame("a fragment has 'id', 'data', 'num' and 'total'")
+        assert isinstance(number, int)
+        assert isinstance(total, int)
+        if not 0 <= number < total <= _MOST_PIECES:
+            raise BadFrame(f"fragment {number} of {total}")
+        pieces = self._open.setdefault(str(name), {})
+        self._open.move_to_end(str(name))
+        pieces[number] = str(data)
+        if sum(map(len, pieces.values())) > _MOST_CHARACTERS:
+            del self._open[str(name)]
+            raise BadFrame("the message in fragments is too long")
+        while len(self._open) > _MOST_OPEN:
+            self._open.popitem(last=False)
+        if len(pieces) < total:
+            return None
+        del self._open[str(name)]
+        return "".join(pieces[k] for k in sorted(pieces))
+
+
+def _is_count(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)

@@ -1,0 +1,235 @@
+"""The rosbridge server: a thread of its own with all connections."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import secrets
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Any
+from urllib.parse import parse_qs, urlsplit
+
+from crowdbot.core.live.message import LiveMessage, Offer
+from crowdbot.core.live.plain import Ros
+from crowdbot.core.live.rosbridge.connection import Connection
+from crowdbot.core.live.rosbridge.feed import Wishes
+from crowdbot.core.live.rosbridge.frames import Frame, encoded
+from crowdbot.core.live.rosbridge.rosapi import World, rosapi
+from crowdbot.core.live.services import Service
+from crowdbot.core.live.session import Session
+from crowdbot.errors import InputError
+
+if TYPE_CHECKING:
+    from websockets.asyncio.server import Server, ServerConnection
+    from websockets.http11 import Request, Response
+
+_LOOPBACK = ("localhost", "127.0.0.1", "::1")
+#: The largest frame that a client may send, bytes; what may come in between two looks.
+_LARGEST, _WAITING = 2**20, 16
+_MOST_CLIENTS = 200
+
+
+def is_loopback(host: str) -> bool:
+    """Whether a name or address is this machine's own."""
+    return host in _LOOPBACK or host.startswith("127.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Address:
+    """Where to listen.
+
+    Attributes:
+        port: 0 takes one that is free.
+        token: what clients have to know; empty: nothing.
+    """
+
+    host: str = "127.0.0.1"
+    port: int = 9090
+    token: str = ""
+
+
+class RosbridgeServer:
+    """A door that speaks rosbridge."""
+
+    external_clock = False
+
+    def __init__(
+        self,
+        session: Session,
+        address: Address,
+        services: Mapping[str, Service],
+        *,
+        ros: Ros = 2,
+        resend: bool = True,
+        external_clock: bool = False,
+    ) -> None:
+        """Start to listen.
+
+        Args:
+            resend: whether a new subscriber gets the latest message of any topic, as one who
+                comes while the simulation waits must; otherwise only of those that are latched.
+            external_clock: whether ``/clock`` is read, not published.
+
+        Raises:
+            InputError: the address cannot be had.
+        """
+        self.session, self.ros, self.external_clock = session, ros, external_clock
+        self._address, self._resend = address, resend
+        self._world = World(ros=ros, services=dict(services))
+        self._world.services |= rosapi(self._world)
+        self._world.now = lambda: self._now
+        if external_clock:
+            self._world.taken = {**self._world.taken, "/clock": "rosgraph_msgs/msg/Clock"}
+        self._now = 0
+        self._latest: dict[str, LiveMessage] = {}
+        self._latched = frozenset[str]()
+        self._wanted = frozenset[str]()
+        self._connections = set[Connection]()
+        self._frames: dict[tuple[int, str], tuple[LiveMessage, Frame]] = {}
+        self._loop = asyncio.new_event_loop()
+        work = self._loop.run_forever
+        self._thread = threading.Thread(target=work, name="rosbridge", daemon=True)
+        self._thread.start()
+        try:
+            self._server: Server = self._run(self._start())
+        except OSError as error:
+            self._end()
+            where = f"{address.host}:{address.port}"
+            raise InputError(f"{where}: cannot listen there: {error.strerror or error}") from error
+
+    # ---------------------------------------------------------------- the simulation's thread
+    @property
+    def port(self) -> int:
+        """The port that it has."""
+        port: int = next(iter(self._server.sockets)).getsockname()[1]
+        return port
+
+    @property
+    def services(self) -> Mapping[str, Service]:
+        """All services, by name."""
+        return self._world.services
+
+    def open(self, offers: Sequence[Offer]) -> None:
+        """A run begins that offers these topics."""
+        mine = [o for o in offers if not (self.external_clock and o.topic == "/clock")]
+        self._soon(self._opened, mine)
+
+    def wants(self, topic: str) -> bool:
+        """Whether a client listens to a topic, or the next one that comes has to get it."""
+        return topic in self._wanted or topic in self._latched
+
+    def publish(self, messages: Sequence[LiveMessage]) -> None:
+        """Tell those who listen."""
+        if messages:
+            self._soon(self._published, list(messages))
+
+    def close(self) -> None:
+        """Say goodbye to all clients."""
+        if self._loop.is_closed():
+            return
+        with suppress(TimeoutError, RuntimeError):
+            self._run(self._stop())
+        self._end()
+
+    def _end(self) -> None:
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+        self._loop.close()
+
+    def _run(self, work: Any) -> Any:
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result(timeout=30.0)
+
+    def _soon(self, what: Callable[..., object], *given: object) -> None:
+        with suppress(RuntimeError):  # closed already
+            self._loop.call_soon_threadsafe(what, *given)
+
+    # ------------------------------------------------------------------ the server's thread
+    def _opened(self, offers: Sequence[Offer]) -> None:
+        self._world.offers = list(offers)
+        self._latest.clear()
+        self._latched = frozenset(o.topic for o in offers if o.latched)
+
+    def _published(self, messages: Sequence[LiveMessage]) -> None:
+        self._frames.clear()
+        for message in messages:
+            self._now = max(self._now, message.ns) if self._now else message.ns
+            if message.latched or self._resend:
+                self._latest[message.topic] = message
+        for connection in list(self._connections):
+            for message in messages:
+                connection.publish(message)
+
+    def latest(self, topic: str) -> LiveMessage | None:
+        """The message that a new subscriber gets at once."""
+        return self._latest.get(topic)
+
+    def changed(self) -> None:
+        """Some client listens to other topics now."""
+        self._wanted = frozenset(t for c in self._connections for t in c.feeds)
+
+    def encoded(self, message: LiveMessage, wish: Wishes) -> Frame:
+        """A message as a frame; made once for all who want the same."""
+        key = id(message), wish.form
+        if key not in self._frames:  # the message is kept, so that no other has its id
+            self._frames[key] = message, encoded(message, wish.form, self.ros)
+        return self._frames[key][1]
+
+    async def _start(self) -> Server:
+        from websockets.asyncio.server import serve
+
+        quiet = logging.getLogger("crowdbot.rosbridge")
+        quiet.setLevel(logging.CRITICAL)
+        return await serve(
+            self._serve,
+            self._address.host,
+            self._address.port,
+            process_request=self._admitted,
+            compression=None,
+            max_size=_LARGEST,
+            max_queue=_WAITING,
+            close_timeout=2.0,
+            logger=quiet,
+        )
+
+    async def _stop(self) -> None:
+        self._server.close()
+        await asyncio.wait_for(self._server.wait_closed(), 10.0)
+
+    def _admitted(self, connection: ServerConnection, request: Request) -> Response | None:
+        """None for who may come in; a page of a foreign website may not."""
+        if len(self._connections) >= _MOST_CLIENTS:
+            return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "too many clients\n")
+        if self._address.token:
+            given = parse_qs(urlsplit(request.path).query).get("token", [""])[0]
+            header = request.headers.get("Authorization", "").removeprefix("Bearer ")
+            known = self._address.token.encode()
+            fits = [secrets.compare_digest(x.encode(), known) for x in (given, header)]
+            if not any(fits):
+                return connection.respond(HTTPStatus.UNAUTHORIZED, "a token is wanted\n")
+            return None
+        origin = request.headers.get("Origin")
+        if origin is not None and not is_loopback(urlsplit(origin).hostname or ""):
+            return connection.respond(HTTPStatus.FORBIDDEN, "not from that website\n")
+        return None
+
+    async def _serve(self, socket: ServerConnection) -> None:
+        from websockets.exceptions import ConnectionClosed
+
+        connection = Connection(self, socket.send)
+        self._connections.add(connection)
+        writer = asyncio.get_running_loop().create_task(connection.write())
+        try:
+            async for frame in socket:
+                await connection.take(frame)
+        except ConnectionClosed:
+            pass
+        finally:
+            writer.cancel()
+            with suppress(asyncio.CancelledError, ConnectionClosed):
+                await writer
+            self._connections.discard(connection)
+            connection.close()

@@ -1,0 +1,85 @@
+"""What a live run says once: frames, map, the robot's description, goal, task."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from crowdbot.core.live.message import LiveMessage, told
+from crowdbot.core.planning.planner import Task
+from crowdbot.core.recording import RecordingHeader, RobotHeader, scenery
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording.header import limit_numbers, sensor_message
+from crowdbot.core.recording.topics import Topic
+from crowdbot.core.robots.urdf_export import to_urdf
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.robot import RobotLimits, RobotModel
+from crowdbot.core.types.sensor import SensorInfo
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """Where a live run happens, and with what robot.
+
+    Attributes:
+        name: of the robot.
+        sensors: those that the planner gets.
+    """
+
+    scenario: str
+    name: str
+    parts: EnvironmentParts
+    model: RobotModel
+    sensors: Mapping[str, SensorInfo]
+    goal: tuple[float, float] = (0.0, 0.0)
+    messages: tuple[LiveMessage, ...] = field(default=())
+
+
+def latched(scene: Scene, task: Task, seed: int, ns: int) -> list[LiveMessage]:
+    """Everything that is said once, stamped ``ns``."""
+    header = _header(scene, task)
+    found = [
+        (Topic.TF_STATIC, ros.transforms(scenery.static_frames(header))),
+        (Topic.GOAL, ros.polygon(ns, task.goal_zone)),
+        ("/goal_pose", scenery.goal_pose(ns, header)),
+        ("/robot_description", ros.new("std_msgs/String", data=_description(scene))),
+        ("/crowdbot/task", _task(scene, task, scene.model.limits, seed)),
+    ]
+    walls = scene.parts.walls
+    if len(walls):
+        found.append((Topic.WALLS, scenery.wall_lines(walls)))
+        found.append(("/map", scenery.occupancy_grid(ns, walls)))
+    return [told(str(topic), ns, message, latched=True) for topic, message in found]
+
+
+def _header(scene: Scene, task: Task) -> RecordingHeader:
+    model = scene.model
+    robot = RobotHeader(
+        radius=model.footprint_radius,
+        mass=model.mass,
+        goal=task.goal,
+        base_height=model.base_height,
+        limits=model.limits,
+        footprint=model.footprint,
+    )
+    return RecordingHeader(scenario=scene.scenario, robot=robot, sensors=scene.sensors)
+
+
+def _description(scene: Scene) -> str:
+    return to_urdf(scene.model, scene.sensors, scene.name)
+
+
+def _task(scene: Scene, task: Task, limits: RobotLimits, seed: int) -> object:
+    return ros.new(
+        "crowdbot_msgs/Task",
+        scenario=scene.scenario,
+        seed=seed,
+        start=np.array(task.start, np.float64),
+        goal=np.array(task.goal, np.float64),
+        goal_zone=ros.table(task.goal_zone),
+        time_limit=task.time_limit,
+        limits=ros.table(limit_numbers(limits)),
+        sensors=[sensor_message(name, info) for name, info in scene.sensors.items()],
+    )

@@ -1,0 +1,172 @@
+"""Serves runs: each is an ordinary run, whose planner listens to programs outside."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, replace
+from typing import Any, cast
+
+from crowdbot.core.live.door import Door
+from crowdbot.core.live.planner import LivePlanner, Manner, status
+from crowdbot.core.live.scene import Scene
+from crowdbot.core.live.session import Session, State
+from crowdbot.core.planning.resolve import PlannerChoice
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.identity import prepare
+from crowdbot.core.runs.request import Request, Run
+from crowdbot.core.sim.built_run import build_run
+from crowdbot.dsl.scenario import Scenario
+from crowdbot.errors import InputError, Interrupted
+
+_SWITCH = 0.0005  # s
+
+
+@dataclass(frozen=True, kw_only=True)
+class Service:
+    """What is served.
+
+    Attributes:
+        scenarios: in their order; ``first`` is the one to begin with.
+        request: makes the request of a scenario's run from planner and seed.
+        stay: whether to wait for what clients want when a run is complete.
+        on_run: called with each complete run.
+    """
+
+    session: Session
+    doors: Sequence[Door]
+    manner: Manner
+    scenarios: Sequence[Scenario]
+    request: Callable[[Scenario, PlannerChoice, int], Request]
+    name: str = "live"
+    first: int = 0
+    seed: int = 0
+    stay: bool = False
+    on_run: Callable[[Run], object] = lambda _: None
+
+
+def serve_runs(service: Service) -> Run:
+    """Serve runs until one is complete, or with ``stay`` until the user ends it.
+
+    Returns:
+        The last complete run.
+
+    Raises:
+        Interrupted: the user ended it; a ``.partial`` directory is left.
+        InputError: a scenario, or the folder for its run, is wrong.
+    """
+    session, index = service.session, service.first
+    session.seed = service.seed
+    last: Run | None = None
+    with _quick_switches():
+        while True:
+            scenario = service.scenarios[index]
+            run = _serve_one(service, scenario)
+            last = run or last
+            wanted = session.take_request()
+            if run is not None and not wanted and service.stay:
+                wanted = session.wait_for_request()
+            if not wanted:
+                return _ended(last)
+            if wanted == "next":
+                index = (index + 1) % len(service.scenarios)
+
+
+def _ended(last: Run | None) -> Run:
+    if last is None:
+        raise Interrupted("interrupted before a run was complete")
+    return last
+
+
+@contextmanager
+def _quick_switches() -> Iterator[None]:
+    """The simulation waits for the thread of the connections in each step."""
+    usual = sys.getswitchinterval()
+    sys.setswitchinterval(_SWITCH)
+    try:
+        yield
+    finally:
+        sys.setswitchinterval(usual)
+
+
+def _serve_one(service: Service, scenario: Scenario) -> Run | None:
+    """One run; None where a client wanted another one before its end."""
+    from crowdbot.core.sim.simulate import make_run
+
+    session = service.session
+    scene: list[Scene] = []
+    choice = live_choice(
+        service.name, service.manner, lambda: LivePlanner(session, service.doors, scene[0], manner)
+    )
+    manner = service.manner
+    request = service.request(scenario, choice, session.seed)
+    request = replace(request, force=True, stop=lambda: session.must_stop)
+    scene.append(_scene(request))
+    session.begin(scenario.id, session.seed)
+    state: State = "ended"
+    try:
+        prepared = prepare(scenario, request.registry, references=request.references)
+        run = make_run(request, prepared)
+        state = cast(State, run.status)
+    except Interrupted:
+        if session.interrupted():
+            raise
+        return None
+    finally:
+        session.finish(state)
+        for door in service.doors:
+            door.publish([status(session, manner.epoch)])
+    run = _remember(run, session, manner)
+    service.on_run(run)
+    return run
+
+
+def live_choice(name: str, manner: Manner, build: Callable[[], LivePlanner]) -> PlannerChoice:
+    """The planner that listens, as one that runs can be made with.
+
+    Raises:
+        InputError: the name cannot be that of a folder.
+    """
+    if not name or name.startswith(".") or set(name) & set("/\\\0"):
+        raise InputError(f"'{name}' cannot be the name of a planner, which a folder has")
+    spec = {k: v for k, v in asdict(manner).items() if k != "wait"}
+    return PlannerChoice(
+        name=name,
+        spec_dump={"kind": "live", **spec},
+        build=build,
+        pinned=False,
+        needs=None,
+        label=name,
+        origin="a live connection",
+        patience=math.inf,
+    )
+
+
+def _scene(request: Request) -> Scene:
+    if len(request.scenario.robots) != 1:
+        raise InputError(f"{request.scenario.id} has {len(request.scenario.robots)} robots, not 1")
+    built = build_run(request.scenario, request.registry, request.choice, request.record)
+    return Scene(
+        scenario=request.scenario.id,
+        name=built.name,
+        parts=built.parts,
+        model=built.model,
+        sensors={n: built.infos[n] for n in built.visible},
+    )
+
+
+def _remember(run: Run, session: Session, manner: Manner) -> Run:
+    """Add to run.json what only a live run knows."""
+    counts = session.counts
+    live: dict[str, Any] = {
+        "steps": counts.steps,
+        "missed_steps": counts.missed,
+        "refused_commands": counts.refused,
+    }
+    if manner.rate is not None:
+        live["largest_lag"] = round(counts.most_lag, 4)
+    record = {**run.record, "live": live}
+    files.write_json(run.directory / files.RECORD, record)
+    return replace(run, record=record)

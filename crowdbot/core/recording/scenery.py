@@ -1,0 +1,96 @@
+"""What never moves, as messages: frames on the robot, walls, map, goal, the robot's description."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.geometry.optical_frame import OPTICAL_QUATERNION, optical
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Pose
+
+BASE = "base_footprint"
+#: Frames that the recording defines itself; no sensor may own them.
+FRAMES = ("map", "odom", BASE, "base_link")
+_WALL_COLOUR = (0.3, 0.3, 0.3, 1.0)
+#: Cells of a map: size (m), rim around the walls (m), and at most so many in each direction.
+CELL, _RIM, _MOST_CELLS = 0.05, 0.5, 4000
+_OCCUPIED = 100
+
+
+def static_frames(header: RecordingHeader) -> list[Any]:
+    """Transforms ``map`` to ``odom``, ``base_footprint`` to ``base_link``, and to all sensors."""
+    frames = [ros.transform(0, "map", "odom", (0.0, 0.0, 0.0), 0.0)]
+    robot = header.robot
+    if robot is None:
+        return frames
+    frames.append(ros.transform(0, BASE, "base_link", (0.0, 0.0, robot.base_height), 0.0))
+    mounts = {s.frame: s.mount for s in header.sensors.values() if s.frame not in FRAMES}
+    for frame, (x, y, z, yaw) in mounts.items():
+        frames.append(ros.transform(0, "base_link", frame, (x, y, z), yaw))
+    for info in (s for s in header.sensors.values() if s.camera is not None):
+        here = ros.transform(0, info.frame, optical(info.frame), (0.0, 0.0, 0.0), 0.0)
+        turned = dict(zip("xyzw", OPTICAL_QUATERNION, strict=True))
+        here.transform.rotation = ros.new("geometry_msgs/Quaternion", **turned)
+        frames.append(here)
+    return frames
+
+
+def wall_lines(walls: Array) -> Any:
+    """Walls (S, 4), m, as one list of lines."""
+    ends = np.zeros((2 * len(walls), 3))
+    ends[:, :2] = np.asarray(walls).reshape(-1, 2)
+    return ros.marker(0, "walls", "LINE_LIST", (0.1, 0.0, 0.0), _WALL_COLOUR, ends)
+
+
+def goal_pose(ns: int, header: RecordingHeader) -> Any | None:
+    """The goal as ``geometry_msgs/PoseStamped``; None where there is none."""
+    if header.robot is None or header.robot.goal is None:
+        return None
+    return ros.pose_stamped(ns, "map", Pose(*header.robot.goal, 0.0))
+
+
+def occupancy_grid(ns: int, walls: Array, cell: float = CELL) -> Any:
+    """A map as ``nav_msgs/OccupancyGrid``: what a wall touches is occupied, all else free.
+
+    Args:
+        ns: its stamp.
+        walls: (S, 4) segments, m; at least one.
+        cell: side of a cell, m; larger where the map would have more than 4000 cells a side.
+    """
+    ends = np.asarray(walls, np.float64).reshape(-1, 2)
+    low, high = ends.min(axis=0) - _RIM, ends.max(axis=0) + _RIM
+    cell = max(cell, float(np.max(high - low)) / _MOST_CELLS)
+    width, height = (math.ceil(extent / cell) for extent in (high - low).tolist())
+    cells = np.zeros((height, width), np.int8)
+    for x0, y0, x1, y1 in np.asarray(walls, np.float64).tolist():
+        columns, rows = _cells((x0, y0), (x1, y1), low, cell)
+        inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
+        cells[rows[inside], columns[inside]] = _OCCUPIED
+    origin = ros.new(
+        "geometry_msgs/Pose",
+        position=ros.new("geometry_msgs/Point", x=float(low[0]), y=float(low[1]), z=0.0),
+        orientation=ros.new("geometry_msgs/Quaternion", x=0.0, y=0.0, z=0.0, w=1.0),
+    )
+    head = ros.header(ns, "map")
+    info = ros.new(
+        "nav_msgs/MapMetaData", map_load_time=head.stamp, resolution=cell, width=width,
+        height=height, origin=origin,
+    )  # fmt: skip
+    return ros.new("nav_msgs/OccupancyGrid", header=head, info=info, data=cells.ravel())
+
+
+def _cells(
+    start: tuple[float, float], end: tuple[float, float], low: Array, cell: float
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Columns and rows of the cells along a segment, a quarter of a cell apart."""
+    length = math.dist(start, end)
+    along = np.linspace(0.0, 1.0, 2 + math.ceil(4.0 * length / cell))[:, np.newaxis]
+    points = np.asarray(start) + along * (np.asarray(end) - np.asarray(start))
+    found = np.floor((points - low) / cell).astype(np.int64)
+    return found[:, 0], found[:, 1]
