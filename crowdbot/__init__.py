@@ -11,8 +11,10 @@ from crowdbot.lazy import lazy_names
 
 if TYPE_CHECKING:
     from crowdbot.api import evaluate, expand, load, results, score, simulate
+    from crowdbot.core.results.rows import Results
     from crowdbot.core.runs.request import Run
     from crowdbot.core.scoring.evaluate import Scores
+    from crowdbot.core.sim.session import Session
     from crowdbot.core.trajectories.commands import Commands
     from crowdbot.core.trajectories.questionnaires import Questionnaires
     from crowdbot.core.trajectories.trajectories import Trajectories
@@ -23,8 +25,10 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "crowdbot.api": "evaluate expand load results score simulate",
+    "crowdbot.core.results.rows": "Results",
     "crowdbot.core.runs.request": "Run",
     "crowdbot.core.scoring.evaluate": "Scores",
+    "crowdbot.core.sim.session": "Session",
     "crowdbot.core.trajectories.commands": "Commands",
     "crowdbot.core.trajectories.questionnaires": "Questionnaires",
     "crowdbot.core.trajectories.trajectories": "Trajectories",
@@ -38,10 +42,12 @@ __all__ = [
     "Commands",
     "CrowdbotError",
     "Questionnaires",
+    "Results",
     "Run",
     "Scenario",
     "Score",
     "Scores",
+    "Session",
     "Suite",
     "Trajectories",
     "evaluate",

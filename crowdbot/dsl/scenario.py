@@ -47,7 +47,10 @@ from crowdbot.dsl.quantities import (
 from crowdbot.dsl.robot_response import HumanResponse, RobotResponseChoice
 from crowdbot.dsl.spawning import Agents, RouteEnd, Spawn
 from crowdbot.dsl.spec import Spec
+from crowdbot.lazy import lazy_names
 
+#: What draws lies floors above; it is named as text, like whatever is built.
+_above = lazy_names(__name__, {"crowdbot.core.view.notebook": "scenario_html"})
 #: What an agent does at the end of its route.
 AtGoal = Literal["portal", RouteEnd]
 
@@ -240,6 +243,10 @@ class Scenario(Spec):
         """Say where the agents are frozen, also those of the references."""
         for scenario in (self, *self.references.values()):
             scenario._locked = locked
+
+    def _repr_html_(self) -> str:
+        """A drawing for notebooks."""
+        return str(_above("scenario_html")(self))
 
 
 #: Fields of a scenario that do not change what happens in it.

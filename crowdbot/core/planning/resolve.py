@@ -46,6 +46,8 @@ class PlannerChoice:
         role: what it is there for: floor, baseline, ceiling or candidate. One with other
             parameters than its defaults is a candidate.
         origin: the distribution, or the file, that it comes from.
+        repeatable: whether the same choice makes the same run; False for an object that was made
+            already, whose runs are never reused.
     """
 
     name: str
@@ -57,6 +59,7 @@ class PlannerChoice:
     privileged: bool = False
     role: PlannerRole = "candidate"
     origin: str = ""
+    repeatable: bool = True
 
 
 def resolve_planner(text: str, registry: Registry, settings: Sequence[str] = ()) -> PlannerChoice:
@@ -72,7 +75,7 @@ def resolve_planner(text: str, registry: Registry, settings: Sequence[str] = ())
         InputError: a file, class or parameter is wrong.
         PlannerError: the Python file cannot be imported.
     """
-    given = _settings(settings)
+    given = setting_values(settings)
     path, colon, name = text.rpartition(":")
     if colon and path.endswith(".py"):
         return _from_class(Path(path), name, given)
@@ -236,7 +239,17 @@ def _label(label: str, holder: object) -> str:
 
 
 # ------------------------------------------------------------------------ documents
-def _settings(settings: Sequence[str]) -> dict[str, Any]:
+def setting_values(settings: Sequence[str] | Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters by name.
+
+    Args:
+        settings: ``key=value`` texts, values in YAML; or the mapping itself.
+
+    Raises:
+        InputError: a text is not ``key=value``.
+    """
+    if isinstance(settings, Mapping):
+        return dict(settings)
     values: dict[str, Any] = {}
     for setting in settings:
         key, equals, value = setting.partition("=")
@@ -274,17 +287,34 @@ def _first(error: YAMLError) -> str:
 # --------------------------------------------------------------------- Python files
 def _from_class(path: Path, name: str, parameters: Mapping[str, Any]) -> PlannerChoice:
     kind = planner_class(path, name)
+    check_parameters(kind, parameters, f"{path}:{name}")
+    return choice_of_class(kind, parameters, str(path), source_digest(path), name)
+
+
+def choice_of_class(
+    kind: type[Any], parameters: Mapping[str, Any], origin: str, digest: str, name: str = ""
+) -> PlannerChoice:
+    """The choice of a class that nobody registered.
+
+    Args:
+        kind: the class, with ``reset`` and ``step``.
+        parameters: checked ones, for its constructor.
+        origin: the file, or the module and name, where it is written.
+        digest: of what is written there.
+        name: what it is called there; by default its own name.
+    """
+    name = name or kind.__name__
+    file = origin.endswith(".py")
     dump = {
-        "kind": f"{path.name}:{name}",
-        "sha256": source_digest(path),
+        "kind": f"{Path(origin).name}:{name}" if file else origin,
+        "sha256": digest,
         **({"parameters": dict(parameters)} if parameters else {}),
     }
-    check_parameters(kind, parameters, f"{path}:{name}")
 
     def build() -> Planner:
         call = PluginCall(
-            f"planner '{name}' ({path})",
-            sources=lambda: {str(path.resolve())},
+            f"planner '{name}' ({origin})",
+            sources=lambda: {str(Path(origin).resolve())} if file else set(),
             error=PlannerError,
             passes=PlannerError,
         )
@@ -296,7 +326,7 @@ def _from_class(path: Path, name: str, parameters: Mapping[str, Any]) -> Planner
         spec_dump=dump,
         build=build,
         pinned=False,
-        origin=str(path),
+        origin=origin,
         needs=_needs(kind),
         label=_label(f"{name}+{_digest(dict(parameters))}" if parameters else name, kind),
         privileged=_is_privileged(kind),

@@ -25,12 +25,13 @@ from crowdbot.dsl.seeds import stream_seed
 from crowdbot.errors import PlannerError, PlannerHungError
 
 
-def record_robot(setup: RunSetup, built: BuiltRun) -> Outcome:
+def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = None) -> Outcome:
     """Simulate the scenario's robot with the planner; people too if the scenario has any.
 
     Args:
         setup: what to record, and where.
         built: from `build_run`, of the same scenario; used up by this.
+        host: asks a planner that has been reset; None builds the one that ``setup`` chose.
 
     Raises:
         InputError: the robot would start in a wall, an obstacle or a person.
@@ -42,7 +43,7 @@ def record_robot(setup: RunSetup, built: BuiltRun) -> Outcome:
     with recording(setup, header) as (writer, ending), _watchdog(setup) as watchdog:
         sideways = isinstance(built.model.drive, HolonomicDrive)
         log = RunLog(writer, ids(engine), sideways=sideways)
-        host = _host(setup, built, watchdog)
+        host = host or _host(setup, built, watchdog)
         if engine is not None:
             engine.advance(engine.initial_state())  # compiles kernels before the clock starts
         blocks = build_diagram(
