@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from crowdbot.core.types.score import Score
     from crowdbot.dsl.expand import Expansion as Suite
     from crowdbot.dsl.scenario import Scenario
-    from crowdbot.errors import CrowdbotError
+    from crowdbot.errors import CrowdbotError, RecordingWarning
 
 _HOMES = {
     "crowdbot.api": "evaluate expand load results score simulate",
@@ -35,13 +35,14 @@ _HOMES = {
     "crowdbot.core.types.score": "Score",
     "crowdbot.dsl.expand": "Expansion=Suite",
     "crowdbot.dsl.scenario": "Scenario",
-    "crowdbot.errors": "CrowdbotError",
+    "crowdbot.errors": "CrowdbotError RecordingWarning",
 }
 
 __all__ = [
     "Commands",
     "CrowdbotError",
     "Questionnaires",
+    "RecordingWarning",
     "Results",
     "Run",
     "Scenario",

@@ -18,6 +18,7 @@ NAMES = [
     "Commands",
     "CrowdbotError",
     "Questionnaires",
+    "RecordingWarning",
     "Results",
     "Run",
     "Scenario",
@@ -47,7 +48,18 @@ def test_every_name_resolves(name: str) -> None:
 
 FUNCTIONS = [n for n in NAMES if n.islower()]
 CONSTRUCTORS = [
-    (crowdbot.Trajectories, ("from_arrays", "from_csv", "from_mcap")),
+    (
+        crowdbot.Trajectories,
+        (
+            "from_arrays",
+            "from_csv",
+            "from_pandas",
+            "from_rosbag",
+            "from_trajnet",
+            "from_eth_ucy",
+            "from_mcap",
+        ),
+    ),
     (crowdbot.Commands, ("from_arrays", "from_csv")),
     (crowdbot.Questionnaires, ("from_mapping", "from_csv")),
     (crowdbot.Results, ("open", "to_pandas", "to_arrow")),

@@ -16,7 +16,7 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scoring.metric import Metric, References
 from crowdbot.core.support.data_frame import to_arrow, to_pandas
 from crowdbot.core.trajectories.commands import Commands
-from crowdbot.core.trajectories.preprocess import truncate_at_arrival
+from crowdbot.core.trajectories.preprocess import truncate_at_arrival, with_velocities
 from crowdbot.core.trajectories.questionnaires import Questionnaires
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
@@ -138,7 +138,8 @@ def score(
     Args:
         registry: where metrics come from.
         crowded: the run; None where only commands or answers are known. Then metrics that need a
-            run are undefined: there is no robot in it, and nobody else.
+            run are undefined: there is no robot in it, and nobody else. Velocities that were not
+            recorded are derived, here and in the references.
         robot_alone: the same robot without people, where known.
         crowd_alone: the same people without robot, where known.
         commands: the user's and the final commands.
@@ -160,13 +161,13 @@ def score(
     if questionnaires is not None and not isinstance(questionnaires, Questionnaires):
         questionnaires = Questionnaires.from_mapping(questionnaires)
     refs = References(
-        robot_alone=robot_alone,
-        crowd_alone=crowd_alone,
+        robot_alone=None if robot_alone is None else with_velocities(robot_alone),
+        crowd_alone=None if crowd_alone is None else with_velocities(crowd_alone),
         commands=commands,
         commands_baseline=commands_baseline,
         questionnaires=questionnaires,
     )
-    run = Trajectories(t=np.zeros(1)) if crowded is None else crowded
+    run = Trajectories(t=np.zeros(1)) if crowded is None else with_velocities(crowded)
     for trajectories in (run, robot_alone, crowd_alone):
         if trajectories is not None:
             truncate_at_arrival(trajectories)  # an impossible arrival is not a metric's failure
