@@ -28,6 +28,7 @@ from crowdbot.dsl.component_specs import (
     EnvironmentSpec,
     RobotSpec,
     SensorSpec,
+    with_wheels,
 )
 from crowdbot.dsl.lock import LockFiles
 from crowdbot.dsl.parameters import SpeedDistribution
@@ -173,6 +174,14 @@ class Robot(Spec):
     def _default_that_fits(self) -> Robot:
         if "control" not in self.model_fields_set:
             object.__setattr__(self, "control", self.model.controls[0])
+        return self
+
+    @model_validator(mode="after")
+    def _wheels_of_the_robot(self) -> Robot:
+        """Wheel odometry that is not told the wheels takes those of the robot's spec."""
+        if self.model.wheels is not None:
+            fitted = {n: with_wheels(s, *self.model.wheels) for n, s in self.sensors.items()}
+            object.__setattr__(self, "sensors", fitted)
         return self
 
 

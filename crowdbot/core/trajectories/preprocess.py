@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -152,11 +152,13 @@ def with_velocities(run: Trajectories, jump_speed: float = 10.0) -> Trajectories
 def _with_velocities(run: Trajectories, jump_speed: float) -> Trajectories:
     robot, agents = run.robot, run.agents
     if robot is not None and not _moves_are_known(robot):
-        robot = replace(robot, **_of_parts(run, lambda part: _robot_moves(part, jump_speed)))
+        rows: dict[str, Any] = dict(_of_parts(run, lambda part: _robot_moves(part, jump_speed)))
+        robot = replace(robot, **rows)
     if agents is not None:
         here = present(agents.x, agents.y)
         if not np.array_equal(present(agents.vx, agents.vy) & here, here):
-            agents = replace(agents, **_of_parts(run, lambda part: _agent_moves(part, jump_speed)))
+            moves = _of_parts(run, lambda part: _agent_moves(part, jump_speed))
+            agents = replace(agents, vx=moves["vx"], vy=moves["vy"])
     if robot is run.robot and agents is run.agents:
         return run
     return replace(run, robot=robot, agents=agents)
