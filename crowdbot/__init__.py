@@ -11,37 +11,44 @@ from crowdbot.lazy import lazy_names
 
 if TYPE_CHECKING:
     from crowdbot.api import evaluate, expand, load, results, score, simulate
+    from crowdbot.core.results.rows import Results
     from crowdbot.core.runs.request import Run
     from crowdbot.core.scoring.evaluate import Scores
+    from crowdbot.core.sim.session import Session
     from crowdbot.core.trajectories.commands import Commands
     from crowdbot.core.trajectories.questionnaires import Questionnaires
     from crowdbot.core.trajectories.trajectories import Trajectories
     from crowdbot.core.types.score import Score
     from crowdbot.dsl.expand import Expansion as Suite
     from crowdbot.dsl.scenario import Scenario
-    from crowdbot.errors import CrowdbotError
+    from crowdbot.errors import CrowdbotError, RecordingWarning
 
 _HOMES = {
     "crowdbot.api": "evaluate expand load results score simulate",
+    "crowdbot.core.results.rows": "Results",
     "crowdbot.core.runs.request": "Run",
     "crowdbot.core.scoring.evaluate": "Scores",
+    "crowdbot.core.sim.session": "Session",
     "crowdbot.core.trajectories.commands": "Commands",
     "crowdbot.core.trajectories.questionnaires": "Questionnaires",
     "crowdbot.core.trajectories.trajectories": "Trajectories",
     "crowdbot.core.types.score": "Score",
     "crowdbot.dsl.expand": "Expansion=Suite",
     "crowdbot.dsl.scenario": "Scenario",
-    "crowdbot.errors": "CrowdbotError",
+    "crowdbot.errors": "CrowdbotError RecordingWarning",
 }
 
 __all__ = [
     "Commands",
     "CrowdbotError",
     "Questionnaires",
+    "RecordingWarning",
+    "Results",
     "Run",
     "Scenario",
     "Score",
     "Scores",
+    "Session",
     "Suite",
     "Trajectories",
     "evaluate",

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.settings import setting_texts
+from crowdbot.errors import InputError
 
 if TYPE_CHECKING:
+    from crowdbot.core.planning.given_planner import GivenPlanner
     from crowdbot.core.results.rows import Results
     from crowdbot.core.runs.outcome import Progress
     from crowdbot.core.runs.request import Recorded, Run
@@ -21,6 +25,9 @@ if TYPE_CHECKING:
     from crowdbot.core.trajectories.questionnaires import Questionnaires
     from crowdbot.core.trajectories.trajectories import Trajectories
 
+#: Changes to a scenario: ``key=value``, several of them, or a mapping.
+Overrides = str | Sequence[str] | Mapping[str, object]
+
 
 @cache
 def registry() -> Registry:
@@ -28,34 +35,68 @@ def registry() -> Registry:
     return discover()
 
 
-def load(path_or_name: str | Path, scenario: str | None = None) -> Expansion | Scenario:
+@overload
+def load(path_or_name: str | Path, scenario: str, *, set: Overrides = ...) -> Scenario: ...
+@overload
+def load(
+    path_or_name: str | Path, scenario: None = ..., *, set: Overrides = ...
+) -> Expansion | Scenario: ...
+def load(
+    path_or_name: str | Path, scenario: str | None = None, *, set: Overrides = ()
+) -> Expansion | Scenario:
     """Read a suite, or one scenario of it.
 
     Args:
         path_or_name: a file, or the name of a packaged suite.
         scenario: id, unique prefix or pattern; None gives the suite, or the scenario of a
             document that holds one.
+        set: changes to every scenario, as ``--set`` of the commands: ``"crowd.flow.density=0.3"``
+            or a list of such texts, or a mapping ``{"crowd.flow.density": 0.3}``. The ids get a
+            suffix.
 
     Raises:
-        SpecError: the document is wrong.
+        SpecError: the document, or a change to it, is wrong.
         UnknownNameError: no such suite or scenario.
+        InputError: an argument is of another kind.
     """
-    expansion = open_spec(str(path_or_name), registry())
+    _expect("path_or_name", path_or_name, str, Path)
+    if scenario is not None:
+        _expect("scenario", scenario, str)
+    if not isinstance(set, str | Sequence | Mapping):
+        raise InputError(f"set is key=value texts or a mapping, not a {type(set).__name__}")
+    expansion = open_spec(str(path_or_name), registry(), setting_texts(set))
     if scenario is not None:
         return pick(expansion, scenario)
     return expansion.scenarios[0] if expansion.single else expansion
 
 
-def expand(suite: Expansion) -> list[Scenario]:
-    """All scenarios of a suite, in order."""
+def expand(suite: Expansion | Scenario | str | Path, *, set: Overrides = ()) -> list[Scenario]:
+    """All scenarios of a suite, in order.
+
+    Args:
+        suite: from `load`; or a file or name, which is loaded.
+        set: as for `load`; only where the suite is loaded here.
+
+    Raises:
+        SpecError: the document, or a change to it, is wrong.
+        UnknownNameError: no such suite.
+        InputError: it is not a suite, or ``set`` was given with one that is loaded already.
+    """
+    if isinstance(suite, str | Path):
+        suite = load(suite, set=set)
+    elif set:
+        raise InputError("set changes what is loaded: give it to load, or a name to expand")
+    if isinstance(suite, Scenario):
+        return [suite]
+    _expect("suite", suite, Expansion)
     return list(suite.scenarios)
 
 
 def simulate(
     scenario: Scenario,
     *,
-    planner: str = "dwa",
-    planner_settings: Sequence[str] = (),
+    planner: GivenPlanner = "dwa",
+    planner_settings: Sequence[str] | Mapping[str, object] = (),
     seed: int = 0,
     out: str | Path | None = None,
     suite: str = "scenarios",
@@ -72,8 +113,10 @@ def simulate(
 
     Args:
         scenario: from `load` or `expand`.
-        planner: kind, YAML file or ``file.py:Class``.
-        planner_settings: ``key=value`` texts that change its parameters.
+        planner: kind, YAML file or ``file.py:Class``; a class with ``reset`` and ``step``, or an
+            object of one; a function from an observation to a command; or the spec of a kind.
+            The runs of an object or a function are never reused: what it holds may have changed.
+        planner_settings: ``key=value`` texts, or a mapping, that change its parameters.
         seed: of the run: sensor noise and planner.
         out: root of the run directories; None uses a temporary folder that lives as long as the
             result.
@@ -97,6 +140,7 @@ def simulate(
     """
     from crowdbot.core.sim.simulate import simulate as simulate_it
 
+    _expect("scenario", scenario, Scenario, hint="crowdbot.load(SUITE, ID) reads one")
     return simulate_it(
         scenario,
         registry(),
@@ -123,20 +167,25 @@ def _patterns(metrics: str | Sequence[str]) -> Sequence[str] | None:
     return [metrics] if isinstance(metrics, str) else metrics
 
 
-def evaluate(run: Run, metrics: str | Sequence[str] = "*") -> Scores:
+def evaluate(run: Run | str | Path, metrics: str | Sequence[str] = "*") -> Scores:
     """Score a run again from its recording.
 
     Args:
-        run: from `simulate`.
+        run: from `simulate`, or its directory.
         metrics: one or several globs over metric names.
 
     Raises:
         UnknownNameError: no metric answers to a pattern.
-        InputError: its recording cannot be read.
+        InputError: it is not a run, or its recording cannot be read.
         PluginError: a metric failed.
     """
-    refs = run.references
-    return score(run.trajectories, refs.robot_alone, refs.crowd_alone, metrics=metrics)
+    from crowdbot.core.runs.request import Run as RunOnDisk
+
+    made = RunOnDisk.open(run) if isinstance(run, str | Path) else run
+    _expect("run", made, RunOnDisk, hint="crowdbot.simulate returns one")
+    refs = made.references
+    scores = score(made.trajectories, refs.robot_alone, refs.crowd_alone, metrics=metrics)
+    return replace(scores, scenario=made.scenario, planner=made.planner, seed=made.seed)
 
 
 def score(
@@ -171,6 +220,7 @@ def score(
     """
     from crowdbot.core.scoring.evaluate import score as score_it
 
+    _check_recorded(crowded, robot_alone, crowd_alone, commands, commands_baseline)
     return score_it(
         registry(),
         crowded,
@@ -194,6 +244,47 @@ def results(root: str | Path = "runs") -> Results:
     Raises:
         InputError: there is no such folder, or a run in it is damaged.
     """
-    from crowdbot.core.results.store import load as load_results
+    from crowdbot.core.results.rows import Results as AllResults
 
-    return load_results(Path(root))
+    _expect("root", root, str, Path)
+    return AllResults.open(root)
+
+
+def _check_recorded(
+    crowded: object,
+    robot_alone: object,
+    crowd_alone: object,
+    commands: object,
+    commands_baseline: object,
+) -> None:
+    """Refuse what is neither trajectories nor commands.
+
+    Raises:
+        InputError: something is of another kind.
+    """
+    from crowdbot.core.trajectories.commands import Commands as SomeCommands
+    from crowdbot.core.trajectories.trajectories import Trajectories as SomeTrajectories
+
+    runs = {"crowded": crowded, "robot_alone": robot_alone, "crowd_alone": crowd_alone}
+    for name, value in runs.items():
+        if value is not None:
+            hint = (
+                "Trajectories.from_csv, from_arrays and others make them; a run has .trajectories"
+            )
+            _expect(name, value, SomeTrajectories, hint=hint)
+    given = {"commands": commands, "commands_baseline": commands_baseline}
+    for name, value in given.items():
+        if value is not None:
+            _expect(name, value, SomeCommands, hint="Commands.from_arrays makes them")
+
+
+def _expect(name: str, value: object, *kinds: type, hint: str = "") -> None:
+    """Refuse an argument of another kind.
+
+    Raises:
+        InputError: it is.
+    """
+    if not isinstance(value, kinds):
+        wanted = " or ".join(k.__name__ for k in kinds)
+        more = f"; {hint}" if hint else ""
+        raise InputError(f"{name} must be a {wanted}, not a {type(value).__name__}{more}")

@@ -95,6 +95,10 @@ class Interrupted(CrowdbotError):  # noqa: N818 - not a failure
     exit_code = 130
 
 
+class RecordingWarning(UserWarning):
+    """Something in a recording cannot be, such as positions in millimetres."""
+
+
 def nearest(name: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:
     """The known names that look most like ``name``, best first."""
     return tuple(difflib.get_close_matches(name, sorted(known), n=limit, cutoff=0.6))

@@ -18,10 +18,13 @@ NAMES = [
     "Commands",
     "CrowdbotError",
     "Questionnaires",
+    "RecordingWarning",
+    "Results",
     "Run",
     "Scenario",
     "Score",
     "Scores",
+    "Session",
     "Suite",
     "Trajectories",
     "evaluate",
@@ -45,9 +48,24 @@ def test_every_name_resolves(name: str) -> None:
 
 FUNCTIONS = [n for n in NAMES if n.islower()]
 CONSTRUCTORS = [
-    (crowdbot.Trajectories, ("from_arrays", "from_csv", "from_mcap")),
+    (
+        crowdbot.Trajectories,
+        (
+            "from_arrays",
+            "from_csv",
+            "from_pandas",
+            "from_rosbag",
+            "from_trajnet",
+            "from_eth_ucy",
+            "from_mcap",
+        ),
+    ),
     (crowdbot.Commands, ("from_arrays", "from_csv")),
     (crowdbot.Questionnaires, ("from_mapping", "from_csv")),
+    (crowdbot.Results, ("open", "to_pandas", "to_arrow")),
+    (crowdbot.Run, ("open",)),
+    (crowdbot.Scores, ("to_pandas", "to_arrow", "find")),
+    (crowdbot.Session, ("reset", "step", "observe", "close")),
 ]
 
 
@@ -62,6 +80,8 @@ def _signatures() -> Iterator[tuple[str, inspect.Signature]]:
 @pytest.mark.parametrize(("name", "signature"), list(_signatures()))
 def test_every_option_has_a_name_and_a_type(name: str, signature: inspect.Signature) -> None:
     for parameter in signature.parameters.values():
+        if parameter.name == "self":
+            continue
         assert parameter.kind not in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL), name
         assert parameter.annotation is not parameter.empty, (name, parameter.name)
         assert "Any" not in str(parameter.annotation), (name, parameter.name)

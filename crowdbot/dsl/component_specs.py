@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Literal
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from crowdbot.dsl.spec import ComponentSpec, Rectangle
+from crowdbot.dsl.spec import ComponentSpec, Rectangle, Spec
 
 if TYPE_CHECKING:
     from crowdbot.dsl.assets import Asset
@@ -35,12 +36,43 @@ class RobotSpec(ComponentSpec):
     #: Control modes that fit the drive; the first is the default. A holonomic robot says
     #: ``("force", "kinematic")``.
     controls: ClassVar[tuple[str, ...]] = ("differential_drive", "force", "kinematic")
+    #: What wheel odometry takes for radius and track of the wheels, m, where it is not told; None:
+    #: those of the drive, once the robot is built.
+    wheels: ClassVar[tuple[float, float] | None] = None
 
 
 class SensorSpec(ComponentSpec):
     """Abstract: one sensor on a robot."""
 
     category: ClassVar[str] = "sensor"
+
+    @model_validator(mode="before")
+    @classmethod
+    def _rest_of_the_mount(cls, data: Any) -> Any:
+        """A mount that says some of its numbers keeps the sensor's own defaults for the others."""
+        field = cls.model_fields.get("mount")
+        if not isinstance(data, Mapping) or field is None or not isinstance(field.default, Spec):
+            return data
+        given = data.get("mount")
+        if not isinstance(given, Mapping):
+            return data
+        own = field.default
+        return {**data, "mount": {**{n: getattr(own, n) for n in own.model_fields_set}, **given}}
+
+
+Sensor = TypeVar("Sensor", bound=SensorSpec)
+
+
+def with_wheels(sensor: Sensor, radius: float, track: float) -> Sensor:
+    """A sensor with the wheels of its robot, where it has a place for them and was told none.
+
+    Args:
+        sensor: any; odometry has fields ``wheel_radius`` and ``track``.
+        radius, track: of the robot, m.
+    """
+    wheels = {"wheel_radius": radius, "track": track}
+    missing = {n: v for n, v in wheels.items() if getattr(sensor, n, v) is None}
+    return sensor.model_copy(update=missing) if missing else sensor
 
 
 class NoiseSpec(ComponentSpec):

@@ -180,7 +180,13 @@ class _Expander:
             raise SpecError(_sorted(problems))
         suite = self._suite
         return Expansion(
-            suite.id, suite.title, scenarios, suite.metrics, trees, axes, suite.commitment,
+            suite.id,
+            suite.title,
+            scenarios,
+            suite.metrics,
+            trees,
+            axes,
+            suite.commitment,
             suite.run_seeds,
         )
 

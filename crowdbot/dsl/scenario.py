@@ -28,6 +28,7 @@ from crowdbot.dsl.component_specs import (
     EnvironmentSpec,
     RobotSpec,
     SensorSpec,
+    with_wheels,
 )
 from crowdbot.dsl.lock import LockFiles
 from crowdbot.dsl.parameters import SpeedDistribution
@@ -48,7 +49,10 @@ from crowdbot.dsl.quantities import (
 from crowdbot.dsl.robot_response import HumanResponse, RobotResponseChoice
 from crowdbot.dsl.spawning import Agents, RouteEnd, Spawn
 from crowdbot.dsl.spec import Spec
+from crowdbot.lazy import lazy_names
 
+#: What draws lies floors above; it is named as text, like whatever is built.
+_above = lazy_names(__name__, {"crowdbot.core.view.notebook": "scenario_html"})
 #: What an agent does at the end of its route.
 AtGoal = Literal["portal", RouteEnd]
 
@@ -173,6 +177,14 @@ class Robot(Spec):
             object.__setattr__(self, "control", self.model.controls[0])
         return self
 
+    @model_validator(mode="after")
+    def _wheels_of_the_robot(self) -> Robot:
+        """Wheel odometry that is not told the wheels takes those of the robot's spec."""
+        if self.model.wheels is not None:
+            fitted = {n: with_wheels(s, *self.model.wheels) for n, s in self.sensors.items()}
+            object.__setattr__(self, "sensors", fitted)
+        return self
+
 
 class Contact(Spec):
     """Compliance between robot and pedestrians: Hunt-Crossley, F = k d (1 + c d')."""
@@ -253,6 +265,10 @@ class Scenario(Spec):
         """Say where the agents are frozen, also those of the references."""
         for scenario in (self, *self.references.values()):
             scenario._locked = locked
+
+    def _repr_html_(self) -> str:
+        """A drawing for notebooks."""
+        return str(_above("scenario_html")(self))
 
 
 #: Fields of a scenario that do not change what happens in it.

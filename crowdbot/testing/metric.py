@@ -27,6 +27,7 @@ from crowdbot.testing.symmetries import (
     perturb,
     scale_masses,
     with_people,
+    without_velocities,
     writable_copy,
 )
 from crowdbot.testing.worlds import World, portal_world, random_world, straight_world
@@ -180,6 +181,19 @@ def check_teleports_add_nothing(component: Component[Any]) -> None:
         _assert_same(component, walked, jumped, "teleport")
 
 
+def check_velocities_left_out(component: Component[Any]) -> None:
+    """A recording without velocities scores like one with those that follow from its positions.
+
+    Velocities that were not recorded are derived before a metric sees them. If this fails, a
+    velocity is asked whether it was recorded, or compared with equality.
+    """
+    for seed in range(4):
+        world = with_signals(component, straight_world(seed, 32.0))
+        silent = _each_run(world, without_velocities)
+        found = scores_of(component, world)
+        _assert_same(component, found, scores_of(component, silent), "velocities")
+
+
 def check_rounding(component: Component[Any]) -> None:
     """Inputs that are off by 1e-12 change no status and no integer.
 
@@ -208,6 +222,7 @@ CHECKS: tuple[Callable[[Component[Any]], None], ...] = (
     check_more_people,
     check_masses,
     check_teleports_add_nothing,
+    check_velocities_left_out,
     check_rounding,
 )
 

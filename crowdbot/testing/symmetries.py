@@ -18,6 +18,18 @@ Change = Callable[[Trajectories], Trajectories]
 _SHIFT, _TURN, _DELAY = (17.0, -4.0), 2.1, 64.0
 
 
+def without_velocities(run: Trajectories) -> Trajectories:
+    """The same motion, of which only places and headings were recorded."""
+    robot, agents = run.robot, run.agents
+    if robot is not None:
+        unknown = np.full(robot.x.shape, np.nan)
+        robot = replace(robot, v=unknown, w=unknown, vx=None, vy=None)
+    if agents is not None:
+        unknown = np.full(agents.x.shape, np.nan)
+        agents = replace(agents, vx=unknown, vy=unknown)
+    return replace(run, robot=robot, agents=agents)
+
+
 def move(
     run: Trajectories, *, angle: float = 0.0, shift: tuple[float, float] = (0, 0), mirror: int = 1
 ) -> Trajectories:

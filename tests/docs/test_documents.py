@@ -132,10 +132,11 @@ def test_the_suite_of_the_howto_expands() -> None:
 
 
 @pytest.mark.slow
-def test_own_arrays_print_what_the_page_shows() -> None:
+@pytest.mark.parametrize(("name", "number"), [("own_arrays", 0), ("own_tables", 1)])
+def test_own_data_print_what_the_page_shows(name: str, number: int) -> None:
     page = ROOT / "docs" / "howto" / "score_own_data.md"
-    (shown,) = (b.text for b in blocks(page) if b.language == "text")
-    script = ROOT / "docs" / "howto" / "files" / "own_arrays.py"
+    shown = [b.text for b in blocks(page) if b.language == "text"][number]
+    script = ROOT / "docs" / "howto" / "files" / f"{name}.py"
     done = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
     assert [line.rstrip() for line in done.stdout.splitlines()] == [
         line.rstrip() for line in shown.splitlines()

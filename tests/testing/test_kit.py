@@ -145,6 +145,7 @@ def _mutates(run: Trajectories, refs: References) -> float:
             lambda run, refs: np.nansum(np.abs(np.diff(run.agents.x, axis=0))),
             {},
         ),
+        (metric.check_velocities_left_out, lambda run, refs: len(np.unique(run.robot.v)), {}),
         (metric.check_rounding, lambda run, refs: float(_x(run) > 6.25), {"integer": True}),
         (metric.check_scores_are_well_formed, lambda run, refs: -1.0, {"minimum": 0.0}),
         (metric.check_scores_are_well_formed, lambda run, refs: 0.5, {"integer": True}),

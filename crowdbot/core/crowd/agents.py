@@ -30,6 +30,7 @@ class Agents:
         first: (N + 1,) rows of ``route`` that belong to agent i: first[i] to first[i + 1].
         ignores_robot: (N,) whether the agent takes no notice of robots until they touch.
         late: (N,) whether the agent notices robots late, where people notice them at all.
+        group: (N,) agents with equal numbers belong together; -1: alone.
     """
 
     id: NDArray[np.int64]
@@ -48,8 +49,11 @@ class Agents:
     first: NDArray[np.int64]
     ignores_robot: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
     late: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
+    group: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
 
     def __post_init__(self) -> None:
+        if len(self.group) != len(self.id):
+            object.__setattr__(self, "group", np.full(len(self.id), -1, np.int64))
         for name in ("ignores_robot", "late"):
             if len(getattr(self, name)) != len(self.id):
                 object.__setattr__(self, name, np.zeros(len(self.id), np.bool_))
@@ -76,6 +80,7 @@ class Agents:
         routes: Sequence[Sequence[tuple[float, float]]] | None = None,
         ignores_robot: ArrayLike = False,
         late: ArrayLike = False,
+        group: ArrayLike = -1,
     ) -> Agents:
         """Agents from rows or single numbers; with routes they stop at the end, else portals.
 
@@ -109,6 +114,7 @@ class Agents:
             first=np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]),
             ignores_robot=row(ignores_robot, np.bool_),
             late=row(late, np.bool_),
+            group=row(group, np.int64),
         )
         made.check()
         return made

@@ -147,6 +147,7 @@ if TYPE_CHECKING:
     from crowdbot.core.types.robot import (
         DifferentialDrive,
         HolonomicDrive,
+        RobotBody,
         RobotLimits,
         RobotModel,
         RobotState,
@@ -203,7 +204,7 @@ _HOMES = {
     "crowdbot.core.types.environment": "EnvironmentParts",
     "crowdbot.core.types.motion": "Command Pose",
     "crowdbot.core.types.robot": (
-        "DifferentialDrive HolonomicDrive RobotLimits RobotModel RobotState"
+        "DifferentialDrive HolonomicDrive RobotBody RobotLimits RobotModel RobotState"
     ),
     "crowdbot.core.types.score": "Score",
     "crowdbot.core.types.sensor": "CameraFrame Pinhole Reading SensorInfo",
@@ -311,6 +312,7 @@ __all__ = [
     "RecordedCrowd",
     "RecordingInfo",
     "References",
+    "RobotBody",
     "RobotLimits",
     "RobotModel",
     "RobotState",

@@ -61,6 +61,8 @@ class PlannerChoice:
         origin: the distribution, or the file, that it comes from.
         in_process: whether it runs inside the simulator, where nothing contains it.
         memory: limit of its own process, bytes; None: none.
+        repeatable: whether the same choice makes the same run; False for an object that was made
+            already, whose runs are never reused.
         patience: s after which a step in this process counts as hung; None: the usual time.
     """
 
@@ -75,6 +77,7 @@ class PlannerChoice:
     origin: str = ""
     in_process: bool = True
     memory: int | None = None
+    repeatable: bool = True
     patience: float | None = None
 
     @property

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, cast, get_args
 
+from crowdbot.core.support.source_digest import declared_data
 from crowdbot.dsl.component_specs import PlannerRole
 from crowdbot.errors import InputError, did_you_mean, nearest
 
@@ -19,12 +20,14 @@ class PlannerDescription:
         privileged: whether it may read what no sensor of a real robot could tell.
         role: what it is there for.
         runtime: what it runs in, where that is not crowdbot's own Python.
+        data: names or patterns of files beside it that it reads.
     """
 
     needs: tuple[str, ...] | None = None
     privileged: bool = False
     role: PlannerRole = "candidate"
     runtime: str = ""
+    data: tuple[str, ...] = ()
 
 
 def described(holder: type) -> PlannerDescription:
@@ -38,6 +41,7 @@ def described(holder: type) -> PlannerDescription:
         needs=None if needs is None else tuple(str(n) for n in needs),
         privileged=getattr(holder, "privileged", False) is True,
         role=role_of(holder),
+        data=declared_data(holder),
     )
 
 
@@ -52,11 +56,15 @@ def read_description(said: Mapping[str, Any], who: str) -> PlannerDescription:
         raise InputError(f"{who}: hello: 'needs' is a list of names of sensors, or nil")
     if not isinstance(runtime, str):
         raise InputError(f"{who}: hello: 'runtime' is text")
+    data = said.get("data", [])
+    if not (isinstance(data, list) and all(map(_is_name, data))):
+        raise InputError(f"{who}: hello: 'data' is a list of names of files")
     return PlannerDescription(
         needs=None if needs is None else tuple(needs),
         privileged=said.get("privileged", False) is True,
         role=_role(said.get("role", "candidate"), who),
         runtime=runtime[:80],
+        data=tuple(data),
     )
 
 

@@ -14,7 +14,7 @@ from crowdbot.core.planning.choice import PlannerChoice, PlannerPlace, label_of
 from crowdbot.core.planning.guarded import planner_title
 from crowdbot.core.planning.process import foreign_main
 from crowdbot.core.planning.process.process_planner import ProcessPlan, describe
-from crowdbot.core.support.source_digest import source_digest
+from crowdbot.core.support.source_digest import data_files, digest_of_files, source_digest
 from crowdbot.errors import InputError, did_you_mean, nearest
 
 _FIELDS = ("command", "python", "planner", "name", "parameters", "files")
@@ -56,6 +56,7 @@ def external_choice(
     dump: dict[str, Any] = {
         "kind": f"{path.name}:{program.name}",
         "sha256": program.sha256,
+        **({"data": _data(path.resolve().parent, said.data)} if said.data else {}),
         **({"runtime": said.runtime} if said.runtime else {}),
         **({"parameters": parameters} if parameters else {}),
     }
@@ -165,6 +166,11 @@ def _digest(words: Sequence[str], files: Mapping[str, Path]) -> str:
     named = {name: _file_digest(path) for name, path in sorted(files.items())}
     text = json.dumps({"command": list(words), "files": named}, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _data(folder: Path, names: Sequence[str]) -> str:
+    """SHA-256 of the files that a planner says it reads."""
+    return digest_of_files(data_files(folder, names))
 
 
 def _file_digest(path: Path) -> str:

@@ -28,7 +28,7 @@ from crowdbot.core.planning.registered import build_of_kind, find_kind, spec_of_
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.registry.plugin import BUILTIN
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.support.source_digest import declared_data, source_digest
+from crowdbot.core.support.source_digest import source_digest
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.component import Component
 from crowdbot.dsl.component_specs import PlannerRole, PlannerSpec
@@ -58,7 +58,7 @@ def resolve_planner(
         InputError: a file, class or parameter is wrong.
         PlannerError: the Python file cannot be imported.
     """
-    given = _settings(settings)
+    given = setting_values(settings)
     path, colon, name = text.rpartition(":")
     if colon and path.endswith(".py"):
         return _from_class(Path(path), name, given, place)
@@ -190,7 +190,17 @@ def _is_privileged(holder: object) -> bool:
 
 
 # ------------------------------------------------------------------------ documents
-def _settings(settings: Sequence[str]) -> dict[str, Any]:
+def setting_values(settings: Sequence[str] | Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters by name.
+
+    Args:
+        settings: ``key=value`` texts, values in YAML; or the mapping itself.
+
+    Raises:
+        InputError: a text is not ``key=value``.
+    """
+    if isinstance(settings, Mapping):
+        return dict(settings)
     values: dict[str, Any] = {}
     for setting in settings:
         key, equals, value = setting.partition("=")
@@ -254,7 +264,7 @@ def _from_class(
         description, build = describe(plan, lenient=place.lenient)
     dump = {
         "kind": f"{path.name}:{name}",
-        "sha256": source_digest(path, declared_data(kind)),
+        "sha256": source_digest(path, description.data),
         **({"parameters": dict(parameters)} if parameters else {}),
     }
     return PlannerChoice(

@@ -7,6 +7,7 @@ runs give equal bytes. Layout: https://mcap.dev/spec.
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Iterable
 from pathlib import Path
 from struct import pack
@@ -99,12 +100,13 @@ class McapFile:
         self._stream.flush()
 
     def close(self) -> None:
-        """Write index and footer; when this returns the disk has it all."""
+        """Write index and footer; when this returns the disk has it all, if it is one."""
         self._finish_chunk()
         self._stream.write(serialised([DataEnd(data_section_crc=0)]))
         self._stream.write(self._summary(self._stream.tell()) + MCAP0_MAGIC)
         self._stream.flush()
-        os.fsync(self._stream.fileno())
+        if not stat.S_ISCHR(os.fstat(self._stream.fileno()).st_mode):  # /dev/null keeps nothing
+            os.fsync(self._stream.fileno())
         self._stream.close()
 
     def _open(self, topic: str, msgtype: str, latched: bool) -> _Topic:

@@ -7,10 +7,27 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 from crowdbot.core.scoring.score_scale import Scales
+from crowdbot.core.support.data_frame import to_arrow, to_pandas
+from crowdbot.errors import InputError
+from crowdbot.lazy import lazy_names
 
+if TYPE_CHECKING:
+    import pandas as pd  # type: ignore[import-untyped]
+    import pyarrow as pa  # type: ignore[import-untyped]
+
+Table = Literal["scores", "runs"]
+#: What reads and lists rows imports this file; it is named as text, like whatever is built.
+_beside = lazy_names(
+    __name__,
+    {
+        "crowdbot.core.results.store": "load",
+        "crowdbot.core.results.tables": "run_lines score_lines",
+    },
+)
 #: Status of a run whose planner failed.
 PLANNER_FAILED = "planner_failed"
 #: What is known of an attempt that left no run: its robot did not arrive.
@@ -157,3 +174,44 @@ class Results:
     scores: tuple[ScoreRow, ...] = ()
     failures: tuple[FailureRow, ...] = ()
     scales: Scales = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def open(cls, root: str | Path = "runs") -> Results:
+        """All runs, scores and failures below a folder, as a campaign leaves them.
+
+        Args:
+            root: of the run directories.
+
+        Raises:
+            InputError: there is no such folder, or a run in it is damaged.
+        """
+        return cast(Results, _beside("load")(Path(root)))
+
+    def to_pandas(self, table: Table = "scores") -> pd.DataFrame:
+        """A row a score, with suite, scenario, planner, seed and the axes of its run.
+
+        Args:
+            table: ``scores``, or ``runs`` for a row a run.
+
+        Raises:
+            InputError: pandas is not installed, or there is no such table.
+        """
+        return to_pandas(*self._lines(table))
+
+    def to_arrow(self, table: Table = "scores") -> pa.Table:
+        """The same as a table of Arrow.
+
+        Args:
+            table: ``scores`` or ``runs``.
+
+        Raises:
+            InputError: pyarrow is not installed, or there is no such table.
+        """
+        return to_arrow(*self._lines(table))
+
+    def _lines(self, table: str) -> tuple[list[dict[str, Any]], list[str]]:
+        """Rows and names of the columns of a table."""
+        if table not in ("scores", "runs"):
+            raise InputError(f"there is no table {table!r}; there are 'scores' and 'runs'")
+        lines = _beside("score_lines" if table == "scores" else "run_lines")(self)
+        return lines, list(lines[0]) if lines else ["scenario", "planner", "seed"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
@@ -14,7 +15,9 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.outcome import Progress
+from crowdbot.core.scoring.evaluate import Scores
 from crowdbot.core.scoring.metric import References
+from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
@@ -30,7 +33,6 @@ class Run:
     Attributes:
         directory: where its files are.
         record: ``run.json``.
-        scores: what was computed when it was made.
         reused: it had been there already.
         replaced: in what the run that was there before was recorded otherwise; empty where none
             was, or the same one.
@@ -42,10 +44,50 @@ class Run:
     replaced: tuple[str, ...] = ()
     _keep: object = field(default=None, repr=False, compare=False)
 
+    @classmethod
+    def open(cls, directory: str | Path) -> Run:
+        """A run that was made before.
+
+        Args:
+            directory: with its ``run.json``.
+
+        Raises:
+            InputError: there is no complete run.
+        """
+        record = files.read_record(Path(directory))
+        if record is None:
+            raise InputError(f"{directory}: no run directory, there is no {files.RECORD} in it")
+        return cls(Path(directory), record, reused=True)
+
+    @property
+    def scenario(self) -> str:
+        """Id of the scenario."""
+        return str(self.record["scenario"])
+
+    @property
+    def planner(self) -> str:
+        """Label of the planner, as scores carry it."""
+        return str(self.record["planner"]["label"])
+
+    @property
+    def seed(self) -> int:
+        """Of the run."""
+        return int(self.record["seed"])
+
     @property
     def status(self) -> str:
         """``arrived``, ``timeout`` or ``planner_failed``."""
         return str(self.record["status"])
+
+    @cached_property
+    def scores(self) -> Scores:
+        """What was computed when it was made, read from ``scores.csv``.
+
+        Raises:
+            InputError: they cannot be read.
+        """
+        rows = read_scores_csv(self.directory / files.SCORES)
+        return Scores(tuple(r.score for r in rows), self.scenario, self.planner, self.seed)
 
     @cached_property
     def trajectories(self) -> Trajectories:
@@ -57,6 +99,18 @@ class Run:
         """The calibration runs, as far as they were computed."""
         paths: Mapping[str, str] = self.record["references"]
         return read_references({n: (self.directory / p).resolve() for n, p in paths.items()})
+
+    def _repr_html_(self) -> str:
+        """The replay page for notebooks, in a frame of its own; without one, what is known."""
+        facts = f"{self.scenario} · {self.planner} · seed {self.seed}: {self.status}"
+        page = self.directory / files.REPLAY
+        if not page.is_file():
+            return f"<p>{html.escape(facts)}</p>"
+        text = html.escape(page.read_text(encoding="utf-8"), quote=True)
+        return (
+            f'<iframe srcdoc="{text}" title="{html.escape(facts, quote=True)}" '
+            'sandbox="allow-scripts" style="width:100%;height:640px;border:0"></iframe>'
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

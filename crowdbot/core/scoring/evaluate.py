@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import fnmatch
+import html
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, cast, overload
+from typing import TYPE_CHECKING, Any, cast, overload
 
 import numpy as np
 from pydantic import ValidationError
@@ -13,8 +14,9 @@ from pydantic import ValidationError
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scoring.metric import Metric, References
+from crowdbot.core.support.data_frame import to_arrow, to_pandas
 from crowdbot.core.trajectories.commands import Commands
-from crowdbot.core.trajectories.preprocess import truncate_at_arrival
+from crowdbot.core.trajectories.preprocess import truncate_at_arrival, with_velocities
 from crowdbot.core.trajectories.questionnaires import Questionnaires
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
@@ -23,15 +25,34 @@ from crowdbot.dsl.component_specs import MetricSpec
 from crowdbot.dsl.metric_component import MetricComponent
 from crowdbot.errors import InputError, PluginError, UnknownNameError, did_you_mean, nearest
 
+if TYPE_CHECKING:
+    import pandas as pd  # type: ignore[import-untyped]
+    import pyarrow as pa  # type: ignore[import-untyped]
+
 #: Metric -> field -> value.
 MetricParameters = Mapping[str, Mapping[str, object]]
 
 
+#: Columns of a data frame of scores.
+_COLUMNS = (
+    "scenario", "planner", "seed", "category", "metric", "symbol", "variant", "value", "unit",
+    "better", "status", "reason", "lower", "upper",
+)  # fmt: skip
+
+
 @dataclass(frozen=True, slots=True)
 class Scores(Sequence[Score]):
-    """The scores of one run, ordered by metric; unchangeable."""
+    """The scores of one run, ordered by metric; unchangeable.
+
+    Attributes:
+        items: the scores.
+        scenario, planner, seed: of the run, where they are known.
+    """
 
     items: tuple[Score, ...] = ()
+    scenario: str = ""
+    planner: str = ""
+    seed: int | None = None
 
     @overload
     def __getitem__(self, index: int) -> Score: ...
@@ -40,7 +61,7 @@ class Scores(Sequence[Score]):
     def __getitem__(self, index: int | slice) -> Score | Scores:
         """One score, or a part of them."""
         found = self.items[index]
-        return Scores(found) if isinstance(found, tuple) else found
+        return replace(self, items=found) if isinstance(found, tuple) else found
 
     def __len__(self) -> int:
         """How many there are."""
@@ -63,6 +84,42 @@ class Scores(Sequence[Score]):
             raise UnknownNameError(f"variant of {metric}", variant, of_metric)
         return of_metric[variant]
 
+    def to_pandas(self) -> pd.DataFrame:
+        """A row a score: scenario, planner, seed, metric, variant, value, and so on.
+
+        Values that are not there are NaN; ``status`` and ``reason`` say why.
+
+        Raises:
+            InputError: pandas is not installed.
+        """
+        return to_pandas(self._rows(), _COLUMNS)
+
+    def to_arrow(self) -> pa.Table:
+        """The same as a table of Arrow; values that are not there are null.
+
+        Raises:
+            InputError: pyarrow is not installed.
+        """
+        return to_arrow(self._rows(), _COLUMNS)
+
+    def _rows(self) -> list[dict[str, object]]:
+        run = {"scenario": self.scenario, "planner": self.planner, "seed": self.seed}
+        return [{**run, **{n: getattr(s, n) for n in _COLUMNS[3:]}} for s in self.items]
+
+    def _repr_html_(self) -> str:
+        """A table for notebooks."""
+        heads = ("metric", "variant", "value", "unit", "better", "status")
+        head = "".join(f"<th>{n}</th>" for n in heads)
+        rows = "".join(f"<tr>{_cells(s)}</tr>" for s in self.items)
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+
+
+def _cells(score: Score) -> str:
+    value = "" if score.value is None else f"{score.value:.5g}"
+    status = f"{score.status}: {score.reason}" if score.reason else score.status
+    texts = (score.metric, score.variant, value, score.unit, score.better, status)
+    return "".join(f"<td>{html.escape(text)}</td>" for text in texts)
+
 
 def score(
     registry: Registry,
@@ -81,7 +138,8 @@ def score(
     Args:
         registry: where metrics come from.
         crowded: the run; None where only commands or answers are known. Then metrics that need a
-            run are undefined: there is no robot in it, and nobody else.
+            run are undefined: there is no robot in it, and nobody else. Velocities that were not
+            recorded are derived, here and in the references.
         robot_alone: the same robot without people, where known.
         crowd_alone: the same people without robot, where known.
         commands: the user's and the final commands.
@@ -103,13 +161,13 @@ def score(
     if questionnaires is not None and not isinstance(questionnaires, Questionnaires):
         questionnaires = Questionnaires.from_mapping(questionnaires)
     refs = References(
-        robot_alone=robot_alone,
-        crowd_alone=crowd_alone,
+        robot_alone=None if robot_alone is None else with_velocities(robot_alone),
+        crowd_alone=None if crowd_alone is None else with_velocities(crowd_alone),
         commands=commands,
         commands_baseline=commands_baseline,
         questionnaires=questionnaires,
     )
-    run = Trajectories(t=np.zeros(1)) if crowded is None else crowded
+    run = Trajectories(t=np.zeros(1)) if crowded is None else with_velocities(crowded)
     for trajectories in (run, robot_alone, crowd_alone):
         if trajectories is not None:
             truncate_at_arrival(trajectories)  # an impossible arrival is not a metric's failure

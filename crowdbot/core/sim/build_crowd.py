@@ -97,6 +97,7 @@ def _agents(
         policy=[policies.index(name) for name in drawn.policy],
         routes=drawn.goals,
         ignores_robot=drawn.attention < response.ignoring,
+        group=drawn.group,
         late=drawn.attention < response.ignoring + (1.0 - response.ignoring) * response.late,
     )
 

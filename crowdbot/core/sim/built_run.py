@@ -16,8 +16,9 @@ from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sensing.sensor import Sensor, SensorWithMemory
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
-from crowdbot.core.types.robot import RobotModel
+from crowdbot.core.types.robot import RobotModel, robot_body, wheels_of
 from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.dsl.component_specs import with_wheels
 from crowdbot.dsl.scenario import Robot, Scenario
 
 
@@ -70,7 +71,8 @@ def build_run(
     ((name, robot),) = scenario.robots.items()
     parts = build_environment(registry, scenario.environment)
     model = build_robot(registry, robot)
-    sensors = {n: build_sensor(registry, x) for n, x in robot.sensors.items()}
+    wheels = wheels_of(model.drive)
+    sensors = {n: build_sensor(registry, with_wheels(x, *wheels)) for n, x in robot.sensors.items()}
     infos = {n: _with_frame(n, sensor.info()) for n, sensor in sensors.items()}
     check_frames(model, infos)
     visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
@@ -85,7 +87,7 @@ def build_run(
         robot=robot,
         parts=parts,
         model=model,
-        task=robot_task(robot, parts),
+        task=replace(robot_task(robot, parts), robot=robot_body(model)),
         sensors={n: sensors[n] for n in chosen},
         infos={n: infos[n] for n in chosen},
         visible=visible,

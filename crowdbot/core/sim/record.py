@@ -28,12 +28,13 @@ from crowdbot.dsl.seeds import stream_seed
 from crowdbot.errors import PlannerError, PlannerHungError
 
 
-def record_robot(setup: RunSetup, built: BuiltRun) -> Outcome:
+def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = None) -> Outcome:
     """Simulate the scenario's robot with the planner; people too if the scenario has any.
 
     Args:
         setup: what to record, and where.
         built: from `build_run`, of the same scenario; used up by this.
+        host: asks a planner that has been reset; None builds the one that ``setup`` chose.
 
     Raises:
         InputError: the robot would start in a wall, an obstacle or a person.
@@ -51,7 +52,7 @@ def record_robot(setup: RunSetup, built: BuiltRun) -> Outcome:
     ):
         sideways = isinstance(built.model.drive, HolonomicDrive)
         log = RunLog(writer, ids(engine), sideways=sideways)
-        host = stack.enter_context(_host(setup, built, watchdog))
+        host = host or stack.enter_context(_host(setup, built, watchdog))
         if engine is not None:
             engine.advance(engine.initial_state())  # compiles kernels before the clock starts
         blocks = build_diagram(

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
-from crowdbot.core.planning.resolve import resolve_planner
+from crowdbot.core.planning.given_planner import GivenPlanner, choose_planner
 from crowdbot.core.planning.watchdog import STEP_LIMIT
 from crowdbot.core.recording import read_run
 from crowdbot.core.recording.scans import REPLAY_RATE, ReplayScan
@@ -51,8 +51,8 @@ def simulate(
     scenario: Scenario,
     registry: Registry,
     *,
-    planner: str = "dwa",
-    planner_settings: Sequence[str] = (),
+    planner: GivenPlanner = "dwa",
+    planner_settings: Sequence[str] | Mapping[str, object] = (),
     seed: int = 0,
     out: Path | None = None,
     suite: str = "scenarios",
@@ -74,8 +74,8 @@ def simulate(
     Args:
         scenario: from an expanded suite.
         registry: the installed components.
-        planner: kind, YAML file or ``file.py:Class``.
-        planner_settings: ``key=value`` texts.
+        planner, planner_settings: as `choose_planner` takes them; the runs of an object or
+            function are never reused.
         seed: run seed: sensor noise and planner.
         out: root of the run directories; None uses a temporary one that lives as long as the
             result.
@@ -92,7 +92,7 @@ def simulate(
         Interrupted: ``stop`` said so; a ``.partial`` directory is left.
     """
     _check_options(seed, suite, record, step_budget)
-    choice = resolve_planner(planner, registry, planner_settings, place)
+    choice = choose_planner(planner, registry, planner_settings, place)
     if metrics is not None:
         metric_specs(registry, metrics, {})  # a wrong name ends the run before it begins
     keep = None
@@ -108,7 +108,7 @@ def simulate(
         suite=suite,
         record=record,
         references=references,
-        force=force,
+        force=force or not choice.repeatable,
         metrics=metrics,
         axes=axes or {},
         position=position,

@@ -5,8 +5,9 @@ Section 1.1 of the metric specification. N samples, M people; world frame, SI un
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import fields, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -136,6 +137,64 @@ def wrap(angle: Array) -> Array:
 
 
 # ----------------------------------------------------------------- velocities
+def with_velocities(run: Trajectories, jump_speed: float = 10.0) -> Trajectories:
+    """The run with the velocities that were not recorded, derived from its positions.
+
+    Where a run has them all, it is returned as it is. What cannot be derived stays NaN.
+
+    Args:
+        run: any run.
+        jump_speed: a step that is faster is a teleport, m/s; the default that metrics have.
+    """
+    return run.cached(("with_velocities", jump_speed), lambda: _with_velocities(run, jump_speed))
+
+
+def _with_velocities(run: Trajectories, jump_speed: float) -> Trajectories:
+    robot, agents = run.robot, run.agents
+    if robot is not None and not _moves_are_known(robot):
+        rows: dict[str, Any] = dict(_of_parts(run, lambda part: _robot_moves(part, jump_speed)))
+        robot = replace(robot, **rows)
+    if agents is not None:
+        here = present(agents.x, agents.y)
+        if not np.array_equal(present(agents.vx, agents.vy) & here, here):
+            moves = _of_parts(run, lambda part: _agent_moves(part, jump_speed))
+            agents = replace(agents, vx=moves["vx"], vy=moves["vy"])
+    if robot is run.robot and agents is run.agents:
+        return run
+    return replace(run, robot=robot, agents=agents)
+
+
+def _of_parts(
+    run: Trajectories, moves: Callable[[Trajectories], dict[str, Array]]
+) -> dict[str, Array]:
+    """Velocities of a run; up to the arrival they do not know what comes after it."""
+    whole = moves(run)
+    for name, values in moves(truncate_at_arrival(run)).items():
+        whole[name] = np.concatenate([values, whole[name][len(values) :]])
+        whole[name].setflags(write=False)
+    return whole
+
+
+def _robot_moves(run: Trajectories, jump_speed: float) -> dict[str, Array]:
+    assert run.robot is not None
+    t, robot = run.t, run.robot
+    moves = {"v": forward_speed(t, robot, jump_speed), "w": yaw_rate(t, robot, jump_speed)}
+    if robot.vx is not None:
+        moves["vx"], moves["vy"] = robot_velocity(t, robot, jump_speed)
+    return moves
+
+
+def _agent_moves(run: Trajectories, jump_speed: float) -> dict[str, Array]:
+    assert run.agents is not None
+    vx, vy = agent_velocities(run.t, run.agents, jump_speed)
+    return {"vx": vx, "vy": vy}
+
+
+def _moves_are_known(robot: RobotTrack) -> bool:
+    rows = (robot.v, robot.w, robot.vx, robot.vy)
+    return all(bool(np.all(np.isfinite(row))) for row in rows if row is not None)
+
+
 def robot_velocity(t: Array, robot: RobotTrack, jump_speed: float) -> tuple[Array, Array]:
     """World velocity (N,), (N,) of the robot, m/s; derived where not recorded, NaN if neither."""
     valid = valid_robot_steps(t, robot, jump_speed)

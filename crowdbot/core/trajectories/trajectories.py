@@ -7,21 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, field, fields
-from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core.support.immutable import immutable
-from crowdbot.core.trajectories.csv_tables import read_tables
+from crowdbot.core.trajectories.from_recordings import FromRecordings
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
-from crowdbot.lazy import lazy_names
 
 _Cached = TypeVar("_Cached")
-#: Recordings lie a floor above; their reader is named as text, like whatever is built.
-_above = lazy_names(__name__, {"crowdbot.core.recording.reader": "read_trajectories"})
 
 
 def _read_only(values: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
@@ -97,7 +93,7 @@ class ContactEvents:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Trajectories:
+class Trajectories(FromRecordings):
     """One run. ``robot`` or ``agents`` is None in the calibration runs.
 
     Attributes:
@@ -133,80 +129,6 @@ class Trajectories:
         if key not in self._cache:
             self._cache[key] = compute()
         return cast(_Cached, self._cache[key])
-
-    @classmethod
-    def from_csv(
-        cls,
-        robot: Path | str | None = None,
-        agents: Path | str | None = None,
-        trips: Path | str | None = None,
-        *,
-        agent_radius: float = 0.25,
-        agent_mass: float = 70.0,
-        contacts: Path | str | Mapping[str, ArrayLike] | None = None,
-        robot_radius: float | None = None,
-        robot_mass: float | None = None,
-        robot_goal_time: float | None = None,
-        robot_goal: tuple[float, float] | None = None,
-        robot_goal_radius: float = 0.0,
-        robot_speed_limit: float | None = None,
-        goal_zone: ArrayLike | None = None,
-        walls: ArrayLike | None = None,
-        planner_step_time: ArrayLike | None = None,
-        robot_footprint: ArrayLike | None = None,
-        signals: Mapping[str, ArrayLike] | None = None,
-    ) -> Trajectories:
-        """Read tables with a header row; SI units, radians, an empty cell is unknown.
-
-        Args:
-            robot: t, x, y, theta, v, w, optionally vx, vy: one row a sample. It sets the samples.
-            agents: t, id, x, y, optionally vx, vy, radius, mass, jump: one row for each person
-                and sample; no row, no person. ``jump`` is 1 where the person was teleported since
-                the sample before. Times must be those of the robot, if there is one.
-            trips: agent, t0, t1, reached (0 or 1): one row a trip.
-            agent_radius: m, where the table does not say it.
-            agent_mass: kg, where the table does not say it.
-            contacts: t0, t1, agent (-1: a wall), impulse, peak_force, relative_speed, optionally
-                bearing: one row a contact of the robot; or such columns.
-            robot_radius, robot_mass: m, kg; needed with a robot.
-            robot_goal_time: when it arrived, s; None: it did not.
-            robot_goal, robot_goal_radius: middle and radius of the goal, m.
-            robot_speed_limit: the fastest that the robot can go, m/s.
-            goal_zone, walls, planner_step_time, robot_footprint, signals: as in `Trajectories`.
-
-        Raises:
-            InputError: a file cannot be read, does not fit the others, or there is no table.
-        """
-        in_files = isinstance(contacts, Path | str)
-        columns: dict[str, Any] = {} if in_files else {"contacts": contacts}
-        columns |= read_tables(
-            _path(robot),
-            _path(agents),
-            _path(trips),
-            contacts=_path(contacts) if isinstance(contacts, Path | str) else None,
-            agent_radius=agent_radius,
-            agent_mass=agent_mass,
-        )
-        return cls.from_arrays(
-            **columns,
-            robot_radius=robot_radius,
-            robot_mass=robot_mass,
-            robot_goal_time=robot_goal_time,
-            robot_goal=robot_goal,
-            robot_goal_radius=robot_goal_radius,
-            robot_speed_limit=robot_speed_limit,
-            goal_zone=goal_zone,
-            walls=walls,
-            planner_step_time=planner_step_time,
-            robot_footprint=robot_footprint,
-            signals=signals,
-        )
-
-    @classmethod
-    def from_mcap(cls, path: Path | str) -> Trajectories:
-        """Read a recording; see `crowdbot.core.recording.reader.read_trajectories`."""
-        read = _above("read_trajectories")
-        return cast(Trajectories, read(Path(path)))
 
     @classmethod
     def from_arrays(
@@ -281,12 +203,8 @@ def _check_travellers(run: Trajectories) -> None:
         return
     unknown = np.setdiff1d(run.trips.agent, run.agents.id)
     if len(unknown):
-        some = ", ".join(map(str, unknown[:3])) + (", …" if len(unknown) > 3 else "")
+        some = ", ".join(map(str, unknown[:3])) + (", â¦" if len(unknown) > 3 else "")
         raise InputError(f"trajectories: trip_agent has ids that no agent_id has: {some}")
-
-
-def _path(path: Path | str | None) -> Path | None:
-    return None if path is None else Path(path)
 
 
 def _require(arguments: Mapping[str, Any], *names: str) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from crowdbot.core.types.arrays import Array
 
@@ -87,6 +87,58 @@ class RobotModel:
     mass: float
     footprint: Array | None = None
     skin_stiffness: float = math.inf
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotBody:
+    """What a planner is told of the robot that it drives.
+
+    Attributes:
+        drive: ``differential``, or ``holonomic``, which also goes sideways.
+        radius: of the disc, or of the capsule, m; with a polygon, of the circle around it.
+        footprint: outline of a robot that is not a disc, in its own frame (x forward), m: (2, 2)
+            is the segment of a capsule, (K, 2) with K > 2 a convex polygon. None: a disc.
+        front, back, half_width: how far it reaches ahead, behind and to either side of the middle
+            of its drive axis, m.
+    """
+
+    drive: Literal["differential", "holonomic"]
+    radius: float
+    footprint: Array | None
+    front: float
+    back: float
+    half_width: float
+
+    @property
+    def reach(self) -> float:
+        """Radius of the circle around the middle of the drive axis that holds all of it, m."""
+        if self.footprint is None:
+            return self.radius
+        corners = max(math.hypot(x, y) for x, y in self.footprint.tolist())
+        return corners + (self.radius if len(self.footprint) == 2 else 0.0)
+
+
+def robot_body(model: RobotModel) -> RobotBody:
+    """What planners are told of a robot."""
+    drive: Literal["differential", "holonomic"] = (
+        "holonomic" if isinstance(model.drive, HolonomicDrive) else "differential"
+    )
+    points = [[0.0, 0.0]] if model.footprint is None else model.footprint.tolist()
+    rim = model.footprint_radius if len(points) < 3 else 0.0
+    return RobotBody(
+        drive=drive,
+        radius=model.footprint_radius,
+        footprint=model.footprint,
+        front=max(x for x, _ in points) + rim,
+        back=rim - min(x for x, _ in points),
+        half_width=max(abs(y) for _, y in points) + rim,
+    )
+
+
+def wheels_of(drive: DifferentialDrive | HolonomicDrive) -> tuple[float, float]:
+    """Radius and track of the wheels that odometry counts, m."""
+    radius = drive.wheel_radius if isinstance(drive, HolonomicDrive) else drive.command_radius
+    return radius, drive.track
 
 
 class RobotState(NamedTuple):

@@ -79,19 +79,38 @@ def _sectors(robot: Robot, x: float, y: float, yaw: float) -> Iterator[Sector]:
 
 
 def field_of_view(spec: SensorSpec) -> tuple[float, float, float] | None:
-    """First and last angle (rad) and reach (m) of a sensor, by the names of its fields.
+    """First and last angle (rad) and reach (m) of a sensor.
 
-    ``range_max`` with ``angle_min`` and ``angle_max``, or with one opening angle; None for a
-    sensor that looks nowhere, such as odometry.
+    A spec may say it by a method ``field_of_view()``. Otherwise the names of its fields do: a
+    largest range with ``angle_min`` and ``angle_max``, or with one opening angle; with neither it
+    looks all round. None for a sensor that looks nowhere, such as odometry.
     """
-    reach = getattr(spec, "range_max", None)
-    if not isinstance(reach, float):
+    own = getattr(spec, "field_of_view", None)
+    if callable(own):
+        low, high, far = own()
+        return float(low), float(high), float(far)
+    reach = next((r for r in (_number(spec, n) for n in _REACHES) if r is not None), None)
+    if reach is None:
         return None
     low, high = getattr(spec, "angle_min", None), getattr(spec, "angle_max", None)
     if isinstance(low, float) and isinstance(high, float):
         return low, high, reach
-    for name in ("horizontal_fov", "fov", "field_of_view", "opening_angle"):
-        width = getattr(spec, name, None)
-        if isinstance(width, float):
+    for name in _OPENINGS:
+        width = _number(spec, name)
+        if width is not None:
             return -0.5 * width, 0.5 * width, reach
-    return None
+    return -math.pi, math.pi, reach
+
+
+#: Fields that say how far a sensor sees, and how wide.
+_REACHES = ("range_max", "max_range", "reach", "max_distance", "range")
+_OPENINGS = (
+    "horizontal_fov", "fov", "field_of_view", "opening_angle", "opening", "aperture", "beam_width",
+)  # fmt: skip
+
+
+def _number(spec: SensorSpec, name: str) -> float | None:
+    value: object = getattr(spec, name, None)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    return float(value) if math.isfinite(value) else None

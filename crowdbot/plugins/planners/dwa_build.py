@@ -31,6 +31,7 @@ from crowdbot.plugins.planners.dwa_points_build import (
 )
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.people_build import carry, people_in, with_discs
+from crowdbot.plugins.planners.robot_outline_build import disc_radius
 
 _SECTORS = 240
 #: Points farther away play no part, m.
@@ -63,6 +64,7 @@ class Dwa:
         self._spec = spec
         self._lidars = LidarPoints({})
         self._limits: RobotLimits | None = None
+        self._radius = disc_radius(spec.robot_radius, None)
         self._p: Array = np.zeros(rollout.PARAMETERS)
         self._forget()
 
@@ -89,13 +91,14 @@ class Dwa:
         self._forget()
         self._limits = limits
         self._lidars = LidarPoints(sensors)
-        self._p = _parameters(self._spec, limits)
+        self._radius = disc_radius(self._spec.robot_radius, task.robot)
+        self._p = _parameters(self._spec, limits, self._radius)
         self._warm_up(task, sensors)
         self._forget()
 
     def _warm_up(self, task: Task, sensors: Mapping[str, SensorInfo]) -> None:
         """Two steps in a made-up world, so that no step of the run waits for a compiler."""
-        way_out(np.ones((1, 2)), 0.0, 0.0, 9.0, 0.0, self._spec.robot_radius)
+        way_out(np.ones((1, 2)), 0.0, 0.0, 9.0, 0.0, self._radius)
         compile_heading()
         for t in (0.0, self._spec.look_back):
             readings = {n: Reading(t, np.full(s.shape, 1.0 + t)) for n, s in sensors.items()}
@@ -206,7 +209,7 @@ class Dwa:
             goal,
             previous,
             speed,
-            spec.robot_radius + spec.margin + (_LEEWAY if self._way is None else 0.0),
+            self._radius + spec.margin + (_LEEWAY if self._way is None else 0.0),
             min(spec.look_ahead, room / speed + 0.1),
             0.2 if escaping else 1.0,
             spec.swerve if self._walking and not escaping else math.pi,
@@ -262,7 +265,7 @@ class Dwa:
             points = nearest_per_sector(discs, _SECTORS, _REACH)
             seen = points @ np.array([[c, s], [-s, c]]) + (x, y)
             self._map = remembered(self._map, seen, x, y, _REACH)
-            radius = self._spec.robot_radius + self._spec.margin + 0.02
+            radius = self._radius + self._spec.margin + 0.02
             found, way = way_out(self._map, x, y, *obs.goal, radius)
             self._way = way if found else None
         return (goal, distance) if self._way is None else (self._way - yaw, min(AIM, distance))
@@ -282,12 +285,12 @@ def direction_error(direction: float) -> float:
     return math.remainder(direction, 2.0 * math.pi)
 
 
-def _parameters(spec: DwaSpec, limits: RobotLimits) -> Array:
+def _parameters(spec: DwaSpec, limits: RobotLimits, radius: float) -> Array:
     p = np.zeros(rollout.PARAMETERS)
     p[rollout.A_MAX], p[rollout.ALPHA_MAX] = limits.a_max, limits.alpha_max
     p[rollout.V_MAX], p[rollout.W_MAX] = limits.v_max, limits.w_max
     p[rollout.HORIZON], p[rollout.TURN_TIME] = spec.horizon, spec.turn_time
-    p[rollout.RADIUS], p[rollout.MARGIN] = spec.robot_radius, spec.margin
+    p[rollout.RADIUS], p[rollout.MARGIN] = radius, spec.margin
     p[rollout.COMFORT], p[rollout.GROWTH] = spec.comfort, spec.margin_growth
     p[rollout.PROGRESS], p[rollout.HEADING] = spec.progress, spec.heading
     p[rollout.CLEARANCE], p[rollout.IMPACT] = spec.clearance, spec.impact

@@ -26,7 +26,9 @@ class StopAndGoSpec(PlannerSpec):
     needs: ClassVar[tuple[str, ...]] = ("lidar",)
 
     kind: Literal["stop_and_go"] = "stop_and_go"
-    robot_radius: PositiveLength = Field(default=0.178, description="Radius of the robot, m.")
+    robot_radius: PositiveLength | None = Field(
+        default=None, description="Radius of the robot, m; unset: the robot's own outline."
+    )
     person_radius: NonNegativeLength = Field(
         default=0.33, description="Disc that is kept clear around legs; 0: legs alone, m."
     )

@@ -23,6 +23,7 @@ from crowdbot.core.interfaces import (
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import GoalSeek
 from crowdbot.plugins.planners.people_build import people_in, with_discs
+from crowdbot.plugins.planners.robot_outline_build import half_width_and_front
 from crowdbot.plugins.planners.stop_and_go import StopAndGoSpec
 
 #: People farther away do not matter yet, m.
@@ -43,6 +44,7 @@ class StopAndGo:
         )
         self._points = LidarPoints({})
         self._limits: RobotLimits | None = None
+        self._half_width, self._front = half_width_and_front(spec.robot_radius, None)
 
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
@@ -51,6 +53,7 @@ class StopAndGo:
         self._seek.reset(task, limits, sensors, seed)
         self._limits = limits
         self._points = LidarPoints(sensors)
+        self._half_width, self._front = half_width_and_front(self._spec.robot_radius, task.robot)
         self._room_ahead(np.ones((1, 2)))  # so that no step of the run waits for the compiler
 
     def step(self, obs: Observation) -> Command:
@@ -71,10 +74,10 @@ class StopAndGo:
         spec = self._spec
         people, rest = people_in(points, _REACH if spec.person_radius else 0.0)
         points = with_discs(rest, people, spec.person_radius)
-        beside = np.abs(points[:, 1]) <= spec.robot_radius + spec.side_margin
+        beside = np.abs(points[:, 1]) <= self._half_width + spec.side_margin
         ahead = points[beside & (points[:, 0] > 0.0), 0]
         nearest = float(ahead.min()) if len(ahead) else math.inf
-        return nearest - spec.robot_radius - spec.front_margin
+        return nearest - self._front - spec.front_margin
 
 
 def safe_speed(room: float, deceleration: float, reaction_time: float) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -20,6 +20,8 @@ from crowdbot.dsl import (
 
 class Turtlebot2Spec(RobotSpec):
     """Limits are a box; the body itself is fixed."""
+
+    wheels: ClassVar[tuple[float, float]] = (0.035, 0.23)
 
     kind: Literal["turtlebot2"] = "turtlebot2"
     max_speed: PositiveSpeed = Field(default=0.65, description="Largest |v|, m/s.")

@@ -14,10 +14,12 @@ class OdometrySpec(SensorSpec):
     """What odometry by wheels of either sort is told."""
 
     rate: PositiveFrequency = Field(default=64.0, le=128, description="Readings per second, Hz.")
-    wheel_radius: PositiveLength = Field(
-        default=0.035, description="Radius the firmware believes in, m."
+    wheel_radius: PositiveLength | None = Field(
+        default=None, description="Radius the firmware believes in, m; unset: the robot's."
     )
-    track: PositiveLength = Field(default=0.23, description="Distance between the wheels, m.")
+    track: PositiveLength | None = Field(
+        default=None, description="Distance between the wheels, m; unset: the robot's."
+    )
     ticks_per_turn: Annotated[float, Gt(0)] = Field(
         default=2578.33, description="Encoder ticks per wheel turn."
     )

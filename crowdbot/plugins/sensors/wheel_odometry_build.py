@@ -23,6 +23,8 @@ from crowdbot.plugins.sensors.wheel_odometry import HolonomicOdometrySpec, Wheel
 #: Layout of the memory: three errors (rad) and a reading of six numbers begin where it says.
 STARTED, TIME, LEFT, RIGHT, SIDE, YAW, ERRORS, READING = 0, 1, 2, 3, 4, 5, 6, 9
 _SIZE = 15
+#: Of a Kobuki, m.
+WHEEL_RADIUS, TRACK = 0.035, 0.23
 _NO_DRAWS = np.zeros(0)
 
 
@@ -34,9 +36,11 @@ class WheelOdometry:
 
     def __init__(self, spec: WheelOdometrySpec | HolonomicOdometrySpec) -> None:
         self._gyro = spec.heading == "gyro"
-        metre = 2.0 * math.pi * spec.wheel_radius / spec.ticks_per_turn
+        # A robot says its own; without one, as in a test of the sensor alone, a Kobuki's.
+        radius, track = spec.wheel_radius or WHEEL_RADIUS, spec.track or TRACK
+        metre = 2.0 * math.pi * radius / spec.ticks_per_turn
         self._numbers = (
-            self._gyro, float(spec.ticks_per_turn), metre, spec.track, spec.noise, spec.gyro_noise,
+            self._gyro, float(spec.ticks_per_turn), metre, track, spec.noise, spec.gyro_noise,
         )  # fmt: skip
         self._sideways = isinstance(spec, HolonomicOdometrySpec)
         self._info = SensorInfo(

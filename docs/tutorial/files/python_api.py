@@ -1,7 +1,6 @@
 import crowdbot
 
 scenario = crowdbot.load("challenge-2020", "counter-d0250-dispersed-c20-r05")
-assert isinstance(scenario, crowdbot.Scenario)
 run = crowdbot.simulate(scenario, planner="dwa", seed=0, out="runs")
 
 print(run.directory, run.status, f"{run.trajectories.t[-1]:.2f} s")

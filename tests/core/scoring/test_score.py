@@ -146,7 +146,7 @@ def test_trajectories_from_tables(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("table", "text", "message"),
     [
-        ("robot", "t,x,y,theta,v\n", "column w is missing"),
+        ("robot", "t,x,theta,v\n0,0,0,0\n", "column y is missing"),
         ("robot", "t,x,y,theta,v,w\n0,0,0,0,0,zero\n", ":2: w"),
         ("agents", "t,id,x,y\n0.5,1,0,0\n", "not a sample of the robot"),
         ("agents", "t,id,x,y\n0,1,0,0\n0,1,0,0\n", "two rows of id 1"),

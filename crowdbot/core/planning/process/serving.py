@@ -89,11 +89,12 @@ def serve(line: Line, side: Any) -> None:
 
 def described(kind: Any) -> dict[str, Any]:
     """What a class says of itself."""
-    needs = getattr(kind, "needs", None)
+    needs, data = getattr(kind, "needs", None), getattr(kind, "data", ())
     return {
         "needs": None if needs is None else [str(n) for n in needs],
         "privileged": getattr(kind, "privileged", False) is True,
         "role": str(getattr(kind, "role", "candidate")),
+        "data": [data] if isinstance(data, str) else [str(n) for n in data],
     }
 
 

@@ -1,0 +1,379 @@
+"""Session: a run that is stepped from outside, command by command.
+
+The simulation is the very one of `simulate`, with a planner that asks whoever holds the session.
+Sensors and planner act in one and the same event, so the run has a thread of its own, which rests
+in the planner's step while the session waits for a command: only one of the two ever runs.
+"""
+
+from __future__ import annotations
+
+import atexit
+import math
+import os
+import queue
+import sys
+import threading
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from numbers import Real
+from pathlib import Path
+from types import TracebackType
+from typing import Any, cast
+
+from crowdbot.core.planning.host import STOP, PlannerHost
+from crowdbot.core.planning.planner import Observation, Planner, Task
+from crowdbot.core.planning.resolve import PlannerChoice
+from crowdbot.core.recording import read_trajectories
+from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.core.runs.outcome import Outcome
+from crowdbot.core.scenarios.lock import population
+from crowdbot.core.sim.built_run import BuiltRun, build_run
+from crowdbot.core.sim.record import record_robot
+from crowdbot.core.sim.record_crowd import RunSetup
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.motion import Command
+from crowdbot.core.types.robot import RobotLimits
+from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.seeds import stream_seed
+from crowdbot.errors import InputError
+
+#: What a session takes as a command: v, w and for a robot that goes sideways vy; m/s, rad/s.
+CommandLike = Command | tuple[float, ...] | Sequence[float]
+
+
+class _Exchange:
+    """Hands observations out of the run's thread and commands into it."""
+
+    def __init__(self) -> None:
+        self._out: queue.SimpleQueue[Observation | Outcome | BaseException] = queue.SimpleQueue()
+        self._in: queue.SimpleQueue[Command | None] = queue.SimpleQueue()
+        self.closed = False
+
+    def reset(
+        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+    ) -> None:
+        """Nothing: whoever holds the session knows all that already."""
+
+    def step(self, obs: Observation) -> Command:
+        """The planner's side: show what is seen, wait for the answer."""
+        if self.closed:
+            return STOP
+        self._out.put(obs)
+        answer = self._in.get()
+        return STOP if answer is None else answer
+
+    def put(self, end: Outcome | BaseException) -> None:
+        """The run's side: it is over."""
+        self._out.put(end)
+
+    def next(self) -> Observation | Outcome | BaseException:
+        """The session's side: what comes next."""
+        return self._out.get()
+
+    def answer(self, command: Command) -> None:
+        """The session's side: go on."""
+        self._in.put(command)
+
+    def close(self) -> None:
+        """The session's side: end the run at its next look."""
+        self.closed = True
+        self._in.put(None)
+
+
+#: Runs that go on, with their threads: at its exit Python must not cut one off inside Drake.
+_GOING_ON: dict[_Exchange, threading.Thread] = {}
+
+
+@atexit.register
+def _end_all() -> None:
+    for exchange, thread in list(_GOING_ON.items()):
+        exchange.close()
+        thread.join()
+
+
+def _simulate(exchange: _Exchange, setup: RunSetup, built: BuiltRun, host: PlannerHost) -> None:
+    """The run's thread."""
+    try:
+        exchange.put(record_robot(setup, built, host))
+    except BaseException as error:  # raised again where the session is stepped
+        exchange.put(error)
+    finally:
+        _GOING_ON.pop(exchange, None)
+
+
+class Session:
+    """One robot among people, stepped by a loop of one's own.
+
+    ::
+
+        with crowdbot.Session(scenario, seed=1) as session:
+            obs = session.reset()
+            while not session.done:
+                obs = session.step((0.4, 0.0))
+        print(session.status, session.t)
+
+    The same commands give the same trajectories, bit by bit, as a planner that returns them.
+    Nothing is written unless ``recording`` names a file.
+
+    Args:
+        scenario: with exactly one robot, from `crowdbot.load`.
+        seed: of the run: noise of the sensors.
+        sensors: names or categories of the sensors to see, as a planner's ``needs``; None: all
+            that a robot may have. Only these are simulated.
+        privileged: whether observations hold the truth (``obs.truth``).
+        recording: file for the recording (MCAP); complete when the run has ended or was closed.
+        registry: the installed components; None finds them.
+
+    Attributes:
+        task: start pose, goal and time limit of the robot; its body under ``task.robot``.
+        limits: the robot's; commands are clamped into them.
+        sensors: name -> constant description of each sensor that is seen.
+        planner_seed: what a planner would get in this run for its own random numbers.
+
+    Raises:
+        InputError: the scenario has not exactly one robot, or the robot lacks a sensor.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        *,
+        seed: int = 0,
+        sensors: Sequence[str] | None = None,
+        privileged: bool = False,
+        recording: str | Path | None = None,
+        registry: Registry | None = None,
+    ) -> None:
+        if not isinstance(scenario, Scenario):
+            raise InputError(
+                f"a session needs a scenario, not a {type(scenario).__name__}; "
+                "crowdbot.load(SUITE, ID) reads one"
+            )
+        if len(scenario.robots) != 1:
+            raise InputError(f"{scenario.id} has {len(scenario.robots)} robots, not exactly one")
+        self.scenario, self._registry = scenario, registry or discover()
+        self._choice = _choice(sensors, privileged=privileged)
+        self._recording = None if recording is None else Path(recording)
+        self._people = population(scenario, self._registry).agents
+        self._exchange: _Exchange | None = None
+        self._thread: threading.Thread | None = None
+        self._observation: Observation | None = None
+        self._outcome: Outcome | None = None
+        self._seed = _checked_seed(seed)
+        self._describe(self._build())
+
+    def reset(self, seed: int | None = None) -> Observation:
+        """Begin the run, again if it has begun already.
+
+        Args:
+            seed: another one from now on; None keeps it.
+
+        Returns:
+            What is seen at t = 0.
+
+        Raises:
+            InputError: the robot would start in a wall or a person, or the recording cannot be
+                written.
+        """
+        self.close()
+        self._seed = self._seed if seed is None else _checked_seed(seed)
+        built = self._build()
+        self._describe(built)
+        self._outcome = None
+        exchange = self._exchange = _Exchange()
+        host = PlannerHost(cast(Planner, exchange), "session", self.limits)
+        setup = RunSetup(
+            scenario=self.scenario,
+            agents=self._people,
+            registry=self._registry,
+            choice=self._choice,
+            seed=self._seed,
+            recording=Path(os.devnull) if self._recording is None else self._partial(),
+            record="none" if self._recording is None else "used",
+            stage="session",
+            progress=None,
+            stop=lambda: exchange.closed,
+            on_hang=None,
+        )
+        self._thread = threading.Thread(
+            target=_simulate, args=(exchange, setup, built, host), name="session", daemon=True
+        )
+        _GOING_ON[exchange] = self._thread
+        self._thread.start()
+        return self._take()
+
+    def step(self, command: CommandLike) -> Observation:
+        """Give a command, which holds for one period of the planner.
+
+        Args:
+            command: v, w and for a robot that goes sideways vy; m/s, rad/s.
+
+        Returns:
+            What is seen when the next command is due. When the run has ended, ``done`` is true
+            and it is what was seen last.
+
+        Raises:
+            InputError: it is not a command, `reset` was not called, or the run has ended.
+        """
+        self.observe()
+        if self.done:
+            raise InputError(f"the run has ended: {self.reason}; reset() begins another")
+        assert self._exchange is not None
+        self._exchange.answer(_checked_command(command))
+        return self._take()
+
+    def observe(self) -> Observation:
+        """What is seen now; the same again until the next step.
+
+        Raises:
+            InputError: `reset` was not called.
+        """
+        if self._observation is None:
+            raise InputError("the session has not begun; reset() begins it")
+        return self._observation
+
+    def close(self) -> None:
+        """End the run, if one is going on. The session can be reset again."""
+        exchange, self._exchange = self._exchange, None
+        if exchange is None or self._thread is None:
+            return
+        with _own_stdout():
+            exchange.close()
+            self._thread.join()
+        self._thread = None
+        if self._outcome is None and isinstance(end := exchange.next(), Outcome):
+            self._end(end)
+
+    @property
+    def done(self) -> bool:
+        """Whether the run has ended."""
+        return self._outcome is not None
+
+    @property
+    def status(self) -> str:
+        """``running``, and in the end ``arrived``, ``timeout`` or ``interrupted``."""
+        return "running" if self._outcome is None else self._outcome.status
+
+    @property
+    def reason(self) -> str:
+        """Why the run ended; empty while it goes on."""
+        return "" if self._outcome is None else self._outcome.reason
+
+    @property
+    def t(self) -> float:
+        """Simulated time, s."""
+        if self._outcome is not None:
+            return self._outcome.sim_time
+        return 0.0 if self._observation is None else self._observation.t
+
+    @property
+    def goal_time(self) -> float | None:
+        """When the robot arrived, s; None if it has not."""
+        return None if self._outcome is None else self._outcome.goal_time
+
+    @property
+    def trajectories(self) -> Trajectories:
+        """The run itself, for `crowdbot.score`.
+
+        Raises:
+            InputError: it was not recorded, or has not ended.
+        """
+        if self._recording is None:
+            raise InputError("the session was not recorded; give it recording='run.mcap'")
+        if not self.done:
+            raise InputError("the run has not ended; close() ends it")
+        return read_trajectories(self._recording)
+
+    def __enter__(self) -> Session:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        if getattr(self, "_exchange", None) is not None:
+            cast(_Exchange, self._exchange).close()
+
+    def _build(self) -> BuiltRun:
+        return build_run(self.scenario, self._registry, self._choice, "used")
+
+    def _describe(self, built: BuiltRun) -> None:
+        self.task, self.limits = built.task, built.model.limits
+        self.sensors = {n: built.infos[n] for n in built.visible}
+        self.planner_seed = stream_seed(self._seed, built.name, "planner") >> 1
+
+    def _take(self) -> Observation:
+        """What the run says next; errors of the run are raised here."""
+        assert self._exchange is not None
+        with _own_stdout():
+            answer = self._exchange.next()
+        if isinstance(answer, Observation):
+            self._observation = answer
+        elif isinstance(answer, Outcome):
+            self._end(answer)
+        else:
+            self._exchange = self._thread = None
+            raise answer
+        return self.observe()
+
+    def _end(self, outcome: Outcome) -> None:
+        self._outcome = outcome
+        if self._recording is not None:
+            self._partial().replace(self._recording)
+
+    def _partial(self) -> Path:
+        assert self._recording is not None
+        return self._recording.with_name(f"{self._recording.name}.partial")
+
+
+@contextmanager
+def _own_stdout() -> Iterator[None]:
+    """Undo that the run sends what a planner prints to stderr: the planner waits in its step."""
+    mine = sys.stdout
+    try:
+        yield
+    finally:
+        sys.stdout = mine
+
+
+def _checked_seed(seed: int) -> int:
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise InputError(f"the seed of a run is an integer, not negative: {seed!r}")
+    return seed
+
+
+def _checked_command(command: CommandLike) -> Command:
+    """The command as finite floats.
+
+    Raises:
+        InputError: it is something else.
+    """
+    try:
+        numbers: tuple[Any, ...] = tuple(command)
+    except TypeError:
+        numbers = ()
+    good = all(isinstance(x, Real) and not isinstance(x, bool) for x in numbers)
+    if not (good and len(numbers) in (2, 3) and all(math.isfinite(x) for x in numbers)):
+        raise InputError(f"a command is (v, w) or (v, w, vy), finite numbers; not {command!r}")
+    return Command(*(float(x) for x in numbers))
+
+
+def _choice(sensors: Sequence[str] | None, *, privileged: bool) -> PlannerChoice:
+    def build() -> Planner:
+        raise InputError("the planner of a session is whoever steps it")
+
+    return PlannerChoice(
+        name="session",
+        spec_dump={"kind": "session"},
+        build=build,
+        pinned=False,
+        needs=None if sensors is None else tuple(sensors),
+        label="session",
+        privileged=privileged,
+    )

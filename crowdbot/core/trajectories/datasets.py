@@ -1,0 +1,139 @@
+"""Tracks of people in the formats of data sets: TrajNet++, and ETH and UCY."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.trajectories.raw_table import RawTable
+from crowdbot.errors import InputError, UnknownNameError
+
+#: Columns of ETH's ``obsmat.txt``: y is the height, and up in its plane is the third.
+_OBSMAT = ("frame", "id", "x", "z", "y", "vx", "vz", "vy")
+_PLAIN = ("frame", "id", "x", "y")
+
+
+def trajnet_table(path: Path, scene: int | None, frame_rate: float | None) -> RawTable:
+    """People of a TrajNet++ file (``.ndjson``: lines of ``scene`` and ``track``).
+
+    Args:
+        path: the file.
+        scene: number of one scene: frames and people of its time; None takes all tracks.
+        frame_rate: frames per second; None takes what the scenes say (``fps``, of their steps).
+
+    Raises:
+        InputError: it cannot be read, or a line is something else.
+        UnknownNameError: there is no such scene.
+    """
+    scenes: dict[int, dict[str, Any]] = {}
+    rows: list[tuple[int, dict[str, Any]]] = []
+    for number, line in enumerate(_text(path).splitlines(), 1):
+        if not line.strip():
+            continue
+        try:
+            item = json.loads(line)
+            if "scene" in item:
+                scenes[int(item["scene"]["id"])] = item["scene"]
+            elif "prediction_number" not in item["track"]:
+                rows.append((number, {k: float(item["track"][k]) for k in "fpxy"}))
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            raise InputError(f"{path}:{number}: not a scene or track of TrajNet++") from error
+    if scene is not None:
+        if scene not in scenes:
+            raise UnknownNameError("scene", str(scene), map(str, scenes))
+        first, last = int(scenes[scene]["s"]), int(scenes[scene]["e"])
+        rows = [(n, r) for n, r in rows if first <= r["f"] <= last]
+    if not rows:
+        raise InputError(f"{path}: there are no tracks")
+    frames = np.array([r["f"] for _, r in rows])
+    fps = next((float(s["fps"]) for s in scenes.values() if s.get("fps")), 2.5)
+    t = _seconds(frames, 1.0 / fps) if frame_rate is None else (frames - frames.min()) / frame_rate
+    columns = {"t": t, "id": np.array([int(r["p"]) for _, r in rows])}
+    columns |= {n: np.array([r[n] for _, r in rows]) for n in "xy"}
+    return _once(RawTable(str(path), columns, [n for n, _ in rows]))
+
+
+def eth_ucy_table(path: Path, frame_rate: float | None) -> RawTable:
+    """People of ETH or UCY: ``obsmat.txt`` with 8 columns, or 4: frame, id, x, y.
+
+    Args:
+        path: the file; blanks, tabs or commas between the columns, no header.
+        frame_rate: frames per second; None takes a step of annotations for 0.4 s, as both data
+            sets have it.
+
+    Raises:
+        InputError: it cannot be read, or a row is something else.
+    """
+    rows, lines = [], []
+    for number, line in enumerate(_text(path).splitlines(), 1):
+        cells = line.replace(",", " ").split()
+        if not cells:
+            continue
+        try:
+            rows.append([float(cell) for cell in cells])
+        except ValueError as error:
+            raise InputError(f"{path}:{number}: {error}") from error
+        lines.append(number)
+        if len(cells) != len(rows[0]) or len(cells) not in (4, 8):
+            raise InputError(
+                f"{path}:{number}: {len(cells)} columns; 4 (frame, id, x, y) or 8 (obsmat.txt) "
+                "are wanted"
+            )
+    if not rows:
+        raise InputError(f"{path}: there are no tracks")
+    table = np.array(rows)
+    names = _PLAIN if table.shape[1] == 4 else _OBSMAT
+    frames = table[:, 0]
+    t = _seconds(frames, 0.4) if frame_rate is None else (frames - frames.min()) / frame_rate
+    columns = {n: table[:, names.index(n)] for n in ("id", "x", "y", "vx", "vy") if n in names}
+    return RawTable(str(path), {"t": t, **columns}, lines)
+
+
+def split_robot(table: RawTable, robot: int | str | None) -> tuple[RawTable | None, RawTable]:
+    """One person of a table as the robot, and the others.
+
+    Raises:
+        UnknownNameError: there is no such person.
+    """
+    if robot is None:
+        return None, table
+    ids = np.array([str(int(i)) for i in table.columns["id"]])
+    mine = ids == str(robot)
+    if not mine.any():
+        raise UnknownNameError("person", str(robot), sorted(set(ids), key=int))
+    order = np.flatnonzero(mine)[np.argsort(np.asarray(table.columns["t"])[mine])]
+    own = {n: np.asarray(c)[order] for n, c in table.columns.items() if n != "id"}
+    begin, end = own["t"][0], own["t"][-1]
+    t = np.asarray(table.columns["t"])
+    there = np.flatnonzero(~mine & (t >= begin) & (t <= end))
+    others = {n: np.asarray(c)[there] for n, c in table.columns.items()}
+    return RawTable(f"{table.name}, person {robot}", own), RawTable(table.name, others)
+
+
+def _seconds(frames: Any, step: float) -> Any:
+    """Times of frames; the commonest step between frames that occur is ``step`` seconds."""
+    between = np.diff(np.unique(frames))
+    if not len(between):
+        return np.zeros(len(frames))
+    values, counts = np.unique(between, return_counts=True)
+    return (frames - frames.min()) / values[np.argmax(counts)] * step
+
+
+def _once(table: RawTable) -> RawTable:
+    """Without repetitions: scenes that overlap list a track again."""
+    keys = list(zip(table.columns["id"], table.columns["t"], strict=True))
+    first = sorted({k: i for i, k in reversed(list(enumerate(keys)))}.values())
+    columns = {n: np.asarray(c)[first] for n, c in table.columns.items()}
+    return RawTable(table.name, columns, [table.lines[i] for i in first])
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not a text file: {error}") from error

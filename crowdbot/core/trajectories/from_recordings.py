@@ -1,0 +1,487 @@
+"""Constructors of trajectories from what others recorded: tables, frames, bags, data sets.
+
+They all derive what is left out, and warn of what cannot be, such as positions in millimetres.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal, Self, TypeVar, cast
+
+from numpy.typing import ArrayLike
+
+from crowdbot.core.trajectories import own_recordings as own
+from crowdbot.core.trajectories.bag_tables import bag_tables
+from crowdbot.core.trajectories.datasets import eth_ucy_table, split_robot, trajnet_table
+from crowdbot.core.trajectories.own_recordings import Samples
+from crowdbot.core.trajectories.plausibility import implausible
+from crowdbot.core.trajectories.raw_table import ColumnNames, RawTable, frame_table, read_table
+from crowdbot.errors import InputError, RecordingWarning
+from crowdbot.lazy import lazy_names
+
+#: When the robot arrived, s; None: it did not; ``"derived"``: from its goal.
+GoalTime = float | Literal["derived"] | None
+#: Table -> our name of a column -> the name that it has there.
+TableColumns = Mapping[str, ColumnNames]
+_COLUMNS = {"robot": own.ROBOT, "agents": own.AGENT, "trips": own.TRIP, "contacts": own.CONTACT}
+#: Recordings lie a floor above; their reader is named as text, like whatever is built.
+_above = lazy_names(__name__, {"crowdbot.core.recording.reader": "read_trajectories"})
+_Run = TypeVar("_Run", bound="FromRecordings")
+
+
+class FromRecordings:
+    """What `Trajectories` can be made from, beside arrays."""
+
+    __slots__ = ()
+
+    @classmethod
+    def from_csv(
+        cls,
+        robot: Path | str | None = None,
+        agents: Path | str | None = None,
+        trips: Path | str | None = None,
+        *,
+        agent_radius: float = 0.25,
+        agent_mass: float = 70.0,
+        resample: Samples = None,
+        clock_offset: float = 0.0,
+        max_gap: float = 1.0,
+        columns: TableColumns | None = None,
+        contacts: Path | str | Mapping[str, ArrayLike] | None = None,
+        robot_radius: float | None = None,
+        robot_mass: float | None = None,
+        robot_goal_time: GoalTime = "derived",
+        robot_goal: tuple[float, float] | None = None,
+        robot_goal_radius: float = 0.0,
+        robot_speed_limit: float | None = None,
+        goal_zone: ArrayLike | None = None,
+        walls: ArrayLike | None = None,
+        planner_step_time: ArrayLike | None = None,
+        robot_footprint: ArrayLike | None = None,
+        signals: Mapping[str, ArrayLike] | None = None,
+    ) -> Self:
+        """Read tables with a header row; SI units, radians, an empty cell is unknown.
+
+        Cells are separated by commas, semicolons, tabs or blanks. Times are seconds, or stamps
+        (ISO 8601; without a zone UTC), which are counted from the robot's first.
+
+        Args:
+            robot: t, x, y, optionally theta, v, w, vx, vy: one row a sample. It sets the samples.
+                Without ``theta`` the robot looks where it moves, velocities are derived.
+            agents: t, id, x, y, optionally vx, vy, radius, mass, jump: one row for each person
+                and sample; no row, no person. ``jump`` is 1 where the person was teleported since
+                the sample before. Ids may be names: people are numbered as they appear.
+            trips: agent, t0, t1, reached (0 or 1): one row a trip.
+            agent_radius: m, where the table does not say it.
+            agent_mass: kg, where the table does not say it.
+            resample: None: rows of people lie on the robot's; ``"robot"``: people are interpolated
+                at the robot's times; a number: everything is, at so many Hz.
+            clock_offset: s, added to the times of people, whose clock differs by it.
+            max_gap: s; over a longer time without a row nobody is interpolated, but absent.
+            columns: names of columns where they differ:
+                ``{"robot": {"x": "pos_x"}, "agents": {"id": "track"}}``.
+            contacts: t0, t1, agent (-1: a wall), impulse, peak_force, relative_speed, optionally
+                bearing: one row a contact of the robot; or such columns.
+            robot_radius, robot_mass: m, kg; needed with a robot.
+            robot_goal_time: when it arrived, s. Left out, it is derived: the first time that its
+                centre is within ``robot_goal_radius`` (0: its own radius) of ``robot_goal``, or in
+                ``goal_zone``. None: it did not arrive. Without a goal, metrics of the task are
+                undefined.
+            robot_goal, robot_goal_radius: middle and radius of the goal, m.
+            robot_speed_limit: the fastest that the robot can go, m/s.
+            goal_zone, walls, planner_step_time, robot_footprint, signals: as in `Trajectories`.
+
+        Raises:
+            InputError: a file cannot be read, does not fit the others, or there is no table.
+
+        Warns:
+            RecordingWarning: units or frames cannot be what they should be.
+        """
+        names = _names_of(columns)
+        given: dict[str, Path | str | None] = {"robot": robot, "agents": agents, "trips": trips}
+        as_columns = None
+        if contacts is None or isinstance(contacts, Path | str):
+            given["contacts"] = contacts
+        else:
+            as_columns = contacts
+        tables = {
+            n: read_table(Path(p), names.get(n, {}), _COLUMNS[n])
+            for n, p in given.items()
+            if p is not None
+        }
+        return _made(
+            cls,
+            tables,
+            contacts=as_columns,
+            agent_radius=agent_radius,
+            agent_mass=agent_mass,
+            resample=resample,
+            clock_offset=clock_offset,
+            max_gap=max_gap,
+            robot_radius=robot_radius,
+            robot_mass=robot_mass,
+            robot_goal_time=robot_goal_time,
+            robot_goal=robot_goal,
+            robot_goal_radius=robot_goal_radius,
+            robot_speed_limit=robot_speed_limit,
+            goal_zone=goal_zone,
+            walls=walls,
+            planner_step_time=planner_step_time,
+            robot_footprint=robot_footprint,
+            signals=signals,
+        )
+
+    @classmethod
+    def from_pandas(
+        cls,
+        robot: object | None = None,
+        agents: object | None = None,
+        trips: object | None = None,
+        *,
+        agent_radius: float = 0.25,
+        agent_mass: float = 70.0,
+        resample: Samples = None,
+        clock_offset: float = 0.0,
+        max_gap: float = 1.0,
+        columns: TableColumns | None = None,
+        contacts: object | None = None,
+        robot_radius: float | None = None,
+        robot_mass: float | None = None,
+        robot_goal_time: GoalTime = "derived",
+        robot_goal: tuple[float, float] | None = None,
+        robot_goal_radius: float = 0.0,
+        robot_speed_limit: float | None = None,
+        goal_zone: ArrayLike | None = None,
+        walls: ArrayLike | None = None,
+        planner_step_time: ArrayLike | None = None,
+        robot_footprint: ArrayLike | None = None,
+        signals: Mapping[str, ArrayLike] | None = None,
+    ) -> Self:
+        """Take data frames, or mappings of columns, that are as the tables of `from_csv`.
+
+        Args:
+            robot: t, x, y, optionally theta, v, w, vx, vy.
+            agents: t, id, x, y, optionally vx, vy, radius, mass, jump.
+            trips: agent, t0, t1, reached.
+            agent_radius: m, where the frame does not say it.
+            agent_mass: kg, where the frame does not say it.
+            resample: None: rows of people lie on the robot's; ``"robot"``: people are interpolated
+                at the robot's times; a number: everything is, at so many Hz.
+            clock_offset: s, added to the times of people, whose clock differs by it.
+            max_gap: s; over a longer time without a row nobody is interpolated, but absent.
+            columns: names of columns where they differ, as for `from_csv`.
+            contacts: a frame as the table of `from_csv`.
+            robot_radius, robot_mass: m, kg; needed with a robot.
+            robot_goal_time: when it arrived, s. Left out, it is derived: the first time that its
+                centre is within ``robot_goal_radius`` (0: its own radius) of ``robot_goal``, or in
+                ``goal_zone``. None: it did not arrive. Without a goal, metrics of the task are
+                undefined.
+            robot_goal, robot_goal_radius: middle and radius of the goal, m.
+            robot_speed_limit: the fastest that the robot can go, m/s.
+            goal_zone, walls, planner_step_time, robot_footprint, signals: as in `Trajectories`.
+
+        Raises:
+            InputError: a frame is something else, does not fit the others, or there is none.
+
+        Warns:
+            RecordingWarning: units or frames cannot be what they should be.
+        """
+        names = _names_of(columns)
+        given = {"robot": robot, "agents": agents, "trips": trips, "contacts": contacts}
+        tables = {
+            n: frame_table(f"frame '{n}'", f, names.get(n, {}), _COLUMNS[n])
+            for n, f in given.items()
+            if f is not None
+        }
+        return _made(
+            cls,
+            tables,
+            agent_radius=agent_radius,
+            agent_mass=agent_mass,
+            resample=resample,
+            clock_offset=clock_offset,
+            max_gap=max_gap,
+            robot_radius=robot_radius,
+            robot_mass=robot_mass,
+            robot_goal_time=robot_goal_time,
+            robot_goal=robot_goal,
+            robot_goal_radius=robot_goal_radius,
+            robot_speed_limit=robot_speed_limit,
+            goal_zone=goal_zone,
+            walls=walls,
+            planner_step_time=planner_step_time,
+            robot_footprint=robot_footprint,
+            signals=signals,
+        )
+
+    @classmethod
+    def from_rosbag(
+        cls,
+        path: Path | str,
+        *,
+        robot: str | None = None,
+        people: str | None = None,
+        agent_radius: float = 0.25,
+        agent_mass: float = 70.0,
+        resample: Samples = "robot",
+        clock_offset: float = 0.0,
+        max_gap: float = 1.0,
+        robot_radius: float | None = None,
+        robot_mass: float | None = None,
+        robot_goal_time: GoalTime = "derived",
+        robot_goal: tuple[float, float] | None = None,
+        robot_goal_radius: float = 0.0,
+        robot_speed_limit: float | None = None,
+        goal_zone: ArrayLike | None = None,
+        walls: ArrayLike | None = None,
+    ) -> Self:
+        """Read topics of a bag of ROS 1 or ROS 2; times are counted from the robot's first.
+
+        Args:
+            path: a ``.bag``, a folder of rosbag2, or its ``.mcap`` or ``.db3`` file.
+            robot: topic of the robot's pose, in the frame of the people: ``Odometry``,
+                ``PoseStamped``, ``PoseWithCovarianceStamped`` and their like.
+            people: topic with a list of people with positions, and with ids, names or their place
+                in the list: ``People``, ``TrackedPersons``, ``MarkerArray``, ``PoseArray``.
+            agent_radius: m.
+            agent_mass: kg.
+            resample: ``"robot"``: people are interpolated at the robot's times; a number:
+                everything is, at so many Hz; None: the topics have the same times.
+            clock_offset: s, added to the times of people, whose clock differs by it.
+            max_gap: s; over a longer time without a message nobody is interpolated, but absent.
+            robot_radius, robot_mass: m, kg; needed with a robot.
+            robot_goal_time: when it arrived, s. Left out, it is derived: the first time that its
+                centre is within ``robot_goal_radius`` (0: its own radius) of ``robot_goal``, or in
+                ``goal_zone``. None: it did not arrive. Without a goal, metrics of the task are
+                undefined.
+            robot_goal, robot_goal_radius: middle and radius of the goal, m.
+            robot_speed_limit: the fastest that the robot can go, m/s.
+            goal_zone, walls: as in `Trajectories`.
+
+        Raises:
+            InputError: it cannot be read, or messages have no pose or no list of people.
+            UnknownNameError: there is no such topic.
+
+        Warns:
+            RecordingWarning: units or frames cannot be what they should be.
+        """
+        own_robot, others = bag_tables(Path(path), robot, people)
+        if own_robot is None and resample == "robot":
+            resample = None
+        return _made(
+            cls,
+            {"robot": own_robot, "agents": others},
+            from_zero=True,
+            agent_radius=agent_radius,
+            agent_mass=agent_mass,
+            resample=resample,
+            clock_offset=clock_offset,
+            max_gap=max_gap,
+            robot_radius=robot_radius,
+            robot_mass=robot_mass,
+            robot_goal_time=robot_goal_time,
+            robot_goal=robot_goal,
+            robot_goal_radius=robot_goal_radius,
+            robot_speed_limit=robot_speed_limit,
+            goal_zone=goal_zone,
+            walls=walls,
+        )
+
+    @classmethod
+    def from_trajnet(
+        cls,
+        path: Path | str,
+        *,
+        scene: int | None = None,
+        robot: int | None = None,
+        frame_rate: float | None = None,
+        agent_radius: float = 0.25,
+        agent_mass: float = 70.0,
+        robot_radius: float = 0.25,
+        robot_mass: float = 70.0,
+        robot_goal_time: GoalTime = "derived",
+        robot_goal: tuple[float, float] | None = None,
+        robot_goal_radius: float = 0.0,
+        robot_speed_limit: float | None = None,
+        goal_zone: ArrayLike | None = None,
+        walls: ArrayLike | None = None,
+    ) -> Self:
+        """Read people of TrajNet++ (``.ndjson``).
+
+        Args:
+            path: the file.
+            scene: number of one scene; None takes all tracks.
+            robot: number of a person who is taken for the robot; the run is as long as that
+                person is there. None: people alone.
+            frame_rate: frames per second; None: as the data set has it (2.5 annotations a second).
+            agent_radius, agent_mass: of people, m, kg.
+            robot_radius, robot_mass: m, kg.
+            robot_goal_time: when it arrived, s. Left out, it is derived: the first time that its
+                centre is within ``robot_goal_radius`` (0: its own radius) of ``robot_goal``, or in
+                ``goal_zone``. None: it did not arrive. Without a goal, metrics of the task are
+                undefined.
+            robot_goal, robot_goal_radius: middle and radius of the goal, m.
+            robot_speed_limit: the fastest that the robot can go, m/s.
+            goal_zone, walls: as in `Trajectories`.
+
+        Raises:
+            InputError: it cannot be read, or is of another format.
+            UnknownNameError: there is no such scene or person.
+
+        Warns:
+            RecordingWarning: units or frames cannot be what they should be.
+        """
+        table = trajnet_table(Path(path), scene, frame_rate)
+        own_robot, others = split_robot(table, robot)
+        return _made(
+            cls,
+            {"robot": own_robot, "agents": others if len(others) else None},
+            agent_radius=agent_radius,
+            agent_mass=agent_mass,
+            resample=None,
+            clock_offset=0.0,
+            max_gap=1.0,
+            robot_radius=robot_radius,
+            robot_mass=robot_mass,
+            robot_goal_time=robot_goal_time,
+            robot_goal=robot_goal,
+            robot_goal_radius=robot_goal_radius,
+            robot_speed_limit=robot_speed_limit,
+            goal_zone=goal_zone,
+            walls=walls,
+        )
+
+    @classmethod
+    def from_eth_ucy(
+        cls,
+        path: Path | str,
+        *,
+        robot: int | None = None,
+        frame_rate: float | None = None,
+        agent_radius: float = 0.25,
+        agent_mass: float = 70.0,
+        robot_radius: float = 0.25,
+        robot_mass: float = 70.0,
+        robot_goal_time: GoalTime = "derived",
+        robot_goal: tuple[float, float] | None = None,
+        robot_goal_radius: float = 0.0,
+        robot_speed_limit: float | None = None,
+        goal_zone: ArrayLike | None = None,
+        walls: ArrayLike | None = None,
+    ) -> Self:
+        """Read people of ETH or UCY: ``obsmat.txt``, or rows of frame, id, x, y.
+
+        Args:
+            path: the file.
+            robot: number of a person who is taken for the robot; the run is as long as that
+                person is there. None: people alone.
+            frame_rate: frames per second; None: as the data set has it (2.5 annotations a second).
+            agent_radius, agent_mass: of people, m, kg.
+            robot_radius, robot_mass: m, kg.
+            robot_goal_time: when it arrived, s. Left out, it is derived: the first time that its
+                centre is within ``robot_goal_radius`` (0: its own radius) of ``robot_goal``, or in
+                ``goal_zone``. None: it did not arrive. Without a goal, metrics of the task are
+                undefined.
+            robot_goal, robot_goal_radius: middle and radius of the goal, m.
+            robot_speed_limit: the fastest that the robot can go, m/s.
+            goal_zone, walls: as in `Trajectories`.
+
+        Raises:
+            InputError: it cannot be read, or is of another format.
+            UnknownNameError: there is no such scene or person.
+
+        Warns:
+            RecordingWarning: units or frames cannot be what they should be.
+        """
+        table = eth_ucy_table(Path(path), frame_rate)
+        own_robot, others = split_robot(table, robot)
+        return _made(
+            cls,
+            {"robot": own_robot, "agents": others if len(others) else None},
+            agent_radius=agent_radius,
+            agent_mass=agent_mass,
+            resample=None,
+            clock_offset=0.0,
+            max_gap=1.0,
+            robot_radius=robot_radius,
+            robot_mass=robot_mass,
+            robot_goal_time=robot_goal_time,
+            robot_goal=robot_goal,
+            robot_goal_radius=robot_goal_radius,
+            robot_speed_limit=robot_speed_limit,
+            goal_zone=goal_zone,
+            walls=walls,
+        )
+
+    @classmethod
+    def from_mcap(cls, path: Path | str) -> Self:
+        """Read a recording; see `crowdbot.core.recording.reader.read_trajectories`.
+
+        Args:
+            path: ``run.mcap`` of a run.
+
+        Raises:
+            InputError: it cannot be read, or crowdbot did not write it.
+        """
+        read = _above("read_trajectories")
+        return cast(Self, read(Path(path)))
+
+    def implausible(self) -> list[str]:
+        """What in it cannot be, such as positions in millimetres, in sentences with evidence."""
+        return implausible(cast(Any, self))
+
+
+def _names_of(columns: TableColumns | None) -> TableColumns:
+    """Names of columns by table.
+
+    Raises:
+        InputError: there is no such table.
+    """
+    for table, names in (columns or {}).items():
+        if table not in _COLUMNS or not isinstance(names, Mapping):
+            raise InputError(
+                "columns: write {'robot': {'x': 'NAME THERE'}}, with the tables "
+                f"{', '.join(_COLUMNS)}; not {table!r}: {names!r}"
+            )
+    return columns or {}
+
+
+def _made(
+    cls: type[_Run],
+    tables: Mapping[str, RawTable | None],
+    *,
+    agent_radius: float,
+    agent_mass: float,
+    resample: Samples,
+    clock_offset: float,
+    max_gap: float,
+    robot_goal_time: GoalTime,
+    from_zero: bool = False,
+    **told: Any,
+) -> _Run:
+    """The run of some tables, and of what was told beside them; warns of what cannot be."""
+    columns = own.columns_of(
+        tables.get("robot"),
+        tables.get("agents"),
+        tables.get("trips"),
+        tables.get("contacts"),
+        agent_radius=agent_radius,
+        agent_mass=agent_mass,
+        resample=resample,
+        clock_offset=clock_offset,
+        max_gap=max_gap,
+        from_zero=from_zero,
+    )
+    arrived = robot_goal_time
+    if arrived == "derived":
+        radius = told["robot_goal_radius"] or told["robot_radius"] or 0.0
+        arrived = own.arrival(columns, told["robot_goal"], radius, told["goal_zone"])
+    elif isinstance(arrived, str):
+        raise InputError(f"robot_goal_time is a time in s, None or 'derived', not {arrived!r}")
+    told = {n: v for n, v in told.items() if n not in columns}
+    run: _Run = cast(Any, cls).from_arrays(**columns, robot_goal_time=arrived, **told)
+    for text in run.implausible():
+        warnings.warn(text, RecordingWarning, stacklevel=3)
+    return run

@@ -1,0 +1,272 @@
+"""From tables of a robot and of people to the arrays of `Trajectories.from_arrays`.
+
+What the tables leave out is derived here: heading from the direction of motion, arrival from the
+goal. Velocities that are left out are derived before any metric sees them, by `preprocess`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.geometry.footprint import Footprint
+from crowdbot.core.trajectories.raw_table import Ids, RawTable
+from crowdbot.core.trajectories.resample import interpolated, steady_times
+from crowdbot.core.types.arrays import Array
+from crowdbot.errors import InputError
+
+#: Two times closer than this are one sample, s.
+SAME_TIME = 1e-6
+#: Slower than this a body has no direction of motion, m/s.
+STANDING = 0.02
+
+ROBOT = ("t", "x", "y", "theta", "v", "w", "vx", "vy")
+AGENT = ("t", "id", "x", "y", "vx", "vy", "radius", "mass", "jump")
+TRIP = ("agent", "t0", "t1", "reached")
+CONTACT = ("t0", "t1", "agent", "impulse", "peak_force", "relative_speed", "bearing")
+
+#: The samples: those of the robot; or times with a steady rate, Hz.
+Samples = float | Literal["robot"] | None
+
+
+def columns_of(
+    robot: RawTable | None,
+    agents: RawTable | None,
+    trips: RawTable | None,
+    contacts: RawTable | None,
+    *,
+    agent_radius: float,
+    agent_mass: float,
+    resample: Samples,
+    clock_offset: float,
+    max_gap: float,
+    from_zero: bool = False,
+) -> dict[str, Any]:
+    """Columns by the names of `Trajectories.from_arrays`.
+
+    Args:
+        robot, agents, trips, contacts: tables with the columns above; each may be missing.
+        agent_radius, agent_mass: of people for whom the table does not say it.
+        resample: see `Samples`; None takes times as they are.
+        clock_offset: added to the times of people, s.
+        max_gap: people are not interpolated over a longer time without a row, s.
+        from_zero: whether times are counted from the first, as those of stamps are.
+
+    Raises:
+        InputError: a table does not fit the others, or there is no table.
+    """
+    rows = None if robot is None else _robot_rows(robot)
+    ids = None
+    people: dict[str, Any] | None = None
+    stamped = [t.times()[1] for t in (robot, agents) if t is not None]
+    if not stamped:
+        raise InputError("trajectories: neither a robot nor agents")
+    if len(set(stamped)) > 1:
+        raise InputError(
+            f"{agents.name if agents else ''}: one table has stamps, the other seconds: "
+            "their clocks cannot be compared"
+        )
+    if agents is not None:
+        agents.require("t", "id", "x", "y")
+        ids = Ids(agents)
+        people = {n: agents.numbers(n) for n in AGENT[2:] if n in agents}
+        people |= {"t": agents.times()[0] + clock_offset, "id": ids.rows}
+    zero = _zero(rows, people) if stamped[0] or from_zero else 0.0
+    for table in (rows, people):
+        if table is not None:
+            table["t"] = table["t"] - zero
+    t = _samples(rows, people, resample)
+    columns: dict[str, Any] = {"t": t}
+    if rows is not None:
+        rows = _resampled_robot(rows, t) if resample is not None else rows
+        columns |= {f"robot_{n}": v for n, v in rows.items() if n != "t"}
+    if agents is not None and people is not None:
+        defaults = {"radius": agent_radius, "mass": agent_mass}
+        gap = max_gap if resample is not None else None
+        columns |= _people_columns(agents, people, t, defaults, gap)
+    if trips is not None:
+        columns |= _trips(trips, ids, zero)
+    if contacts is not None:
+        columns["contacts"] = _contacts(contacts, ids, zero)
+    return columns
+
+
+def _zero(rows: Mapping[str, Array] | None, people: Mapping[str, Array] | None) -> float:
+    """The instant that stamps are counted from, s: the robot's first; else the first of all."""
+    table = rows if rows is not None else people
+    assert table is not None
+    return float(np.min(table["t"]))
+
+
+def _robot_rows(robot: RawTable) -> dict[str, Array]:
+    robot.require("t", "x", "y")
+    if ("vx" in robot) != ("vy" in robot):
+        robot.require("vx", "vy")
+    rows = {n: robot.numbers(n) for n in ROBOT[1:] if n in robot}
+    rows["t"] = robot.times()[0]
+    if not len(rows["t"]):
+        raise InputError(f"{robot.name}: the table has no rows")
+    back = np.flatnonzero(np.diff(rows["t"]) <= 0)
+    if len(back):
+        row = int(back[0]) + 1
+        raise InputError(f"{robot.where(row)}: t does not increase: {rows['t'][row]:g} s")
+    if "theta" not in rows:
+        rows["theta"] = heading_of_motion(rows["t"], rows["x"], rows["y"])
+    return rows
+
+
+def heading_of_motion(t: Array, x: Array, y: Array) -> Array:
+    """(N,) direction in which a body moves, rad; while it stands, where it moved before.
+
+    A body that never moves looks along x. Before it moves it looks where it will go.
+    """
+    if len(t) < 2:
+        return np.zeros(len(t))
+    vx, vy = np.gradient(x, t), np.gradient(y, t)
+    moving = np.hypot(vx, vy) > STANDING
+    if not moving.any():
+        return np.zeros(len(t))
+    theta = np.arctan2(vy, vx)
+    last = np.maximum.accumulate(np.where(moving, np.arange(len(t)), -1))
+    last = np.where(last < 0, int(np.argmax(moving)), last)
+    heading: Array = theta[last]
+    return heading
+
+
+def _samples(
+    rows: Mapping[str, Array] | None, people: Mapping[str, Array] | None, resample: Samples
+) -> Array:
+    """The times of the run, s."""
+    tables = [table["t"] for table in (rows, people) if table is not None]
+    if isinstance(resample, str):
+        if resample != "robot":
+            raise InputError(f"resample is 'robot' or a rate in Hz, not '{resample}'")
+        if rows is None:
+            raise InputError("resample='robot' needs a robot")
+    elif resample is not None:
+        ends = (tables[0].min(), tables[0].max())
+        return steady_times(float(ends[0]), float(ends[1]), float(resample))
+    if rows is not None:
+        return rows["t"]
+    ordered = np.unique(tables[0])
+    merged: Array = ordered[np.diff(ordered, prepend=-np.inf) > SAME_TIME]
+    return merged
+
+
+def _resampled_robot(rows: Mapping[str, Array], t: Array) -> dict[str, Array]:
+    """All columns between their samples; headings turn the shorter way."""
+    known = rows["t"]
+    made = {n: interpolated(known, v, t) for n, v in rows.items() if n not in ("t", "theta")}
+    told = np.isfinite(rows["theta"])
+    made["theta"] = interpolated(known[told], np.unwrap(rows["theta"][told]), t)
+    return {**made, "t": t}
+
+
+def _people_columns(
+    table: RawTable,
+    rows: Mapping[str, Any],
+    t: Array,
+    defaults: Mapping[str, float],
+    gap: float | None,
+) -> dict[str, Any]:
+    ids, column = np.unique(rows["id"], return_inverse=True)
+    made = {"agent_id": ids}
+    for name, default in defaults.items():
+        values = np.full(len(ids), default)
+        if name in rows:
+            said = np.isfinite(rows[name])
+            values[column[said]] = rows[name][said]
+        made[f"agent_{name}"] = values
+    if gap is None:
+        return made | _on_samples(table, rows, t, ids, column)
+    places = [n for n in ("x", "y", "vx", "vy") if n in rows]
+    tables = {n: np.full((len(t), len(ids)), np.nan) for n in places}
+    for i in range(len(ids)):
+        mine = np.flatnonzero(column == i)
+        mine = mine[np.argsort(rows["t"][mine], kind="stable")]
+        for name in places:
+            tables[name][:, i] = interpolated(rows["t"][mine], rows[name][mine], t, gap)
+    return made | {f"agent_{n}": v for n, v in tables.items()}
+
+
+def _on_samples(
+    table: RawTable, rows: Mapping[str, Any], t: Array, ids: NDArray[np.int64], column: Any
+) -> dict[str, Any]:
+    """People whose rows lie on the samples."""
+    k = np.clip(np.searchsorted(t, rows["t"] - SAME_TIME), 0, len(t) - 1)
+    off = np.flatnonzero(np.abs(t[k] - rows["t"]) > SAME_TIME)
+    if len(off):
+        raise InputError(
+            f"{table.where(int(off[0]))}: t = {rows['t'][off[0]]:g} s is not a sample of the "
+            "robot; resample='robot' interpolates people there, resample=20 everything at 20 Hz"
+        )
+    cells, count = np.unique(k * len(ids) + column, return_counts=True)
+    if np.any(count > 1):
+        at, who = divmod(int(cells[count > 1][0]), len(ids))
+        raise InputError(f"{table.name}: two rows of id {ids[who]} at t = {t[at]:g} s")
+    made: dict[str, Any] = {}
+    for name in ("x", "y", "vx", "vy"):
+        if name in rows:
+            values = np.full((len(t), len(ids)), np.nan)
+            values[k, column] = rows[name]
+            made[f"agent_{name}"] = values
+    if "jump" in rows:
+        jump = np.zeros((len(t), len(ids)), dtype=bool)
+        jump[k, column] = np.nan_to_num(rows["jump"]) != 0
+        made["agent_jump"] = jump[1:]
+    return made
+
+
+def _trips(table: RawTable, ids: Ids | None, zero: float) -> dict[str, Any]:
+    table.require(*TRIP)
+    agent = table.numbers("agent").astype(np.int64) if ids is None else ids.of(table, "agent")
+    return {
+        "trip_agent": agent,
+        "trip_t0": table.times("t0")[0] - zero,
+        "trip_t1": table.times("t1")[0] - zero,
+        "trip_reached": table.numbers("reached") != 0,
+    }
+
+
+def _contacts(table: RawTable, ids: Ids | None, zero: float) -> dict[str, Any]:
+    table.require(*CONTACT[:-1])
+    columns: dict[str, Any] = {n: table.numbers(n) for n in CONTACT[3:] if n in table}
+    columns |= {n: table.times(n)[0] - zero for n in ("t0", "t1")}
+    if ids is not None:
+        return columns | {"agent": ids.of(table, "agent")}
+    agent = table.numbers("agent")
+    if not np.all(np.isfinite(agent)):
+        raise InputError(f"{table.name}: a row has no agent")
+    return columns | {"agent": agent}
+
+
+def arrival(
+    columns: Mapping[str, Any],
+    goal: tuple[float, float] | None,
+    goal_radius: float,
+    goal_zone: Any,
+) -> float | None:
+    """When the robot's centre was first within the goal, s; None: never, or there is no goal.
+
+    Within ``goal_radius`` of the goal, or inside the zone; between two samples it moves straight.
+    """
+    if "robot_x" not in columns:
+        return None
+    t, x, y = (np.asarray(columns[n], dtype=float) for n in ("t", "robot_x", "robot_y"))
+    if goal is not None and goal_radius > 0.0:
+        gap = np.hypot(x - goal[0], y - goal[1]) - goal_radius
+    elif goal_zone is not None:
+        gap = Footprint(np.asarray(goal_zone, dtype=float), 0.0).gap(x, y)
+    else:
+        return None
+    inside = np.flatnonzero(gap <= 0.0)
+    if not len(inside):
+        return None
+    k = int(inside[0])
+    if k == 0 or not np.isfinite(gap[k - 1]):
+        return float(t[k])
+    part = gap[k - 1] / (gap[k - 1] - gap[k])
+    return float(t[k - 1] + part * (t[k] - t[k - 1]))

@@ -1,0 +1,157 @@
+"""What in a recording cannot be: wrong units, headings in degrees, frames that do not fit.
+
+Each finding says what was found, and what it looks like; nothing is corrected.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.types.arrays import Array
+
+#: `crowdbot.core.trajectories.trajectories`, which imports what imports this file.
+Trajectories = Any
+
+#: Faster than this nobody is in a crowd: median speed of what moves, m/s.
+ROBOT_SPEED, PERSON_SPEED = 20.0, 5.0
+#: Slower than this a body has no direction of motion, m/s.
+_MOVING = 0.05
+#: Samples that are needed to say something.
+_FEW = 5
+_STEPS = (1e-4, 5.0)  # s; a median time between samples outside is not one in seconds
+_UNITS, _USUAL = {"millimetres": 1000, "centimetres": 100}, 0.8  # m/s, of robots and people
+_HEADINGS = 0.7  # rad; a heading that is farther from the motion does not agree with it
+
+
+def implausible(run: Trajectories) -> list[str]:
+    """What cannot be, in sentences with the evidence; nothing for a plausible run."""
+    found = list(_times(run.t))
+    tracks: list[tuple[str, Array, Array, float]] = []
+    if run.robot is not None:
+        tracks.append(("the robot", run.robot.x, run.robot.y, ROBOT_SPEED))
+    if run.agents is not None:
+        tracks.append(("people", run.agents.x, run.agents.y, PERSON_SPEED))
+    for who, x, y, limit in tracks:
+        found += _speeds(who, run.t, x, y, limit)
+    found += _headings(run)
+    found += _recorded_velocities(run)
+    return found or list(_apart(run))
+
+
+def _times(t: Array) -> Iterator[str]:
+    if len(t) < _FEW:
+        return
+    step = float(np.median(np.diff(t)))
+    if step > _STEPS[1]:
+        unit = "nanoseconds" if step > 1e5 else "milliseconds"
+        yield f"median time between samples {step:.3g} s: {unit}? Times are in seconds"
+    elif step < _STEPS[0]:
+        yield f"median time between samples {step:.3g} s: minutes or hours? Times are in seconds"
+
+
+def _speeds(who: str, t: Array, x: Array, y: Array, limit: float) -> Iterator[str]:
+    with np.errstate(invalid="ignore"):
+        steps = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
+        speeds = steps / np.diff(t).reshape(-1, *([1] * (x.ndim - 1)))
+    speeds = speeds[np.isfinite(speeds) & (steps > 0.0)]
+    if len(speeds) < _FEW:
+        return
+    median = float(np.median(speeds))
+    if median <= limit:
+        return
+    unit, factor = min(_UNITS.items(), key=lambda item: abs(np.log(median / item[1] / _USUAL)))
+    yield (
+        f"{who}: median speed {median:.3g} m/s: positions in {unit}? "
+        f"Divided by {factor} it would be {median / factor:.3g} m/s"
+    )
+
+
+def _headings(run: Trajectories) -> Iterator[str]:
+    """Whether the heading is that of the motion, forwards or backwards."""
+    robot = run.robot
+    if robot is None or len(run.t) < _FEW or robot.vx is not None:
+        return
+    with np.errstate(invalid="ignore"):
+        vx, vy = np.gradient(robot.x, run.t), np.gradient(robot.y, run.t)
+        moving = (np.hypot(vx, vy) > _MOVING) & np.isfinite(robot.theta)
+    if np.count_nonzero(moving) < _FEW:
+        return
+    motion, theta = np.arctan2(vy, vx)[moving], robot.theta[moving]
+    as_radians = _agreement(motion, theta)
+    if as_radians >= 0.5:
+        return
+    seen = f"the heading agrees with the motion in {100 * as_radians:.0f} % of the samples"
+    others = {
+        "taken as degrees": np.radians(theta),
+        "turned by 90 degrees": theta + 0.5 * np.pi,
+        "turned by -90 degrees": theta - 0.5 * np.pi,
+        "with x and y exchanged": 0.5 * np.pi - theta,
+        "turning the other way": -theta,
+    }
+    best = max(others, key=lambda name: _agreement(motion, others[name]))
+    agreed = _agreement(motion, others[best])
+    if agreed > max(0.8, 2.0 * as_radians):
+        seen = f"{seen}; {best}, in {100 * agreed:.0f} %"
+        yield f"the robot: {seen}: theta is in radians, from x to y"
+    elif float(np.max(np.abs(theta))) > 4.0 * np.pi:
+        yield f"the robot: {seen}, and reaches {np.max(np.abs(theta)):.0f} rad: degrees?"
+
+
+def _agreement(motion: Array, theta: Array) -> float:
+    """Share of samples in which a body moves where it looks, or straight back."""
+    error = np.abs(np.remainder(motion - theta + 0.5 * np.pi, np.pi) - 0.5 * np.pi)
+    return float(np.mean(error < _HEADINGS))
+
+
+def _recorded_velocities(run: Trajectories) -> Iterator[str]:
+    """Whether velocities are the change of positions."""
+    for who, track in (("the robot", run.robot), ("people", run.agents)):
+        if track is None or track.vx is None or track.vy is None or len(run.t) < _FEW:
+            continue
+        with np.errstate(invalid="ignore"):
+            x, y = (np.gradient(p, run.t, axis=0) for p in (track.x, track.y))
+            known = np.isfinite(x + y + track.vx + track.vy) & (np.hypot(x, y) > _MOVING)
+        if np.count_nonzero(known) < _FEW:
+            continue
+        x, y, vx, vy = x[known], y[known], track.vx[known], track.vy[known]
+        speed, off = float(np.median(np.hypot(x, y))), _off(x, y, vx, vy)
+        if off <= 0.5 * speed:
+            continue
+        seen = f"{who}: velocities differ from the change of positions by {off:.3g} m/s (median)"
+        if (swapped := _off(x, y, vy, vx)) < 0.25 * off:
+            yield f"{seen}; with x and y exchanged by {swapped:.3g} m/s"
+        elif who == "the robot" and run.robot is not None:
+            c, s = np.cos(run.robot.theta[known]), np.sin(run.robot.theta[known])
+            turned = _off(x, y, c * vx - s * vy, s * vx + c * vy)
+            if turned < 0.25 * off:
+                yield f"{seen}; taken in the robot's own frame by {turned:.3g} m/s"
+
+
+def _off(x: Array, y: Array, vx: Array, vy: Array) -> float:
+    return float(np.median(np.hypot(x - vx, y - vy)))
+
+
+def _apart(run: Trajectories) -> Iterator[str]:
+    """Whether robot and people are in one place; not if x and y are exchanged in one of them."""
+    if run.robot is None or run.agents is None or not run.agents.x.size:
+        return
+    nearest = _nearest(run, run.agents.x, run.agents.y)
+    if not nearest > 20.0:
+        return
+    seen = f"the nearest person is never nearer to the robot than {nearest:.3g} m"
+    swapped = _nearest(run, run.agents.y, run.agents.x)
+    if swapped < 0.1 * nearest:
+        yield f"{seen}; with x and y of people exchanged {swapped:.3g} m: another frame?"
+    else:
+        yield f"{seen}: do robot and people have the same frame and units?"
+
+
+def _nearest(run: Trajectories, x: Array, y: Array) -> float:
+    assert run.robot is not None
+    with np.errstate(invalid="ignore"):
+        gaps = np.hypot(x - run.robot.x[:, None], y - run.robot.y[:, None])
+    gaps = gaps[np.isfinite(gaps)]
+    return float(gaps.min()) if len(gaps) else 0.0

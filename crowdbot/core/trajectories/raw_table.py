@@ -1,0 +1,290 @@
+"""Tables of recordings as people have them: cells of text, numbers or stamps, under any names."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.types.arrays import Array
+from crowdbot.errors import InputError, did_you_mean, nearest
+
+#: Our name of a column -> the name that it has in a file.
+ColumnNames = Mapping[str, str]
+#: The cells of a column.
+Cells = Sequence[Any] | NDArray[Any]
+_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
+
+
+@dataclass(frozen=True, slots=True)
+class RawTable:
+    """Columns of cells, under our names.
+
+    Attributes:
+        name: what messages call it.
+        columns: name -> cells.
+        lines: line of each row in a file; empty where it is not a file.
+    """
+
+    name: str
+    columns: Mapping[str, Cells]
+    lines: Sequence[int] = ()
+
+    def __contains__(self, column: str) -> bool:
+        return column in self.columns
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values()), ()))
+
+    def where(self, row: int) -> str:
+        """What messages call a row."""
+        return f"{self.name}:{self.lines[row]}" if len(self.lines) else f"{self.name}, row {row}"
+
+    def require(self, *columns: str) -> None:
+        """Refuse a table that lacks a column.
+
+        Raises:
+            InputError: it does.
+        """
+        missing = [c for c in columns if c not in self.columns]
+        if missing:
+            has = ", ".join(self.columns) or "nothing"
+            many = "s" if len(missing) > 1 else ""
+            raise InputError(
+                f"{self.name}:1: the column {', '.join(missing)} is missing; the table has {has}; "
+                f"columns={{'{missing[0]}': 'ITS NAME THERE'}} names the column{many}"
+            )
+
+    def numbers(self, column: str) -> Array:
+        """(K,) a column of numbers; what is not there is NaN.
+
+        Raises:
+            InputError: a cell is not a number, with its line.
+        """
+        cells = self.columns[column]
+        return np.array([self._number(column, i, cell) for i, cell in enumerate(cells)])
+
+    def times(self, column: str = "t") -> tuple[Array, bool]:
+        """(K,) times in s, and whether they are stamps: seconds since 1970.
+
+        Stamps are ISO 8601 texts or dates of Python or numpy; without a zone they are UTC.
+
+        Raises:
+            InputError: a cell is neither a number nor a stamp, or empty.
+        """
+        cells = self.columns[column]
+        if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
+            return cells.astype("datetime64[ns]").astype(np.int64) / 1e9, True
+        stamped = any(_is_stamp(cell) for cell in cells[:1])
+        read = self._stamp if stamped else self._number
+        times = np.array([read(column, i, cell) for i, cell in enumerate(cells)], dtype=float)
+        unknown = np.flatnonzero(~np.isfinite(times))
+        if len(unknown):
+            raise InputError(f"{self.where(int(unknown[0]))}: a row has no {column}")
+        return times, stamped
+
+    def _number(self, column: str, row: int, cell: Any) -> float:
+        try:
+            return _as_number(cell)
+        except (TypeError, ValueError) as error:
+            raise InputError(f"{self.where(row)}: {column}: {error}") from error
+
+    def _stamp(self, column: str, row: int, cell: Any) -> float:
+        try:
+            return _as_stamp(cell)
+        except (TypeError, ValueError) as error:
+            raise InputError(f"{self.where(row)}: {column}: not a stamp: {error}") from error
+
+
+class Ids:
+    """Numbers for whatever people are called; whole numbers stay what they are."""
+
+    def __init__(self, table: RawTable, column: str = "id") -> None:
+        """Look at a column.
+
+        Raises:
+            InputError: a cell is empty.
+        """
+        texts = [_label(cell) for cell in table.columns[column]]
+        for row, text in enumerate(texts):
+            if not text:
+                raise InputError(f"{table.where(row)}: a row has no {column}")
+        names = list(dict.fromkeys(texts))
+        whole = all(re.fullmatch(r"-?\d{1,18}", name) for name in names)
+        self.number = {name: int(name) if whole else i for i, name in enumerate(names)}
+        self.rows: NDArray[np.int64] = np.array([self.number[t] for t in texts], dtype=np.int64)
+
+    def of(self, table: RawTable, column: str) -> NDArray[np.int64]:
+        """(K,) numbers of the people whom another table names; -1 stays -1.
+
+        Raises:
+            InputError: nobody is called so.
+        """
+        found = []
+        for row, cell in enumerate(table.columns[column]):
+            text = _label(cell)
+            if text not in self.number and text != "-1":
+                near = did_you_mean(nearest(text, self.number))
+                raise InputError(f"{table.where(row)}: {column}: nobody is called '{text}'{near}")
+            found.append(self.number.get(text, -1))
+        return np.array(found, dtype=np.int64)
+
+
+def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable:
+    """A text file with a header row; separated by commas, semicolons, tabs or blanks.
+
+    Args:
+        path: the file; UTF-8.
+        names: our name -> the file's, where they differ.
+        known: our names; other columns of the file are left out.
+
+    Raises:
+        InputError: it cannot be read, is not a table, or has no column of such a name.
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not a table: {error}") from error
+    lines = text.splitlines()
+    if not lines:
+        raise InputError(f"{path}:1: the file is empty")
+    rows, numbers = _rows(path, text, _separator(lines[0]))
+    header = [cell.strip() for cell in rows[0]]
+    columns = {
+        ours: [row[i] for row in rows[1:]]
+        for ours, i in _chosen(str(path), header, names, known).items()
+    }
+    return RawTable(str(path), columns, numbers[1:])
+
+
+def frame_table(name: str, frame: Any, names: ColumnNames, known: Iterable[str]) -> RawTable:
+    """A data frame of pandas, or any mapping of columns.
+
+    Args:
+        name: what messages call it.
+        frame: what has columns by name.
+        names: our name -> the frame's, where they differ.
+        known: our names; other columns are left out.
+
+    Raises:
+        InputError: it is not a frame, or has no column of such a name.
+    """
+    try:
+        header = [str(c) for c in frame]
+        chosen = _chosen(name, header, names, known)
+        keys = list(frame)
+        columns = {ours: np.asarray(_plain(frame[keys[i]])) for ours, i in chosen.items()}
+    except (TypeError, KeyError) as error:
+        raise InputError(f"{name}: a data frame is wanted, not a {type(frame).__name__}") from error
+    if len({len(c) for c in columns.values()}) > 1:
+        raise InputError(f"{name}: its columns differ in length")
+    return RawTable(name, columns)
+
+
+def _plain(series: Any) -> Any:
+    """Stamps with a zone as stamps of UTC."""
+    if getattr(getattr(series, "dtype", None), "tz", None) is not None:
+        return series.dt.tz_convert("UTC").dt.tz_localize(None).to_numpy()
+    return series
+
+
+def _chosen(
+    name: str, header: Sequence[str], names: ColumnNames, known: Iterable[str]
+) -> dict[str, int]:
+    """Our names of the columns -> where they are."""
+    known = list(known)
+    for ours, theirs in names.items():
+        if ours not in known:
+            raise InputError(
+                f"columns: '{ours}' is not a column of ours{did_you_mean(nearest(ours, known))}; "
+                f"there are {', '.join(known)}"
+            )
+        if theirs not in header:
+            near = did_you_mean(nearest(theirs, header))
+            raise InputError(f"{name}:1: there is no column '{theirs}'{near}")
+    return {
+        ours: header.index(names.get(ours, ours))
+        for ours in known
+        if names.get(ours, ours) in header
+    }
+
+
+def _separator(head: str) -> str:
+    """What separates the cells of a header row; a blank stands for any number of them."""
+    counts = {mark: head.count(mark) for mark in ("\t", ";", ",")}
+    best = max(counts, key=lambda mark: counts[mark])
+    if counts[best]:
+        return best
+    return " " if " " in head.strip() else ","
+
+
+def _rows(path: Path, text: str, mark: str) -> tuple[list[list[str]], list[int]]:
+    """Rows of cells, and their lines; blank rows are left out."""
+    rows, lines = [], []
+    try:
+        if mark == " ":
+            parts = [line.split() for line in text.splitlines()]
+            numbered = list(enumerate(parts, 1))
+        else:
+            reader = csv.reader(io.StringIO(text, newline=""), delimiter=mark, strict=True)
+            numbered = [(reader.line_num, row) for row in reader]
+    except csv.Error as error:
+        raise InputError(f"{path}: not a table: {error}") from error
+    width = 0
+    for line, row in numbered:
+        if not any(cell.strip() for cell in row):
+            continue
+        width = width or len(row)
+        if len(row) < width:
+            raise InputError(f"{path}:{line}: the row is too short: {len(row)} cells of {width}")
+        rows.append(row)
+        lines.append(line)
+    if not rows:
+        raise InputError(f"{path}:1: the file is empty")
+    return rows, lines
+
+
+def _as_number(cell: Any) -> float:
+    if cell is None:
+        return math.nan
+    if isinstance(cell, str):
+        text = cell.strip()
+        if _COMMA.fullmatch(text):
+            text = text.replace(",", ".")
+        return float(text) if text else math.nan
+    return float(cell)
+
+
+def _is_stamp(cell: Any) -> bool:
+    if isinstance(cell, datetime | np.datetime64):
+        return True
+    return isinstance(cell, str) and bool(re.match(r"\s*\d{4}-\d\d-\d\d[T ]", cell))
+
+
+def _as_stamp(cell: Any) -> float:
+    if isinstance(cell, np.datetime64):
+        return float(cell.astype("datetime64[ns]").astype(np.int64)) / 1e9
+    at = cell if isinstance(cell, datetime) else datetime.fromisoformat(str(cell).strip())
+    at = at if at.tzinfo else at.replace(tzinfo=UTC)
+    return at.timestamp()
+
+
+def _label(cell: Any) -> str:
+    """The text of an id; 7.0 is 7."""
+    if cell is None or (isinstance(cell, float) and math.isnan(cell)):
+        return ""
+    if isinstance(cell, float | np.floating) and float(cell).is_integer():
+        return str(int(cell))
+    text = str(cell).strip()
+    return text[:-2] if re.fullmatch(r"-?\d+\.0", text) else text
