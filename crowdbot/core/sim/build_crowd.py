@@ -92,8 +92,8 @@ def _world(
 ) -> CrowdWorld:
     response = crowd.robot_response
     return CrowdWorld(
-        walls=parts.walls[parts.stops_crowd],
-        pillars=parts.pillars,
+        walls=parts.walls[parts.stops_crowd & (parts.wall_heights[:, 0] < crowd.body.height)],
+        pillars=parts.pillars[parts.pillar_heights[:, 0] < crowd.body.height],
         periodic_boundary=parts.periodic_boundary,
         entrance=boxes[:, 0],
         out=boxes[:, 1],
