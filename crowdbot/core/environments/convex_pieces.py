@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import shapely  # type: ignore[import-untyped]
+import shapely  # type: ignore[import-untyped,unused-ignore]
 
 from crowdbot.core.types.arrays import Array
 from crowdbot.dsl.outlines import Outline, is_convex, signed_area, turn

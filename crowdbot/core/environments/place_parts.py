@@ -25,7 +25,7 @@ def place_parts(spec: EnvironmentSpec, place: Place) -> EnvironmentParts:
     """
     rows = [*_faces(place), *_solids(place)]
     pieces = [
-        (piece, solid.heights)
+        (piece, solid)
         for solid in place.solids
         for piece in convex_pieces(counter_clockwise(solid.outline), solid.holes)
     ]
@@ -39,7 +39,8 @@ def place_parts(spec: EnvironmentSpec, place: Place) -> EnvironmentParts:
         pillars=np.array([(p.x, p.y, p.radius) for p in place.pillars]).reshape(-1, 3),
         pillar_heights=_heights([p.heights for p in place.pillars]),
         solids=tuple(piece for piece, _ in pieces),
-        solid_heights=_heights([heights for _, heights in pieces]),
+        solid_heights=_heights([solid.heights for _, solid in pieces]),
+        solids_stop_crowd=np.array([solid.stops_crowd for _, solid in pieces], np.bool_),
         periodic_boundary=place.torus,
     )
 
