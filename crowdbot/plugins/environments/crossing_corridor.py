@@ -52,15 +52,20 @@ class CrossingCorridorSpec(WalkwaySpec):
         return Place(faces=walkway(tuple(points), ends, self.wall_height))
 
     def usual_zones(self) -> dict[str, Rectangle]:
-        """The arms of the first corridor and the middle; those of the second where it is square."""
+        """The arms of the first corridor and the middle; those of the second where it is square.
+
+        Where it is not, ``across`` is the box around the second.
+        """
         a, b, half = 0.5 * self.width, 0.5 * self.cross_width, 0.5 * self.length
         wide = max(abs(x) for x, _ in (self._corner(s, t) for s in (-1, 1) for t in (-1, 1)))
         found = {"west": box(-half, -wide, -a, a), "east": box(wide, half, -a, a)}
         found["middle"] = box(-wide, wide, -a, a)
         if self.angle == _RIGHT:
             far = 0.5 * self.cross_length
-            found |= {"south": box(-b, b, -far, -a), "north": box(-b, b, a, far)}
-        return found
+            return found | {"south": box(-b, b, -far, -a), "north": box(-b, b, a, far)}
+        ends = [point for k, point in enumerate(self._outline()) if k in (3, 4, 9, 10)]
+        x, y = max(p[0] for p in ends), max(p[1] for p in ends)
+        return found | {"across": box(-x, x, -y, y)}
 
     def usual_portals(self) -> dict[str, Rectangle]:
         """Behind the ends of the arms: of the second corridor only where it is square."""

@@ -9,7 +9,7 @@ from annotated_types import Ge, Le
 from pydantic import Field
 
 from crowdbot.dsl import Component, NonNegativeLength, Place, PositiveLength, Quantity, Rectangle
-from crowdbot.dsl.outlines import Outline
+from crowdbot.dsl.outlines import Outline, Point
 from crowdbot.plugins.environments.walkways import (
     PORTAL_DEPTH,
     WalkwaySpec,
@@ -43,13 +43,23 @@ class CornerSpec(WalkwaySpec):
         return Place(faces=walkway(outline, (2, len(outline) - 1), self.wall_height))
 
     def usual_zones(self) -> dict[str, Rectangle]:
-        """What lies before the turn; what lies behind it where it is square."""
-        half, inner = 0.5 * self.width, self._outline()[4]
+        """What lies before the turn and behind it; where that is askew, a box around it."""
+        half, (_, _, right, left, inner, _) = 0.5 * self.width, self._outline()
         found = {"start": box(-self.length, min(inner[0], -half), -half, half)}
         if self.angle == _RIGHT:
             found["end"] = box(-half, half, half, self.beyond)
             found["turn"] = box(-half, half, -half, half)
-        return found
+            return found
+        ux, uy = math.cos(self.angle), math.sin(self.angle)
+        # Its corners are those of the end and, across the middle line, those before them.
+        back = [(x - self._away(inner) * ux, y - self._away(inner) * uy) for x, y in (right, left)]
+        xs, ys = zip(*(right, left, *back), strict=True)
+        return found | {"end": box(min(xs), max(xs), min(ys), max(ys))}
+
+    def _away(self, inner: Point) -> float:
+        """From the inner corner to the end, along the part behind the turn, m."""
+        along = inner[0] * math.cos(self.angle) + inner[1] * math.sin(self.angle)
+        return self.beyond - along
 
     def usual_portals(self) -> dict[str, Rectangle]:
         """Behind the start; behind the end where the turn is square."""
