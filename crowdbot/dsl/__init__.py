@@ -20,6 +20,7 @@ from crowdbot.dsl.component_specs import (
 )
 from crowdbot.dsl.metric_component import Better, MetricComponent, MetricVariant, declare_metric
 from crowdbot.dsl.metric_invariants import MetricInvariants
+from crowdbot.dsl.place import Face, Heights, Pillar, Place, Solid
 from crowdbot.dsl.quantities import (
     Angle,
     Length,
@@ -56,6 +57,8 @@ __all__ = [
     "CostFunctionSpec",
     "CrowdPolicySpec",
     "EnvironmentSpec",
+    "Face",
+    "Heights",
     "Incidence",
     "Length",
     "MetricComponent",
@@ -69,6 +72,8 @@ __all__ = [
     "NonNegativeLength",
     "NonNegativeSpeed",
     "NonNegativeSteeringStiffness",
+    "Pillar",
+    "Place",
     "PlannerRole",
     "PlannerSpec",
     "PositiveAcceleration",
@@ -89,6 +94,7 @@ __all__ = [
     "Rectangle",
     "RobotSpec",
     "SensorSpec",
+    "Solid",
     "Spec",
     "Speed",
     "declare_metric",

@@ -11,6 +11,7 @@ from crowdbot.dsl.spec import ComponentSpec, Rectangle, Spec
 
 if TYPE_CHECKING:
     from crowdbot.dsl.assets import Asset
+    from crowdbot.dsl.place import Place
 
 
 #: What a planner is there for. ``floor``: every planner worth the name beats it; ``ceiling``: it
@@ -27,6 +28,14 @@ class EnvironmentSpec(ComponentSpec):
     portals: dict[str, Rectangle] = Field(
         default={}, description="Named areas through which people leave and re-enter."
     )
+
+    def place(self) -> Place | None:
+        """What it is made of, if its spec can tell; then documents are checked against it.
+
+        Raises:
+            InputError: a file that it is made of cannot be read.
+        """
+        return None
 
 
 class RobotSpec(ComponentSpec):

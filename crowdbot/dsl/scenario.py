@@ -47,6 +47,7 @@ from crowdbot.dsl.quantities import (
     PositiveStiffness,
 )
 from crowdbot.dsl.robot_response import HumanResponse, RobotResponseChoice
+from crowdbot.dsl.routing import RoutingChoice
 from crowdbot.dsl.spawning import Agents, RouteEnd, Spawn
 from crowdbot.dsl.spec import Spec
 from crowdbot.lazy import lazy_names
@@ -126,6 +127,11 @@ class Crowd(Spec):
     )
     robot_response: RobotResponseChoice = Field(
         default=HumanResponse(), description="How people take the robot."
+    )
+    routing: RoutingChoice | None = Field(
+        default=None,
+        exclude_if=lambda value: value is None,
+        description="How people find their way; without it `straight` to their goals.",
     )
     seed: CrowdSeed = Field(default=CrowdSeed(), description="Draws the crowd.")
 

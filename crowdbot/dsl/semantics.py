@@ -12,6 +12,7 @@ from crowdbot.dsl.semantics_agents import check_agents
 from crowdbot.dsl.semantics_crowd import check_crowd
 from crowdbot.dsl.semantics_facts import Facts
 from crowdbot.dsl.semantics_spawns import check_spawns
+from crowdbot.dsl.semantics_ways import check_ways
 from crowdbot.dsl.validation import locate, missing_field
 
 
@@ -20,6 +21,7 @@ def check(scenario: Scenario, tree: Node) -> list[Diagnostic]:
     found, facts = list(_check_kinds(scenario, tree)), Facts(scenario, tree)
     if scenario.crowd is not None:
         found += [*check_crowd(facts), *check_spawns(facts), *check_agents(facts)]
+        found += check_ways(facts)
     for name, robot in scenario.robots.items():
         found += _check_task(facts, name, robot.task)
     return found

@@ -20,6 +20,7 @@ from crowdbot.core.crowd.portals import draw_goal, enter
 from crowdbot.core.crowd.response.evasion import evade_robots
 from crowdbot.core.crowd.response.parameters import Human
 from crowdbot.core.crowd.routes import head_for
+from crowdbot.core.crowd.routing.router import Router
 from crowdbot.core.crowd.step import tick, ticks_without_robots
 from crowdbot.core.crowd.world import CrowdWorld
 from crowdbot.core.support.immutable import immutable, immutable_fields
@@ -88,6 +89,12 @@ class CrowdEngine:
         response = world.response
         dt = self._ticks_per_decision * TICK
         self._evades = response.by_decision(dt) if isinstance(response, Human) else None
+        self._router = (
+            None
+            if world.routing is None
+            else Router(agents, world.walls, world.pillars, world.routing)
+        )
+        self._aim = s.GOAL_X if self._router is None else s.AIM_X  # what policies see as the goal
         n = len(agents)
         self._scratch = Scratch(np.zeros((n, 2)), np.zeros((n, PLACED_COLUMNS)), np.arange(n))
 
@@ -102,12 +109,15 @@ class CrowdEngine:
                 draw_goal(rows, i, a.id, a.radius, self.world.out[a.flow[i]], self._place.goal_key)
             else:
                 head_for(rows, i, a.route, a.first)
+        if self._router is not None:
+            self._router.find(rows, 0.0)
+        for i in range(len(a)):
             if a.start_time[i] > 0.0:
                 rows[i, s.WAITING] = s.NOT_YET
             else:
                 enter(rows, i, a.x[i], a.y[i], a.preferred_speed[i], 0.0)
         rows[:, s.ON_TRIP] = (a.at_goal == PORTAL) | (np.diff(a.first) > 0)
-        to_goal = rows[:, s.GOAL_X : s.GOAL_Y + 1] - rows[:, s.X : s.Y + 1]
+        to_goal = rows[:, self._aim : self._aim + 2] - rows[:, s.X : s.Y + 1]
         distance = np.hypot(to_goal[:, :1], to_goal[:, 1:])
         facing = np.divide(to_goal, distance, out=np.zeros_like(to_goal), where=distance > 0.0)
         facing[distance[:, 0] == 0.0] = 1.0, 0.0
@@ -189,6 +199,8 @@ class CrowdEngine:
             robots = np.where(_MOTION, 0.0, robots)
         seen = robots[:, _SEEN]
         nobody = seen[:0]
+        if self._router is not None:
+            self._router.find(rows, self._ticks_per_decision * TICK)
         for group in self._groups if len(robots) else self._groups_alone:
             view = self._view(flat, rows, group.members, seen if group.sees_robot else nobody)
             decides = np.asarray(view.decides)[:, np.newaxis]
@@ -217,7 +229,7 @@ class CrowdEngine:
             agents=self.agents,
             position=np.ascontiguousarray(rows[:, s.X : s.Y + 1]),
             velocity=np.ascontiguousarray(rows[:, s.VX : s.VY + 1]),
-            goal=np.ascontiguousarray(rows[:, s.GOAL_X : s.GOAL_Y + 1]),
+            goal=np.ascontiguousarray(rows[:, self._aim : self._aim + 2]),
             present=present,
             robot=robots,
             walls=self.world.walls,

@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd.parameters import AgentParameters, WorldParameters
 from crowdbot.core.crowd.routes import end_trip, start_trip
 from crowdbot.core.crowd.state import (
+    AIM,
+    AIM_X,
+    AIM_Y,
     AT_PORTAL,
     ATTEMPT,
     AX,
@@ -106,6 +109,8 @@ def enter(agents: Array, i: int, x: float, y: float, preferred: float, now: floa
     """Put agent i into the world, on the way to its goal at preferred speed."""
     agents[i, WAITING], agents[i, X], agents[i, Y] = PRESENT, x, y
     gx, gy = agents[i, GOAL_X] - x, agents[i, GOAL_Y] - y
+    if agents[i, AIM] != 0.0:  # around a corner
+        gx, gy = agents[i, AIM_X] - x, agents[i, AIM_Y] - y
     distance = np.hypot(gx, gy)
     pace = preferred / distance if distance > 0.0 else 0.0
     agents[i, VX], agents[i, VY] = pace * gx, pace * gy
@@ -142,5 +147,6 @@ def try_to_re_enter(
         return
     agents[i, TRIP] = trip + 1.0
     agents[i, JUMPS] += 1.0
+    agents[i, AIM] = 0.0
     draw_goal(agents, i, people.id, people.radius, out, key)
     enter(agents, i, x, y, people.preferred_speed[i], now)

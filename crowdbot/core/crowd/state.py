@@ -24,15 +24,19 @@ HEADER_SIZE = 10
 # how far wraps at a periodic boundary have moved the agent (m); way walked (m) and the unit vector
 # of the way faced, which sensors show; bearing of the contact as the robot sees it, at its start
 # (rad); since when the agent has been aware of robots (s, below); 1 while one may come so near
-# before the next decision that the agent has to stop short of it.
+# before the next decision that the agent has to stop short of it. Of those who find their way with
+# `crowdbot.core.crowd.routing`: 1 + the corner aimed at, 0 for none; the point walked to (m); how
+# much of its room aside of the corner is used, 0 to 1; for how long there was no headway (s); how
+# often another way was looked for.
 (
     X, Y, VX, VY, AX, AY, PUSH_X, PUSH_Y, GOAL_X, GOAL_Y,
     TRIP, WAITING, ATTEMPT, TRIP_START, ARRIVED,
     TOUCHING, TOUCH_START, TOUCH_END, TOUCH_IMPULSE, TOUCH_PEAK, TOUCH_SPEED, TOUCHES,
     ON_TRIP, LAST_START, ARRIVALS, WAYPOINT, JUMPS, LAP_X, LAP_Y,
     WALKED, DIR_X, DIR_Y, TOUCH_SIDE, NOTICED, BESIDE,
-) = range(35)  # fmt: skip
-AGENT_COLUMNS = 35
+    AIM, AIM_X, AIM_Y, ASIDE, SLOW_FOR, DETOURS,
+) = range(41)  # fmt: skip
+AGENT_COLUMNS = 41
 
 #: Values of ``WAITING``: in the world; outside, in front of the in-portal; outside, to start
 #: later; gone for good.

@@ -10,6 +10,7 @@ import numpy as np
 from crowdbot.core.crowd.agents import PORTAL, Agents
 from crowdbot.core.crowd.periodic_boundary import Box
 from crowdbot.core.crowd.response.parameters import Human, Response
+from crowdbot.core.crowd.routing.parameters import MeshRouting
 from crowdbot.core.types.arrays import Array
 
 _COLUMNS = {"walls": 4, "pillars": 3, "entrance": 4, "out": 4}
@@ -34,6 +35,7 @@ class CrowdWorld:
         stiffness, dissipation: contact with the robot, N/m and s/m.
         goal_key: key of the counter-based draws of goals and entries.
         decision_rate: Hz, a power of two up to 128.
+        routing: how people find their way around walls and pillars; None: straight to their goals.
         parity: do as the original engine does at a periodic boundary: no images across corners,
             and goals that do not wrap. For comparisons only.
     """
@@ -50,6 +52,7 @@ class CrowdWorld:
     dissipation: float = 0.3
     goal_key: int = 0
     decision_rate: float = 16.0
+    routing: MeshRouting | None = None
     parity: bool = False
 
     def __post_init__(self) -> None:
@@ -68,6 +71,8 @@ class CrowdWorld:
             and self.periodic_boundary[2] < self.periodic_boundary[3]
         ):
             raise ValueError("periodic_boundary must be (x0, x1, y0, y1) with x0 < x1 and y0 < y1")
+        if self.routing is not None and self.periodic_boundary is not None:
+            raise ValueError("there is no routing across a periodic boundary")
 
     def check(self, agents: Agents) -> None:
         """Refuse agents that this world has no place for.

@@ -41,6 +41,7 @@ def checked_parts(parts: object) -> EnvironmentParts:
     if pillars and not np.all(parts.pillars[:, 2] > 0.0):
         raise PluginError("pillars: every radius must be above 0")
     _heights("solid_heights", parts.solid_heights, solids)
+    _flags("solids_stop_crowd", parts.solids_stop_crowd, solids)
     for i, outline in enumerate(parts.solids):
         _polygon(f"solids[{i}]", outline)
     for name, zone in _mapping("zones", parts.zones).items():

@@ -95,6 +95,7 @@ if TYPE_CHECKING:
         work_table,
     )
     from crowdbot.core.crowd.world import CrowdWorld
+    from crowdbot.core.environments.place_parts import place_parts
     from crowdbot.core.geometry.footprint import Footprint
     from crowdbot.core.interfaces.build_functions import (
         BuildCost,
@@ -176,6 +177,7 @@ _HOMES = {
         "CompiledCost Neighbours NumpyCost Pointer in_range near_table wall_table work_table"
     ),
     "crowdbot.core.crowd.world": "CrowdWorld",
+    "crowdbot.core.environments.place_parts": "place_parts",
     "crowdbot.core.geometry.footprint": "Footprint",
     "crowdbot.core.interfaces.build_functions": (
         "BuildCost BuildEnvironment BuildMetric BuildNoise BuildPlanner BuildPolicy "
@@ -340,6 +342,7 @@ __all__ = [
     "near_table",
     "nearest_on_segment",
     "path_length",
+    "place_parts",
     "policy_of",
     "read_description",
     "read_record",

@@ -6,13 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from crowdbot.core.population.ground import Ground
 from crowdbot.dsl.spawning import CLEAR_OF_ROBOT
 
 
 class Occupancy:
-    """Discs that never overlap; the last ones can be taken back."""
+    """Discs that never overlap, on free ground; the last ones can be taken back."""
 
-    def __init__(self, robots: Sequence[tuple[float, float]]) -> None:
+    def __init__(self, robots: Sequence[tuple[float, float]], ground: Ground | None = None) -> None:
+        self.ground = ground or Ground()
         self._robots = np.array(robots, dtype=np.float64).reshape(-1, 2)
         self._discs = np.empty((64, 3))
         self.count = 0
@@ -42,4 +44,6 @@ class Occupancy:
         reach = radius + discs[:, 2]
         if np.any(away < reach * reach):
             return False
-        return not np.any(away[since:] < spacing * spacing)
+        if np.any(away[since:] < spacing * spacing):
+            return False
+        return self.ground.is_free(x, y, radius)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.core.population.ground import Ground
 from crowdbot.core.population.occupancy import Occupancy
 from crowdbot.core.population.placement import ATTEMPTS
 from crowdbot.core.population.realisation import Realisation
@@ -22,6 +23,7 @@ from crowdbot.core.population.spawns import (
     heading_to,
     stream_heading,
 )
+from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.assets import Asset
 from crowdbot.dsl.scenario import Crowd, Flow, Scenario
 from crowdbot.dsl.spawning import Agent
@@ -30,22 +32,30 @@ from crowdbot.errors import InputError
 Row = dict[str, Any]
 
 
-def realise(scenario: Scenario) -> Realisation:
+def realise(scenario: Scenario, parts: EnvironmentParts | None = None) -> Realisation:
     """Draw the crowd from its named streams; an empty table when there is no crowd.
 
+    Args:
+        scenario: who is drawn.
+        parts: its environment: nobody is put into a wall, or sent where no way leads; None where
+            walls do not matter.
+
     Raises:
-        InputError: the people do not fit into their zone.
+        InputError: the people do not fit into their zone, or a goal cannot be reached.
     """
     crowd = scenario.crowd
     if crowd is None:
         return Realisation.nobody()
     streams = Streams(crowd.seed.root, crowd.seed.key)
-    occupancy = Occupancy([robot.task.start[:2] for robot in scenario.robots.values()])
+    ground = Ground(parts, crowd)
+    occupancy = Occupancy([robot.task.start[:2] for robot in scenario.robots.values()], ground)
     if crowd.names_nobody and crowd.policy.record is not None:
         return _table(_recorded(crowd, crowd.policy.record, streams), streams)
     explicit = [_agent_row(a, scenario, crowd, streams) for a in crowd.agents]
     for row in explicit:
-        occupancy.add(row["x"], row["y"], row["radius"])
+        start = row["x"], row["y"]
+        ground.check_route(f"agent {row['id']}", start, row["goals"], row["radius"])
+        occupancy.add(*start, row["radius"])
     drawn = (
         [] if crowd.flow is None else _flow_rows(crowd.flow, scenario, crowd, streams, occupancy)
     )

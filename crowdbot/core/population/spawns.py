@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.core.population.ground import Ground
 from crowdbot.core.population.occupancy import Occupancy
-from crowdbot.core.population.placement import Placer
+from crowdbot.core.population.placement import ATTEMPTS, Placer
 from crowdbot.core.types.arrays import Array, Point
 from crowdbot.dsl.areas import Area, GoalArea, Place
 from crowdbot.dsl.parameters import Sample, SpeedDistribution
@@ -115,7 +116,7 @@ class SpawnSampler:
         table = self._parameters()
         rows: list[dict[str, Any]] = []
         for unit, members in enumerate(groups):
-            goals = self._goals(unit)
+            goals = self._goals(unit, places[members[0]], occupancy.ground)
             alone = len(members) == 1
             for i in members:
                 x, y = places[i].tolist()
@@ -209,13 +210,16 @@ class SpawnSampler:
         return placer.places
 
     # ---------------------------------------------------------------------- routes
-    def _goals(self, unit: int) -> tuple[Point, ...]:
-        """The route that a group shares; nothing without goals."""
+    def _goals(self, unit: int, start: Array, ground: Ground) -> tuple[Point, ...]:
+        """The route that a group shares, from where its first stands; nothing without goals."""
         goals = self._spawn.goals
         if goals is None:
             return ()
         rng = self._rng("goals", unit)
-        points = [self._goal(name, rng) for name in self._sequence(goals, rng)]
+        points = [(float(start[0]), float(start[1]))]
+        for name in self._sequence(goals, rng):
+            points.append(self._goal(name, points[-1], ground, rng))
+        points = points[1:]
         if goals.order == "linked" and goals.at_goal == "loop":
             points += points[-2:0:-1]
         return tuple(points)
@@ -228,7 +232,17 @@ class SpawnSampler:
             return [names[i] for i in rng.integers(len(names), size=length)]
         return linked_walk(self._crowd.goal_areas, names, length, rng)
 
-    def _goal(self, name: str, rng: np.random.Generator) -> Point:
+    def _goal(self, name: str, start: Point, ground: Ground, rng: np.random.Generator) -> Point:
+        """A point of a goal area where a body has room, and to which a way leads from another."""
         area = area_of(self._crowd.goal_areas[name].area, self._environment.zones)
-        u, v = rng.random() - 0.5, rng.random() - 0.5
-        return area.point(u * area.size[0], v * area.size[1])
+        radius = float(np.max(self._radius, initial=0.0))
+        for _ in range(ATTEMPTS):
+            u, v = rng.random() - 0.5, rng.random() - 0.5
+            point = area.point(u * area.size[0], v * area.size[1])
+            if ground.is_free(*point, radius) and ground.reaches(start, point, radius):
+                return point
+        raise InputError(
+            f"spawn '{self._name}': goal area '{name}' around ({area.centre[0]:g}, "
+            f"{area.centre[1]:g}) has no free place to which a way leads from "
+            f"({start[0]:g}, {start[1]:g})"
+        )

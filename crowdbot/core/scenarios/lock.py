@@ -12,6 +12,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Literal
 
+from crowdbot.core.environments.build import build_environment
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import Registry
@@ -82,13 +83,13 @@ def population(scenario: Scenario, registry: Registry) -> Population:
         return Population(Realisation.nobody(), "none")
     check_revealed(scenario)
     if scenario.locked is None:
-        return Population(realise(scenario), "drawn")
+        return Population(_drawn(scenario, registry), "drawn")
     files = scenario.locked.files
     check_fits(files, scenario.locked.origin(), registry)
     name = files.lock.table_of(population_inputs(scenario))
     _check_draw(files, scenario, scenario.locked.origin(), name)
     if name is None:
-        return Population(realise(scenario), "drawn")
+        return Population(_drawn(scenario, registry), "drawn")
     text = files.table(name)
     try:
         return Population(Realisation.from_csv(text), "locked")
@@ -113,7 +114,7 @@ def make_lock(expansion: Expansion, registry: Registry, old: LockFiles | None) -
         if inputs in by_inputs:
             continue
         kept = _kept(old, inputs)
-        table = realise(scenario).to_csv() if kept is None else kept
+        table = _drawn(scenario, registry).to_csv() if kept is None else kept
         drawn += kept is None
         name = _free_name(scenario, expansion.suite_id, locked)
         by_inputs[inputs], tables[name] = name, table
@@ -162,6 +163,10 @@ def write_lock(files: LockFiles, made: Made) -> None:
     finally:
         for part in parts.values():
             part.unlink(missing_ok=True)
+
+
+def _drawn(scenario: Scenario, registry: Registry) -> Realisation:
+    return realise(scenario, build_environment(registry, scenario.environment))
 
 
 def _kept(old: LockFiles | None, inputs: str) -> str | None:

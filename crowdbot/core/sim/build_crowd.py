@@ -14,6 +14,7 @@ from crowdbot.core.crowd.build import build_cost, build_policy
 from crowdbot.core.crowd.engine import PolicyFactory
 from crowdbot.core.crowd.policy import LOOP, PORTAL, REMOVE, STOP
 from crowdbot.core.crowd.response.from_spec import response_of
+from crowdbot.core.crowd.routing.from_spec import routing_of
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.environment import EnvironmentParts
@@ -110,9 +111,10 @@ def _world(
     boxes: NDArray[np.float64],
 ) -> CrowdWorld:
     response = crowd.robot_response
+    walls, pillars, _ = parts.in_the_way(crowd.body.height)
     return CrowdWorld(
-        walls=parts.walls[parts.stops_crowd],
-        pillars=parts.pillars,
+        walls=walls,
+        pillars=pillars,
         periodic_boundary=parts.periodic_boundary,
         entrance=boxes[:, 0],
         out=boxes[:, 1],
@@ -123,4 +125,5 @@ def _world(
         dissipation=scenario.contact.dissipation,
         goal_key=drawn.goal_key,
         decision_rate=scenario.rates.crowd,
+        routing=routing_of(crowd),
     )

@@ -79,7 +79,7 @@ def _header(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
         ),
         agents=agents(engine),
         sensors=built.infos,
-        walls=built.parts.walls,
+        walls=built.parts.walls[built.parts.wall_heights[:, 0] < model.height],
         goal_zone=task.goal_zone,
     )
 

@@ -27,6 +27,7 @@ class EnvironmentParts:
         solids: convex outlines (K, 2), counter-clockwise, of what the robot collides with as a
             whole, m; sensors and people meet their sides, which are among ``walls``.
         solid_heights: (B, 2) bottom and top, m.
+        solids_stop_crowd: (B,) bool, people go around the solid; all of them if left out.
         periodic_boundary: (x0, x1, y0, y1) of a floor on which people who leave on one side come
             back on the other and see each other across the border, m; None for a floor with
             borders.
@@ -42,4 +43,19 @@ class EnvironmentParts:
     pillar_heights: Array = field(default_factory=lambda: np.zeros((0, 2)))
     solids: tuple[Array, ...] = ()
     solid_heights: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    solids_stop_crowd: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
     periodic_boundary: tuple[float, float, float, float] | None = None
+
+    def __post_init__(self) -> None:
+        if not len(self.solids_stop_crowd):
+            object.__setattr__(self, "solids_stop_crowd", np.ones(len(self.solids), np.bool_))
+
+    def in_the_way(self, height: float) -> tuple[Array, Array, tuple[Array, ...]]:
+        """What people of a height (m) go around: walls (S, 4), pillars (P, 3) and solids."""
+        low = self.stops_crowd & (self.wall_heights[:, 0] < height)
+        solids = zip(self.solids, self.solids_stop_crowd, self.solid_heights[:, 0], strict=True)
+        return (
+            self.walls[low],
+            self.pillars[self.pillar_heights[:, 0] < height],
+            tuple(s for s, stops, bottom in solids if stops and bottom < height),
+        )

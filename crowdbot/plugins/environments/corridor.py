@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from crowdbot.dsl import Component, EnvironmentSpec, PositiveLength
+from crowdbot.dsl import Component, EnvironmentSpec, Face, Pillar, Place, PositiveLength, Rectangle
+from crowdbot.plugins.environments.pillar_sets import PillarFieldSpec, PillarGridSpec
+from crowdbot.plugins.environments.shapes import PillarSpec, check_heights
 
 
 class CorridorSpec(EnvironmentSpec):
@@ -16,10 +18,61 @@ class CorridorSpec(EnvironmentSpec):
     length: PositiveLength = Field(default=50.0, description="Length along x, m.")
     width: PositiveLength = Field(default=10.0, description="Width along y, m.")
     wall_height: PositiveLength = Field(default=2.5, description="Height of the walls, m.")
+    pillars: dict[str, PillarSpec] = Field(
+        default={}, exclude_if=lambda value: not value, description="Named round pillars."
+    )
+    pillar_grid: PillarGridSpec | None = Field(
+        default=None, exclude_if=lambda value: value is None, description="Pillars in a grid."
+    )
+    pillar_field: PillarFieldSpec | None = Field(
+        default=None, exclude_if=lambda value: value is None, description="Pillars at random."
+    )
+
+    @model_validator(mode="after")
+    def _inside(self) -> CorridorSpec:
+        check_heights(self.pillars, self.wall_height)
+        for name, pillar in self.pillars.items():
+            if not self.area.contains(pillar.x, pillar.y):
+                raise ValueError(f"pillar '{name}' leaves the corridor")
+        self.columns()
+        return self
+
+    @property
+    def area(self) -> Rectangle:
+        """The floor between the walls."""
+        return Rectangle(x=(0.0, self.length), y=(-0.5 * self.width, 0.5 * self.width))
+
+    def columns(self) -> tuple[Pillar, ...]:
+        """All pillars: the named ones, the grid's, the random ones."""
+        found = tuple(p.pillar(self.wall_height) for p in self.pillars.values())
+        for many in (self.pillar_grid, self.pillar_field):
+            if many is not None:
+                found += many.pillars(self.area, self.wall_height)
+        return found
+
+    def place(self) -> Place:
+        """Side walls reach as far as the portals; end walls exist for the robot alone."""
+        half, length, heights = 0.5 * self.width, self.length, (0.0, self.wall_height)
+        first = min([0.0, *(p.x[0] for p in self.portals.values())])
+        last = max([length, *(p.x[1] for p in self.portals.values())])
+        sides = (((first, -half), (last, -half)), ((last, half), (first, half)))
+        ends = (((0.0, half), (0.0, -half)), ((length, -half), (length, half)))
+        return Place(
+            faces=(
+                *(Face(points=side, heights=heights) for side in sides),
+                *(Face(points=end, heights=heights, stops_crowd=False) for end in ends),
+            ),
+            pillars=self.columns(),
+        )
 
 
 CORRIDOR = Component(
     spec=CorridorSpec,
     build="crowdbot.plugins.environments.corridor_build:build",
-    summary="straight corridor; people walk through its ends into portals",
+    summary="straight corridor, with pillars or without; people walk through its ends into portals",
+    examples=(
+        {},
+        {"pillars": {"west": {"x": 20.0, "y": 1.0, "radius": 0.4}}},
+        {"pillar_field": {"count": 8, "seed": 2}},
+    ),
 )

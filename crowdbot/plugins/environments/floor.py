@@ -2,58 +2,21 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-from typing import Annotated, Literal
+from typing import Literal
 
-from annotated_types import Len
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, model_validator
 
-from crowdbot.dsl import Component, EnvironmentSpec, Length, PositiveLength, Rectangle, Spec
+from crowdbot.dsl import Component, EnvironmentSpec, Place, PositiveLength, Rectangle
+from crowdbot.plugins.environments.shapes import (
+    BlockSpec,
+    PillarSpec,
+    Point,
+    WallSpec,
+    check_heights,
+    closed,
+)
 
-Point = Annotated[tuple[Length, Length], Field(strict=False)]
-
-
-class WallSpec(Spec):
-    """A straight wall, solid on both sides of the line between its ends."""
-
-    start: Point = Field(description="One end, x and y, m.")
-    end: Point = Field(description="The other end, x and y, m.")
-    thickness: PositiveLength = Field(default=0.1, description="Thickness, m.")
-
-    @model_validator(mode="after")
-    def _long(self) -> WallSpec:
-        if self.start == self.end:
-            raise ValueError("start and end of a wall must differ")
-        return self
-
-
-class BlockSpec(Spec):
-    """A solid convex block."""
-
-    corners: Annotated[tuple[Point, ...], Len(3, 64)] = Field(
-        strict=False, description="Corners of the convex outline, in either sense, m."
-    )
-
-    @field_validator("corners")
-    @classmethod
-    def _convex(cls, corners: tuple[Point, ...]) -> tuple[Point, ...]:
-        """The corners, counter-clockwise."""
-        turns = [_turn(*(corners[(i + k) % len(corners)] for k in range(3)))
-                 for i in range(len(corners))]  # fmt: skip
-        if not (all(t > 0.0 for t in turns) or all(t < 0.0 for t in turns)) or _winds(corners):
-            raise ValueError(
-                "corners must form a convex outline, each a turn to the same side; "
-                "make several blocks of a concave one"
-            )
-        return corners if turns[0] > 0.0 else corners[::-1]
-
-
-class PillarSpec(Spec):
-    """A round pillar."""
-
-    x: Length = Field(description="Centre, m.")
-    y: Length = Field(description="Centre, m.")
-    radius: PositiveLength = Field(description="Radius, m.")
+__all__ = ["FLOOR", "BlockSpec", "FloorSpec", "PillarSpec", "WallSpec"]
 
 
 class FloorSpec(EnvironmentSpec):
@@ -69,7 +32,7 @@ class FloorSpec(EnvironmentSpec):
     blocks: dict[str, BlockSpec] = Field(default={}, description="Named solid blocks.")
     pillars: dict[str, PillarSpec] = Field(default={}, description="Named round pillars.")
     wall_height: PositiveLength = Field(
-        default=2.5, description="Height of all walls, blocks and pillars, m."
+        default=2.5, description="Height of walls, blocks and pillars without their own, m."
     )
 
     @model_validator(mode="after")
@@ -82,25 +45,29 @@ class FloorSpec(EnvironmentSpec):
                 zone.x[1], zone.y[1]
             )):  # fmt: skip
                 raise ValueError(f"zone '{name}' leaves the area of the floor")
+        check_heights({**self.walls, **self.blocks, **self.pillars}, self.wall_height)
         return self
+
+    def place(self) -> Place:
+        """Border walls face inwards; what stands on the floor faces outwards."""
+        usual = self.wall_height
+        (x0, x1), (y0, y1) = self.area.x, self.area.y
+        fence = (closed(self.area.polygon, (0.0, usual)),)
+        return Place(
+            faces=fence if self.border == "walls" else (),
+            solids=(
+                *(wall.solid(usual) for wall in self.walls.values()),
+                *(block.solid(usual) for block in self.blocks.values()),
+            ),
+            pillars=tuple(p.pillar(usual) for p in self.pillars.values()),
+            torus=(x0, x1, y0, y1) if self.border == "torus" else None,
+        )
 
 
 def _points(floor: FloorSpec) -> list[tuple[str, Point]]:
     found = [(f"wall '{n}'", p) for n, w in floor.walls.items() for p in (w.start, w.end)]
     found += [(f"block '{n}'", p) for n, b in floor.blocks.items() for p in b.corners]
     return found + [(f"pillar '{n}'", (p.x, p.y)) for n, p in floor.pillars.items()]
-
-
-def _turn(a: Point, b: Point, c: Point) -> float:
-    """Above 0 for a turn to the left at b."""
-    return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])
-
-
-def _winds(corners: tuple[Point, ...]) -> bool:
-    """Whether an outline that always turns to the same side goes round more than once."""
-    first = corners[0]
-    fan = [_turn(first, b, c) for b, c in pairwise(corners[1:])]
-    return not (all(t > 0.0 for t in fan) or all(t < 0.0 for t in fan))
 
 
 FLOOR = Component(

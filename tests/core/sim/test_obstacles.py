@@ -21,7 +21,7 @@ from tests.core.sim.sim_worlds import registry, scenario
 BODY = 0.178
 
 
-def _drive(parts: EnvironmentParts, start: Pose, seconds: float) -> tuple[float, float]:
+def drive(parts: EnvironmentParts, start: Pose, seconds: float) -> tuple[float, float]:
     """Where a robot gets that drives straight on at about 0.4 m/s."""
     (robot,) = scenario().robots.values()
     builder = DiagramBuilder()
@@ -49,7 +49,7 @@ OBSTACLES: dict[str, dict[str, object]] = {
 def test_the_robot_is_stopped_where_the_lidar_sees_it(kind: str) -> None:
     area = {"x": (-5.0, 15.0), "y": (-5.0, 5.0)}
     parts = build(FloorSpec.model_validate({"area": area, **OBSTACLES[kind]}))
-    x, y = _drive(parts, Pose(1.0, 0.0, 0.0), 8.0)
+    x, y = drive(parts, Pose(1.0, 0.0, 0.0), 8.0)
     assert x + BODY == pytest.approx(2.9, abs=0.01)
     assert abs(y) < 0.1
     scene = Scene(parts.walls, parts.wall_heights, [], [], parts.pillars, parts.pillar_heights)
@@ -63,7 +63,7 @@ def test_the_robot_is_stopped_where_the_lidar_sees_it(kind: str) -> None:
 
 def test_without_an_obstacle_it_drives_on() -> None:
     parts = build(FloorSpec.model_validate({"area": {"x": (-5.0, 15.0), "y": (-5.0, 5.0)}}))
-    assert _drive(parts, Pose(1.0, 0.0, 0.0), 8.0)[0] > 3.5
+    assert drive(parts, Pose(1.0, 0.0, 0.0), 8.0)[0] > 3.5
 
 
 def test_rays_take_the_nearest_of_wall_pillar_and_person() -> None:

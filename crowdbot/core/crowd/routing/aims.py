@@ -1,0 +1,230 @@
+"""Where each person walks next: straight to the goal, or to a place beside the next corner."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from crowdbot.core.crowd.routing.corners import OUT_X, OUT_Y, ROOM, Corners
+from crowdbot.core.crowd.routing.corners import X as CORNER_X
+from crowdbot.core.crowd.routing.corners import Y as CORNER_Y
+from crowdbot.core.crowd.routing.sight import Sight, is_clear
+from crowdbot.core.crowd.routing.trees import TO_GOAL
+from crowdbot.core.crowd.state import (
+    AIM,
+    AIM_X,
+    AIM_Y,
+    ASIDE,
+    DETOURS,
+    GOAL_X,
+    GOAL_Y,
+    GONE,
+    PRESENT,
+    SLOW_FOR,
+    TRIP,
+    VX,
+    VY,
+    WAITING,
+    X,
+    Y,
+)
+from crowdbot.core.crowd.velocity_search import counter_rng
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array, Indices
+
+#: Of the room at a corner, how much of it people spread over.
+_SHARE_OF_ROOM = 0.8
+#: Who is nearer to the place aside of a corner, or to the corner, has reached it, m.
+_REACHED = 0.4
+#: Aims that are nearer are moved on, so that nobody brakes at them, m.
+_LEAST_AHEAD = 1.0
+#: Corners that are not farther from each other, beside the room at them, are one opening, m.
+_SAME_OPENING, _WIDEST_OPENING = 1.0, 3.0
+#: Below this share of the preferred speed somebody makes no headway.
+_SLOW = 0.25
+#: Nearer to the goal than this nobody looks for another way, m.
+_NEAR_GOAL = 1.5
+
+
+class Habits(NamedTuple):
+    """How people choose among ways.
+
+    Attributes:
+        spread: how far aside of a corner they pass at most, m.
+        patience: without headway for so long, they look for another way, s.
+        detour: which is at most so many times as long.
+        key: of the draws.
+    """
+
+    spread: float
+    patience: float
+    detour: float
+    key: np.uint64
+
+
+@kernel
+def find_aims(
+    agents: Array, members: Indices, ids: Indices, preferred: Array, tree_of: Indices,
+    left: Array, after: Indices, corners: Corners, sight: Sight, wider: Sight,
+    spread: float, patience: float, detour: float, key: np.uint64, dt: float,
+) -> None:  # fmt: skip
+    """Set the AIM columns of people who are in the world or will be.
+
+    Args:
+        members: rows of those whose bodies these corners fit.
+        ids, preferred: (N,) numbers and preferred speeds (m/s) of all.
+        tree_of: (N,) row of ``left`` and ``after`` that leads to each one's goal.
+        left, after: (T, V) see `plan_tree`.
+        sight, wider: edges at the margin of a body, and nearer to the walls.
+        spread, patience, detour, key: see `Habits`.
+        dt: since the last decision, s.
+    """
+    habits = Habits(spread, patience, detour, key)
+    for i in members:
+        if agents[i, WAITING] == GONE:
+            continue
+        tree = tree_of[i]
+        blocked = _no_headway(agents, i, preferred[i], patience, dt)
+        gx, gy = agents[i, GOAL_X], agents[i, GOAL_Y]
+        if is_clear(agents[i, X], agents[i, Y], gx, gy, sight):
+            _forget(agents, i)
+            continue
+        avoided = int(agents[i, AIM]) - 1 if blocked else -1
+        if blocked:
+            agents[i, DETOURS] += 1.0
+        if avoided >= 0:
+            _choose(agents, i, left[tree], after[tree], corners, sight, avoided, habits)
+        else:
+            _follow(agents, i, ids[i], after[tree], left[tree], corners, sight, wider, habits)
+        if agents[i, AIM] == 0.0:
+            _choose(agents, i, left[tree], after[tree], corners, sight, -1, habits)
+        if agents[i, AIM] == 0.0:
+            _choose(agents, i, left[tree], after[tree], corners, wider, -1, habits)
+        _aim(agents, i, ids[i], corners, sight, habits)
+
+
+@kernel
+def _no_headway(agents: Array, i: int, preferred: float, patience: float, dt: float) -> bool:
+    """Whether agent i, on its way, has been slow for longer than it likes; counts from then on."""
+    far = math.hypot(agents[i, GOAL_X] - agents[i, X], agents[i, GOAL_Y] - agents[i, Y])
+    slow = math.hypot(agents[i, VX], agents[i, VY]) < _SLOW * preferred
+    if agents[i, WAITING] != PRESENT or not slow or far < _NEAR_GOAL:
+        agents[i, SLOW_FOR] = 0.0
+        return False
+    agents[i, SLOW_FOR] += dt
+    if agents[i, SLOW_FOR] <= patience:
+        return False
+    agents[i, SLOW_FOR] = 0.0
+    return True
+
+
+@kernel
+def _forget(agents: Array, i: int) -> None:
+    """Agent i walks straight to its goal."""
+    agents[i, AIM], agents[i, ASIDE] = 0.0, 1.0
+    agents[i, AIM_X], agents[i, AIM_Y] = agents[i, GOAL_X], agents[i, GOAL_Y]
+
+
+@kernel
+def _beside(
+    agents: Array, i: int, number: int, v: int, aside: float, corners: Corners, habits: Habits
+) -> tuple[float, float]:
+    """The place beside corner v at which agent i passes it on this trip."""
+    trip, draw = int(agents[i, TRIP]), int(agents[i, DETOURS])
+    u = counter_rng.uniform(habits.key, number, trip, counter_rng.ROUTE, (v << 16) + draw)
+    corner = corners.table[v]
+    away = aside * u * u * min(habits.spread, _SHARE_OF_ROOM * corner[ROOM])
+    return corner[CORNER_X] + away * corner[OUT_X], corner[CORNER_Y] + away * corner[OUT_Y]
+
+
+@kernel
+def _follow(
+    agents: Array, i: int, number: int, after: Indices, left: Array, corners: Corners,
+    sight: Sight, wider: Sight, habits: Habits,
+) -> None:  # fmt: skip
+    """Go on to the corner after the one aimed at, where that is seen; drop one out of sight."""
+    v = int(agents[i, AIM]) - 1
+    if v < 0 or not math.isfinite(left[v]):
+        agents[i, AIM] = 0.0
+        return
+    x, y = agents[i, X], agents[i, Y]
+    cx, cy = corners.table[v, CORNER_X], corners.table[v, CORNER_Y]
+    near = math.hypot(cx - x, cy - y) < _REACHED
+    w = after[v]
+    if w != TO_GOAL:
+        bx, by = _beside(agents, i, number, w, 1.0, corners, habits)
+        ox, oy = corners.table[w, CORNER_X], corners.table[w, CORNER_Y]
+        if is_clear(x, y, bx, by, sight) or (near and is_clear(x, y, ox, oy, wider)):
+            agents[i, AIM], agents[i, ASIDE] = w + 1.0, 1.0
+            return
+    bx, by = _beside(agents, i, number, v, agents[i, ASIDE], corners, habits)
+    if not near and math.hypot(bx - x, by - y) < _REACHED:
+        agents[i, ASIDE] = 0.0  # there, and what comes after is out of sight: to the corner itself
+        return
+    if not (is_clear(x, y, bx, by, sight) or is_clear(x, y, cx, cy, wider)):
+        agents[i, AIM] = 0.0
+
+
+@kernel
+def _choose(
+    agents: Array, i: int, left: Array, after: Indices, corners: Corners, sight: Sight,
+    avoided: int, habits: Habits,
+) -> None:  # fmt: skip
+    """The corner in sight from which the whole way is shortest; none leaves no aim.
+
+    Args:
+        avoided: a corner through whose opening the way must not lead, unless every other one is
+            too long; -1 for none.
+    """
+    x, y = agents[i, X], agents[i, Y]
+    best, limit = -1, math.inf
+    if avoided >= 0:
+        away = math.hypot(
+            corners.table[avoided, CORNER_X] - x, corners.table[avoided, CORNER_Y] - y
+        )
+        limit = habits.detour * (away + left[avoided])
+        best = avoided
+    for v in range(corners.table.shape[0]):
+        cx, cy = corners.table[v, CORNER_X], corners.table[v, CORNER_Y]
+        length = math.hypot(cx - x, cy - y) + left[v]
+        if length >= limit or v == avoided:
+            continue
+        if avoided >= 0 and _leads_past(v, avoided, corners.table, after):
+            continue
+        if is_clear(x, y, cx, cy, sight):
+            best, limit = v, length
+    agents[i, AIM], agents[i, ASIDE] = best + 1.0, 1.0
+
+
+@kernel
+def _leads_past(v: int, avoided: int, table: Array, after: Indices) -> bool:
+    """Whether the way from corner v on leads through the opening at a corner to be avoided."""
+    near = _SAME_OPENING + min(table[avoided, ROOM], _WIDEST_OPENING)
+    while v != TO_GOAL:
+        dx = table[v, CORNER_X] - table[avoided, CORNER_X]
+        dy = table[v, CORNER_Y] - table[avoided, CORNER_Y]
+        if math.hypot(dx, dy) < near:
+            return True
+        v = after[v]
+    return False
+
+
+@kernel
+def _aim(
+    agents: Array, i: int, number: int, corners: Corners, sight: Sight, habits: Habits
+) -> None:
+    """Set the point that agent i walks to."""
+    v = int(agents[i, AIM]) - 1
+    if v < 0:  # nothing is in sight, as in the thick of a wall
+        _forget(agents, i)
+        return
+    x, y = agents[i, X], agents[i, Y]
+    ax, ay = _beside(agents, i, number, v, agents[i, ASIDE], corners, habits)
+    if not is_clear(x, y, ax, ay, sight):
+        ax, ay = corners.table[v, CORNER_X], corners.table[v, CORNER_Y]
+    away = math.hypot(ax - x, ay - y)
+    if 0.0 < away < _LEAST_AHEAD:
+        ax, ay = x + (ax - x) * _LEAST_AHEAD / away, y + (ay - y) * _LEAST_AHEAD / away
+    agents[i, AIM_X], agents[i, AIM_Y] = ax, ay

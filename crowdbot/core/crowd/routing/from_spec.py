@@ -1,0 +1,21 @@
+"""From a scenario's words to how people find their way."""
+
+from __future__ import annotations
+
+from crowdbot.core.crowd.routing.parameters import MeshRouting
+from crowdbot.dsl import routing as dsl
+from crowdbot.dsl.scenario import Crowd
+from crowdbot.dsl.seeds import stream_seed
+
+
+def routing_of(crowd: Crowd) -> MeshRouting | None:
+    """How a crowd finds its way; None straight to its goals. Draws are the stream's "routing"."""
+    spec = crowd.routing
+    if not isinstance(spec, dsl.MeshRouting):
+        return None
+    return MeshRouting(
+        spread=spec.spread,
+        patience=spec.patience,
+        detour=spec.detour,
+        key=stream_seed(crowd.seed.root, crowd.seed.key, "crowd.routing"),
+    )

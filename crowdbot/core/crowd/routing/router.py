@@ -1,0 +1,122 @@
+"""Router: keeps the shortest ways to the goals of a crowd, and says where everybody walks next."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.agents import Agents
+from crowdbot.core.crowd.routing.aims import Habits, find_aims
+from crowdbot.core.crowd.routing.parameters import MeshRouting
+from crowdbot.core.crowd.routing.route_map import RouteMap
+from crowdbot.core.types.arrays import Array
+
+#: Bodies are rounded up to a multiple of this, so that few maps are needed, m.
+_RADIUS_STEP = 0.05
+_SLACK = 1e-9
+#: Trees of goals that nobody has any more are kept as long as there are not more than this.
+_SPARE_TREES = 64
+
+
+class Router:
+    """Finds the aims of everybody. What it keeps follows from goals: it is a cache, no state.
+
+    Args:
+        agents: everybody, present or to come.
+        walls, pillars: (S, 4), (P, 3) what people walk around, m.
+        routing: how they choose.
+    """
+
+    def __init__(self, agents: Agents, walls: Array, pillars: Array, routing: MeshRouting) -> None:
+        points = np.concatenate([np.stack([agents.x, agents.y], axis=1), agents.route])
+        self._agents = agents
+        self._habits = Habits(
+            routing.spread, routing.patience, routing.detour, np.uint64(routing.key)
+        )
+        self._classes = [
+            _BodyClass(
+                np.flatnonzero(rounded(agents.radius) == size),
+                RouteMap.of(walls, pillars, float(size), points),
+                len(agents),
+            )
+            for size in np.unique(rounded(agents.radius))
+        ]
+
+    def find(self, rows: Array, dt: float) -> Array:
+        """Set the AIM columns of the crowd's state.
+
+        Args:
+            rows: (N, C) of the crowd's state.
+            dt: since the last decision, s.
+
+        Returns:
+            (N, 2) where everybody walks next, m: a view of these columns.
+        """
+        for one in self._classes:
+            one.find(rows, self._agents, self._habits, dt)
+        return rows[:, s.AIM_X : s.AIM_Y + 1]
+
+    def way(self, row: int, start: tuple[float, float], goal: tuple[float, float]) -> Array:
+        """The shortest way (K, 2) for agent ``row`` from a point to another, both included, m."""
+        found = next(one for one in self._classes if row in one.members)
+        return found.routes.way(start, goal)
+
+
+def rounded(radius: Array) -> Array:
+    """Radii (N,) that maps are made for: a little larger, and few different ones, m."""
+    steps = np.ceil(radius / _RADIUS_STEP - _SLACK)
+    one = len(radius) > 0 and np.all(radius == radius[0])
+    return radius.copy() if one else np.round(steps * _RADIUS_STEP, 9)
+
+
+class _BodyClass:
+    """People of about the same radius, who share a map."""
+
+    def __init__(self, members: NDArray[np.int64], routes: RouteMap, people: int) -> None:
+        self.members, self.routes = members, routes
+        self._goal = np.full((len(members), 2), np.nan)
+        self._tree_of = np.zeros(people, np.int64)
+        self._rows: dict[tuple[float, float], int] = {}
+        self._left = np.zeros((0, routes.count))
+        self._after = np.zeros((0, routes.count), np.int64)
+
+    def find(self, rows: Array, agents: Agents, habits: Habits, dt: float) -> None:
+        goal = rows[self.members, s.GOAL_X : s.GOAL_Y + 1]
+        changed = np.flatnonzero((goal != self._goal).any(axis=1))
+        if len(changed):
+            self._goal = goal
+            for k, (x, y) in zip(changed.tolist(), goal[changed].tolist(), strict=True):
+                self._tree_of[self.members[k]] = self._tree(x, y)
+            rows[self.members[changed], s.AIM] = 0.0
+        find_aims(
+            rows, self.members, agents.id, agents.preferred_speed, self._tree_of,
+            self._left, self._after, self.routes.corners, self.routes.sight, self.routes.wider,
+            *habits, dt,
+        )  # fmt: skip
+
+    def _tree(self, x: float, y: float) -> int:
+        """The row of the ways to a goal, found or planned."""
+        known = self._rows.get((x, y))
+        if known is not None:
+            return known
+        free = sorted(set(range(len(self._left))) - set(self._rows.values()))
+        if not free:
+            self._drop()
+            free = sorted(set(range(len(self._left))) - set(self._rows.values()))
+        if not free:
+            free = [len(self._left)]
+            more = max(8, len(self._left))
+            self._left = np.concatenate([self._left, np.zeros((more, self.routes.count))])
+            self._after = np.concatenate(
+                [self._after, np.zeros((more, self.routes.count), np.int64)]
+            )
+        row = self._rows[x, y] = free[0]
+        self.routes.plan(x, y, self._left[row], self._after[row])
+        return row
+
+    def _drop(self) -> None:
+        """Give up trees that lead to nobody's goal, if they are many."""
+        used = {(x, y) for x, y in self._goal.tolist()}
+        if len(self._rows) > len(used) + _SPARE_TREES:
+            self._rows = {goal: row for goal, row in self._rows.items() if goal in used}

@@ -1,0 +1,89 @@
+"""Convex pieces of polygons that are not convex: triangles, joined where they stay convex.
+
+Source of the joining: Hertel, Mehlhorn, "Fast triangulation of simple polygons", FCT 1983.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import shapely  # type: ignore[import-untyped,unused-ignore]
+
+from crowdbot.core.types.arrays import Array
+from crowdbot.dsl.outlines import Outline, is_convex, signed_area, turn
+
+#: Smaller triangles are rounding, m^2.
+_LEAST_AREA = 1e-9
+
+
+def convex_pieces(outline: Outline, holes: Sequence[Outline] = ()) -> list[Array]:
+    """Convex outlines (K, 2), counter-clockwise, that fill a polygon without overlap.
+
+    Args:
+        outline: simple, counter-clockwise; m.
+        holes: simple outlines within it.
+
+    Returns:
+        the outline itself if it is convex and has no hole; the same pieces in the same order in
+        every call.
+    """
+    if not holes and is_convex(outline):
+        return [np.array(outline)]
+    polygon = shapely.Polygon(outline, holes)
+    triangles = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon))
+    pieces = [_corners(t) for t in triangles if t.area > _LEAST_AREA]
+    return [np.array(piece) for piece in _joined(sorted(pieces))]
+
+
+def _corners(triangle: Any) -> Outline:
+    points = tuple((float(x), float(y)) for x, y in triangle.exterior.coords[:-1])
+    return points if signed_area(points) > 0.0 else points[::-1]
+
+
+def _joined(pieces: list[Outline]) -> list[Outline]:
+    """Pieces joined across common sides, in turn, as long as what comes out is convex."""
+    open_ = list(pieces)
+    done: list[Outline] = []
+    while open_:
+        piece = open_.pop(0)
+        while (found := _partner(piece, open_)) is not None:
+            index, piece = found
+            open_.pop(index)
+        done.append(piece)
+    return done
+
+
+def _partner(piece: Outline, others: Sequence[Outline]) -> tuple[int, Outline] | None:
+    for index, other in enumerate(others):
+        together = _join(piece, other)
+        if together is not None:
+            return index, together
+    return None
+
+
+def _join(one: Outline, other: Outline) -> Outline | None:
+    """Both as one convex outline, if they have a whole side in common."""
+    where = {point: k for k, point in enumerate(other)}
+    for i, start in enumerate(one):
+        end = one[(i + 1) % len(one)]
+        k = where.get(end)
+        if k is None or other[(k + 1) % len(other)] != start:
+            continue
+        # Once around from the common side's end, then on from its start around the other.
+        first = [one[(i + 1 + n) % len(one)] for n in range(len(one))]
+        second = [other[(k + 2 + n) % len(other)] for n in range(len(other) - 2)]
+        together = _without_straight_corners((*first, *second))
+        return together if is_convex(together) else None
+    return None
+
+
+def _without_straight_corners(outline: Outline) -> Outline:
+    count = len(outline)
+    kept = tuple(
+        outline[i]
+        for i in range(count)
+        if turn(outline[i - 1], outline[i], outline[(i + 1) % count]) != 0.0
+    )
+    return kept if len(kept) >= 3 else outline

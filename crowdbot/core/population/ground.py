@@ -1,0 +1,85 @@
+"""Ground: where people may be put, and which places they can reach from there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+
+import numpy as np
+
+from crowdbot.core.crowd.routing.free_space import FreeSpace
+from crowdbot.core.types.arrays import Array, Point
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.dsl.scenario import Crowd
+from crowdbot.errors import InputError
+
+#: Who is nearer to a wall by no more than this touches it by rounding, m.
+_SLACK = 1e-6
+
+
+class Ground:
+    """The floor among walls, pillars and solids.
+
+    Args:
+        parts: the environment; None for a floor of which nothing is known.
+        crowd: how tall people are, and whether they find their way.
+    """
+
+    def __init__(self, parts: EnvironmentParts | None = None, crowd: Crowd | None = None) -> None:
+        self._walls, self._pillars = np.zeros((0, 4)), np.zeros((0, 3))
+        self._solids: tuple[Array, ...] = ()
+        if parts is not None and crowd is not None:
+            self._walls, self._pillars, self._solids = parts.in_the_way(crowd.body.height)
+        routing = None if crowd is None else crowd.routing
+        self.finds_way = routing is not None and routing.kind == "mesh"
+        self._space = cache(self._free_space)
+
+    def is_free(self, x: float, y: float, radius: float) -> bool:
+        """Whether a body can be here without touching anything that stands."""
+        ax, ay, bx, by = self._walls.T
+        ex, ey = bx - ax, by - ay
+        share = ((x - ax) * ex + (y - ay) * ey) / np.maximum(ex * ex + ey * ey, 1e-300)
+        share = np.clip(share, 0.0, 1.0)
+        away = np.hypot(x - ax - share * ex, y - ay - share * ey)
+        if np.any(away < radius - _SLACK):
+            return False
+        px, py, pr = self._pillars.T
+        if np.any(np.hypot(px - x, py - y) < pr + radius - _SLACK):
+            return False
+        return not any(_inside(outline, x, y) for outline in self._solids)
+
+    def reaches(self, start: Point, goal: Point, radius: float) -> bool:
+        """Whether somebody who finds ways gets from one place to another; others always do."""
+        if not self.finds_way:
+            return True
+        parts = self._space(radius).part_of(np.array([start, goal]))
+        return bool(parts[0] == parts[1] >= 0)
+
+    def check_route(self, who: str, start: Point, route: Sequence[Point], radius: float) -> None:
+        """Refuse a route on which no way leads from one point to the next.
+
+        Raises:
+            InputError: so it is; with the places.
+        """
+        for goal in route:
+            if goal != start and not self.reaches(start, goal, radius):
+                raise InputError(
+                    f"{who}: no way leads from ({start[0]:g}, {start[1]:g}) to the goal "
+                    f"({goal[0]:g}, {goal[1]:g}) for a body of radius {radius:g} m"
+                )
+            start = goal
+
+    def _free_space(self, radius: float) -> FreeSpace:
+        everything = np.concatenate([self._walls.reshape(-1, 2), self._pillars[:, :2]])
+        far = np.zeros((0, 2))
+        if len(everything):
+            low, high = everything.min(axis=0), everything.max(axis=0)
+            size = high - low + 1e3  # whoever is outside is on the floor around it
+            far = np.array([low - size, high + size])
+        return FreeSpace.of(self._walls, self._pillars, radius, far)
+
+
+def _inside(outline: Array, x: float, y: float) -> bool:
+    """Whether a point is inside of a convex, counter-clockwise outline."""
+    (ax, ay), (bx, by) = outline.T, np.roll(outline, -1, axis=0).T
+    return bool(np.all((bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0.0))

@@ -1,0 +1,104 @@
+"""Outlines: closed polygons of the floor as tuples of points, without a numbers library.
+
+An outline is simple if no two of its sides meet but neighbours in their corner.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+Point = tuple[float, float]
+Outline = tuple[Point, ...]
+Side = tuple[Point, Point]
+
+
+def sides(outline: Sequence[Point]) -> Iterator[Side]:
+    """The sides in turn, the last back to the first corner."""
+    yield from pairwise((*outline, outline[0]))
+
+
+def signed_area(outline: Sequence[Point]) -> float:
+    """Above 0 for an outline that runs counter-clockwise, m^2."""
+    x0, y0 = outline[0]  # near zero, where floats are finest
+    return 0.5 * sum(
+        (ax - x0) * (by - y0) - (bx - x0) * (ay - y0) for (ax, ay), (bx, by) in sides(outline)
+    )
+
+
+def counter_clockwise(outline: Sequence[Point]) -> Outline:
+    """The same outline, counter-clockwise."""
+    return tuple(outline) if signed_area(outline) > 0.0 else tuple(outline)[::-1]
+
+
+def turn(a: Point, b: Point, c: Point) -> float:
+    """Above 0 for a turn to the left at b, m^2."""
+    return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])
+
+
+def is_convex(outline: Sequence[Point]) -> bool:
+    """Whether a simple, counter-clockwise outline nowhere turns to the right."""
+    count = len(outline)
+    return all(
+        turn(outline[i - 1], outline[i], outline[(i + 1) % count]) >= 0.0 for i in range(count)
+    )
+
+
+def contains(outline: Sequence[Point], x: float, y: float) -> bool:
+    """Whether a point lies inside; on the border it may be either. Even-odd rule."""
+    odd = False
+    for (ax, ay), (bx, by) in sides(outline):
+        if (ay > y) != (by > y) and x < ax + (y - ay) * (bx - ax) / (by - ay):
+            odd = not odd
+    return odd
+
+
+def distance_to_side(x: float, y: float, side: Side) -> float:
+    """Distance from a point to a segment, m."""
+    (ax, ay), (bx, by) = side
+    ex, ey = bx - ax, by - ay
+    square = ex * ex + ey * ey
+    share = ((x - ax) * ex + (y - ay) * ey) / square if square > 0.0 else 0.0
+    share = min(1.0, max(0.0, share))
+    return math.hypot(x - ax - share * ex, y - ay - share * ey)
+
+
+def first_crossing(outline: Sequence[Point]) -> tuple[int, int] | None:
+    """Numbers of two sides that meet where they must not; None for a simple outline.
+
+    Sides are looked at from left to right, so that long outlines take little time.
+    """
+    listed = list(sides(outline))
+    order = sorted(range(len(listed)), key=lambda k: min(listed[k][0][0], listed[k][1][0]))
+    open_: list[int] = []
+    for k in order:
+        left = min(listed[k][0][0], listed[k][1][0])
+        open_ = [j for j in open_ if max(listed[j][0][0], listed[j][1][0]) >= left]
+        for j in open_:
+            if _clash(listed, j, k):
+                return min(j, k), max(j, k)
+        open_.append(k)
+    return None
+
+
+def _clash(listed: Sequence[Side], j: int, k: int) -> bool:
+    """Whether two sides meet in more than the corner between neighbours."""
+    count = len(listed)
+    if (j + 1) % count == k or (k + 1) % count == j:
+        first, second = (j, k) if (j + 1) % count == k else (k, j)
+        (a, b), (_, c) = listed[first], listed[second]
+        back = (a[0] - b[0]) * (c[0] - b[0]) + (a[1] - b[1]) * (c[1] - b[1]) > 0.0
+        return back and turn(a, b, c) == 0.0  # straight back over the side before
+    return touch(listed[j], listed[k])
+
+
+def touch(one: Side, other: Side) -> bool:
+    """Whether two segments have a point in common."""
+    (a, b), (c, d) = one, other
+    if max(a[0], b[0]) < min(c[0], d[0]) or max(c[0], d[0]) < min(a[0], b[0]):
+        return False
+    if max(a[1], b[1]) < min(c[1], d[1]) or max(c[1], d[1]) < min(a[1], b[1]):
+        return False
+    p, q, r, s = turn(a, b, c), turn(a, b, d), turn(c, d, a), turn(c, d, b)
+    return p * q <= 0.0 and r * s <= 0.0

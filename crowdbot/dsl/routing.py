@@ -1,0 +1,50 @@
+"""How people find their way to their goals; chosen by ``kind``, straight where none is named.
+
+The numbers of `mesh` are proposed here; decision 0020 says what they do.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from annotated_types import Ge
+from pydantic import Field
+
+from crowdbot.dsl.quantities import NonNegativeLength, PositiveDuration
+from crowdbot.dsl.spec import Spec
+
+
+class Routing(Spec):
+    """How people find their way."""
+
+    category: ClassVar[str] = "routing"
+    kind: str = Field(description="Name of the routing.")
+
+
+class StraightRouting(Routing):
+    """Straight to the goal; what is in between is left to the crowd policy and to contact."""
+
+    kind: Literal["straight"] = Field(default="straight", description="Name of the routing.")
+
+
+class MeshRouting(Routing):
+    """Shortest ways around walls and pillars, for bodies of each person's radius."""
+
+    kind: Literal["mesh"] = Field(default="mesh", description="Name of the routing.")
+    spread: NonNegativeLength = Field(
+        default=0.5,
+        description="How far aside of a corner people pass it at most, each as it draws, m; never "
+        "more than the opening has room for.",
+    )
+    patience: PositiveDuration = Field(
+        default=5.0, description="Without headway for so long, people look for another way, s."
+    )
+    detour: Annotated[float, Ge(1)] = Field(
+        default=1.5, description="Another way is at most so many times as long as the shortest."
+    )
+
+
+#: One of the routings.
+RoutingChoice = Annotated[StraightRouting | MeshRouting, Field(discriminator="kind")]
+
+__all__ = ["MeshRouting", "Routing", "RoutingChoice", "StraightRouting"]

@@ -1,0 +1,153 @@
+"""Corridors that turn or meet: a corner and a T-junction."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Le
+from pydantic import Field
+
+from crowdbot.dsl import Component, NonNegativeLength, Place, PositiveLength, Quantity, Rectangle
+from crowdbot.dsl.outlines import Outline, Point
+from crowdbot.plugins.environments.walkways import (
+    PORTAL_DEPTH,
+    WalkwaySpec,
+    box,
+    rounded,
+    walkway,
+)
+
+_RIGHT = math.pi / 2
+
+
+class CornerSpec(WalkwaySpec):
+    """A corridor along x that turns left; origin where the middle lines meet."""
+
+    kind: Literal["corner"] = "corner"
+    length: PositiveLength = Field(default=12.0, description="From the start to the turn, m.")
+    beyond: PositiveLength = Field(default=12.0, description="From the turn to the end, m.")
+    width: PositiveLength = Field(default=3.0, description="Width, m.")
+    angle: Annotated[float, Ge(math.radians(20)), Le(math.radians(150)), Quantity("angle")] = Field(
+        default=_RIGHT, description="Of the turn, 20 to 150 deg, rad."
+    )
+    corner_radius: NonNegativeLength = Field(
+        default=0.0, description="Of the inner corner, m; 0: square."
+    )
+
+    def place(self) -> Place:
+        """People walk through both ends."""
+        start, outer, right, left, inner, back = self._outline()
+        arc = rounded(left, inner, back, self.corner_radius)
+        outline = (start, outer, right, left, *arc, back)
+        return Place(faces=walkway(outline, (2, len(outline) - 1), self.wall_height))
+
+    def usual_zones(self) -> dict[str, Rectangle]:
+        """What lies before the turn and behind it; where that is askew, a box around it."""
+        half, (_, _, right, left, inner, _) = 0.5 * self.width, self._outline()
+        found = {"start": box(-self.length, min(inner[0], -half), -half, half)}
+        if self.angle == _RIGHT:
+            found["end"] = box(-half, half, half, self.beyond)
+            found["turn"] = box(-half, half, -half, half)
+            return found
+        ux, uy = math.cos(self.angle), math.sin(self.angle)
+        # Its corners are those of the end and, across the middle line, those before them.
+        back = [(x - self._away(inner) * ux, y - self._away(inner) * uy) for x, y in (right, left)]
+        xs, ys = zip(*(right, left, *back), strict=True)
+        return found | {"end": box(min(xs), max(xs), min(ys), max(ys))}
+
+    def _away(self, inner: Point) -> float:
+        """From the inner corner to the end, along the part behind the turn, m."""
+        along = inner[0] * math.cos(self.angle) + inner[1] * math.sin(self.angle)
+        return self.beyond - along
+
+    def usual_portals(self) -> dict[str, Rectangle]:
+        """Behind the start; behind the end where the turn is square."""
+        half = 0.5 * self.width
+        found = {"start": box(-self.length - PORTAL_DEPTH, -self.length, -half, half)}
+        if self.angle == _RIGHT:
+            found["end"] = box(-half, half, self.beyond, self.beyond + PORTAL_DEPTH)
+        return found
+
+    def check_shape(self) -> None:
+        """Both parts are longer than the turn."""
+        start, _, _, left, inner, back = self._outline()
+        room = min(inner[0] - back[0], math.dist(inner, left))
+        along = math.cos(self.angle) * (left[0] - inner[0]) + math.sin(self.angle) * (
+            left[1] - inner[1]
+        )
+        if inner[0] <= start[0] or along <= 0.0:
+            raise ValueError("length and beyond must be longer than the turn")
+        reach = self.corner_radius * math.tan(0.5 * self.angle)
+        if reach > room - 1e-9:
+            raise ValueError(f"corner_radius {self.corner_radius:g} m is too large for the turn")
+
+    def _outline(self) -> Outline:
+        """Start, outer corner, both sides of the end, inner corner, start again."""
+        half, cos, sin = 0.5 * self.width, math.cos(self.angle), math.sin(self.angle)
+        cos = 0.0 if self.angle == _RIGHT else cos
+        turn = half * (cos - 1.0) / sin
+        ex, ey = self.beyond * cos, self.beyond * sin
+        return (
+            (-self.length, -half), (-turn, -half),
+            (ex + half * sin, ey - half * cos), (ex - half * sin, ey + half * cos),
+            (turn, half), (-self.length, half),
+        )  # fmt: skip
+
+
+class TJunctionSpec(WalkwaySpec):
+    """A corridor along x, and another that meets it from below; origin where they meet."""
+
+    kind: Literal["t_junction"] = "t_junction"
+    length: PositiveLength = Field(default=24.0, description="Of the corridor along x, m.")
+    width: PositiveLength = Field(default=4.0, description="Of the corridor along x, m.")
+    stem_length: PositiveLength = Field(default=12.0, description="Of the other one, m.")
+    stem_width: PositiveLength = Field(default=3.0, description="Of the other one, m.")
+
+    def place(self) -> Place:
+        """People walk through the three ends."""
+        half, low, stem = 0.5 * self.length, 0.5 * self.width, 0.5 * self.stem_width
+        end = -low - self.stem_length
+        outline = (
+            (half, -low), (half, low), (-half, low), (-half, -low),
+            (-stem, -low), (-stem, end), (stem, end), (stem, -low),
+        )  # fmt: skip
+        return Place(faces=walkway(outline, (0, 2, 5), self.wall_height))
+
+    def usual_zones(self) -> dict[str, Rectangle]:
+        """The three arms and the middle."""
+        half, low, stem = 0.5 * self.length, 0.5 * self.width, 0.5 * self.stem_width
+        return {
+            "west": box(-half, -stem, -low, low),
+            "middle": box(-stem, stem, -low, low),
+            "east": box(stem, half, -low, low),
+            "stem": box(-stem, stem, -low - self.stem_length, -low),
+        }
+
+    def usual_portals(self) -> dict[str, Rectangle]:
+        """Behind the three ends."""
+        half, low, stem = 0.5 * self.length, 0.5 * self.width, 0.5 * self.stem_width
+        end = -low - self.stem_length
+        return {
+            "west": box(-half - PORTAL_DEPTH, -half, -low, low),
+            "east": box(half, half + PORTAL_DEPTH, -low, low),
+            "stem": box(-stem, stem, end - PORTAL_DEPTH, end),
+        }
+
+    def check_shape(self) -> None:
+        """The stem meets the corridor's side."""
+        if not self.stem_width < self.length:
+            raise ValueError("stem_width must be smaller than length")
+
+
+CORNER = Component(
+    spec=CornerSpec,
+    build="crowdbot.plugins.environments.place_build:build",
+    summary="corridor that turns left by an angle; blind or rounded corner",
+    examples=({}, {"angle": math.radians(50), "corner_radius": 1.5, "width": 4.0}),
+)
+T_JUNCTION = Component(
+    spec=TJunctionSpec,
+    build="crowdbot.plugins.environments.place_build:build",
+    summary="corridor that another one meets from one side",
+)

@@ -1,0 +1,98 @@
+"""Many pillars at once: in a grid, or drawn with a seed."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from typing import Annotated
+
+from annotated_types import Ge, Le
+from pydantic import Field
+
+from crowdbot.dsl import NonNegativeLength, Pillar, PositiveLength, Rectangle, Spec
+from crowdbot.dsl.outlines import Point
+
+Count = Annotated[int, Ge(1), Le(1000)]
+#: Draws for one pillar before there is no room for it.
+_ATTEMPTS = 1000
+
+
+class PillarGridSpec(Spec):
+    """Pillars in columns and rows, evenly spread."""
+
+    columns: Count = Field(description="How many along x.")
+    rows: Count = Field(description="How many along y.")
+    radius: PositiveLength = Field(default=0.3, description="Radius, m.")
+    area: Rectangle | None = Field(
+        default=None, description="Where they are; without it the whole floor."
+    )
+
+    def pillars(self, floor: Rectangle, top: float) -> tuple[Pillar, ...]:
+        """As many gaps as pillars and one more along each side, all equal."""
+        area = self.area or floor
+        xs, ys = _even(area.x, self.columns), _even(area.y, self.rows)
+        return tuple(
+            Pillar(x=x, y=y, radius=self.radius, heights=(0.0, top)) for x in xs for y in ys
+        )
+
+
+class PillarFieldSpec(Spec):
+    """Pillars at random places, with least gaps; the same seed gives the same pillars."""
+
+    count: Count = Field(description="How many.")
+    seed: Annotated[int, Ge(0), Le(2**63 - 1)] = Field(default=0, description="Draws them.")
+    radius: PositiveLength = Field(default=0.3, description="Smallest radius, m.")
+    largest_radius: PositiveLength | None = Field(
+        default=None, description="Largest radius, m; without it all have the smallest."
+    )
+    gap: NonNegativeLength = Field(
+        default=1.5, description="Least gap between the surfaces of two of them, m."
+    )
+    wall_gap: NonNegativeLength = Field(
+        default=1.0, description="Least gap between one of them and the area's sides, m."
+    )
+    area: Rectangle | None = Field(
+        default=None, description="Where they are; without it the whole floor."
+    )
+
+    def pillars(self, floor: Rectangle, top: float) -> tuple[Pillar, ...]:
+        """One after the other, each where the first free draw is.
+
+        Raises:
+            ValueError: they do not fit.
+        """
+        area, found = self.area or floor, list[Pillar]()
+        for number in range(self.count):
+            radius = self._radius(number)
+            for attempt in range(_ATTEMPTS):
+                at = self._place(area, radius, number, attempt)
+                if at is not None and all(self._apart(at, radius, p) for p in found):
+                    found.append(Pillar(x=at[0], y=at[1], radius=radius, heights=(0.0, top)))
+                    break
+            else:
+                raise ValueError(f"pillar_field: only {number} of {self.count} pillars fit")
+        return tuple(found)
+
+    def _radius(self, number: int) -> float:
+        largest = self.radius if self.largest_radius is None else self.largest_radius
+        return self.radius + (largest - self.radius) * self._uniform("radius", number, 0)
+
+    def _place(self, area: Rectangle, radius: float, number: int, attempt: int) -> Point | None:
+        margin = radius + self.wall_gap
+        (x0, x1), (y0, y1) = area.x, area.y
+        if x1 - x0 < 2.0 * margin or y1 - y0 < 2.0 * margin:
+            return None
+        u, v = self._uniform("x", number, attempt), self._uniform("y", number, attempt)
+        return x0 + margin + u * (x1 - x0 - 2 * margin), y0 + margin + v * (y1 - y0 - 2 * margin)
+
+    def _apart(self, at: Point, radius: float, other: Pillar) -> bool:
+        return math.dist(at, (other.x, other.y)) >= radius + other.radius + self.gap
+
+    def _uniform(self, what: str, number: int, attempt: int) -> float:
+        text = f"{self.seed}/pillars/{what}/{number}/{attempt}".encode()
+        return int.from_bytes(hashlib.sha256(text).digest()[:6], "big") / 2.0**48
+
+
+def _even(ends: tuple[float, float], count: int) -> list[float]:
+    step = (ends[1] - ends[0]) / (count + 1)
+    return [ends[0] + (k + 1) * step for k in range(count)]
