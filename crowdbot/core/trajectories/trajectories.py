@@ -203,7 +203,7 @@ def _check_travellers(run: Trajectories) -> None:
         return
     unknown = np.setdiff1d(run.trips.agent, run.agents.id)
     if len(unknown):
-        some = ", ".join(map(str, unknown[:3])) + (", â¦" if len(unknown) > 3 else "")
+        some = ", ".join(map(str, unknown[:3])) + (", …" if len(unknown) > 3 else "")
         raise InputError(f"trajectories: trip_agent has ids that no agent_id has: {some}")
 
 
