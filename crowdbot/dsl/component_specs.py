@@ -27,6 +27,11 @@ class EnvironmentSpec(ComponentSpec):
         default={}, description="Named areas through which people leave and re-enter."
     )
 
+    @property
+    def periodic_floor(self) -> Rectangle | None:
+        """The floor, if people who leave it on one side come in again on the other."""
+        return None
+
 
 class RobotSpec(ComponentSpec):
     """Abstract: a robot's body, drive and limits."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.agents import PORTAL, Agents
+from crowdbot.core.crowd.agents import ONWARD, PORTAL, Agents
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS
 from crowdbot.core.crowd.contact.robot_contact import DISC, R_W, RVX, RVY
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration
@@ -89,7 +89,8 @@ class CrowdEngine:
             if a.at_goal[i] == PORTAL:
                 draw_goal(rows, i, a.id, a.radius, self.world.out[a.flow[i]], self._place.goal_key)
             else:
-                head_for(rows, i, a.route, a.first)
+                rows[i, s.WAYPOINT] = a.at_goal[i] == ONWARD
+                head_for(rows, i, self._people, self._place.goal_key)
             if a.start_time[i] > 0.0:
                 rows[i, s.WAITING] = s.NOT_YET
             else:
@@ -98,10 +99,31 @@ class CrowdEngine:
         to_goal = rows[:, s.GOAL_X : s.GOAL_Y + 1] - rows[:, s.X : s.Y + 1]
         distance = np.hypot(to_goal[:, :1], to_goal[:, 1:])
         facing = np.divide(to_goal, distance, out=np.zeros_like(to_goal), where=distance > 0.0)
-        facing[distance[:, 0] == 0.0] = 1.0, 0.0
+        arrived = distance[:, 0] == 0.0
+        facing[arrived, 0], facing[arrived, 1] = (
+            np.cos(a.heading)[arrived],
+            np.sin(a.heading)[arrived],
+        )
+        rows[self._stays_first(rows), s.ON_TRIP] = 0.0
         rows[:, s.DIR_X : s.DIR_Y + 1] = facing
         rows[:, s.NOTICED] = s.UNAWARE
         return flat
+
+    def _stays_first(self, rows: Array) -> NDArray[np.bool_]:
+        """(N,) who begins with a stay: where its first goal is, which is a point."""
+        a, people = self.agents, self._people
+        begins = a.first[:-1][people.stays]
+        found = people.stays.copy()
+        away = np.hypot(
+            rows[people.stays, s.X] - a.route[begins, 0],
+            rows[people.stays, s.Y] - a.route[begins, 1],
+        )
+        found[people.stays] = (
+            (away <= a.radius[people.stays])
+            & (a.goal_area[begins, 0] == 0.0)
+            & ((a.pause[begins] > 0.0) | (a.ahead[people.stays] >= 0))
+        )
+        return found
 
     def advance(
         self, flat: Array, robots: Array = NOBODY, outline: Array = DISC, dt: float = TICK
