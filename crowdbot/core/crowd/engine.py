@@ -14,6 +14,7 @@ from crowdbot.core.crowd.agents import ONWARD, PORTAL, Agents
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS
 from crowdbot.core.crowd.contact.robot_contact import DISC, R_W, RVX, RVY
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration
+from crowdbot.core.crowd.groups import groups_of, hold_together
 from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdPolicy, CrowdView
 from crowdbot.core.crowd.portals import draw_goal, enter
@@ -76,6 +77,8 @@ class CrowdEngine:
         response = world.response
         dt = self._ticks_per_decision * TICK
         self._evades = response.by_decision(dt) if isinstance(response, Human) else None
+        self._members, self._ends = groups_of(agents)
+        self._cohesion = None if world.cohesion is None else world.cohesion.row
         n = len(agents)
         self._scratch = Scratch(np.zeros((n, 2)), np.zeros((n, PLACED_COLUMNS)), np.arange(n))
 
@@ -205,6 +208,11 @@ class CrowdEngine:
             np.copyto(
                 rows[:, s.AX : s.AY + 1], desired_acceleration(group.policy, view), where=decides
             )
+        if self._cohesion is not None and len(self._members):
+            hold_together(
+                rows, self._members, self._ends, self.agents.max_acceleration,
+                self._place.boundary, self._cohesion,
+            )  # fmt: skip
         self._evade(flat, rows, robots, outline)
 
     def _evade(self, flat: Array, rows: Array, robots: Array, outline: Array) -> None:

@@ -11,6 +11,7 @@ from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
 from crowdbot.core.crowd.agents import LOOP, ONWARD, PORTAL, REMOVE, RETURN, STOP
 from crowdbot.core.crowd.build import build_cost, build_policy
 from crowdbot.core.crowd.engine import PolicyFactory
+from crowdbot.core.crowd.groups import Cohesion
 from crowdbot.core.crowd.response.from_spec import response_of
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.registry.registry import Registry
@@ -130,6 +131,7 @@ def _world(
         out=boxes[:, 1],
         exit_point=crowd.exit_point,
         response=response_of(response),
+        cohesion=None if crowd.groups is None else Cohesion(**crowd.groups.model_dump()),
         robot_visible=response.velocity == "visible",
         stiffness=scenario.contact.stiffness,
         dissipation=scenario.contact.dissipation,
