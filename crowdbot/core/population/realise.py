@@ -26,6 +26,7 @@ from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.spawns import SpawnSampler
 from crowdbot.core.population.stream_sampler import StreamSampler
 from crowdbot.dsl.assets import Asset
+from crowdbot.dsl.people_kinds import LOOKS
 from crowdbot.dsl.scenario import Crowd, Flow, Scenario
 from crowdbot.dsl.spawning import Agent
 from crowdbot.errors import InputError
@@ -162,9 +163,20 @@ def _ways(flow: Flow, scenario: Scenario) -> list[Row]:
     return [{"portals": way, "heading": stream_heading(way, boxes)} for way in taken]
 
 
+def _look_of(agent: Agent) -> Row:
+    """The usual body of an explicit agent's look, where it has no number of its own."""
+    assert agent.look is not None
+    look = LOOKS[agent.look]
+    usual = {"radius": look.radius, "mass": look.mass[0] if look.mass else None}
+    own = {name: getattr(agent, name) for name in usual if getattr(agent, name) is not None}
+    return usual | own | {"height": agent.height or look.height[0]}
+
+
 def _agent_row(agent: Agent, scenario: Scenario, crowd: Crowd, streams: Streams) -> Row:
     """An explicit agent, the crowd's values where it has none of its own."""
     row = agent.model_dump()
+    if agent.look is not None:
+        row |= _look_of(agent)
     for name in ("radius", "mass", "max_speed", "max_acceleration"):
         if row[name] is None:
             row[name] = getattr(crowd.body, name)
