@@ -20,7 +20,7 @@ from crowdbot.errors import did_you_mean, nearest
 _CELL = re.compile(r'[ \t]*(?:"((?:[^"]|"")*)"|([^,"]*?))[ \t]*(,|$)')
 _INT = re.compile(r"[-+]?(?:0|[1-9][0-9]{0,18})")
 _FLOAT = re.compile(r"[-+]?(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
-_TEXT_COLUMNS = ("policy", "at_goal")
+_TEXT_COLUMNS = ("policy", "at_goal", "look")
 _REQUIRED = tuple(name for name, info in Agent.model_fields.items() if info.is_required())
 
 
@@ -121,6 +121,11 @@ class _Table:
             return self._goals(cell)
         if name == "portals":
             return self._portals(cell)
+        if name == "pauses":
+            return Node(
+                cell.mark,
+                tuple(_number(cell, at, text.strip()) for at, text in _parts(cell.text, ";")),
+            )
         return Node(cell.mark, cell.text if name in _TEXT_COLUMNS else _scalar(cell.text))
 
     def _goals(self, cell: _Cell) -> Node | None:

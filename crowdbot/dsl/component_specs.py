@@ -37,6 +37,11 @@ class EnvironmentSpec(ComponentSpec):
         """
         return None
 
+    @property
+    def periodic_floor(self) -> Rectangle | None:
+        """The floor, if people who leave it on one side come in again on the other."""
+        return None
+
 
 class RobotSpec(ComponentSpec):
     """Abstract: a robot's body, drive and limits."""

@@ -166,6 +166,10 @@ def parse_lock(text: str, name: str, spec: str) -> Lock:
         raise InputError(f"{name} is not a lock: {error}; {again}") from None
 
 
+#: The last column that every table of agents has.
+LAST_COLUMN = "goal_key"
+
+
 def split_tables(text: str, name: str) -> dict[str, str]:
     """Name -> table as text, taken from the file of all tables; "" -> a table of nobody.
 
@@ -181,17 +185,36 @@ def split_tables(text: str, name: str) -> dict[str, str]:
     grouped: dict[str, list[list[str]]] = {"": [rows[0][1:]]}
     for row in rows[1:]:
         grouped.setdefault(row[0], [rows[0][1:]]).append(row[1:])
-    return {key: _to_csv(table) for key, table in grouped.items()}
+    return {key: _to_csv(_used_columns(table)) for key, table in grouped.items()}
 
 
 def join_tables(tables: Mapping[str, str]) -> str:
-    """The file of all tables; tables without agents have no rows in it."""
-    lines: list[list[str]] = []
-    for name, text in tables.items():
-        header, *rows = csv.reader(io.StringIO(text, newline=""))
-        lines = lines or [["draw", *header]]
-        lines += [[name, *row] for row in rows]
-    return _to_csv(lines or [["draw"]])
+    """The file of all tables; tables without agents have no rows in it.
+
+    Columns that only some tables have stand after `LAST_COLUMN`, and are empty for the others.
+    """
+    read = {name: list(csv.reader(io.StringIO(t, newline=""))) for name, t in tables.items()}
+    header = list(dict.fromkeys(column for rows in read.values() for column in rows[0]))
+    if LAST_COLUMN in header:  # those that not all have: always in the same order
+        end = header.index(LAST_COLUMN) + 1
+        header = header[:end] + sorted(header[end:])
+    lines = [["draw", *header]]
+    for name, (own, *rows) in read.items():
+        place = {column: i for i, column in enumerate(own)}
+        lines += [[name, *(row[place[c]] if c in place else "" for c in header)] for row in rows]
+    return _to_csv(lines)
+
+
+def _used_columns(table: list[list[str]]) -> list[list[str]]:
+    """A table without the columns after `LAST_COLUMN` in which it has nothing."""
+    header, *rows = table
+    if LAST_COLUMN not in header:
+        return table
+    end, width = header.index(LAST_COLUMN), len(header)
+    if any(len(row) != width for row in rows):
+        return table  # whoever reads it says what is wrong
+    kept = [i for i in range(width) if i <= end or any(row[i] for row in rows)]
+    return [[row[i] for i in kept] for row in table]
 
 
 def table_hash(table: str) -> str:

@@ -10,7 +10,7 @@ from crowdbot.dsl.scenario import Scenario
 from crowdbot.dsl.spawning import CLEAR_OF_ROBOT
 
 #: What of a crowd has no part in its drawing; everything else of it, and the environment, has.
-NOT_SAMPLED = ("policy", "policies", "costs", "robot_response")
+NOT_SAMPLED = ("policy", "policies", "costs", "robot_response", "groups")
 
 
 def population_inputs(scenario: Scenario) -> str:
@@ -27,6 +27,8 @@ def _starts_among_people(scenario: Scenario) -> list[tuple[float, float]]:
     crowd, zones = scenario.crowd, scenario.environment.zones
     if crowd is None:
         return []
+    if crowd.streams:  # they may begin anywhere
+        return sorted(robot.task.start[:2] for robot in scenario.robots.values())
     places = [*([crowd.flow.area] if crowd.flow else []), *(s.area for s in crowd.spawns.values())]
     areas = [Area.of(zones[p]) if isinstance(p, str) else p for p in places]
     starts = sorted(robot.task.start[:2] for robot in scenario.robots.values())

@@ -30,9 +30,11 @@ from crowdbot.dsl.component_specs import (
     SensorSpec,
     with_wheels,
 )
+from crowdbot.dsl.group_forces import GroupForces
 from crowdbot.dsl.lock import LockFiles
 from crowdbot.dsl.parameters import SpeedDistribution
 from crowdbot.dsl.path_names import PathName
+from crowdbot.dsl.people_kinds import PeopleKind
 from crowdbot.dsl.quantities import (
     Angle,
     Length,
@@ -50,12 +52,14 @@ from crowdbot.dsl.robot_response import HumanResponse, RobotResponseChoice
 from crowdbot.dsl.routing import RoutingChoice
 from crowdbot.dsl.spawning import Agents, RouteEnd, Spawn
 from crowdbot.dsl.spec import Spec
+from crowdbot.dsl.stream_kinds import StreamChoice
 from crowdbot.lazy import lazy_names
 
 #: What draws lies floors above; it is named as text, like whatever is built.
 _above = lazy_names(__name__, {"crowdbot.core.view.notebook": "scenario_html"})
-#: What an agent does at the end of its route.
-AtGoal = Literal["portal", RouteEnd]
+#: What an agent does at the end of its route. Those of streams: come in again where it came from;
+#: walk on in its direction for ever.
+AtGoal = Literal["portal", RouteEnd, "return", "onward"]
 
 
 class CrowdSeed(Spec):
@@ -101,9 +105,15 @@ class NamedPolicy(Spec):
 
 
 class Crowd(Spec):
-    """Who walks, from where to where, and how they decide: a flow, spawns, explicit agents."""
+    """Who walks, from where to where, and how they decide: a flow, streams, spawns, agents.
+
+    Fields that came after the first locks are outside the hash while they are as usual.
+    """
 
     flow: Flow | None = None
+    streams: dict[str, StreamChoice] = Field(
+        default={}, exclude_if=lambda streams: not streams, description="Named streams of people."
+    )
     spawns: dict[str, Spawn] = Field(default={}, description="Named spawns.")
     goal_areas: dict[str, GoalArea] = Field(default={}, description="Named areas of goals.")
     agents: Agents = Field(
@@ -113,6 +123,17 @@ class Crowd(Spec):
         default=None, description="Preferred speeds of all who have none of their own."
     )
     body: Body = Field(default=Body(), description="Common to all agents.")
+    people: dict[str, PeopleKind] = Field(
+        default={},
+        exclude_if=lambda kinds: not kinds,
+        description="Named kinds of people that the crowd is a mixture of; without it all are "
+        "alike.",
+    )
+    groups: GroupForces | None = Field(
+        default=GroupForces(),
+        exclude_if=lambda forces: forces == GroupForces(),
+        description="What holds groups together; null: nothing.",
+    )
     policy: SerializeAsAny[CrowdPolicySpec]
     costs: dict[str, SerializeAsAny[CostFunctionSpec]] = Field(
         default={}, description="Named cost functions of a velocity-space policy."
@@ -137,8 +158,8 @@ class Crowd(Spec):
 
     @property
     def names_nobody(self) -> bool:
-        """Whether there is neither a flow, nor a spawn, nor an explicit agent."""
-        return self.flow is None and not self.spawns and not self.agents
+        """Whether there is neither a flow, nor a stream, nor a spawn, nor an explicit agent."""
+        return self.flow is None and not (self.streams or self.spawns or self.agents)
 
 
 class Goal(Spec):

@@ -12,6 +12,7 @@ from crowdbot.dsl.semantics_agents import check_agents
 from crowdbot.dsl.semantics_crowd import check_crowd
 from crowdbot.dsl.semantics_facts import Facts
 from crowdbot.dsl.semantics_spawns import check_spawns
+from crowdbot.dsl.semantics_streams import check_streams
 from crowdbot.dsl.semantics_ways import check_ways
 from crowdbot.dsl.validation import locate, missing_field
 
@@ -20,8 +21,8 @@ def check(scenario: Scenario, tree: Node) -> list[Diagnostic]:
     """All contradictions of a scenario, each with its place in the tree it came from."""
     found, facts = list(_check_kinds(scenario, tree)), Facts(scenario, tree)
     if scenario.crowd is not None:
-        found += [*check_crowd(facts), *check_spawns(facts), *check_agents(facts)]
-        found += check_ways(facts)
+        found += [*check_crowd(facts), *check_streams(facts), *check_spawns(facts)]
+        found += [*check_agents(facts), *check_ways(facts)]
     for name, robot in scenario.robots.items():
         found += _check_task(facts, name, robot.task)
     return found

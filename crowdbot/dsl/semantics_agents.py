@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from crowdbot.dsl.diagnostics import Diagnostic
+from crowdbot.dsl.people_kinds import LOOKS
 from crowdbot.dsl.semantics_crowd import missing_speed
 from crowdbot.dsl.semantics_facts import Facts
 from crowdbot.dsl.spawning import Agent
@@ -48,7 +49,8 @@ def _check_overlaps(facts: Facts) -> Iterator[Diagnostic]:
     waves: dict[float, list[int]] = {}
     for i, agent in enumerate(agents):
         waves.setdefault(agent.start_time, []).append(i)
-    discs = [(a.x, a.y, a.radius or default) for a in agents]
+    looks = [LOOKS[a.look].radius if a.look else None for a in agents]
+    discs = [(a.x, a.y, a.radius or look or default) for a, look in zip(agents, looks, strict=True)]
     for wave in waves.values():
         for one, other in overlapping([discs[i] for i in wave]):
             i, k = sorted((wave[one], wave[other]))

@@ -14,7 +14,10 @@ def check_crowd(facts: Facts) -> Iterator[Diagnostic]:
     """Everything about a crowd that is in neither a spawn nor an agent of its own."""
     crowd = facts.crowd
     if crowd.names_nobody and crowd.policy.record is None:
-        hint = "write one of flow, spawns and agents; 'crowd: null' is a scenario without people"
+        hint = (
+            "write one of flow, streams, spawns and agents; "
+            "'crowd: null' is a scenario without people"
+        )
         yield Diagnostic("E134", "the crowd has no people", facts.mark("crowd"), hint)
     if crowd.flow is not None:
         yield from _check_flow(facts, crowd.flow)

@@ -25,6 +25,7 @@ from crowdbot.dsl.parameters import (
     SpeedChoice,
     SpeedSample,
 )
+from crowdbot.dsl.people_kinds import LookName
 from crowdbot.dsl.quantities import (
     Angle,
     Length,
@@ -201,6 +202,26 @@ class Agent(Spec):
     portals: tuple[str, str] | None = Field(
         default=None, strict=False, description="A stream: from the first portal to the second."
     )
+    pauses: tuple[NonNegativeDuration, ...] = Field(
+        default=(),
+        strict=False,
+        exclude_if=lambda pauses: not pauses,
+        description="How long it stays at each goal, s; without it nowhere.",
+    )
+    look: LookName | None = Field(
+        default=None,
+        exclude_if=lambda look: look is None,
+        description="What sensors see; its usual radius, mass and height where none is given.",
+    )
+    height: PositiveLength | None = Field(
+        default=None, exclude_if=lambda height: height is None, description="Height, m."
+    )
+
+    @model_validator(mode="after")
+    def _a_pause_for_each_goal(self) -> Agent:
+        if len(self.pauses) not in (0, len(self.goals)):
+            raise ValueError(f"write a pause for each of the {len(self.goals)} goals")
+        return self
 
     @model_validator(mode="after")
     def _portals_have_no_end(self) -> Agent:

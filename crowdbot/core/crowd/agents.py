@@ -10,10 +10,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.looks import Looks
 
 #: What happens at the end of a route: through the flow's portals and on; standing still; out of
-#: the world for good; from the first point again.
-PORTAL, STOP, REMOVE, LOOP = range(4)
+#: the world for good; from the first point again; back to where one came in; on in the direction
+#: from the first point to the second, for ever.
+PORTAL, STOP, REMOVE, LOOP, RETURN, ONWARD = range(6)
+
+#: Members of a group walk so far beside each other, between centres, m.
+_ABREAST = 0.75
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,14 +28,22 @@ class Agents:
     Attributes:
         id, x, y, preferred_speed, radius, max_speed, max_acceleration, mass: (N,).
         start_time: (N,) when the agent enters the world, s.
-        at_goal: (N,) ``PORTAL``, ``STOP``, ``REMOVE`` or ``LOOP``.
+        at_goal: (N,) ``PORTAL``, ``STOP``, ``REMOVE``, ``LOOP``, ``RETURN`` or ``ONWARD``.
         flow: (N,) row of the world's portals, for ``PORTAL``.
         policy: (N,) number of the policy that the agent follows.
         route: (W, 2) points of all routes in the agents' order, m; for all but ``PORTAL``.
         first: (N + 1,) rows of ``route`` that belong to agent i: first[i] to first[i + 1].
         ignores_robot: (N,) whether the agent takes no notice of robots until they touch.
         late: (N,) whether the agent notices robots late, where people notice them at all.
+        goal_area: (W, 3) size along own x and y (m) and rotation (rad) of the area around each
+            point of ``route``; zeros: the point itself is the goal.
+        pause: (W,) how long the agent stays at each point, s.
+        ahead: (N,) row of the agent before it in a queue; -1: in no queue, or the first.
+        origin: (N, 5) middle, size and rotation of the area in which the agent comes in, m and
+            rad; zeros: it has no choice.
         group: (N,) agents with equal numbers belong together; -1: alone.
+        heading: (N,) way faced by who begins at its goal, rad.
+        looks: what sensors see of each; None: of all the usual body.
     """
 
     id: NDArray[np.int64]
@@ -49,14 +62,28 @@ class Agents:
     first: NDArray[np.int64]
     ignores_robot: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
     late: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
+    goal_area: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    pause: Array = field(default_factory=lambda: np.zeros(0))
+    ahead: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+    origin: Array = field(default_factory=lambda: np.zeros((0, 5)))
     group: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+    heading: Array = field(default_factory=lambda: np.zeros(0))
+    looks: Looks | None = None
 
     def __post_init__(self) -> None:
-        if len(self.group) != len(self.id):
-            object.__setattr__(self, "group", np.full(len(self.id), -1, np.int64))
-        for name in ("ignores_robot", "late"):
-            if len(getattr(self, name)) != len(self.id):
-                object.__setattr__(self, name, np.zeros(len(self.id), np.bool_))
+        count, points = len(self.id), len(self.route)
+        for name, usual in (
+            ("ignores_robot", np.zeros(count, np.bool_)),
+            ("late", np.zeros(count, np.bool_)),
+            ("goal_area", np.zeros((points, 3))),
+            ("pause", np.zeros(points)),
+            ("ahead", np.full(count, -1, np.int64)),
+            ("origin", np.zeros((count, 5))),
+            ("group", np.full(count, -1, np.int64)),
+            ("heading", np.zeros(count)),
+        ):
+            if len(getattr(self, name)) != len(usual):
+                object.__setattr__(self, name, usual)
 
     def __len__(self) -> int:
         return len(self.id)
@@ -80,9 +107,18 @@ class Agents:
         routes: Sequence[Sequence[tuple[float, float]]] | None = None,
         ignores_robot: ArrayLike = False,
         late: ArrayLike = False,
+        goal_areas: Sequence[Sequence[tuple[float, ...]]] | None = None,
+        pauses: Sequence[Sequence[float]] | None = None,
+        ahead: ArrayLike = -1,
+        origins: Sequence[Sequence[float]] | None = None,
         group: ArrayLike = -1,
+        heading: ArrayLike = 0.0,
+        looks: Looks | None = None,
     ) -> Agents:
         """Agents from rows or single numbers; with routes they stop at the end, else portals.
+
+        ``goal_areas`` and ``pauses`` have for each agent nothing or an entry for each point of its
+        route, ``origins`` nothing or five numbers.
 
         Raises:
             ValueError: rows differ in length, ids repeat, or a number is not finite.
@@ -114,7 +150,13 @@ class Agents:
             first=np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]),
             ignores_robot=row(ignores_robot, np.bool_),
             late=row(late, np.bool_),
+            goal_area=_along(routes, goal_areas, (0.0, 0.0, 0.0)).reshape(-1, 3),
+            pause=_along(routes, pauses, 0.0),
+            ahead=row(ahead, np.int64),
+            origin=np.array([o or (0.0,) * 5 for o in origins or [()] * count]).reshape(-1, 5),
             group=row(group, np.int64),
+            heading=row(heading),
+            looks=looks,
         )
         made.check()
         return made
@@ -136,5 +178,58 @@ class Agents:
                 raise ValueError(f"{name} of agents must be finite and above 0")
         if np.any(self.preferred_speed < 0.0):
             raise ValueError("preferred_speed of agents must not be negative")
-        if np.any((self.at_goal < PORTAL) | (self.at_goal > LOOP)):
-            raise ValueError("at_goal of agents must be PORTAL, STOP, REMOVE or LOOP")
+        if np.any((self.at_goal < PORTAL) | (self.at_goal > ONWARD)):
+            raise ValueError(
+                "at_goal of agents must be PORTAL, STOP, REMOVE, LOOP, RETURN or ONWARD"
+            )
+        self._check_ways()
+
+    def _check_ways(self) -> None:
+        for name in ("goal_area", "pause", "origin", "heading"):
+            if not np.all(np.isfinite(getattr(self, name))):
+                raise ValueError(f"{name} of agents must be finite")
+        if np.any(self.pause < 0.0) or np.any(self.goal_area[:, :2] < 0.0):
+            raise ValueError("pauses and areas of agents must not be negative")
+        if np.any(self.ahead >= np.arange(len(self))):
+            raise ValueError("agents queue behind one of an earlier row")
+        points = np.diff(self.first)
+        if np.any(points[self.at_goal == ONWARD] != 2):
+            raise ValueError("ONWARD needs two points")
+        returns = self.at_goal == RETURN
+        if np.any(points[returns] == 0) or np.any(self.origin[returns, 2:4] <= 0.0):
+            raise ValueError("RETURN needs a route and an origin")
+
+    @property
+    def guide(self) -> NDArray[np.int64]:
+        """(N,) id of the first of each one's group, by whose draws all of it go; else the own."""
+        guide = self.id.copy()
+        for number in np.unique(self.group[self.group >= 0]):
+            members = self.group == number
+            guide[members] = self.id[members].min()
+        return guide
+
+    @property
+    def abreast(self) -> Array:
+        """(N,) how far beside the goal of its group each one's own is, to the left; m."""
+        beside = np.zeros(len(self))
+        for number in np.unique(self.group[self.group >= 0]):
+            members = np.flatnonzero(self.group == number)
+            members = members[np.argsort(self.id[members])]
+            beside[members] = _ABREAST * (np.arange(len(members)) - 0.5 * (len(members) - 1))
+        return beside
+
+
+def _along(routes: Sequence[Sequence[Any]] | None, given: Any, usual: Any) -> Array:
+    """One entry for each point of all routes; the usual one for agents who are given none.
+
+    Raises:
+        ValueError: an agent has another number of entries than points.
+    """
+    routes = routes or ()
+    given = given or [()] * len(routes)
+    found: list[Any] = []
+    for route, own in zip(routes, given, strict=True):
+        if len(own) not in (0, len(route)):
+            raise ValueError(f"{len(own)} entries for a route of {len(route)} points")
+        found += own or [usual] * len(route)
+    return np.array(found, dtype=np.float64)

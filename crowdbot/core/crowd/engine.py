@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.agents import PORTAL, Agents
+from crowdbot.core.crowd.agents import ONWARD, PORTAL, Agents
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS
 from crowdbot.core.crowd.contact.robot_contact import DISC, R_W, RVX, RVY
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration
+from crowdbot.core.crowd.groups import groups_of, hold_together
 from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdPolicy, CrowdView
 from crowdbot.core.crowd.portals import draw_goal, enter
@@ -95,6 +96,8 @@ class CrowdEngine:
             else Router(agents, world.walls, world.pillars, world.routing)
         )
         self._aim = s.GOAL_X if self._router is None else s.AIM_X  # what policies see as the goal
+        self._members, self._ends = groups_of(agents)
+        self._cohesion = None if world.cohesion is None else world.cohesion.row
         n = len(agents)
         self._scratch = Scratch(np.zeros((n, 2)), np.zeros((n, PLACED_COLUMNS)), np.arange(n))
 
@@ -108,7 +111,8 @@ class CrowdEngine:
             if a.at_goal[i] == PORTAL:
                 draw_goal(rows, i, a.id, a.radius, self.world.out[a.flow[i]], self._place.goal_key)
             else:
-                head_for(rows, i, a.route, a.first)
+                rows[i, s.WAYPOINT] = a.at_goal[i] == ONWARD
+                head_for(rows, i, self._people, self._place.goal_key)
         if self._router is not None:
             self._router.find(rows, 0.0)
         for i in range(len(a)):
@@ -120,10 +124,31 @@ class CrowdEngine:
         to_goal = rows[:, self._aim : self._aim + 2] - rows[:, s.X : s.Y + 1]
         distance = np.hypot(to_goal[:, :1], to_goal[:, 1:])
         facing = np.divide(to_goal, distance, out=np.zeros_like(to_goal), where=distance > 0.0)
-        facing[distance[:, 0] == 0.0] = 1.0, 0.0
+        arrived = distance[:, 0] == 0.0
+        facing[arrived, 0], facing[arrived, 1] = (
+            np.cos(a.heading)[arrived],
+            np.sin(a.heading)[arrived],
+        )
+        rows[self._stays_first(rows), s.ON_TRIP] = 0.0
         rows[:, s.DIR_X : s.DIR_Y + 1] = facing
         rows[:, s.NOTICED] = s.UNAWARE
         return flat
+
+    def _stays_first(self, rows: Array) -> NDArray[np.bool_]:
+        """(N,) who begins with a stay: where its first goal is, which is a point."""
+        a, people = self.agents, self._people
+        begins = a.first[:-1][people.stays]
+        found = people.stays.copy()
+        away = np.hypot(
+            rows[people.stays, s.X] - a.route[begins, 0],
+            rows[people.stays, s.Y] - a.route[begins, 1],
+        )
+        found[people.stays] = (
+            (away <= a.radius[people.stays])
+            & (a.goal_area[begins, 0] == 0.0)
+            & ((a.pause[begins] > 0.0) | (a.ahead[people.stays] >= 0))
+        )
+        return found
 
     def advance(
         self, flat: Array, robots: Array = NOBODY, outline: Array = DISC, dt: float = TICK
@@ -209,6 +234,11 @@ class CrowdEngine:
             np.copyto(
                 rows[:, s.AX : s.AY + 1], desired_acceleration(group.policy, view), where=decides
             )
+        if self._cohesion is not None and len(self._members):
+            hold_together(
+                rows, self._members, self._ends, self.agents.max_acceleration,
+                self._place.boundary, self._cohesion,
+            )  # fmt: skip
         self._evade(flat, rows, robots, outline)
 
     def _evade(self, flat: Array, rows: Array, robots: Array, outline: Array) -> None:

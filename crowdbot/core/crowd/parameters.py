@@ -25,6 +25,8 @@ class AgentParameters(NamedTuple):
         entry_order: rows of agents by id: the order in which they enter.
         heeds_robot: whether an agent steers away from robots.
         push: stiffness of contacts with people, walls and pillars, 1/s^2.
+        goal_area, pause, ahead, origin, guide, abreast: as in `Agents`.
+        stays: whether an agent may have reason to stay at a goal for a while.
     """
 
     id: Indices
@@ -40,6 +42,13 @@ class AgentParameters(NamedTuple):
     entry_order: Indices
     heeds_robot: Mask
     push: Array
+    goal_area: Array
+    pause: Array
+    ahead: Indices
+    origin: Array
+    guide: Indices
+    abreast: Array
+    stays: Mask
 
     @classmethod
     def of(cls, agents: Agents, push: Array) -> AgentParameters:
@@ -48,7 +57,15 @@ class AgentParameters(NamedTuple):
         return cls(
             a.id, a.radius, a.mass, a.preferred_speed, a.max_speed, a.start_time, a.at_goal,
             a.flow, a.route, a.first, np.argsort(a.id, kind="stable"), ~a.ignores_robot, push,
+            a.goal_area, a.pause, a.ahead, a.origin, a.guide, a.abreast, _may_stay(a),
         )  # fmt: skip
+
+
+def _may_stay(agents: Agents) -> Mask:
+    """(N,) who is in a queue or pauses somewhere."""
+    pauses = np.concatenate([[0.0], np.cumsum(agents.pause)])
+    found: Mask = (agents.ahead >= 0) | (np.diff(pauses[agents.first]) > 0.0)
+    return found
 
 
 class WorldParameters(NamedTuple):

@@ -5,12 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.crowd.agents import RETURN
+from crowdbot.core.crowd.goal_areas import point_in_area
 from crowdbot.core.crowd.parameters import AgentParameters, WorldParameters
-from crowdbot.core.crowd.routes import end_trip, start_trip
+from crowdbot.core.crowd.routes import end_trip, head_for, start_trip
 from crowdbot.core.crowd.state import (
     AIM,
     AIM_X,
     AIM_Y,
+    ARRIVED,
     AT_PORTAL,
     ATTEMPT,
     AX,
@@ -18,6 +21,9 @@ from crowdbot.core.crowd.state import (
     GOAL_X,
     GOAL_Y,
     JUMPS,
+    LAP_X,
+    LAP_Y,
+    ON_TRIP,
     PRESENT,
     PUSH_X,
     PUSH_Y,
@@ -25,6 +31,7 @@ from crowdbot.core.crowd.state import (
     VX,
     VY,
     WAITING,
+    WAYPOINT,
     X,
     Y,
 )
@@ -133,6 +140,9 @@ def try_to_re_enter(
     The point lies in the in-portal as the agent left the out-portal (``world.keep_offset``), or
     is drawn anew in each attempt.
     """
+    if people.at_goal[i] == RETURN:
+        _try_to_come_back(agents, i, people, world.goal_key, robots, now)
+        return
     flow, radius, key = people.flow[i], people.radius[i], world.goal_key
     out, trip, attempt = world.out[flow], int(agents[i, TRIP]), int(agents[i, ATTEMPT])
     agents[i, ATTEMPT] += 1.0
@@ -150,3 +160,54 @@ def try_to_re_enter(
     agents[i, AIM] = 0.0
     draw_goal(agents, i, people.id, people.radius, out, key)
     enter(agents, i, x, y, people.preferred_speed[i], now)
+
+
+@kernel
+def place_of_entry(
+    agents: Array, i: int, people: AgentParameters, key: np.uint64
+) -> tuple[float, float]:
+    """A point of the area in which agent i comes in, drawn anew in each attempt."""
+    trip, attempt = int(agents[i, TRIP]), int(agents[i, ATTEMPT])
+    u = counter_rng.uniform(key, people.id[i], trip, counter_rng.ENTRY, 2 * attempt)
+    v = counter_rng.uniform(key, people.id[i], trip, counter_rng.ENTRY, 2 * attempt + 1)
+    x, y, size = people.origin[i, 0], people.origin[i, 1], people.origin[i, 2:]
+    return point_in_area(x, y, size, people.radius[i], u, v)
+
+
+@kernel
+def _try_to_come_back(
+    agents: Array, i: int, people: AgentParameters, key: np.uint64, robots: Array, now: float
+) -> None:
+    """Try one point of the origin; begin the way anew there if it is free."""
+    x, y = place_of_entry(agents, i, people, key)
+    agents[i, ATTEMPT] += 1.0
+    if not is_free(agents, i, people.radius, robots, x, y):
+        return
+    agents[i, TRIP] += 1.0
+    agents[i, JUMPS] += 1.0
+    agents[i, WAYPOINT] = agents[i, LAP_X] = agents[i, LAP_Y] = 0.0
+    agents[i, X], agents[i, Y] = x, y
+    head_for(agents, i, people, key)
+    enter(agents, i, x, y, people.preferred_speed[i], now)
+
+
+@kernel
+def try_to_start(
+    agents: Array, i: int, people: AgentParameters, key: np.uint64, robots: Array, now: float
+) -> None:
+    """Put agent i into the world where it starts, if nobody stands there.
+
+    Who has an origin tries another point of it next time.
+    """
+    x, y = agents[i, X], agents[i, Y]
+    choice = people.origin[i, 2] > 0.0
+    if choice and agents[i, ATTEMPT] > 0.0:
+        x, y = place_of_entry(agents, i, people, key)
+    if not is_free(agents, i, people.radius, robots, x, y):
+        agents[i, ATTEMPT] += 1.0 if choice else 0.0
+        return
+    on_trip = agents[i, ON_TRIP]
+    enter(agents, i, x, y, people.preferred_speed[i], now)
+    agents[i, ON_TRIP] = on_trip
+    if people.stays[i] and on_trip == 0.0:
+        agents[i, ARRIVED] = now

@@ -13,11 +13,11 @@ from crowdbot.core.crowd.contact.pedestrian_contact import push_apart
 from crowdbot.core.crowd.contact.robot_contact import robot_contact
 from crowdbot.core.crowd.parameters import AgentParameters, WorldParameters
 from crowdbot.core.crowd.periodic_boundary import wrap
-from crowdbot.core.crowd.portals import enter, entry_fraction, is_free, leave, try_to_re_enter
+from crowdbot.core.crowd.portals import entry_fraction, leave, try_to_re_enter, try_to_start
 from crowdbot.core.crowd.response.keep_off import keep_off
 from crowdbot.core.crowd.response.parameters import KEEP_OFF, KIND
 from crowdbot.core.crowd.response.standing import stop_short
-from crowdbot.core.crowd.routes import end_trip, next_goal, reach_fraction
+from crowdbot.core.crowd.routes import arrive, goal_fraction, next_goal, stays
 from crowdbot.core.crowd.state import (
     AGENT_COLUMNS,
     ARRIVALS,
@@ -27,8 +27,6 @@ from crowdbot.core.crowd.state import (
     BESIDE,
     DIR_X,
     DIR_Y,
-    GOAL_X,
-    GOAL_Y,
     HEADER_SIZE,
     NOT_YET,
     ON_TRIP,
@@ -57,7 +55,8 @@ def tick(
     flat: Array, robots: Array, outline: Array, discs: Array, dt: float,
     ids: Indices, radius: Array, mass: Array, preferred_speed: Array, max_speed: Array,
     start_time: Array, at_goal: Indices, flow: Indices, route: Array, first: Indices,
-    entry_order: Indices, heeds_robot: Mask, push: Array,
+    entry_order: Indices, heeds_robot: Mask, push: Array, goal_area: Array, pause: Array,
+    ahead: Indices, origin: Array, guide: Indices, abreast: Array, stays_at: Mask,
     walls: Array, entrance: Array, out: Array, keep_offset: bool, boundary: Array,
     goals_wrap: bool, response: Array, stiffness: float, dissipation: float, goal_key: np.uint64,
     reaction: Array, placed: Array, order: Indices,
@@ -72,13 +71,13 @@ def tick(
         robots, outline: (R, 8), (K, 2) as in `crowdbot.core.crowd.contact.robot_contact`.
         discs: (D, 3) x, y, radius of fixed discs that push, m.
         dt: length of the tick, s.
-        ids to push: fields of `AgentParameters`.
+        ids to stays_at: fields of `AgentParameters`.
         walls to goal_key: fields of `WorldParameters`.
         reaction, placed, order: fields of `Scratch`.
     """
     people = AgentParameters(
         ids, radius, mass, preferred_speed, max_speed, start_time, at_goal, flow, route, first,
-        entry_order, heeds_robot, push,
+        entry_order, heeds_robot, push, goal_area, pause, ahead, origin, guide, abreast, stays_at,
     )  # fmt: skip
     world = WorldParameters(
         walls, entrance, out, keep_offset, boundary, goals_wrap, response, stiffness, dissipation,
@@ -100,7 +99,7 @@ def tick(
         if agents[i, WAITING] == AT_PORTAL:
             try_to_re_enter(agents, i, people, world, robots, now + dt)
         elif agents[i, WAITING] == NOT_YET and start_time[i] <= now + dt:
-            _try_to_start(agents, i, people, robots, now + dt)
+            try_to_start(agents, i, people, goal_key, robots, now + dt)
     header[TICK] += 1.0
 
 
@@ -130,7 +129,9 @@ def _advance(
     if people.at_goal[i] == PORTAL:
         _through(agents, i, x, y, world.out[people.flow[i]], now, dt)
     elif agents[i, ON_TRIP] != 0.0:
-        _along(agents, i, x, y, people, now, dt)
+        _along(agents, i, x, y, people, world.goal_key, now, dt)
+    elif people.stays[i] and not stays(agents, i, people, now):
+        next_goal(agents, i, people, world.goal_key, now)
     if agents[i, WAITING] == PRESENT:
         wrap(agents, i, world.boundary, world.goals_wrap)
     header[TRIPS] += agents[i, ARRIVALS] - arrivals
@@ -165,29 +166,19 @@ def _through(agents: Array, i: int, x: float, y: float, out: Array, now: float, 
 
 @kernel
 def _along(
-    agents: Array, i: int, x: float, y: float, people: AgentParameters, now: float, dt: float
+    agents: Array,
+    i: int,
+    x: float,
+    y: float,
+    people: AgentParameters,
+    key: np.uint64,
+    now: float,
+    dt: float,
 ) -> None:
     """Agent i, which was at (x, y), goes on to its next goal if it has reached this one."""
-    radius = people.radius[i]
-    fraction = reach_fraction(
-        x, y, agents[i, X], agents[i, Y], agents[i, GOAL_X], agents[i, GOAL_Y], radius
-    )
+    fraction = goal_fraction(agents, i, x, y, people)
     if fraction <= 1.0:
-        when = max(now + fraction * dt, agents[i, TRIP_START])
-        end_trip(agents, i, when)
-        next_goal(agents, i, people.at_goal[i], people.route, people.first, radius, when)
-
-
-@kernel
-def _try_to_start(
-    agents: Array, i: int, people: AgentParameters, robots: Array, now: float
-) -> None:
-    """Put agent i into the world where it starts, if nobody stands there."""
-    x, y = agents[i, X], agents[i, Y]
-    if is_free(agents, i, people.radius, robots, x, y):
-        on_trip = agents[i, ON_TRIP]
-        enter(agents, i, x, y, people.preferred_speed[i], now)
-        agents[i, ON_TRIP] = on_trip
+        arrive(agents, i, people, key, max(now + fraction * dt, agents[i, TRIP_START]))
 
 
 @kernel

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from crowdbot.core.crowd.agents import PORTAL, Agents
+from crowdbot.core.crowd.groups import Cohesion
 from crowdbot.core.crowd.periodic_boundary import Box
 from crowdbot.core.crowd.response.parameters import Human, Response
 from crowdbot.core.crowd.routing.parameters import MeshRouting
@@ -31,6 +32,7 @@ class CrowdWorld:
         exit_point: where people come out of the in-portal: at a random point, or opposite to
             where they went into the out-portal, ``offset`` kept.
         response: what people do about robots.
+        cohesion: what holds groups together; None: nothing.
         robot_visible: whether people see the robot's velocity.
         stiffness, dissipation: contact with the robot, N/m and s/m.
         goal_key: key of the counter-based draws of goals and entries.
@@ -47,6 +49,7 @@ class CrowdWorld:
     out: Array = field(default_factory=lambda: np.zeros((0, 4)))
     exit_point: Literal["random", "offset"] = "random"
     response: Response = field(default_factory=Human)
+    cohesion: Cohesion | None = field(default_factory=Cohesion)
     robot_visible: bool = True
     stiffness: float = 30000.0
     dissipation: float = 0.3

@@ -12,6 +12,7 @@ from typing import Any, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.population.optional_columns import OPTIONAL
 from crowdbot.core.types.arrays import Array
 from crowdbot.dsl.scenario import AtGoal
 from crowdbot.errors import InputError
@@ -42,10 +43,12 @@ class Realisation:
         group: (N,) agents with equal numbers belong together; -1: alone.
         policy: (N,) name in ``crowd.policies``; empty: the crowd's own policy.
         at_goal: (N,) what happens at the end of the route: ``portal``, ``stop``, ``remove``,
-            ``loop``.
+            ``loop``, ``return``, ``onward``.
         portals: (N,) names of entrance and exit for ``portal``, else two empty texts.
         goals: (N,) points of the route, m; empty for ``portal``, whose goals are drawn on the way.
         goal_key: key of the counter-based draws on the way.
+        goal_areas, origin, pauses, queue, height, leg_length, phase, look: (N,) each, see
+            `crowdbot.core.population.optional_columns`; what nobody has is not in the table.
     """
 
     id: NDArray[np.int64]
@@ -65,6 +68,14 @@ class Realisation:
     portals: tuple[tuple[str, str], ...]
     goals: tuple[Route, ...]
     goal_key: int
+    goal_areas: tuple[tuple[tuple[float, ...], ...], ...]
+    origin: tuple[tuple[float, ...], ...]
+    pauses: tuple[tuple[float, ...], ...]
+    queue: NDArray[np.int64]
+    height: Array
+    leg_length: Array
+    phase: Array
+    look: tuple[str, ...]
 
     def __len__(self) -> int:
         """How many agents."""
@@ -73,9 +84,16 @@ class Realisation:
     def to_csv(self) -> str:
         """The table as text, decimals that read back exactly."""
         text = io.StringIO()
+        more = {
+            name: [column.write(value) for value in getattr(self, name)]
+            for name, column in OPTIONAL.items()
+        }
+        used = {name: cells for name, cells in more.items() if any(cells)}
         rows = csv.writer(text, lineterminator="\n")
-        rows.writerow(COLUMNS)
-        rows.writerows(self._rows())
+        rows.writerow((*COLUMNS, *used))
+        rows.writerows(
+            [*row, *(cells[i] for cells in used.values())] for i, row in enumerate(self._rows())
+        )
         return text.getvalue()
 
     def _rows(self) -> Iterator[list[str]]:
@@ -110,13 +128,19 @@ class Realisation:
         """
         rows = csv.reader(io.StringIO(text))
         header = next(rows, [])
-        if tuple(header) != COLUMNS:
-            raise InputError(f"line 1: an agents table has the columns {','.join(COLUMNS)}")
-        return cls.from_rows([_checked(row, line) for line, row in enumerate(rows, start=2)])
+        common, more = tuple(header[: len(COLUMNS)]), header[len(COLUMNS) :]
+        if common != COLUMNS or more != [name for name in OPTIONAL if name in more]:
+            raise InputError(
+                f"line 1: an agents table has the columns {','.join(COLUMNS)}, "
+                f"and those it needs of {','.join(OPTIONAL)}"
+            )
+        return cls.from_rows(
+            [_checked(row, line, header) for line, row in enumerate(rows, start=2)]
+        )
 
     @classmethod
     def from_rows(cls, rows: Sequence[dict[str, Any]]) -> Realisation:
-        """The table of rows whose keys are `COLUMNS`."""
+        """The table of rows whose keys are `COLUMNS`, and of `OPTIONAL` what they have."""
         keys = {row["goal_key"] for row in rows}
         if len(keys) > 1:
             raise InputError("an agents table has one goal_key")
@@ -128,17 +152,22 @@ class Realisation:
             columns[name] = np.array([row[name] for row in rows], dtype=np.int64)
         for name in ("policy", "at_goal", "portals", "goals"):
             columns[name] = tuple(row[name] for row in rows)
+        for name, column in OPTIONAL.items():
+            values = [row.get(name, column.missing) for row in rows]
+            number = type(column.missing) in (int, float)
+            dtype = np.int64 if column.missing == -1 else np.float64
+            columns[name] = np.array(values, dtype=dtype) if number else tuple(values)
         return cls(**columns, goal_key=keys.pop() if keys else 0)
 
 
-def _checked(row: Sequence[str], line: int) -> dict[str, Any]:
+def _checked(row: Sequence[str], line: int, header: Sequence[str]) -> dict[str, Any]:
     """One row as values.
 
     Raises:
         InputError: it is not one; with its line.
     """
     try:
-        cells = dict(zip(COLUMNS, row, strict=True))
+        cells = dict(zip(header, row, strict=True))
         values: dict[str, Any] = {name: float(cells[name]) for name in _NUMBERS}
         if not all(np.isfinite(v) for v in values.values()):
             raise ValueError("numbers must be finite")
@@ -146,14 +175,22 @@ def _checked(row: Sequence[str], line: int) -> dict[str, Any]:
             raise ValueError(f"unknown at_goal '{cells['at_goal']}'")
         entrance, _, out = cells["portals"].partition(">")
         points = [p.split(" ") for p in cells["goals"].split(";") if p]
-        return values | {
-            "id": int(cells["id"]),
-            "group": int(cells["group"]),
-            "policy": cells["policy"],
-            "at_goal": cells["at_goal"],
-            "portals": (entrance, out),
-            "goals": tuple((float(x), float(y)) for x, y in points),
-            "goal_key": int(cells["goal_key"]),
-        }
+        more = {n: c.read(cells[n]) for n, c in OPTIONAL.items() if cells.get(n)}
+        for name in ("goal_areas", "pauses"):
+            if name in more and len(more[name]) != len(points):
+                raise ValueError(f"{name} has one entry for each of the {len(points)} goals")
+        return (
+            values
+            | more
+            | {
+                "id": int(cells["id"]),
+                "group": int(cells["group"]),
+                "policy": cells["policy"],
+                "at_goal": cells["at_goal"],
+                "portals": (entrance, out),
+                "goals": tuple((float(x), float(y)) for x, y in points),
+                "goal_key": int(cells["goal_key"]),
+            }
+        )
     except ValueError as error:
         raise InputError(f"line {line}: {error}") from error

@@ -1,6 +1,7 @@
 """Draws a scenario's crowd: who starts where, how fast, with which goals.
 
-First explicit agents, then the flow, then the spawns by name: each keeps clear of those before.
+First explicit agents, then the flow, then streams and spawns by name: each keeps clear of those
+before.
 """
 
 from __future__ import annotations
@@ -11,20 +12,23 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.population.ground import Ground
-from crowdbot.core.population.occupancy import Occupancy
-from crowdbot.core.population.placement import ATTEMPTS
-from crowdbot.core.population.realisation import Realisation
-from crowdbot.core.population.spawns import (
-    SpawnSampler,
+from crowdbot.core.population.bodies import Bodies, draw_bodies
+from crowdbot.core.population.draws import (
     Streams,
     draw_attention,
     draw_speeds,
     heading_to,
     stream_heading,
 )
+from crowdbot.core.population.ground import Ground
+from crowdbot.core.population.occupancy import Occupancy
+from crowdbot.core.population.placement import ATTEMPTS
+from crowdbot.core.population.realisation import Realisation
+from crowdbot.core.population.spawns import SpawnSampler
+from crowdbot.core.population.stream_sampler import StreamSampler
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.assets import Asset
+from crowdbot.dsl.people_kinds import LOOKS
 from crowdbot.dsl.scenario import Crowd, Flow, Scenario
 from crowdbot.dsl.spawning import Agent
 from crowdbot.errors import InputError
@@ -60,9 +64,13 @@ def realise(scenario: Scenario, parts: EnvironmentParts | None = None) -> Realis
         [] if crowd.flow is None else _flow_rows(crowd.flow, scenario, crowd, streams, occupancy)
     )
     group = max((agent.group for agent in crowd.agents), default=-1) + 1
-    for name, spawn in sorted(crowd.spawns.items()):
-        rows = SpawnSampler(name, spawn, scenario, crowd, streams).rows(occupancy, group)
-        group = max(group, *(row["group"] + 1 for row in rows))
+    samplers: list[StreamSampler | SpawnSampler] = [
+        *(StreamSampler(n, s, scenario, crowd, streams) for n, s in sorted(crowd.streams.items())),
+        *(SpawnSampler(n, s, scenario, crowd, streams) for n, s in sorted(crowd.spawns.items())),
+    ]
+    for sampler in samplers:
+        rows = sampler.rows(occupancy, group)
+        group = max([group, *(max(row["group"], row.get("queue", -1)) + 1 for row in rows)])
         drawn += rows
     numbered = [*explicit, *_numbered(drawn, {agent.id for agent in crowd.agents})]
     return _table(numbered, streams)
@@ -112,23 +120,22 @@ def _flow_rows(
     zone = scenario.environment.zones[flow.area]
     people = round(flow.density * zone.area)
     rng, body = streams.rng("crowd.spawn"), crowd.body
-    low = np.array([zone.x[0] + body.radius, zone.y[0] + body.radius])
-    high = np.array([zone.x[1] - body.radius, zone.y[1] - body.radius])
+    bodies = _flow_bodies(crowd, people, streams)
     points: list[tuple[float, float]] = []
-    for i in range(people):
+    for i, radius in enumerate(bodies.radius.tolist()):
+        low = np.array([zone.x[0] + radius, zone.y[0] + radius])
+        high = np.array([zone.x[1] - radius, zone.y[1] - radius])
         for _ in range(ATTEMPTS):
             x, y = (low + (high - low) * rng.random(2)).tolist()
-            if occupancy.is_free(x, y, body.radius):
+            if occupancy.is_free(x, y, radius):
                 break
         else:
             raise InputError(f"only {i} of {people} people fit into the crowd's zone")
-        occupancy.add(x, y, body.radius)
+        occupancy.add(x, y, radius)
         points.append((x, y))
     assert crowd.speed is not None  # checked with the document
-    speeds = draw_speeds(streams.rng("crowd.speed"), people, crowd.speed)
+    speeds = bodies.walk_at(draw_speeds(streams.rng("crowd.speed"), people, crowd.speed))
     common: Row = {
-        "radius": body.radius,
-        "mass": body.mass,
         "max_speed": body.max_speed,
         "max_acceleration": body.max_acceleration,
         "start_time": 0.0,
@@ -140,11 +147,19 @@ def _flow_rows(
     ways = itertools.cycle(_ways(flow, scenario))
     return [
         common
+        | bodies.row(i)
         | way
         | {"x": x, "y": y, "speed": speed}
         | {"attention": draw_attention(streams, "crowd.attention", i)}
         for i, ((x, y), speed, way) in enumerate(zip(points, speeds, ways, strict=False))
     ]
+
+
+def _flow_bodies(crowd: Crowd, people: int, streams: Streams) -> Bodies:
+    usual = np.full(people, crowd.body.radius), np.full(people, crowd.body.mass)
+    return draw_bodies(
+        crowd.people, (), usual, lambda purpose, i: streams.rng(f"crowd.people.{purpose}", i)
+    )
 
 
 def _ways(flow: Flow, scenario: Scenario) -> list[Row]:
@@ -158,9 +173,20 @@ def _ways(flow: Flow, scenario: Scenario) -> list[Row]:
     return [{"portals": way, "heading": stream_heading(way, boxes)} for way in taken]
 
 
+def _look_of(agent: Agent) -> Row:
+    """The usual body of an explicit agent's look, where it has no number of its own."""
+    assert agent.look is not None
+    look = LOOKS[agent.look]
+    usual = {"radius": look.radius, "mass": look.mass[0] if look.mass else None}
+    own = {name: getattr(agent, name) for name in usual if getattr(agent, name) is not None}
+    return usual | own | {"height": agent.height or look.height[0]}
+
+
 def _agent_row(agent: Agent, scenario: Scenario, crowd: Crowd, streams: Streams) -> Row:
     """An explicit agent, the crowd's values where it has none of its own."""
     row = agent.model_dump()
+    if agent.look is not None:
+        row |= _look_of(agent)
     for name in ("radius", "mass", "max_speed", "max_acceleration"):
         if row[name] is None:
             row[name] = getattr(crowd.body, name)

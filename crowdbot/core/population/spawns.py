@@ -8,73 +8,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from crowdbot.core.population.bodies import draw_bodies
+from crowdbot.core.population.draws import (
+    Streams,
+    area_of,
+    draw_groups,
+    draw_speeds,
+    heading_to,
+    stream_heading,
+)
 from crowdbot.core.population.ground import Ground
 from crowdbot.core.population.occupancy import Occupancy
 from crowdbot.core.population.placement import ATTEMPTS, Placer
 from crowdbot.core.types.arrays import Array, Point
-from crowdbot.dsl.areas import Area, GoalArea, Place
-from crowdbot.dsl.parameters import Sample, SpeedDistribution
+from crowdbot.dsl.areas import GoalArea
+from crowdbot.dsl.parameters import Sample
 from crowdbot.dsl.scenario import Crowd, Scenario
-from crowdbot.dsl.seeds import stream_seed
 from crowdbot.dsl.spawning import Goals, Spawn
-from crowdbot.dsl.spec import Rectangle
 from crowdbot.errors import InputError
 
-
-@dataclass(frozen=True, slots=True)
-class Streams:
-    """The named random streams of a crowd."""
-
-    root: int
-    key: str
-
-    def seed(self, name: str) -> int:
-        """Seed of a stream."""
-        return stream_seed(self.root, self.key, name)
-
-    def rng(self, name: str, unit: int | None = None) -> np.random.Generator:
-        """A stream, or the one of a unit of it, such as a group."""
-        seed = self.seed(name)
-        return np.random.default_rng(seed if unit is None else (seed, unit))
-
-
-def area_of(place: Place, zones: Mapping[str, Rectangle]) -> Area:
-    """A zone's name or an area, as an area."""
-    return Area.of(zones[place]) if isinstance(place, str) else place
-
-
-def heading_to(x: float, y: float, goal: Point) -> float:
-    """Direction from a point to another, rad; 0 if they are the same."""
-    return math.atan2(goal[1] - y, goal[0] - x)
-
-
-def stream_heading(portals: tuple[str, str], boxes: Mapping[str, Rectangle]) -> float:
-    """Direction from the middle of one portal to that of the other, rad."""
-    start, end = (Area.of(boxes[name]).centre for name in portals)
-    return heading_to(*start, end)
-
-
-def draw_speeds(rng: np.random.Generator, count: int, speed: SpeedDistribution) -> Array:
-    """Normal, truncated at three standard deviations and at 5 % of the mean; (count,) m/s."""
-    mean, std = speed.mean, speed.std
-    low, high = max(mean - 3.0 * std, 0.05 * mean), mean + 3.0 * std
-    speeds = np.empty(count)
-    for i in range(count):
-        draw = rng.normal(mean, std)
-        while not low <= draw <= high:
-            draw = rng.normal(mean, std)
-        speeds[i] = draw
-    return speeds
-
-
-def draw_attention(streams: Streams, name: str, unit: int) -> float:
-    """How attentive one person of a stream is, whoever else is there."""
-    return float(streams.rng(name, unit).random())
+#: Neighbours on the circle of a group's goals are so many diameters apart.
+_APART = 1.25
 
 
 def linked_walk(
@@ -99,7 +57,17 @@ class SpawnSampler:
         self._environment = scenario.environment
         self._area = area_of(spawn.area, scenario.environment.zones)
         self._count = round(spawn.people(self._area.size[0] * self._area.size[1]))
-        self._radius = self._parameter("radius", spawn.radius, crowd.body.radius)
+        self._bodies = draw_bodies(
+            crowd.people,
+            (),
+            (
+                self._parameter("radius", spawn.radius, crowd.body.radius),
+                self._parameter("mass", spawn.mass, crowd.body.mass),
+            ),
+            self._rng,
+            fixed=(spawn.radius is not None, spawn.mass is not None),
+        )
+        self._radius = self._bodies.radius
 
     def rows(self, occupancy: Occupancy, next_group: int) -> list[dict[str, Any]]:
         """One row a person without ``id`` and ``goal_key``; they are added to the occupancy.
@@ -116,9 +84,9 @@ class SpawnSampler:
         table = self._parameters()
         rows: list[dict[str, Any]] = []
         for unit, members in enumerate(groups):
-            goals = self._goals(unit, places[members[0]], occupancy.ground)
+            routes = self._routes(unit, members, places[members[0]], occupancy.ground)
             alone = len(members) == 1
-            for i in members:
+            for i, goals in zip(members, routes, strict=True):
                 x, y = places[i].tolist()
                 route = ((x, y),) if self._spawn.standing else goals
                 rows.append(
@@ -146,8 +114,9 @@ class SpawnSampler:
         at_goal = "portal" if spawn.portals else goals.at_goal if goals else "stop"
         return {
             "radius": self._radius,
-            "speed": self._speeds(),
-            "mass": self._parameter("mass", spawn.mass, body.mass),
+            "speed": self._bodies.walk_at(self._speeds()),
+            "mass": self._bodies.mass,
+            **self._bodies.seen,
             "max_speed": self._parameter("max_speed", spawn.max_speed, body.max_speed),
             "max_acceleration": self._parameter(
                 "max_acceleration", spawn.max_acceleration, body.max_acceleration
@@ -185,18 +154,7 @@ class SpawnSampler:
     # ---------------------------------------------------------------------- groups
     def _groups(self) -> list[range]:
         """Members of each group; the last one is cut short when the people run out."""
-        sizes, left = [], self._count
-        frequency = np.array([g.frequency for g in self._spawn.groups])
-        edges, rng = np.cumsum(frequency), self._rng("groups")
-        while left:
-            size = 1
-            if len(edges):
-                drawn = np.searchsorted(edges, rng.random() * edges[-1], side="right")
-                size = self._spawn.groups[int(drawn)].size
-            sizes.append(min(size, left))
-            left -= sizes[-1]
-        ends = np.cumsum(sizes, dtype=int)
-        return [range(e - s, e) for s, e in zip(sizes, ends.tolist(), strict=True)]
+        return draw_groups(self._spawn.groups, self._rng("groups"), self._count, None)
 
     def _places(self, groups: list[range], occupancy: Occupancy) -> Array:
         """Where everybody starts (N, 2), m; larger groups choose first."""
@@ -210,19 +168,46 @@ class SpawnSampler:
         return placer.places
 
     # ---------------------------------------------------------------------- routes
-    def _goals(self, unit: int, start: Array, ground: Ground) -> tuple[Point, ...]:
-        """The route that a group shares, from where its first stands; nothing without goals."""
+    def _routes(
+        self, unit: int, members: range, start: Array, ground: Ground
+    ) -> list[tuple[Point, ...]]:
+        """The routes of a group's members, side by side, from where its first stands."""
         goals = self._spawn.goals
         if goals is None:
-            return ()
+            return [()] * len(members)
         rng = self._rng("goals", unit)
+        names = self._sequence(goals, rng)
         points = [(float(start[0]), float(start[1]))]
-        for name in self._sequence(goals, rng):
+        for name in names:
             points.append(self._goal(name, points[-1], ground, rng))
         points = points[1:]
         if goals.order == "linked" and goals.at_goal == "loop":
-            points += points[-2:0:-1]
-        return tuple(points)
+            points, names = points + points[-2:0:-1], names + names[-2:0:-1]
+        if len(members) == 1:
+            return [tuple(points)]
+        turn = 2.0 * math.pi * self._rng("goals.around", unit).random()
+        return [
+            tuple(
+                self._beside(name, point, k, members, turn, ground)
+                for name, point in zip(names, points, strict=True)
+            )
+            for k in range(len(members))
+        ]
+
+    def _beside(
+        self, name: str, point: Point, k: int, members: range, turn: float, ground: Ground
+    ) -> Point:
+        """The goal of a group's k-th member: on a circle around that of the group, if it is free."""
+        radius = float(self._radius[members].max())
+        reach = radius * _APART / math.sin(math.pi / len(members))
+        angle = turn + 2.0 * math.pi * k / len(members)
+        area = area_of(self._crowd.goal_areas[name].area, self._environment.zones)
+        room = [max(0.0, 0.5 * side - reach) for side in area.size]
+        u, v = (min(max(w, -r), r) for w, r in zip(area.own(*point), room, strict=True))
+        x, y = area.point(u, v)
+        beside = x + reach * math.cos(angle), y + reach * math.sin(angle)
+        free = ground.is_free(*beside, radius) and ground.reaches(point, beside, radius)
+        return beside if free else point
 
     def _sequence(self, goals: Goals, rng: np.random.Generator) -> list[str]:
         names, length = goals.areas, goals.length

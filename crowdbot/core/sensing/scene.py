@@ -7,9 +7,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core.sensing.body_model import DISC_COLUMNS, PARTS, place_people
 from crowdbot.core.sensing.depth_renderer import DepthRenderer
+from crowdbot.core.sensing.look_model import gaits, heights, place_looks, place_things, things
 from crowdbot.core.sensing.raycast import cast_rays
 from crowdbot.core.sensing.raycast_columns import Obstacles, RayGrid, cast_columns
 from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.looks import Looks
 from crowdbot.core.types.robot import RobotState
 
 #: In place of details that are not wanted.
@@ -35,6 +37,8 @@ class Scene:
         wall_heights: (S, 2) bottom and top, m.
         people_radius, people_height: (M,) m.
         pillars, pillar_heights: (P, 3) x, y, radius, and (P, 2) bottom and top, m.
+        looks: what people look like; None: all as usual.
+        things: (T, 6) what they have with them, see `crowdbot.core.sensing.look_model`.
         robot: the robot's state, None before the first update or in a scene without one.
         push: force of people on the robot x, y (N, world frame), and its torque about the robot's
             base (N m), in the last tick.
@@ -50,12 +54,19 @@ class Scene:
         people_height: ArrayLike,
         pillars: ArrayLike = (),
         pillar_heights: ArrayLike = (0.0, 2.5),
+        looks: Looks | None = None,
     ) -> None:
         self.walls = _constant(np.reshape(walls, (-1, 4)), (np.size(walls) // 4, 4))
         self.wall_heights = _constant(wall_heights, (len(self.walls), 2))
         count = np.size(people_radius)
         self.people_radius = _constant(people_radius, (count,))
         self.people_height = _constant(people_height, (count,))
+        if looks is not None:
+            usual = float(self.people_height[0]) if count else 0.0
+            self.people_height = _constant(heights(looks, usual), (count,))
+        self.looks = looks
+        self._gait = None if looks is None else gaits(looks, self.people_height)
+        self.things = np.zeros((0, 6)) if looks is None else things(looks)
         self.robot: RobotState | None = None
         self.push: tuple[float, float, float] = _UNTOUCHED
         self.people: Array = _constant(0.0, (count, 4))
@@ -70,11 +81,13 @@ class Scene:
     def _lay_out(self) -> tuple[Array, NDArray[np.int64]]:
         """Cylinders of everybody, placed later, and of the pillars; whose they are."""
         people = PARTS * len(self.people_radius)
-        discs = np.zeros((people + len(self.pillars), DISC_COLUMNS))
-        discs[people:, :3], discs[people:, 3:] = self.pillars, self.pillar_heights
+        fixed = people + len(self.pillars)
+        discs = np.zeros((fixed + len(self.things), DISC_COLUMNS))
+        discs[people:fixed, :3] = self.pillars
+        discs[people:fixed, 3:] = self.pillar_heights
         owner = np.arange(people) // PARTS
         pillar = -(2 + len(self.walls) + np.arange(len(self.pillars)))
-        return discs, np.concatenate([owner, pillar]).astype(np.int64)
+        return discs, np.concatenate([owner, pillar, self.things[:, 0]]).astype(np.int64)
 
     def update(
         self,
@@ -113,6 +126,12 @@ class Scene:
         self._placed = False
 
     @property
+    def people_hip(self) -> Array:
+        """Where the legs of people end who have their own (M,), m; 0: where they usually do."""
+        none = np.zeros(len(self.people_radius))
+        return none if self._gait is None else np.ascontiguousarray(self._gait[:, 0])
+
+    @property
     def headings(self) -> Array:
         """Way that people face (M,), world frame, rad."""
         yaw: Array = np.arctan2(self._direction[:, 1], self._direction[:, 0])
@@ -120,7 +139,9 @@ class Scene:
 
     @property
     def cylinders(self) -> Array:
-        """Left leg, right leg and trunk of everybody, then pillars: (D, 5), not to be changed.
+        """Legs and trunk of everybody, pillars, then what people have with them: (D, 5).
+
+        Left leg, right leg, trunk; not to be changed.
 
         Columns are x, y, radius, bottom and top, m; the absent are at infinity.
         """
@@ -134,12 +155,18 @@ class Scene:
     def obstacles(self) -> Obstacles:
         """All that rays can hit; not to be changed. People are placed when somebody looks."""
         if not self._placed:
-            place_people(
-                self.people, self.present, self._direction, self._walked,
-                self.people_radius, self.people_height, self._obstacles.discs,
-            )  # fmt: skip
+            self._place()
             self._placed = True
         return self._obstacles
+
+    def _place(self) -> None:
+        now = self.people, self.present, self._direction
+        sizes, discs = (self.people_radius, self.people_height), self._obstacles.discs
+        if self._gait is None:
+            place_people(*now, self._walked, *sizes, discs)
+            return
+        place_looks(*now, self._walked, *sizes, self._gait, discs)
+        place_things(*now, self.things, len(discs) - len(self.things), discs)
 
     def cast(
         self, origins: Array, directions: Array, max_range: float

@@ -10,20 +10,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
+from crowdbot.core.crowd.agents import LOOP, ONWARD, PORTAL, REMOVE, RETURN, STOP
 from crowdbot.core.crowd.build import build_cost, build_policy
 from crowdbot.core.crowd.engine import PolicyFactory
-from crowdbot.core.crowd.policy import LOOP, PORTAL, REMOVE, STOP
+from crowdbot.core.crowd.groups import Cohesion
 from crowdbot.core.crowd.response.from_spec import response_of
 from crowdbot.core.crowd.routing.from_spec import routing_of
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.looks import Looks
 from crowdbot.dsl.scenario import Crowd, NamedPolicy, Scenario
 
 #: Names of the portals of a stream, from and to.
 Flow = tuple[str, str]
 
-_AT_GOAL = {"portal": PORTAL, "stop": STOP, "remove": REMOVE, "loop": LOOP}
+_AT_GOAL = {
+    "portal": PORTAL, "stop": STOP, "remove": REMOVE, "loop": LOOP, "return": RETURN,
+    "onward": ONWARD,
+}  # fmt: skip
 
 
 def build_crowd(
@@ -100,6 +105,33 @@ def _agents(
         ignores_robot=drawn.attention < response.ignoring,
         group=drawn.group,
         late=drawn.attention < response.ignoring + (1.0 - response.ignoring) * response.late,
+        goal_areas=drawn.goal_areas,
+        pauses=drawn.pauses,
+        ahead=_ahead(drawn.queue),
+        origins=drawn.origin,
+        group=drawn.group,
+        heading=drawn.heading,
+        looks=_looks(drawn),
+    )
+
+
+def _ahead(queue: NDArray[np.int64]) -> NDArray[np.int64]:
+    """(N,) row of the one before in the same queue, or -1."""
+    last: dict[int, int] = {}
+    ahead = np.full(len(queue), -1, np.int64)
+    for i, number in enumerate(queue.tolist()):
+        if number >= 0:
+            ahead[i] = last.get(number, -1)
+            last[number] = i
+    return ahead
+
+
+def _looks(drawn: Realisation) -> Looks | None:
+    """What sensors see of each, if not all are alike."""
+    if not (any(drawn.look) or np.any(drawn.height) or np.any(drawn.phase)):
+        return None
+    return Looks(
+        height=drawn.height, leg_length=drawn.leg_length, phase=drawn.phase, look=drawn.look
     )
 
 
@@ -120,6 +152,7 @@ def _world(
         out=boxes[:, 1],
         exit_point=crowd.exit_point,
         response=response_of(response),
+        cohesion=None if crowd.groups is None else Cohesion(**crowd.groups.model_dump()),
         robot_visible=response.velocity == "visible",
         stiffness=scenario.contact.stiffness,
         dissipation=scenario.contact.dissipation,

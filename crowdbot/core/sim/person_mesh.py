@@ -18,22 +18,25 @@ _SHOULDER = 0.82  # of the height: where the trunk ends that is drawn
 _HEAD = 0.055  # of the height: radius of the head
 
 
-def leg_obj(height: float, radius: float) -> str:
+def leg_obj(height: float, radius: float, hip: float = 0.0) -> str:
     """Wavefront OBJ text of an upright leg at the origin.
 
     Args:
         height: of the person, m.
         radius: of the disc that touches, m.
+        hip: where the legs end, m; 0: where they usually do.
     """
     leg, _, _ = _discs(height, radius)
     leg[X] = leg[Y] = 0.0
+    leg[TOP] = hip or leg[TOP]
     return _obj([leg])
 
 
-def trunk_obj(height: float, radius: float) -> str:
+def trunk_obj(height: float, radius: float, hip: float = 0.0) -> str:
     """The same of trunk and head of a person who stands at the origin."""
     *_, trunk = _discs(height, radius)
     trunk[TOP] = _SHOULDER * height
+    trunk[BOTTOM] = hip or trunk[BOTTOM]
     head = np.array([0.0, 0.0, _HEAD * height, (_SHOULDER + 0.04) * height, height])
     return _obj([trunk, head])
 

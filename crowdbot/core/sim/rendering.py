@@ -6,6 +6,7 @@ draws may differ from machine to machine: colour is outside of crowdbot's determ
 
 from __future__ import annotations
 
+import math
 import subprocess
 import sys
 from functools import cache
@@ -53,6 +54,8 @@ _CLOTHES = (
     (0.75, 0.25, 0.2), (0.2, 0.35, 0.65), (0.25, 0.5, 0.3), (0.85, 0.7, 0.3),
     (0.45, 0.3, 0.5), (0.3, 0.3, 0.32), (0.85, 0.82, 0.78), (0.3, 0.6, 0.65),
 )  # fmt: skip
+#: Wheelchairs, strollers, suitcases.
+_THING = (0.30, 0.30, 0.34)
 _TROUSERS = ((0.16, 0.18, 0.26), (0.25, 0.22, 0.2), (0.22, 0.28, 0.36))
 _HIDDEN = RigidTransform([0.0, 0.0, -100.0])
 _PROBE = "from crowdbot.core.sim.rendering import probe; probe()"
@@ -116,9 +119,15 @@ class Renderer:
             self._add(Cylinder(radius, high - low), pose, _PILLAR, f"pillar{k}")
 
     def _crowd(self, scene: Scene) -> list[FrameId]:
-        """Frames of legs and trunk for everybody; those of one size share meshes."""
-        frames, meshes = [], dict[tuple[float, float], tuple[Mesh, ...]]()
-        sizes = zip(scene.people_height.tolist(), scene.people_radius.tolist(), strict=True)
+        """Frames of legs and trunk for everybody, then of what they have with them.
+
+        Those of one size share meshes.
+        """
+        frames, meshes = [], dict[tuple[float, float, float], tuple[Mesh, ...]]()
+        sizes = zip(
+            scene.people_height.tolist(), scene.people_radius.tolist(), scene.people_hip.tolist(),
+            strict=True,
+        )  # fmt: skip
         for k, size in enumerate(sizes):
             if size not in meshes:
                 leg = _mesh(leg_obj(*size))
@@ -129,6 +138,11 @@ class Renderer:
                 frame = self._graph.RegisterFrame(self._source, GeometryFrame(name))
                 self._add(mesh, RigidTransform(), colours[part == TRUNK], name, frame)
                 frames.append(frame)
+        for k, (*_, radius, low, high) in enumerate(scene.things.tolist()):
+            frame = self._graph.RegisterFrame(self._source, GeometryFrame(f"thing{k}"))
+            pose = RigidTransform([0.0, 0.0, 0.5 * (low + high)])
+            self._add(Cylinder(radius, high - low), pose, _THING, f"thing{k}", frame)
+            frames.append(frame)
         return frames
 
     def _add(
@@ -177,10 +191,14 @@ def _places(scene: Scene) -> list[RigidTransform]:
     """Where legs and trunks are, person by person; those of the absent lie under the floor."""
     turns = [RotationMatrix.MakeZRotation(yaw) for yaw in scene.headings.tolist()]
     centres = scene.cylinders[: PARTS * len(turns), :2].reshape(-1, PARTS, 2).tolist()
-    return [
+    bodies = [
         RigidTransform(turn, [x, y, 0.0]) if here else _HIDDEN
         for parts, turn, here in zip(centres, turns, scene.present, strict=True)
         for x, y in parts
+    ]
+    things = scene.cylinders[len(scene.cylinders) - len(scene.things) :, :2].tolist()
+    return bodies + [
+        RigidTransform([x, y, 0.0]) if math.isfinite(x) else _HIDDEN for x, y in things
     ]
 
 

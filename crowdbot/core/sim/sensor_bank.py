@@ -268,8 +268,9 @@ def _scene(built: BuiltRun, engine: CrowdEngine | None) -> Scene:
     crowd, parts = built.scenario.crowd, built.parts
     radius = np.zeros(0) if engine is None else engine.agents.radius
     height = np.full(len(radius), crowd.body.height if crowd else 0.0)
+    looks = None if engine is None else engine.agents.looks
     return Scene(
-        parts.walls, parts.wall_heights, radius, height, parts.pillars, parts.pillar_heights
+        parts.walls, parts.wall_heights, radius, height, parts.pillars, parts.pillar_heights, looks
     )
 
 

@@ -35,6 +35,11 @@ class FloorSpec(EnvironmentSpec):
         default=2.5, description="Height of walls, blocks and pillars without their own, m."
     )
 
+    @property
+    def periodic_floor(self) -> Rectangle | None:
+        """The whole floor of a torus."""
+        return self.area if self.border == "torus" else None
+
     @model_validator(mode="after")
     def _inside(self) -> FloorSpec:
         for name, point in _points(self):

@@ -12,11 +12,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from crowdbot.core.population.draws import Streams
 from crowdbot.core.population.occupancy import Occupancy
 from crowdbot.core.population.placement import group_reach
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.realise import realise
-from crowdbot.core.population.spawns import SpawnSampler, Streams
+from crowdbot.core.population.spawns import SpawnSampler
 from crowdbot.dsl.areas import Area
 from crowdbot.dsl.semantics_agents import overlapping
 from crowdbot.dsl.semantics_spawns import most_points

@@ -1,0 +1,59 @@
+"""Rectangles of the floor that may be turned: goals to enter anywhere, and where people come in."""
+
+from __future__ import annotations
+
+import math
+
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array
+
+
+@kernel
+def point_in_area(
+    x: float, y: float, size: Array, margin: float, u: float, v: float
+) -> tuple[float, float]:
+    """The point of an area, shrunk by a margin, at fractions u and v of its own x and y.
+
+    Args:
+        x, y: middle of the area, m.
+        size: (3,) size along its own x and y (m) and rotation (rad).
+        margin: distance from its sides where there is room, m.
+    """
+    a = (2.0 * u - 1.0) * max(0.0, 0.5 * size[0] - margin)
+    b = (2.0 * v - 1.0) * max(0.0, 0.5 * size[1] - margin)
+    c, s = math.cos(size[2]), math.sin(size[2])
+    return x + c * a - s * b, y + s * a + c * b
+
+
+@kernel
+def into_area(
+    px: float, py: float, x: float, y: float, size: Array, margin: float
+) -> tuple[float, float]:
+    """The point of an area, shrunk by a margin, that is nearest to p in the area's own frame."""
+    c, s = math.cos(size[2]), math.sin(size[2])
+    a, b = c * (px - x) + s * (py - y), c * (py - y) - s * (px - x)
+    ha, hb = max(0.0, 0.5 * size[0] - margin), max(0.0, 0.5 * size[1] - margin)
+    a, b = min(max(a, -ha), ha), min(max(b, -hb), hb)
+    return x + c * a - s * b, y + s * a + c * b
+
+
+@kernel
+def area_fraction(
+    x0: float, y0: float, x1: float, y1: float, x: float, y: float, size: Array
+) -> float:
+    """Fraction of the way from p0 to p1 at which an area is entered; above 1 if it is not."""
+    c, s = math.cos(size[2]), math.sin(size[2])
+    a0, b0 = c * (x0 - x) + s * (y0 - y), c * (y0 - y) - s * (x0 - x)
+    a1, b1 = c * (x1 - x) + s * (y1 - y), c * (y1 - y) - s * (x1 - x)
+    enter, leave = 0.0, 1.0
+    for start, step, half in ((a0, a1 - a0, 0.5 * size[0]), (b0, b1 - b0, 0.5 * size[1])):
+        if step == 0.0:
+            if abs(start) > half:
+                return 2.0
+            continue
+        one, other = (-half - start) / step, (half - start) / step
+        enter, leave = max(enter, min(one, other)), min(leave, max(one, other))
+    return enter if enter <= leave else 2.0
+
+
+__all__ = ["area_fraction", "into_area", "point_in_area"]

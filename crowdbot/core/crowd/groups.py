@@ -1,0 +1,139 @@
+"""What holds groups together: gaze, cohesion and repulsion, laid over what any policy wants.
+
+Source: Moussaïd, Perozo, Garnier, Helbing, Theraulaz, "The walking behaviour of pedestrian social
+groups and its impact on crowd dynamics", PLoS ONE 5(4), 2010, e10047, equations 5 to 7.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from crowdbot.core.crowd.agents import Agents
+from crowdbot.core.crowd.state import AX, AY, DIR_X, DIR_Y, ON_TRIP, PRESENT, VX, VY, WAITING, X, Y
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array, Indices
+
+#: Members who are farther away are out of sight, and do not count; ours, m.
+SIGHT = 8.0
+# Entries of a row of parameters.
+_GAZE, _COHESION, _REPULSION, _HALF_VIEW, _DISTANCE, _LIMIT = range(6)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cohesion:
+    """Strengths of what holds groups together, see `crowdbot.dsl.group_forces`; SI."""
+
+    gaze: float = 4.0
+    cohesion: float = 3.0
+    repulsion: float = 1.0
+    field_of_view: float = math.pi
+    distance: float = 0.8
+    limit: float = 3.0
+
+    @property
+    def row(self) -> Array:
+        """The numbers as `hold_together` takes them."""
+        return np.array(
+            [self.gaze, self.cohesion, self.repulsion, 0.5 * self.field_of_view, self.distance,
+             self.limit]
+        )  # fmt: skip
+
+
+def groups_of(agents: Agents) -> tuple[Indices, Indices]:
+    """Rows of all members, group by group, and where in them each group begins and the last ends.
+
+    Returns:
+        (M,) rows in the order of their ids, and (G + 1,) places; nothing of who is alone.
+    """
+    found: list[np.ndarray[tuple[int], np.dtype[np.int64]]] = []
+    for number in np.unique(agents.group[agents.group >= 0]):
+        rows = np.flatnonzero(agents.group == number)
+        if len(rows) > 1:
+            found.append(rows[np.argsort(agents.id[rows])].astype(np.int64))
+    ends = np.cumsum([0, *(len(rows) for rows in found)], dtype=np.int64)
+    return (np.concatenate(found) if found else np.zeros(0, np.int64)), ends
+
+
+@kernel
+def hold_together(
+    agents: Array, members: Indices, ends: Indices, most: Array, boundary: Array, forces: Array
+) -> None:
+    """Add what groups want to the desired acceleration of each member who is on its way.
+
+    Args:
+        agents: rows of the crowd's state, changed in place.
+        members, ends: see `groups_of`.
+        most: (N,) largest acceleration by own will, m/s^2.
+        boundary: (4,) x0, x1, y0, y1 of a torus, m; infinite elsewhere.
+        forces: see `Cohesion.row`.
+    """
+    for g in range(ends.shape[0] - 1):
+        for a in range(ends[g], ends[g + 1]):
+            i = members[a]
+            if agents[i, WAITING] != PRESENT or agents[i, ON_TRIP] == 0.0:
+                continue
+            ax, ay = _pull(agents, i, members, ends[g], ends[g + 1], boundary, forces)
+            scale = _within(ax, ay, forces[_LIMIT])
+            ax, ay = agents[i, AX] + scale * ax, agents[i, AY] + scale * ay
+            scale = _within(ax, ay, most[i])
+            agents[i, AX], agents[i, AY] = scale * ax, scale * ay
+
+
+@kernel
+def _pull(
+    agents: Array,
+    i: int,
+    members: Indices,
+    begin: int,
+    end: int,
+    boundary: Array,
+    forces: Array,
+) -> tuple[float, float]:
+    """Acceleration of agent i by the others of its group, m/s^2."""
+    count, mx, my, ax, ay = 1, 0.0, 0.0, 0.0, 0.0
+    for b in range(begin, end):
+        j = members[b]
+        if j == i or agents[j, WAITING] != PRESENT:
+            continue
+        dx = _nearest(agents[j, X] - agents[i, X], boundary[1] - boundary[0])
+        dy = _nearest(agents[j, Y] - agents[i, Y], boundary[3] - boundary[2])
+        distance = math.hypot(dx, dy)
+        if distance > SIGHT:
+            continue
+        count += 1
+        mx += dx
+        my += dy
+        if 0.0 < distance < forces[_DISTANCE]:
+            ax -= forces[_REPULSION] * dx / distance
+            ay -= forces[_REPULSION] * dy / distance
+    away = math.hypot(mx, my) / count  # to the middle of all, the agent among them
+    if count == 1 or away == 0.0:
+        return ax, ay
+    ux, uy = mx / count / away, my / count / away
+    if away > 0.5 * (count - 1):
+        ax += forces[_COHESION] * ux
+        ay += forces[_COHESION] * uy
+    cosine = min(1.0, max(-1.0, agents[i, DIR_X] * ux + agents[i, DIR_Y] * uy))
+    turn = max(0.0, math.acos(cosine) - forces[_HALF_VIEW])
+    return ax - forces[_GAZE] * turn * agents[i, VX], ay - forces[_GAZE] * turn * agents[i, VY]
+
+
+@kernel
+def _nearest(step: float, width: float) -> float:
+    """The shortest of the ways to somebody on a torus of a width, which may be infinite."""
+    if math.isinf(width):
+        return step
+    return step - width * math.floor(step / width + 0.5)
+
+
+@kernel
+def _within(x: float, y: float, limit: float) -> float:
+    """What a vector is to be multiplied by to be no longer than a limit."""
+    norm = math.hypot(x, y)
+    return limit / norm if norm > limit else 1.0
+
+
+__all__ = ["SIGHT", "Cohesion", "groups_of", "hold_together"]

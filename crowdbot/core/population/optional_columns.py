@@ -1,0 +1,92 @@
+"""Columns of an agents' table that only some crowds need; others' tables do not have them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, get_args
+
+from crowdbot.dsl.people_kinds import LookName
+
+Numbers = tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One optional column: what those have who lack it, and how it is written and read."""
+
+    missing: Any
+    write: Callable[[Any], str]
+    read: Callable[[str], Any]
+
+
+def _number(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError("numbers must be finite")
+    return value
+
+
+def _write_numbers(values: Numbers) -> str:
+    return " ".join(repr(float(v)) for v in values)
+
+
+def _read_numbers(text: str) -> Numbers:
+    return tuple(_number(word) for word in text.split(" "))
+
+
+def _write_rows(rows: tuple[Numbers, ...]) -> str:
+    return ";".join(_write_numbers(row) for row in rows)
+
+
+def _read_rows(text: str) -> tuple[Numbers, ...]:
+    return tuple(_read_numbers(part) for part in text.split(";"))
+
+
+def _read_areas(text: str) -> tuple[Numbers, ...]:
+    return _sized(_read_rows(text), 3, "goal_areas")
+
+
+def _read_origin(text: str) -> Numbers:
+    return _sized((_read_numbers(text),), 5, "origin")[0]
+
+
+def _sized(rows: tuple[Numbers, ...], count: int, name: str) -> tuple[Numbers, ...]:
+    if any(len(row) != count for row in rows):
+        raise ValueError(f"{name} has {count} numbers each")
+    return rows
+
+
+def _read_look(text: str) -> str:
+    if text not in get_args(LookName):
+        raise ValueError(f"unknown look '{text}'")
+    return text
+
+
+def _write_measure(value: float) -> str:
+    return repr(float(value)) if value else ""
+
+
+_MEASURE = Column(0.0, _write_measure, _number)
+
+#: In the order of the alphabet, in which they stand after the others. ``goal_areas``: sizes
+#: along own x and y and rotation of the area around each goal, m and rad; 0 0 0: a point.
+#: ``height``, ``leg_length``, ``look``, ``phase``: the body that sensors see, m and rad; 0 is as
+#: usual.
+#: ``origin``: centre, size and rotation of where the agent comes in; ``pauses``: how long it
+#: stays at each goal, s; ``queue``: number of the queue in which it stands behind the agent
+#: before it.
+OPTIONAL: Mapping[str, Column] = MappingProxyType(
+    {
+        "goal_areas": Column((), _write_rows, _read_areas),
+        "height": _MEASURE,
+        "leg_length": _MEASURE,
+        "look": Column("", str, _read_look),
+        "origin": Column((), _write_numbers, _read_origin),
+        "pauses": Column((), _write_numbers, _read_numbers),
+        "phase": _MEASURE,
+        "queue": Column(-1, lambda n: "" if n < 0 else str(int(n)), int),
+    }
+)

@@ -1,0 +1,154 @@
+"""Ways of people in streams: goals with the areas around them, pauses, what comes at the end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.types.arrays import Point
+from crowdbot.dsl.areas import Area, GoalArea
+from crowdbot.dsl.scenario import AtGoal
+from crowdbot.dsl.stream_kinds import Lanes
+
+#: Goals of a walk from border to border, and the shortest way of it, of the smaller side.
+_TURNS, _SHORTEST = 16, 0.4
+_POINT = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """The way of one person.
+
+    Attributes:
+        goals: points, or the middles of areas, m.
+        sizes: of the area around each goal: own x and y, rotation; zeros: a point.
+        at_goal: what comes after the last.
+        pauses: how long it stays at each, s; none if nowhere.
+        origin: where it comes in, if it has a choice.
+    """
+
+    goals: tuple[Point, ...]
+    sizes: tuple[tuple[float, float, float], ...]
+    at_goal: AtGoal
+    pauses: tuple[float, ...] = ()
+    origin: Area | None = None
+
+    def columns(self) -> dict[str, Any]:
+        """Its part of a row of the table."""
+        area = self.origin
+        some = any(size != _POINT for size in self.sizes)
+        return {
+            "goals": self.goals,
+            "at_goal": self.at_goal,
+            "goal_areas": self.sizes if some else (),
+            "pauses": self.pauses if any(self.pauses) else (),
+            "origin": () if area is None else (*area.centre, *area.size, area.rotation),
+        }
+
+
+def way_through(
+    areas: Sequence[Area],
+    at_goal: AtGoal,
+    *,
+    before: Sequence[tuple[Point, float]] = (),
+    origin: Area | None = None,
+) -> Way:
+    """A way through areas, any point of each.
+
+    Args:
+        before: points that come first, and how long the person stays at each, s.
+    """
+    return Way(
+        goals=(*(point for point, _ in before), *(area.centre for area in areas)),
+        sizes=(*(_POINT for _ in before), *((*a.size, a.rotation) for a in areas)),
+        at_goal=at_goal,
+        pauses=(*(pause for _, pause in before), *(0.0 for _ in areas)) if before else (),
+        origin=origin,
+    )
+
+
+def lane_of(area: Area, lanes: Lanes | None, lane: int) -> Area:
+    """The part of an area that is one lane; all of it without lanes."""
+    if lanes is None:
+        return area
+    width = area.size[1] / lanes.of
+    middle = area.point(0.0, (lane + 0.5) * width - 0.5 * area.size[1])
+    return Area(centre=middle, size=(area.size[0], width), rotation=area.rotation)
+
+
+def straight_on(start: Point, angle: float, trip: float) -> Way:
+    """For ever in one direction, one trip of so many metres after the other."""
+    goal = (start[0] + trip * math.cos(angle), start[1] + trip * math.sin(angle))
+    return Way((start, goal), (_POINT, _POINT), "onward")
+
+
+def border_to_border(
+    area: Area, start: Point, radius: float, angles: Sequence[float], rng: np.random.Generator
+) -> Way:
+    """Straight to the border of an area, there in a new direction to another place of it, and on.
+
+    Args:
+        angles: directions to draw from, rad; any without.
+        radius: of the person, m.
+    """
+    half = [max(0.5 * side - 2.0 * radius, 0.0) for side in area.size]
+    least = _SHORTEST * 2.0 * min(half)
+    goals: list[Point] = []
+    u, v = area.own(*start)
+    for turn in range(_TURNS):
+        for _ in range(100):
+            angle = (
+                angles[int(rng.integers(len(angles)))] if angles else rng.uniform(-math.pi, math.pi)
+            )
+            reach = _to_border(u, v, angle - area.rotation, half)
+            if reach >= (least if turn else 0.0):
+                break
+        else:  # a corner that the given directions do not leave: back through the middle
+            angle, reach = math.atan2(-v, -u) + area.rotation, 2.0 * math.hypot(u, v)
+        own = angle - area.rotation
+        u, v = u + reach * math.cos(own), v + reach * math.sin(own)
+        goals.append(area.point(u, v))
+    side = 4.0 * radius
+    return Way(tuple(goals), ((side, side, area.rotation),) * len(goals), "loop")
+
+
+def _to_border(u: float, v: float, angle: float, half: Sequence[float]) -> float:
+    """How far it is from (u, v) to the sides of a box around 0 in a direction, m."""
+    found = math.inf
+    for at, step, side in ((u, math.cos(angle), half[0]), (v, math.sin(angle), half[1])):
+        if abs(step) > 1e-9:
+            found = min(found, (math.copysign(side, step) - at) / step)
+    return max(found, 0.0)
+
+
+def stroll(
+    areas: Mapping[str, GoalArea], begin: Sequence[str], visits: int, rng: np.random.Generator
+) -> list[str]:
+    """Names of the areas of a stroll: what is linked next, else any but the same again."""
+    names = [begin[int(rng.integers(len(begin)))]]
+    while len(names) < visits:
+        here = names[-1]
+        onward = list(areas[here].next) or [n for n in begin if n != here] or [here]
+        names.append(onward[int(rng.integers(len(onward)))])
+    return names
+
+
+def along(line: Sequence[Point], gap: float) -> Iterator[Point]:
+    """Places on a line of straight pieces, so far from each other, from its beginning."""
+    behind = 0.0  # what of the gap lies before the piece
+    for (x0, y0), (x1, y1) in pairwise(line):
+        length = math.hypot(x1 - x0, y1 - y0)
+        at = behind
+        while at <= length + 1e-9:
+            share = at / length if length else 0.0
+            yield x0 + share * (x1 - x0), y0 + share * (y1 - y0)
+            at += gap
+        behind = at - length
+
+
+__all__ = ["Way", "along", "border_to_border", "lane_of", "straight_on", "stroll", "way_through"]

@@ -1,0 +1,24 @@
+"""Looks: what sensors see of each person of a crowd."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from crowdbot.core.types.arrays import Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Looks:
+    """Bodies of people as sensors see them; what touches is a disc all the same.
+
+    Attributes:
+        height: (N,) m; 0: the crowd's.
+        leg_length: (N,) from the floor to the hip, m; 0: the usual share of the height.
+        phase: (N,) of the legs at the start, rad.
+        look: names of what each looks like, see `crowdbot.dsl.people_kinds`; "" is an adult.
+    """
+
+    height: Array
+    leg_length: Array
+    phase: Array
+    look: tuple[str, ...]
