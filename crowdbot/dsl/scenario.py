@@ -47,6 +47,7 @@ from crowdbot.dsl.quantities import (
 from crowdbot.dsl.robot_response import HumanResponse, RobotResponseChoice
 from crowdbot.dsl.spawning import Agents, RouteEnd, Spawn
 from crowdbot.dsl.spec import Spec
+from crowdbot.dsl.steering import Steering, unset
 
 #: What an agent does at the end of its route.
 AtGoal = Literal["portal", RouteEnd]
@@ -77,6 +78,12 @@ class Body(Spec):
     """What every agent of the crowd has in common."""
 
     radius: PositiveLength = Field(default=0.33, description="Radius of the disc, m.")
+    avoided_radius: PositiveLength | None = Field(
+        default=None,
+        exclude_if=unset,
+        description="Radius of the disc that policies and steering parts keep clear of, m; by "
+        "default `radius`, which is what touches.",
+    )
     mass: PositiveMass = Field(default=75.0, description="Mass in the physics, kg.")
     max_speed: PositiveSpeed = Field(default=3.0, description="Largest walking speed, m/s.")
     max_acceleration: PositiveAcceleration = Field(
@@ -121,6 +128,11 @@ class Crowd(Spec):
     )
     robot_response: RobotResponseChoice = Field(
         default=HumanResponse(), description="How people take the robot."
+    )
+    steering: Steering | None = Field(
+        default=None,
+        exclude_if=unset,
+        description="What people do beside any policy: time gap, personal space, walls, wander.",
     )
     seed: CrowdSeed = Field(default=CrowdSeed(), description="Draws the crowd.")
 

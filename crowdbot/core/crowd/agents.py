@@ -30,6 +30,8 @@ class Agents:
         first: (N + 1,) rows of ``route`` that belong to agent i: first[i] to first[i + 1].
         ignores_robot: (N,) whether the agent takes no notice of robots until they touch.
         late: (N,) whether the agent notices robots late, where people notice them at all.
+        avoided_radius: (N,) of the disc that policies and steering parts keep clear of, m; by
+            default ``radius``, which is what touches.
     """
 
     id: NDArray[np.int64]
@@ -48,11 +50,14 @@ class Agents:
     first: NDArray[np.int64]
     ignores_robot: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
     late: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
+    avoided_radius: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         for name in ("ignores_robot", "late"):
             if len(getattr(self, name)) != len(self.id):
                 object.__setattr__(self, name, np.zeros(len(self.id), np.bool_))
+        if len(self.avoided_radius) != len(self.id):
+            object.__setattr__(self, "avoided_radius", self.radius)
 
     def __len__(self) -> int:
         return len(self.id)
@@ -76,6 +81,7 @@ class Agents:
         routes: Sequence[Sequence[tuple[float, float]]] | None = None,
         ignores_robot: ArrayLike = False,
         late: ArrayLike = False,
+        avoided_radius: ArrayLike | None = None,
     ) -> Agents:
         """Agents from rows or single numbers; with routes they stop at the end, else portals.
 
@@ -109,6 +115,7 @@ class Agents:
             first=np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]),
             ignores_robot=row(ignores_robot, np.bool_),
             late=row(late, np.bool_),
+            avoided_radius=row(radius if avoided_radius is None else avoided_radius),
         )
         made.check()
         return made
@@ -124,7 +131,7 @@ class Agents:
         for name in ("x", "y", "preferred_speed", "start_time", "route"):
             if not np.all(np.isfinite(getattr(self, name))):
                 raise ValueError(f"{name} of agents must be finite")
-        for name in ("radius", "max_speed", "max_acceleration", "mass"):
+        for name in ("radius", "avoided_radius", "max_speed", "max_acceleration", "mass"):
             values = getattr(self, name)
             if not np.all(np.isfinite(values) & (values > 0.0)):
                 raise ValueError(f"{name} of agents must be finite and above 0")

@@ -10,6 +10,7 @@ import numpy as np
 from crowdbot.core.crowd.agents import PORTAL, Agents
 from crowdbot.core.crowd.periodic_boundary import Box
 from crowdbot.core.crowd.response.parameters import Human, Response
+from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.types.arrays import Array
 
 _COLUMNS = {"walls": 4, "pillars": 3, "entrance": 4, "out": 4}
@@ -30,6 +31,7 @@ class CrowdWorld:
         exit_point: where people come out of the in-portal: at a random point, or opposite to
             where they went into the out-portal, ``offset`` kept.
         response: what people do about robots.
+        steering: what people do beside any policy.
         robot_visible: whether people see the robot's velocity.
         stiffness, dissipation: contact with the robot, N/m and s/m.
         goal_key: key of the counter-based draws of goals and entries.
@@ -45,6 +47,7 @@ class CrowdWorld:
     out: Array = field(default_factory=lambda: np.zeros((0, 4)))
     exit_point: Literal["random", "offset"] = "random"
     response: Response = field(default_factory=Human)
+    steering: Steering = field(default_factory=Steering)
     robot_visible: bool = True
     stiffness: float = 30000.0
     dissipation: float = 0.3

@@ -12,10 +12,12 @@ from crowdbot.core.crowd.build import build_cost, build_policy
 from crowdbot.core.crowd.engine import PolicyFactory
 from crowdbot.core.crowd.policy import LOOP, PORTAL, REMOVE, STOP
 from crowdbot.core.crowd.response.from_spec import response_of
+from crowdbot.core.crowd.steering.from_spec import steering_of
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.scenario import Crowd, NamedPolicy, Scenario
+from crowdbot.dsl.seeds import stream_seed
 
 #: Names of the portals of a stream, from and to.
 Flow = tuple[str, str]
@@ -80,7 +82,14 @@ def _agents(
         routes=drawn.goals,
         ignores_robot=drawn.attention < response.ignoring,
         late=drawn.attention < response.ignoring + (1.0 - response.ignoring) * response.late,
+        avoided_radius=np.asarray(drawn.radius) * _avoided(crowd),
     )
+
+
+def _avoided(crowd: Crowd) -> float:
+    """How much larger than its body each person is avoided."""
+    avoided = crowd.body.avoided_radius
+    return 1.0 if avoided is None else avoided / crowd.body.radius
 
 
 def _world(
@@ -99,6 +108,9 @@ def _world(
         out=boxes[:, 1],
         exit_point=crowd.exit_point,
         response=response_of(response),
+        steering=steering_of(
+            crowd.steering, stream_seed(crowd.seed.root, crowd.seed.key, "crowd.wander")
+        ),
         robot_visible=response.velocity == "visible",
         stiffness=scenario.contact.stiffness,
         dissipation=scenario.contact.dissipation,
