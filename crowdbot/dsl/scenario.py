@@ -52,6 +52,7 @@ from crowdbot.dsl.robot_response import HumanResponse, RobotResponseChoice
 from crowdbot.dsl.routing import RoutingChoice
 from crowdbot.dsl.spawning import Agents, RouteEnd, Spawn
 from crowdbot.dsl.spec import Spec
+from crowdbot.dsl.steering import Steering, unset
 from crowdbot.dsl.stream_kinds import StreamChoice
 from crowdbot.lazy import lazy_names
 
@@ -87,6 +88,12 @@ class Body(Spec):
     """What every agent of the crowd has in common."""
 
     radius: PositiveLength = Field(default=0.33, description="Radius of the disc, m.")
+    avoided_radius: PositiveLength | None = Field(
+        default=None,
+        exclude_if=unset,
+        description="Radius of the disc that policies and steering parts keep clear of, m; by "
+        "default `radius`, which is what touches.",
+    )
     mass: PositiveMass = Field(default=75.0, description="Mass in the physics, kg.")
     max_speed: PositiveSpeed = Field(default=3.0, description="Largest walking speed, m/s.")
     max_acceleration: PositiveAcceleration = Field(
@@ -153,6 +160,11 @@ class Crowd(Spec):
         default=None,
         exclude_if=lambda value: value is None,
         description="How people find their way; without it `straight` to their goals.",
+    )
+    steering: Steering | None = Field(
+        default=None,
+        exclude_if=unset,
+        description="What people do beside any policy: time gap, personal space, walls, wander.",
     )
     seed: CrowdSeed = Field(default=CrowdSeed(), description="Draws the crowd.")
 

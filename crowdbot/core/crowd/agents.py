@@ -44,6 +44,8 @@ class Agents:
         group: (N,) agents with equal numbers belong together; -1: alone.
         heading: (N,) way faced by who begins at its goal, rad.
         looks: what sensors see of each; None: of all the usual body.
+        avoided_radius: (N,) of the disc that policies and steering parts keep clear of, m; by
+            default ``radius``, which is what touches.
     """
 
     id: NDArray[np.int64]
@@ -69,6 +71,7 @@ class Agents:
     group: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     heading: Array = field(default_factory=lambda: np.zeros(0))
     looks: Looks | None = None
+    avoided_radius: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         count, points = len(self.id), len(self.route)
@@ -81,6 +84,7 @@ class Agents:
             ("origin", np.zeros((count, 5))),
             ("group", np.full(count, -1, np.int64)),
             ("heading", np.zeros(count)),
+            ("avoided_radius", self.radius),
         ):
             if len(getattr(self, name)) != len(usual):
                 object.__setattr__(self, name, usual)
@@ -114,6 +118,7 @@ class Agents:
         group: ArrayLike = -1,
         heading: ArrayLike = 0.0,
         looks: Looks | None = None,
+        avoided_radius: ArrayLike | None = None,
     ) -> Agents:
         """Agents from rows or single numbers; with routes they stop at the end, else portals.
 
@@ -157,6 +162,7 @@ class Agents:
             group=row(group, np.int64),
             heading=row(heading),
             looks=looks,
+            avoided_radius=row(radius if avoided_radius is None else avoided_radius),
         )
         made.check()
         return made
@@ -172,7 +178,7 @@ class Agents:
         for name in ("x", "y", "preferred_speed", "start_time", "route"):
             if not np.all(np.isfinite(getattr(self, name))):
                 raise ValueError(f"{name} of agents must be finite")
-        for name in ("radius", "max_speed", "max_acceleration", "mass"):
+        for name in ("radius", "avoided_radius", "max_speed", "max_acceleration", "mass"):
             values = getattr(self, name)
             if not np.all(np.isfinite(values) & (values > 0.0)):
                 raise ValueError(f"{name} of agents must be finite and above 0")

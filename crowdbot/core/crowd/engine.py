@@ -16,12 +16,14 @@ from crowdbot.core.crowd.contact.robot_contact import DISC, R_W, RVX, RVY
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration
 from crowdbot.core.crowd.groups import groups_of, hold_together
 from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
+from crowdbot.core.crowd.periodic_boundary import images
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdPolicy, CrowdView
 from crowdbot.core.crowd.portals import draw_goal, enter
 from crowdbot.core.crowd.response.evasion import evade_robots
 from crowdbot.core.crowd.response.parameters import Human
 from crowdbot.core.crowd.routes import head_for
 from crowdbot.core.crowd.routing.router import Router
+from crowdbot.core.crowd.steering.parts import parts_of, steer
 from crowdbot.core.crowd.step import tick, ticks_without_robots
 from crowdbot.core.crowd.world import CrowdWorld
 from crowdbot.core.support.immutable import immutable, immutable_fields
@@ -89,6 +91,7 @@ class CrowdEngine:
         self._place = WorldParameters.of(world)
         response = world.response
         dt = self._ticks_per_decision * TICK
+        self._steering = parts_of(world.steering)
         self._evades = response.by_decision(dt) if isinstance(response, Human) else None
         self._router = (
             None
@@ -231,9 +234,11 @@ class CrowdEngine:
             decides = np.asarray(view.decides)[:, np.newaxis]
             if group.foreign:
                 view = replace(immutable_fields(view), **self._kept)
-            np.copyto(
-                rows[:, s.AX : s.AY + 1], desired_acceleration(group.policy, view), where=decides
-            )
+            wanted = desired_acceleration(group.policy, view)
+            if self._steering:
+                relaxation = getattr(group.policy, "relaxation_time", 0.0)
+                wanted = steer(self._steering, view, relaxation, wanted)
+            np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides)
         if self._cohesion is not None and len(self._members):
             hold_together(
                 rows, self._members, self._ends, self.agents.max_acceleration,
@@ -276,10 +281,13 @@ class CrowdEngine:
         if self.world.periodic_boundary is None:
             return self.world.pillars
         _, rows = s.view(flat)
-        reach = 2.0 * float(np.max(self.agents.radius, initial=0.0))
-        everybody = np.ones(len(rows), np.bool_)
-        view = self._view(np.zeros(1), rows, everybody, np.zeros((0, 5)))
-        return np.ascontiguousarray(view.others(reach)[:, [0, 1, 4]])
+        here, radius = rows[:, s.WAITING] == s.PRESENT, self.agents.radius
+        people = np.column_stack([rows[:, [s.X, s.Y, s.VX, s.VY]], radius])[here]
+        reach = 2.0 * float(np.max(radius, initial=0.0))
+        seen = images(
+            people, self.world.periodic_boundary, reach, diagonal=not self.world.parity
+        )  # fmt: skip
+        return np.concatenate([self.world.pillars, seen[:, [0, 1, 4]]])
 
 
 def _who_plans(agents: Agents, world: CrowdWorld) -> NDArray[np.bool_]:

@@ -55,7 +55,8 @@ class CrowdView:
     def others(self, reach: float = math.inf) -> Array:
         """Discs (K, 5) that are seen beside the people: x, y, vx, vy, radius; m, m/s.
 
-        Robots, then pillars, which stand, then people as they appear across the border.
+        Robots, then pillars, which stand, then people as they appear across the border, with the
+        radius that others avoid.
 
         Args:
             reach: distance beyond which nobody sees a centre, m.
@@ -64,8 +65,8 @@ class CrowdView:
             return self.robot
         found = [self.robot, _standing(self.pillars)]
         if self.periodic_boundary is not None:
-            here = self.present
-            people = np.column_stack([self.position, self.velocity, self.agents.radius])[here]
+            radius = self.agents.avoided_radius
+            people = np.column_stack([self.position, self.velocity, radius])[self.present]
             found.append(images(people, self.periodic_boundary, reach, diagonal=self.diagonal))
         return np.concatenate(found)
 
@@ -80,7 +81,9 @@ class AcceleratingPolicy(Protocol):
     """Compute all, then apply all: the result does not depend on the agents' order.
 
     A policy of either kind may have an attribute ``contact_stiffness``: the push between
-    overlapping people, walls and pillars, 1/s^2; without it, `CONTACT_STIFFNESS`.
+    overlapping people, walls and pillars, 1/s^2; without it, `CONTACT_STIFFNESS`. One that chooses
+    velocities and approaches them says in an attribute ``relaxation_time`` (s) how fast, for the
+    steering parts that limit speeds; without it, the time between decisions.
     """
 
     def accelerations(self, view: CrowdView) -> Array:

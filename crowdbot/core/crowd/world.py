@@ -12,6 +12,7 @@ from crowdbot.core.crowd.groups import Cohesion
 from crowdbot.core.crowd.periodic_boundary import Box
 from crowdbot.core.crowd.response.parameters import Human, Response
 from crowdbot.core.crowd.routing.parameters import MeshRouting
+from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.types.arrays import Array
 
 _COLUMNS = {"walls": 4, "pillars": 3, "entrance": 4, "out": 4}
@@ -33,6 +34,7 @@ class CrowdWorld:
             where they went into the out-portal, ``offset`` kept.
         response: what people do about robots.
         cohesion: what holds groups together; None: nothing.
+        steering: what people do beside any policy.
         robot_visible: whether people see the robot's velocity.
         stiffness, dissipation: contact with the robot, N/m and s/m.
         goal_key: key of the counter-based draws of goals and entries.
@@ -50,6 +52,7 @@ class CrowdWorld:
     exit_point: Literal["random", "offset"] = "random"
     response: Response = field(default_factory=Human)
     cohesion: Cohesion | None = field(default_factory=Cohesion)
+    steering: Steering = field(default_factory=Steering)
     robot_visible: bool = True
     stiffness: float = 30000.0
     dissipation: float = 0.3

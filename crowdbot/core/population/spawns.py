@@ -197,7 +197,7 @@ class SpawnSampler:
     def _beside(
         self, name: str, point: Point, k: int, members: range, turn: float, ground: Ground
     ) -> Point:
-        """The goal of a group's k-th member: on a circle around that of the group, if it is free."""
+        """The goal of the k-th of a group: on a circle around that of the group, if it is free."""
         radius = float(self._radius[members].max())
         reach = radius * _APART / math.sin(math.pi / len(members))
         angle = turn + 2.0 * math.pi * k / len(members)

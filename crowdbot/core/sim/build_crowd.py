@@ -16,11 +16,13 @@ from crowdbot.core.crowd.engine import PolicyFactory
 from crowdbot.core.crowd.groups import Cohesion
 from crowdbot.core.crowd.response.from_spec import response_of
 from crowdbot.core.crowd.routing.from_spec import routing_of
+from crowdbot.core.crowd.steering.from_spec import steering_of
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.looks import Looks
 from crowdbot.dsl.scenario import Crowd, NamedPolicy, Scenario
+from crowdbot.dsl.seeds import stream_seed
 
 #: Names of the portals of a stream, from and to.
 Flow = tuple[str, str]
@@ -109,9 +111,9 @@ def _agents(
         pauses=drawn.pauses,
         ahead=_ahead(drawn.queue),
         origins=drawn.origin,
-        group=drawn.group,
         heading=drawn.heading,
         looks=_looks(drawn),
+        avoided_radius=np.asarray(drawn.radius) * _avoided(crowd),
     )
 
 
@@ -135,6 +137,12 @@ def _looks(drawn: Realisation) -> Looks | None:
     )
 
 
+def _avoided(crowd: Crowd) -> float:
+    """How much larger than its body each person is avoided."""
+    avoided = crowd.body.avoided_radius
+    return 1.0 if avoided is None else avoided / crowd.body.radius
+
+
 def _world(
     scenario: Scenario,
     crowd: Crowd,
@@ -153,6 +161,9 @@ def _world(
         exit_point=crowd.exit_point,
         response=response_of(response),
         cohesion=None if crowd.groups is None else Cohesion(**crowd.groups.model_dump()),
+        steering=steering_of(
+            crowd.steering, stream_seed(crowd.seed.root, crowd.seed.key, "crowd.wander")
+        ),
         robot_visible=response.velocity == "visible",
         stiffness=scenario.contact.stiffness,
         dissipation=scenario.contact.dissipation,

@@ -12,7 +12,7 @@ from numba import uint64
 from crowdbot.core.support.compile import kernel
 
 #: What a draw is for; keeps draws with equal counters apart.
-GOAL, ENTRY, ROUTE = 0, 1, 2
+GOAL, ENTRY, ROUTE, WANDER = 0, 1, 2, 3
 
 
 @kernel

@@ -79,7 +79,7 @@ class WeightedCosts:
     ) -> None:
         self.agents, self.parity, self.relaxation_time = agents, parity, relaxation_time
         self._all = tuple(costs)
-        self.largest = float(np.max(agents.radius, initial=0.0))
+        self.largest = float(np.max(agents.avoided_radius, initial=0.0))
         # Few neighbours first: their excess is the cheaper one.
         self.compiled = sorted(
             (c for c in costs if isinstance(c, CompiledCost)),
@@ -130,7 +130,7 @@ class WeightedCosts:
             self._table = np.zeros((room, DISC_COLUMNS))
         box = np.array(boundary if boundary is not None else (0.0, 0.0, 0.0, 0.0))
         count = write_discs(
-            view.position, view.velocity, view.goal, view.agents.radius,
+            view.position, view.velocity, view.goal, view.agents.avoided_radius,
             view.agents.preferred_speed, view.present, view.robot, view.pillars, box,
             view.diagonal, reach, self._discs,
         )  # fmt: skip

@@ -66,7 +66,7 @@ class JuPedSim:
         at = np.concatenate([view.position[people], others[:, :2]])
         aim = np.concatenate([goal[people], ahead])
         speed = np.hypot(*np.concatenate([wanted[people], others[:, 2:4]]).T)
-        radius = np.concatenate([view.agents.radius[people], others[:, 4]])
+        radius = np.concatenate([view.agents.avoided_radius[people], others[:, 4]])
         try:
             moved = self._walk(at, aim, speed, radius, view.walls, dt)[: len(people)]
         except RuntimeError as error:  # what the library raises for all it does not like

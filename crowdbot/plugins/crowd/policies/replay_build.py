@@ -48,6 +48,7 @@ class ReactiveReplay:
         stiffness = getattr(inner, "contact_stiffness", None)
         if stiffness is not None:
             self.contact_stiffness: float = stiffness
+        self.relaxation_time: float = getattr(inner, "relaxation_time", 0.0)
 
     def accelerations(self, view: CrowdView) -> Array:
         """What the other policy does with these goals."""

@@ -50,6 +50,7 @@ class VelocitySpace:
         weight: Array | None = None,
     ) -> None:
         self.contact_stiffness = spec.contact_stiffness
+        self.relaxation_time = spec.relaxation_time
         self.costs = WeightedCosts(
             costs, agents, relaxation_time=spec.relaxation_time, parity=parity, weight=weight
         )

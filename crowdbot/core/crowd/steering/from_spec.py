@@ -1,0 +1,39 @@
+"""What a world takes as steering, from the field ``crowd.steering``."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+from crowdbot.core.crowd.steering.parameters import (
+    PersonalSpace,
+    Steering,
+    TimeGap,
+    WallPush,
+    Wander,
+)
+from crowdbot.dsl.steering import Steering as SteeringSpec
+
+_PARTS: dict[str, type[Any]] = {
+    "time_gap": TimeGap,
+    "personal_space": PersonalSpace,
+    "wall_push": WallPush,
+    "wander": Wander,
+}
+
+
+def steering_of(spec: SteeringSpec | None, key: int = 0) -> Steering:
+    """The steering that a spec describes; units are those of its fields.
+
+    Args:
+        spec: None is none.
+        key: of the random numbers of `Wander`: the seed of the stream ``crowd.wander``.
+    """
+    found = {}
+    for name, made in _PARTS.items():
+        part = getattr(spec, name, None)
+        if part is None:
+            continue
+        values = {f.name: getattr(part, f.name) for f in fields(made) if f.name != "key"}
+        found[name] = made(**values, **({"key": key} if made is Wander else {}))
+    return Steering(**found)

@@ -1,0 +1,78 @@
+"""Personal space: a push away from where others are going to be, stronger ahead than behind."""
+
+from __future__ import annotations
+
+import math
+
+from crowdbot.core.crowd.steering.around import REACH, Around, first_within
+from crowdbot.core.crowd.steering.parameters import PersonalSpace
+from crowdbot.core.crowd.velocity_search.neighbours import DISC_RADIUS, VX, VY, X, Y
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array, Indices, Mask
+
+#: Nobody is pushed harder by one other, m/s^2.
+HARDEST = 8.0
+#: Who would be inside another counts as at this share of the present distance.
+_THROUGH = 0.05
+
+
+def push_away(part: PersonalSpace, near: Around, wanted: Array) -> None:
+    """Add the pushes of all others to accelerations (N, 2), m/s^2, in place."""
+    _push_all(*near, part.strength, part.reach, part.anticipation, part.behind, wanted)
+
+
+@kernel
+def _push_all(
+    discs: Array, row: Indices, heading: Array, decides: Mask,
+    strength: float, reach: float, anticipation: float, behind: float, wanted: Array,
+) -> None:  # fmt: skip
+    for i in range(wanted.shape[0]):
+        if not decides[i]:
+            continue
+        a = int(row[i])
+        for b in range(first_within(discs, a, REACH), discs.shape[0]):
+            if discs[b, X] - discs[a, X] > REACH:
+                break
+            if b == a or abs(discs[b, Y] - discs[a, Y]) > REACH:
+                continue
+            px, py = push_by(
+                discs, a, b, heading[i, 0], heading[i, 1], strength, reach, anticipation, behind
+            )
+            wanted[i, 0] += px
+            wanted[i, 1] += py
+
+
+@kernel
+def push_by(
+    discs: Array,
+    a: int,
+    b: int,
+    hx: float,
+    hy: float,
+    strength: float,
+    reach: float,
+    anticipation: float,
+    behind: float,
+) -> tuple[float, float]:
+    """What row b pushes row a by, m/s^2; none where it would be below 1 % of ``strength``."""
+    dx, dy = discs[b, X] - discs[a, X], discs[b, Y] - discs[a, Y]
+    qx = dx + (discs[b, VX] - discs[a, VX]) * anticipation
+    qy = dy + (discs[b, VY] - discs[a, VY]) * anticipation
+    distance = math.sqrt(qx * qx + qy * qy)
+    if qx * dx + qy * dy < 0.0:  # they would walk through each other
+        qx, qy = dx, dy
+        now = math.sqrt(dx * dx + dy * dy)
+        distance, size = _THROUGH * now, now
+    else:
+        size = distance
+    gap = distance - discs[a, DISC_RADIUS] - discs[b, DISC_RADIUS]
+    if size == 0.0 or gap > 4.6 * reach:
+        return 0.0, 0.0
+    nx, ny = qx / size, qy / size
+    ahead = 0.5 * (1.0 + nx * hx + ny * hy)
+    push = strength * math.exp(-gap / reach) * (behind + (1.0 - behind) * ahead)
+    push = min(push, HARDEST)
+    return -push * nx, -push * ny
+
+
+__all__ = ["HARDEST", "push_away", "push_by"]

@@ -1,0 +1,90 @@
+"""Time gap: nobody walks faster than the room ahead allows.
+
+Without it no model here slows down in a dense crowd. Who comes towards one is stepped around
+rather than followed, so that the gap to them is nearly off.
+"""
+
+from __future__ import annotations
+
+import math
+
+from crowdbot.core.crowd.policy import CrowdView
+from crowdbot.core.crowd.steering.around import REACH, Around, first_within
+from crowdbot.core.crowd.steering.parameters import TimeGap
+from crowdbot.core.crowd.velocity_search.neighbours import VX, VY, X, Y
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array, Indices, Mask
+
+#: Who moves faster than this against one's heading comes towards one, m/s.
+_ONCOMING = 0.2
+
+
+def limit_speed(
+    part: TimeGap, view: CrowdView, near: Around, relaxation: float, wanted: Array
+) -> None:
+    """Shorten, in place, the velocities that accelerations lead to within ``relaxation``.
+
+    Args:
+        relaxation: time in which the policy reaches the velocity that it has chosen, s.
+        wanted: (N, 2) accelerations, m/s^2.
+    """
+    _limit(
+        *near, view.velocity, part.time, part.oncoming_time, part.room, part.half_width,
+        relaxation, wanted,
+    )  # fmt: skip
+
+
+@kernel
+def _limit(
+    discs: Array, row: Indices, heading: Array, decides: Mask, velocity: Array,
+    time: float, oncoming_time: float, room: float, half_width: float, relaxation: float,
+    wanted: Array,
+) -> None:  # fmt: skip
+    for i in range(wanted.shape[0]):
+        if not decides[i]:
+            continue
+        ux = velocity[i, 0] + relaxation * wanted[i, 0]
+        uy = velocity[i, 1] + relaxation * wanted[i, 1]
+        ahead = ux * heading[i, 0] + uy * heading[i, 1]
+        if ahead <= 0.0:
+            continue  # about to stop or to step back
+        fastest = allowed_speed(
+            discs, int(row[i]), heading[i, 0], heading[i, 1], time, oncoming_time, room, half_width
+        )
+        if ahead > fastest:
+            wanted[i, 0] -= (ahead - fastest) / relaxation * heading[i, 0]
+            wanted[i, 1] -= (ahead - fastest) / relaxation * heading[i, 1]
+
+
+@kernel
+def allowed_speed(
+    discs: Array,
+    a: int,
+    hx: float,
+    hy: float,
+    time: float,
+    oncoming_time: float,
+    room: float,
+    half_width: float,
+) -> float:
+    """Largest speed that the discs ahead of row a allow, m/s; inf with a free way.
+
+    Args:
+        discs: (D, `DISC_COLUMNS`) sorted by x.
+        hx, hy: unit vector of the way faced.
+        time to half_width: see `TimeGap`.
+    """
+    fastest = math.inf
+    for b in range(first_within(discs, a, REACH), discs.shape[0]):
+        dx, dy = discs[b, X] - discs[a, X], discs[b, Y] - discs[a, Y]
+        if dx > REACH:
+            break
+        along = dx * hx + dy * hy
+        if b == a or along <= 0.0 or along > REACH or abs(dx * hy - dy * hx) >= half_width:
+            continue
+        comes = discs[b, VX] * hx + discs[b, VY] * hy < -_ONCOMING
+        fastest = min(fastest, max(0.0, (along - room) / (oncoming_time if comes else time)))
+    return fastest
+
+
+__all__ = ["allowed_speed", "limit_speed"]

@@ -1,0 +1,63 @@
+"""Wander: a slow random acceleration of each person, from a stream of its own.
+
+It is a function of time: normal numbers at knots, of which two are mixed so that the variance is
+the same at any time. So it needs no state, and a run that goes on from some state is the same.
+Each person has knots at times of its own.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crowdbot.core.crowd.policy import CrowdView
+from crowdbot.core.crowd.steering.around import Around
+from crowdbot.core.crowd.steering.parameters import Wander
+from crowdbot.core.crowd.velocity_search.counter_rng import WANDER, uniform
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array, Indices, Mask
+
+#: Lag at which the correlation is 1/e, in knots: of (1 - l/2) cos(pi l/2) + sin(pi l/2)/pi.
+E_FOLD = 0.93929
+
+
+def wander(part: Wander, view: CrowdView, near: Around, wanted: Array) -> None:
+    """Add everybody's random acceleration to accelerations (N, 2), m/s^2, in place."""
+    knots = view.t * E_FOLD / part.time
+    _wander(near.decides, view.agents.id, knots, part.deviation, np.uint64(part.key), wanted)
+
+
+@kernel
+def _wander(
+    decides: Mask, ids: Indices, knots: float, deviation: float, key: np.uint64, wanted: Array
+) -> None:
+    for i in range(wanted.shape[0]):
+        if decides[i]:
+            x, y = wandering(ids[i], knots, key)
+            wanted[i, 0] += deviation * x
+            wanted[i, 1] += deviation * y
+
+
+@kernel
+def wandering(agent: int, knots: float, key: np.uint64) -> tuple[float, float]:
+    """Two independent numbers of mean 0 and variance 1, slow in ``knots``."""
+    at = knots + uniform(key, agent, 0, WANDER, 2)
+    knot = math.floor(at)
+    angle = 0.5 * math.pi * (at - knot)
+    x0, y0 = _normal(agent, knot, key)
+    x1, y1 = _normal(agent, knot + 1, key)
+    c, s = math.cos(angle), math.sin(angle)
+    return c * x0 + s * x1, c * y0 + s * y1
+
+
+@kernel
+def _normal(agent: int, knot: int, key: np.uint64) -> tuple[float, float]:
+    """Two normal numbers (Box and Muller 1958)."""
+    u = 1.0 - uniform(key, agent, knot, WANDER, 0)
+    v = uniform(key, agent, knot, WANDER, 1)
+    size = math.sqrt(-2.0 * math.log(u))
+    return size * math.cos(2.0 * math.pi * v), size * math.sin(2.0 * math.pi * v)
+
+
+__all__ = ["E_FOLD", "wander", "wandering"]

@@ -1,0 +1,99 @@
+"""Steering parts: what people do beside their crowd policy, whatever that is; off by default.
+
+Formulas and sources: docs/reference/crowd/steering.md.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from annotated_types import Ge, Le
+from pydantic import Field
+
+from crowdbot.dsl.quantities import (
+    NonNegativeDuration,
+    NonNegativeLength,
+    PositiveAcceleration,
+    PositiveDuration,
+    PositiveLength,
+)
+from crowdbot.dsl.spec import Spec
+
+
+def unset(value: Any) -> bool:
+    """Whether an optional field says nothing; then a scenario's hash does not know it."""
+    return value is None
+
+
+class TimeGap(Spec):
+    """Nobody walks faster than the room ahead allows: (distance ahead - room) / time."""
+
+    time: PositiveDuration = Field(default=1.0, description="Gap kept to who is ahead, s.")
+    oncoming_time: PositiveDuration = Field(
+        default=0.023, description="The same to who comes the other way, s; nearly off."
+    )
+    room: NonNegativeLength = Field(
+        default=0.27, description="Distance between centres, ahead, at which people stand, m."
+    )
+    half_width: PositiveLength = Field(
+        default=0.28, description="Who is farther to the side does not count, m."
+    )
+
+
+class PersonalSpace(Spec):
+    """A push away from where others are going to be, stronger ahead than behind."""
+
+    strength: PositiveAcceleration = Field(
+        default=1.13, description="Push where discs are going to touch, ahead, m/s^2."
+    )
+    reach: PositiveLength = Field(
+        default=0.4, description="Distance over which it falls to 1/e, m."
+    )
+    anticipation: NonNegativeDuration = Field(
+        default=0.5, description="How far ahead people place each other, s."
+    )
+    behind: Annotated[float, Ge(0), Le(1)] = Field(
+        default=0.78, description="Share of the push that is left straight behind."
+    )
+
+
+class WallPush(Spec):
+    """A push away from walls."""
+
+    strength: PositiveAcceleration = Field(
+        default=3.3, description="Push where the disc touches, m/s^2."
+    )
+    reach: PositiveLength = Field(
+        default=0.13, description="Distance over which it falls to 1/e, m."
+    )
+
+
+class Wander(Spec):
+    """A slow random acceleration of each person, from the stream ``crowd.wander``."""
+
+    deviation: PositiveAcceleration = Field(
+        default=0.21, description="Standard deviation along each axis, m/s^2."
+    )
+    time: PositiveDuration = Field(
+        default=0.41, description="Time in which its correlation falls to 1/e, s."
+    )
+
+
+class Steering(Spec):
+    """Steering parts, each off unless it is named."""
+
+    time_gap: TimeGap | None = Field(
+        default=None, exclude_if=unset, description="Slow down behind others."
+    )
+    personal_space: PersonalSpace | None = Field(
+        default=None, exclude_if=unset, description="Keep away from others."
+    )
+    wall_push: WallPush | None = Field(
+        default=None, exclude_if=unset, description="Keep away from walls."
+    )
+    wander: Wander | None = Field(
+        default=None, exclude_if=unset, description="Never walk quite straight."
+    )
+
+
+__all__ = ["PersonalSpace", "Steering", "TimeGap", "WallPush", "Wander"]
