@@ -14,6 +14,7 @@ from crowdbot.core.recording import read_run
 from crowdbot.core.recording.scans import REPLAY_RATE, ReplayScan
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.replay import write_replay
+from crowdbot.core.robots.look import seen_from_above
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import (
@@ -188,13 +189,14 @@ def _record_run(
         record = run_record(request, identity, references, outcome, run, scores, parts=built.parts)
         record["agents"] = prepared.run.people.source
         record["reference_hashes"] = reference_hashes(references)
-        _write_files(request, folder, run, scans, scores, record)
+        _write_files(request, built, folder, run, scans, scores, record)
         files.publish(folder, final)
     return record
 
 
 def _write_files(
     request: Request,
+    built: BuiltRun,
     folder: Path,
     run: Trajectories,
     scans: Sequence[ReplayScan],
@@ -205,12 +207,13 @@ def _write_files(
     write_scenario(folder, scenario, request.registry)
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
     if request.replay:
-        _write_replay(request, folder / files.REPLAY, run, scans, scores, record)
+        _write_replay(request, built, folder / files.REPLAY, run, scans, scores, record)
     files.write_json(folder / files.RECORD, {**record, "files": files.sizes(folder)})
 
 
 def _write_replay(
     request: Request,
+    built: BuiltRun,
     file: Path,
     run: Trajectories,
     scans: Sequence[ReplayScan],
@@ -234,6 +237,7 @@ def _write_replay(
             "Arrived at": "—" if arrival is None else f"{arrival:.2f} s",
             "Spec": record["hashes"]["spec"][:24],
         },
+        look=[(part.outline, part.colour) for part in seen_from_above(built.model)],
     )
 
 

@@ -12,9 +12,10 @@ from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
 from crowdbot.core.interfaces import DifferentialDrive, RobotModel
+from crowdbot.plugins.robots.body_part import Part
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec
 from crowdbot.plugins.robots.turtlebot2_build import build
-from crowdbot.plugins.robots.turtlebot2_parts import Part, parts
+from crowdbot.plugins.robots.turtlebot2_parts import parts
 
 
 def _drive(model: RobotModel) -> DifferentialDrive:
