@@ -29,20 +29,23 @@ class RobotResponse(Spec):
     """How people take the robot: behaviour, not contact.
 
     Those who yield see it and keep clear of it, in the way that `kind` says. Those who ignore it
-    walk as if it were not there, until they touch it.
+    walk as if it were not there, until they touch it; those who are distracted do so while it
+    moves, and stop short of one that stands, as of anything that stands in their way.
     """
 
     category: ClassVar[str] = "robot response"
     #: The kind of a response that names none.
     usual: ClassVar[str] = "human"
     kind: str = Field(description="Name of the response.")
-    reaction: Literal["yield", "ignore", "mixed"] = Field(
-        default="yield", description="Who takes notice of the robot: all, nobody, or some."
+    reaction: Literal["yield", "ignore", "mixed", "distracted"] = Field(
+        default="yield",
+        description="Who takes notice of the robot: all, nobody, or some; with `distracted`, "
+        "some while it moves and all when it stands.",
     )
     ignoring_fraction: Annotated[float, Gt(0), Lt(1)] | None = Field(
         default=None,
-        description="With `mixed`: the fraction of people who ignore the robot, the least "
-        "attentive ones.",
+        description="With `mixed` or `distracted`: the fraction of people who ignore the robot, "
+        "the least attentive ones.",
     )
     margin: NonNegativeLength = Field(
         default=0.25,
@@ -55,9 +58,15 @@ class RobotResponse(Spec):
 
     @model_validator(mode="after")
     def _fraction_of_a_mixture(self) -> RobotResponse:
-        if (self.reaction == "mixed") != (self.ignoring_fraction is not None):
-            raise ValueError("reaction 'mixed' and ignoring_fraction belong together")
+        some = self.reaction in ("mixed", "distracted")
+        if some != (self.ignoring_fraction is not None):
+            raise ValueError("reaction 'mixed' or 'distracted' and ignoring_fraction go together")
         return self
+
+    @property
+    def all_stop_short(self) -> bool:
+        """Whether those who ignore a robot that moves stop short of one that stands."""
+        return self.reaction == "distracted"
 
     @property
     def ignoring(self) -> float:
@@ -171,6 +180,12 @@ class KeepOffResponse(RobotResponse):
     slow_speed: PositiveSpeed = Field(
         default=0.2, description="Below this robot speed the stiffness rises linearly, m/s."
     )
+
+    @model_validator(mode="after")
+    def _acts_on_who_takes_notice(self) -> KeepOffResponse:
+        if self.all_stop_short:
+            raise ValueError("keep_off has no reaction 'distracted'; choose 'mixed'")
+        return self
 
 
 def _usual(value: Any) -> Any:

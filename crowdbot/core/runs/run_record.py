@@ -84,7 +84,7 @@ def _conditions(scenario: Scenario, run: Trajectories) -> dict[str, str]:
     if scenario.crowd is not None and run.robot is not None:
         response = scenario.crowd.robot_response
         found["perceived_radius"] = f"{run.robot.radius + response.margin:.10g} m"
-        share = f" {response.ignoring:g}" if response.reaction == "mixed" else ""
+        share = f" {response.ignoring:g}" if response.ignoring_fraction is not None else ""
         words = _own_words(response), f"{response.reaction}{share}", f"velocity {response.velocity}"
         found["people_and_robot"] = ", ".join(words)
     return found

@@ -18,6 +18,7 @@ from crowdbot.core.crowd.contact.robot_contact import (
 )
 from crowdbot.core.crowd.response.notice import reacts
 from crowdbot.core.crowd.response.parameters import (
+    ALL_STOP,
     BRAKING,
     CLEARANCE,
     DECISION,
@@ -61,6 +62,8 @@ def evade_robots(
     """
     for i in range(agents.shape[0]):
         if not heeds[i]:
+            if response[ALL_STOP] != 0.0:  # of no robot but one that stands
+                reacts(agents, i, radius[i], late[i], robots, outline, response, now)
             continue
         if not reacts(agents, i, radius[i], late[i], robots, outline, response, now):
             continue

@@ -32,6 +32,7 @@ class Human:
         standing_gap: gap that people keep to a robot that stands, m.
         standing_stiffness: how firmly they keep it, 1/s^2.
         shown_to_policies: whether crowd policies of attentive people are shown robots, too.
+        all_stop_short: whether those who take no notice of robots stop short of one that stands.
     """
 
     sight: float = 6.0
@@ -51,6 +52,7 @@ class Human:
     standing_gap: float = 0.2
     standing_stiffness: float = 100.0
     shown_to_policies: bool = False
+    all_stop_short: bool = False
 
     def by_decision(self, dt: float) -> Array:
         """What `crowdbot.core.crowd.response.evasion` takes; ``dt`` (s) between decisions."""
@@ -60,6 +62,7 @@ class Human:
                 self.reaction_time, self.horizon, self.clearance, self.lateral_acceleration,
                 self.braking, self.total_acceleration, self.stop_gap, dt,
                 self.late_time_standing, self.standing_speed, self.moving_speed,
+                self.all_stop_short,
             ]
         )  # fmt: skip
 
@@ -99,8 +102,8 @@ STANDING, KEEP_OFF = 0.0, 1.0
 # Entries of `Human.by_decision`.
 (
     SIGHT, VIEW_COSINE, LATE_TIME, LATE_GAP, REACTION_TIME, HORIZON, CLEARANCE, LATERAL, BRAKING,
-    TOTAL, STOP_GAP, DECISION, LATE_TIME_STANDING, SEEN_STANDING, SEEN_MOVING,
-) = range(15)  # fmt: skip
+    TOTAL, STOP_GAP, DECISION, LATE_TIME_STANDING, SEEN_STANDING, SEEN_MOVING, ALL_STOP,
+) = range(16)  # fmt: skip
 # Entries of `Human.by_tick` and of `KeepOff.by_tick`.
 STANDING_SPEED, MOVING_SPEED, LEAST_BRAKING, STANDING_GAP, STANDING_STIFFNESS = range(1, 6)
 STIFFNESS_MOVING, STIFFNESS_STOPPED, SLOW_SPEED = range(1, 4)

@@ -15,7 +15,7 @@ from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sim.build_crowd import build_crowd
-from crowdbot.dsl.robot_response import HumanResponse
+from crowdbot.dsl.robot_response import HumanResponse, KeepOffResponse
 from tests.core.crowd.crowd_reference import Array
 from tests.core.crowd.crowd_worlds import TICKS, Straight, rows, walkers
 
@@ -30,8 +30,8 @@ def _stream(ignores: object) -> Agents:
     )  # fmt: skip
 
 
-def _touched(ignores: object) -> NDArray[np.bool_]:
-    engine = walkers(_stream(ignores))
+def _touched(ignores: object, response: Response | None = None) -> NDArray[np.bool_]:
+    engine = walkers(_stream(ignores), response=response or Human())
     flat = engine.initial_state()
     for _ in range(25 * TICKS):
         engine.advance(flat, PARKED)
@@ -44,6 +44,30 @@ def test_who_yields_never_touches_a_parked_robot_who_ignores_it_does() -> None:
     some = np.arange(10) % 2 == 1
     assert not np.any(_touched(some)[~some])
     assert np.any(_touched(some)[some])
+
+
+DISTRACTED = Human(all_stop_short=True)
+
+
+def test_who_is_distracted_stops_short_of_a_robot_that_stands() -> None:
+    assert not np.any(_touched(True, DISTRACTED))
+    assert not np.any(_touched(np.arange(10) % 2 == 1, DISTRACTED))
+
+
+def test_who_is_distracted_takes_no_notice_of_one_that_moves() -> None:
+    """Until they touch it: the same motion, bit by bit, as of people who ignore it."""
+    robot = PARKED.copy()
+    robot[0, 2] = -1.0
+    states = []
+    for response in (Human(), DISTRACTED):
+        engine = walkers(_stream(True), response=response)
+        flat, row = engine.initial_state(), robot.copy()
+        for _ in range(8 * TICKS):
+            engine.advance(flat, row)
+            row[0, 0] += row[0, 2] / TICKS
+        states.append(rows(flat)[:, [s.X, s.Y, s.VX, s.VY, s.TOUCHES]].copy())
+    np.testing.assert_array_equal(states[0], states[1])
+    assert np.any(states[0][:, 4] > 0.0)
 
 
 class Spy(Straight):
@@ -97,6 +121,7 @@ def test_people_who_ignore_the_robot_walk_as_without_it() -> None:
         ("{late_fraction: 0.1}", 0.0, 0.1),
         ("{reaction: ignore}", 1.0, 0.0),
         ("{reaction: mixed, ignoring_fraction: 0.4}", 0.4, 0.24),
+        ("{reaction: distracted, ignoring_fraction: 0.4}", 0.4, 0.24),
         ("{kind: keep_off, reaction: mixed, ignoring_fraction: 0.4}", 0.4, 0.0),
     ],
 )
@@ -119,6 +144,7 @@ def test_the_scenario_says_it(words: str, ignoring: float, late: float) -> None:
         {"reaction": "yield", "ignoring_fraction": 0.5},
         {"reaction": "mixed", "ignoring_fraction": 1.0},
         {"reaction": "flee"},
+        {"reaction": "distracted"},
         {"late_fraction": 1.5},
         {"standing_speed": 0.3},
         {"field_of_view": 7.0},
@@ -127,3 +153,8 @@ def test_the_scenario_says_it(words: str, ignoring: float, late: float) -> None:
 def test_what_makes_no_sense_is_refused(given: dict[str, object]) -> None:
     with pytest.raises(ValidationError):
         HumanResponse(**given)  # type: ignore[arg-type]
+
+
+def test_keep_off_knows_nobody_who_is_distracted() -> None:
+    with pytest.raises(ValidationError, match="choose 'mixed'"):
+        KeepOffResponse(reaction="distracted", ignoring_fraction=0.1)
