@@ -1,8 +1,8 @@
 """What it costs that a planner runs in a process of its own.
 
-Runs a planner that reads two lidars at 16 Hz in a scenario of the challenge, inside the simulator and
-in a process of its own by turns, and prints processor time of all processes and wall time, start of
-the planner's process included, and their ratio.
+Runs a planner that reads two lidars at 16 Hz in a scenario of the challenge, by turns inside the
+simulator and in a process of its own, and prints processor time of all processes and wall time,
+start of the planner's process included, and their ratio.
 
     python benchmarks/planner_process.py --seconds 60 --rounds 3
 """
@@ -78,12 +78,14 @@ def main() -> None:
             inside.append(run(planner, "--in-process", args.seconds, out))
             apart.append(run(planner, "--own-process", args.seconds, out))
     assert len({trajectory for _, _, trajectory in (*inside, *apart)}) == 1
-    for name, column in (("processor time", 0), ("wall time", 1)):
-        a, b = median(r[column] for r in inside), median(r[column] for r in apart)
-        least = min(r[column] for r in apart) / min(r[column] for r in inside)  # type: ignore[type-var, operator]
-        print(
-            f"{name}: inside {a:.2f} s, own process {b:.2f} s, ratio {b / a:.3f}, best {least:.3f}"
-        )
+    _print("processor time", [r[0] for r in inside], [r[0] for r in apart])
+    _print("wall time", [r[1] for r in inside], [r[1] for r in apart])
+
+
+def _print(name: str, inside: list[float], apart: list[float]) -> None:
+    a, b = median(inside), median(apart)
+    least = min(apart) / min(inside)
+    print(f"{name}: inside {a:.2f} s, own process {b:.2f} s, ratio {b / a:.3f}, best {least:.3f}")
 
 
 if __name__ == "__main__":
