@@ -106,6 +106,8 @@ def simulate(
     metrics: str | Sequence[str] = "*",
     replay: bool = True,
     step_budget: float | None = None,
+    in_process: bool | None = None,
+    planner_memory: float | None = 4.0,
     progress: Callable[[Progress], None] | None = None,
     stop: Callable[[], bool] = lambda: False,
 ) -> Run:
@@ -128,6 +130,9 @@ def simulate(
         metrics: one or several globs over metric names.
         replay: whether the replay page is written.
         step_budget: wall time that a planner step may take, s; None: any.
+        in_process: whether the planner runs inside this process, where a debugger sees it and
+            nothing contains it; None: crowdbot's own do, all others have a process of their own.
+        planner_memory: largest address space of its own process, GiB; None: any.
         progress: called several times a simulated second.
         stop: asked several times a simulated second; True ends the run.
 
@@ -138,9 +143,11 @@ def simulate(
         PlannerHungError: a planner step never returned; a ``.partial`` directory is left.
         Interrupted: ``stop`` returned True; a ``.partial`` directory is left.
     """
+    from crowdbot.core.planning.choice import PlannerPlace
     from crowdbot.core.sim.simulate import simulate as simulate_it
 
     _expect("scenario", scenario, Scenario, hint="crowdbot.load(SUITE, ID) reads one")
+    memory = None if planner_memory is None else round(planner_memory * 2**30)
     return simulate_it(
         scenario,
         registry(),
@@ -155,6 +162,7 @@ def simulate(
         metrics=_patterns(metrics),
         replay=replay,
         step_budget=step_budget,
+        place=PlannerPlace(in_process=in_process, memory=memory),
         progress=progress,
         stop=stop,
     )

@@ -34,6 +34,9 @@ from crowdbot.dsl.component import Component
 from crowdbot.dsl.component_specs import PlannerRole, PlannerSpec
 from crowdbot.errors import InputError
 
+#: Of a document, bytes.
+_LONGEST = 1_000_000
+
 __all__ = ["PlannerChoice", "PlannerPlace", "kinds_of_role", "resolve_planner", "select_sensors"]
 
 
@@ -215,6 +218,8 @@ def setting_values(settings: Sequence[str] | Mapping[str, Any]) -> dict[str, Any
 
 def _read(path: Path) -> dict[str, Any]:
     try:
+        if path.stat().st_size > _LONGEST:
+            raise InputError(f"{path}: is larger than {_LONGEST // 1_000_000} MB")
         document = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{path}: cannot be read: {_reason(error)}") from None
