@@ -26,6 +26,8 @@ from crowdbot.testing.crowd_oracle_step import Stepper
 CLOSE = 5e-4
 #: Largest change of a perturbed position (m) or velocity (m/s); how many are tried.
 PERTURBATION, PERTURBATIONS = 1e-5, 256
+#: So many times a part of the people is shaken, and how large it is.
+SUBSETS, _SHARES = 128, (0.1, 0.25, 0.5)
 #: How far above our minimum the cost of the original's choice may lie.
 RELATIVE, ABSOLUTE = 1e-3, 1e-6
 #: How far the original's candidates may be from ours, each by itself: some ten roundings, m/s.
@@ -119,15 +121,23 @@ def _judge_step(stepper: Stepper, k: int, count: _Count) -> tuple[Array, Mask]:
 def by_perturbed_input(
     stepper: Stepper, state: Array, theirs: Array, random: list[Array], who: Mask
 ) -> Mask:
-    """Which samples our engine reproduces from an input changed by at most `PERTURBATION`."""
+    """Which samples our engine reproduces from an input changed by at most `PERTURBATION`.
+
+    First everybody is shaken, then one random subset of the people at a time: a tie that one
+    neighbour decides may be undone by another who moves, too.
+    """
     found, rng = np.zeros(len(state), np.bool_), np.random.default_rng(_SEED)
-    for attempt in range(PERTURBATIONS):
+    for attempt in range(PERTURBATIONS + SUBSETS):
         left = who & ~found
         if not np.any(left):
             break
         size = PERTURBATION * (0.1 if attempt % 4 == 3 else 1.0)
+        shaken = rng.uniform(-size, size, state.shape)
+        if attempt >= PERTURBATIONS:
+            share = _SHARES[attempt % len(_SHARES)]
+            shaken[rng.random(len(state)) >= share] = 0.0
         stepper.restore(random)
-        ours = stepper.step(state + rng.uniform(-size, size, state.shape), left)
+        ours = stepper.step(state + shaken, left)
         found |= left & (np.hypot(*(ours - theirs).T) < CLOSE)
     return found
 

@@ -1,16 +1,19 @@
-"""Writes the leaderboard: one offline page without a script, in the reader's light or dark."""
+"""Writes the leaderboard: one offline page, in the reader's light or dark, that can be sorted."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from importlib import metadata
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 from crowdbot.core.bundle.entries import LeaderboardEntry
 from crowdbot.core.bundle.manifest import RULES, RULES_TEXT
 from crowdbot.core.bundle.standings import Standings
 from crowdbot.core.results.rows import processes
+from crowdbot.core.runs import run_directory as files
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main
 from crowdbot.core.statistics import OUTCOMES, Estimate
 from crowdbot.core.support.atomic_write import atomic_write
@@ -29,8 +32,9 @@ def write_leaderboard(
     """
     text = render_page(
         __package__,
+        scripts=["sort.js"],
         title=title,
-        tables=[_table(t) for t in tables],
+        tables=[_table(t, path.resolve().parent) for t in tables],
         left_out=left_out,
         rules=RULES_TEXT,
         rules_number=RULES,
@@ -39,16 +43,23 @@ def write_leaderboard(
     atomic_write(path, text)
 
 
-def _table(table: Standings) -> dict[str, Any]:
+def _table(table: Standings, here: Path) -> dict[str, Any]:
+    groups = _groups(table)
+    main = groups.get(FOUR_SCORES, [])
+    names = [f"{row['metric']} {row['arrow']}".strip() for row in main]
     return {
+        "heads": ["Rank", "Team", "Planner", *names, "Runs", "Verification", "Code", "Bundle"],
         "edition": table.edition,
         "title": table.entries[0].manifest.edition.title,
         "class": table.classed,
         "by": table.by,
         "ordered": bool(table.summary.ranks(table.by)),
-        "entries": [_entry(table, e) for e in table.entries],
+        "entries": [
+            {**_entry(table, e, here), "mains": _mains(table, e, main, names)}
+            for e in table.entries
+        ],
         "ranked": [e.name for e in table.entries if e.ranked],
-        "groups": _groups(table),
+        "groups": groups,
         "findings": [(f.severity, str(f), f.accepted) for f in table.findings],
         "tests": table.summary.tests,
         "suspicion": table.suspicion,
@@ -57,7 +68,44 @@ def _table(table: Standings) -> dict[str, Any]:
     }
 
 
-def _entry(table: Standings, entry: LeaderboardEntry) -> dict[str, Any]:
+def _mains(
+    table: Standings, entry: LeaderboardEntry, rows: Sequence[Mapping[str, Any]], names: list[str]
+) -> list[dict[str, str]]:
+    """What stands of the four scores beside an entry's name; ``sort`` is the plain number."""
+    ranked = [e.name for e in table.entries if e.ranked]
+    found = []
+    for name, row in zip(names, rows, strict=True):
+        cell = row["cells"][ranked.index(entry.name)] if entry.name in ranked else {}
+        value = cell.get("value", "—")
+        found.append({
+            "name": name, "value": value, "interval": cell.get("interval", ""),
+            "sort": "" if value == "—" else value,
+        })  # fmt: skip
+    return found
+
+
+def _runs(entry: LeaderboardEntry, here: Path) -> list[dict[str, str]]:
+    """Every run, with a link where the bundle was unpacked into a folder of its name beside it."""
+    unpacked = entry.path.with_suffix("")
+    listed = []
+    for run in entry.runs:
+        places = (unpacked / run.entry.directory / n for n in (files.REPLAY, files.SCORES))
+        page = next((p for p in places if p.is_file()), None)
+        status, time = str(run.record.get("status", "")), run.record.get("goal_time")
+        ending = status if time is None else f"{status} after {time:.1f} s"
+        listed.append({
+            "name": run.name, "ending": ending, "href": _link(page, here) if page else "",
+        })  # fmt: skip
+    return listed
+
+
+def _link(file: Path, here: Path) -> str:
+    """Address of a file as seen from the folder of the page."""
+    relative = Path(os.path.relpath(file.resolve(), here)).as_posix()
+    return quote(relative if relative.startswith(".") else f"./{relative}")
+
+
+def _entry(table: Standings, entry: LeaderboardEntry, here: Path) -> dict[str, Any]:
     manifest = entry.manifest
     rank = table.rank(table.by, entry)
     return {
@@ -73,6 +121,9 @@ def _entry(table: Standings, entry: LeaderboardEntry) -> dict[str, Any]:
         "process": processes(run.record for run in entry.runs),
         "state": _state(entry),
         "hash": entry.sha256[:12],
+        "file": entry.path.name,
+        "href": _link(entry.path, here),
+        "listed": _runs(entry, here),
         "crowdbot": manifest.versions.get("crowdbot", ""),
         "rescored": ", ".join(entry.rescored),
         "outdated": ", ".join(entry.outdated),

@@ -189,7 +189,7 @@ def _record_run(
         record = run_record(request, identity, references, outcome, run, scores, parts=built.parts)
         record["agents"] = prepared.run.people.source
         record["reference_hashes"] = reference_hashes(references)
-        _write_files(request, built, folder, run, scans, scores, record)
+        record = _write_files(request, built, folder, run, scans, scores, record)
         files.publish(folder, final)
     return record
 
@@ -202,13 +202,16 @@ def _write_files(
     scans: Sequence[ReplayScan],
     scores: Scores,
     record: Mapping[str, Any],
-) -> None:
+) -> dict[str, Any]:
+    """Write everything, the record last; it says how large the other files are."""
     scenario = request.scenario
     write_scenario(folder, scenario, request.registry)
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
     if request.replay:
         _write_replay(request, built, folder / files.REPLAY, run, scans, scores, record)
-    files.write_json(folder / files.RECORD, {**record, "files": files.sizes(folder)})
+    whole = {**record, "files": files.sizes(folder)}
+    files.write_json(folder / files.RECORD, whole)
+    return whole
 
 
 def _write_replay(

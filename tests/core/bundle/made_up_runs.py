@@ -79,17 +79,19 @@ def make_runs(
     """A complete set of runs; ``value`` of the scenario's number is each score."""
     expansion, lock = open_suite(str(suite), registry())
     choice = resolve_planner(planner, registry())
+    locked = lock.lock.scenarios if lock.lock_path.exists() else {}
+    people = {s.id: locked[s.id].realisation if locked else "none" for s in expansion.scenarios}
     for number, scenario in enumerate(expansion.scenarios):
         for seed in seeds:
-            folder = root / "tiny" / scenario.id / choice.label / f"seed-{seed}"
+            folder = root / expansion.folder / scenario.id / choice.label / f"seed-{seed}"
             folder.mkdir(parents=True)
             spec = spec_of(scenario, registry())
             identity: dict[str, Any] = {
-                "scenario": scenario.id, "suite": "tiny",
+                "scenario": scenario.id, "suite": expansion.folder,
                 "planner": {**choice.spec_dump, "name": choice.name, "label": choice.label},
                 "seed": seed,
                 "hashes": {"spec": spec,
-                           "realisation": lock.lock.scenarios[scenario.id].realisation},
+                           "realisation": people[scenario.id]},
                 "versions": provenance.versions(), "plugins": [],
             }  # fmt: skip
             record = {

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import zipfile
 from dataclasses import replace
 from html import unescape
 from html.parser import HTMLParser
@@ -59,15 +61,43 @@ def test_one_offline_page(folder: Path, tmp_path: Path) -> None:
     code, page = board(folder, tmp_path / "page.html")
     text = (tmp_path / "page.html").read_text(encoding="utf-8")
     assert code == 0
-    assert page.addresses == []
-    assert not {"script", "link", "img", "b"} & set(page.tags)
+    bundles = {Path(os.path.relpath(folder / n, tmp_path)).as_posix() for n in
+               ("one.cbz", "two.cbz", "three.cbz")}  # fmt: skip
+    assert set(page.addresses) == bundles
+    assert not {"link", "img", "b"} & set(page.tags)
+    assert page.tags.count("script") == 1
     assert re.search(
-        r"default-src 'none'; style-src 'sha256-[^']+'; base-uri 'none'", unescape(text)
+        r"default-src 'none'; script-src 'sha256-[^']+'; style-src 'sha256-[^']+'; base-uri",
+        unescape(text),
     )
     assert "One <b>team</b>" in "".join(page.words)
     assert "prefers-color-scheme: dark" in text
     assert "@media print" in text
     assert text.count('tabindex="0"') == text.count('role="region"') == 4
+
+
+def test_runs_of_unpacked_bundles_are_linked(folder: Path, tmp_path: Path) -> None:
+    own = tmp_path / "own"
+    own.mkdir()
+    (own / "one.cbz").write_bytes((folder / "one.cbz").read_bytes())
+    with zipfile.ZipFile(own / "one.cbz") as archive:
+        archive.extractall(own / "one")
+        names = [n for n in archive.namelist() if n.endswith("scores.csv")]
+    _, page = board(own, own / "page.html")
+    assert sorted(page.addresses) == sorted(["./one.cbz", *(f"./one/{n}" for n in names)])
+    assert sum(": arrived after 0.5 s" in w for w in page.words) == 6
+
+
+def test_every_cell_can_be_sorted_by_and_has_a_label(folder: Path, tmp_path: Path) -> None:
+    board(folder, tmp_path / "page.html")
+    text = (tmp_path / "page.html").read_text(encoding="utf-8")
+    for table in re.findall(r'<table class="sortable">.*?</table>', text, re.DOTALL):
+        heads = len(re.findall("<button", table))
+        rows = table.split("<tr>")[2:]
+        assert heads >= 7
+        for row in rows:
+            assert row.count("data-label=") == row.count("data-value=") == heads
+    assert "@media (max-width: 640px)" in text
 
 
 def test_the_same_bundles_give_the_same_page(folder: Path, tmp_path: Path) -> None:

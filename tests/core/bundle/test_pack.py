@@ -209,3 +209,21 @@ def test_records_and_scores_that_are_none(bundle: Path, content: bytes) -> None:
     for suffix in ("run.json", "scores.csv"):
         name = members(bundle, suffix)[0]
         assert problems(rewrite(bundle, {name: lambda _: content}, honest=True))
+
+
+def test_a_suite_without_a_matrix(tmp_path: Path) -> None:
+    from tests.core.bundle.made_up_runs import TINY
+
+    suite = tmp_path / "tiny.yaml"
+    head, _, _ = TINY.partition("only:")
+    text = head.replace("extends: builtin:challenge-2020.yaml\n", "").replace(
+        "base:\n",
+        'base:\n  extends: ["builtin:parts/corridor_50x10.yaml", "builtin:parts/turtlebot2.yaml"]\n'
+        "  robots.robot.task: {start: [2.5 m, 0 m, 0 deg], goal: {zone: robot_goal}}\n",
+    )
+    suite.write_text(text)
+    make_runs(tmp_path / "runs", suite)
+    assert (tmp_path / "runs/scenarios/tiny/dwa/seed-0").is_dir()
+    manifest = packed(tmp_path, tmp_path / "runs")
+    assert [r.directory for r in manifest.runs] == ["runs/scenarios/tiny/dwa/seed-0"]
+    assert problems(tmp_path / "team.cbz") == []

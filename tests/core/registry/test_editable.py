@@ -72,3 +72,23 @@ def test_declared_data_of_an_installed_plugin(
     before = entry("heavy")["data"]
     (code / "weights.npz").write_bytes(b"2")
     assert entry("heavy")["data"] != before
+
+
+def test_an_interrupt_at_import_is_the_plugins(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Outside of commands Python's own handler is in place; it is there again afterwards."""
+    import signal
+
+    code = install(tmp_path, "moody", editable=False)
+    (code / "__init__.py").write_text("raise KeyboardInterrupt\n")
+    install(tmp_path, "calm", editable=False)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        found = {p.name: p.error for p in discover(allow=["moody", "calm"]).plugins}
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert "KeyboardInterrupt" in found["moody"]
+    assert found["calm"] == ""

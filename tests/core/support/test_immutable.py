@@ -29,7 +29,8 @@ def test_the_same_and_not_writable(array: NDArray[Any]) -> None:
         found.setflags(write=True)
     for base in (found.base, getattr(found.base, "base", None)):
         assert not isinstance(base, np.ndarray)
-    array.flags.writeable and array.fill(1)
+    if array.flags.writeable:
+        array.fill(1)
     assert not np.shares_memory(found, array)
 
 

@@ -93,7 +93,7 @@ class Sampler:
         if costs.vectorised:
             return self._choose_slowly(view)
         around = costs.surroundings(view)
-        self._tabulate(around.settings[S_DT])
+        self._tabulate(around.settings[S_DT], view)
         chosen = np.zeros_like(view.position)
         _choose(
             *around, costs.functions, costs.weights, *self._options, costs.ordered,
@@ -124,8 +124,8 @@ class Sampler:
         chosen[~np.isfinite(total[rows, best])] = 0.0
         return np.asarray(chosen)
 
-    def _tabulate(self, dt: float) -> None:
-        """Sum the base costs and sort each agent's candidates by them."""
+    def _tabulate(self, dt: float, view: CrowdView) -> None:
+        """Sum the base costs and sort each agent's candidates by them; ``view`` is for errors."""
         if not self._tabulated or self._table_dt == dt:
             return
         costs = self.costs
@@ -135,7 +135,7 @@ class Sampler:
             costs.weights, np.zeros(AGENT_SIZE), total,
         )  # fmt: skip
         if np.any(np.isnan(total)):
-            report_broken(costs, None, "base")
+            report_broken(costs, view, "a base")
         self._index = np.argsort(total, axis=1, kind="stable")
         self._bound = np.take_along_axis(total, self._index, axis=1)
         self._table_dt = dt

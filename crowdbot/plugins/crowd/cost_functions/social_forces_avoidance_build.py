@@ -47,7 +47,7 @@ from crowdbot.plugins.crowd.cost_functions.force_build import (
     to_target,
 )
 from crowdbot.plugins.crowd.cost_functions.social_forces_avoidance import SocialForcesAvoidanceSpec
-from crowdbot.plugins.crowd.cost_functions.wall_points_build import counts
+from crowdbot.plugins.crowd.cost_functions.wall_points_build import SAME, counts
 
 _V0, _SIGMA, _U0, _R, _DT = range(2, 7)  # entries of params
 _CLOSEST = 0.001  # m; nothing nearer exerts a force
@@ -104,7 +104,8 @@ def _faces(s: int, agent: Pointer, walls: Pointer, params: Pointer) -> bool:
     table = wall_table(walls)
     ax, ay, bx, by = table[s, AX], table[s, AY], table[s, BX], table[s, BY]
     outside = ax * (by - ay) - ay * (bx - ax) <= 0.0
-    second = table[s, NX] == bx and table[s, NY] == by
+    # The nearest point was worked out along the segment, so that its end is met but for rounding.
+    second = abs(table[s, NX] - bx) <= SAME and abs(table[s, NY] - by) <= SAME
     return bool(outside and not second and in_range(table[s, WALL_D2], agent[RADIUS], params))
 
 

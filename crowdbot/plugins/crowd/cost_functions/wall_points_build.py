@@ -6,7 +6,8 @@ from numba import njit
 
 from crowdbot.core.interfaces import NX, NY, RADIUS, WALL_D2, Pointer, in_range, wall_table
 
-_SAME = 1e-9  # m
+#: Points that are nearer to each other are one, m.
+SAME = 1e-9
 
 
 @njit(cache=True, error_model="numpy")
@@ -17,6 +18,6 @@ def counts(s: int, agent: Pointer, walls: Pointer, params: Pointer) -> bool:
         return False
     for earlier in range(s):
         dx, dy = walls[s, NX] - walls[earlier, NX], walls[s, NY] - walls[earlier, NY]
-        if abs(dx) <= _SAME and abs(dy) <= _SAME:
+        if abs(dx) <= SAME and abs(dy) <= SAME:
             return False
     return True
