@@ -41,7 +41,7 @@ class GridMap:
         x, y = self.origin
         return (
             f"image: {image}\nmode: trinary\nresolution: {self.resolution!r}\n"
-            f"origin: [{x!r}, {y!r}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n"
+            f"origin: [{x!r}, {y!r}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
         )
 
 

@@ -52,14 +52,27 @@ def place_of(spec: FloorPlanSpec) -> Place:
     """
     file = None if spec.file is None else spec.file.file
     image = None if spec.image is None else spec.image.file
-    key = spec.model_dump_json(exclude={"zones", "portals"})
-    return _place_of(key, type(spec), file, image)
+    words = spec.model_dump_json(exclude={"zones", "portals"})
+    return _place_of(words, type(spec), (file, image), tuple(map(_stamp, (file, image))))
+
+
+def _stamp(file: Path | None) -> tuple[int, int]:
+    """What changes with a file that no hash guards."""
+    if file is None:
+        return 0, 0
+    found = file.stat()
+    return found.st_mtime_ns, found.st_size
 
 
 @lru_cache(maxsize=8)
 def _place_of(
-    words: str, model: type[FloorPlanSpec], file: Path | None, image: Path | None
+    words: str,
+    model: type[FloorPlanSpec],
+    files: tuple[Path | None, Path | None],
+    stamps: tuple[tuple[int, int], ...],
 ) -> Place:
+    del stamps  # part of the cache's key
+    file, image = files
     spec = model.model_validate_json(words)
     name = "wkt" if file is None else file.name
     plan = _read(spec, file, image, name)

@@ -20,6 +20,8 @@ from crowdbot.errors import InputError
 
 #: Larger images than this are a mistake, px.
 MOST_PIXELS = 64_000_000
+#: Thresholds of a map that names none: those of ROS, by which the grey 205 is unknown.
+_OCCUPIED, _FREE = 0.65, 0.196
 _HEADER = re.compile(rb"(P[25])\s+((?:#[^\n]*\n\s*)*)(\d+)\s+(?:#[^\n]*\n\s*)*(\d+)\s+"
                      rb"(?:#[^\n]*\n\s*)*(\d+)\s")  # fmt: skip
 
@@ -67,8 +69,8 @@ def read_map(file: Path) -> RosMap:
             resolution=float(content["resolution"]),
             origin=(origin[0], origin[1], origin[2] if len(origin) > 2 else 0.0),
             negate=bool(int(content.get("negate", 0))),
-            occupied=float(content.get("occupied_thresh", 0.65)),
-            free=float(content.get("free_thresh", 0.25)),
+            occupied=float(content.get("occupied_thresh", _OCCUPIED)),
+            free=float(content.get("free_thresh", _FREE)),
         )
     except KeyError as error:
         raise InputError(f"{file.name}: {error.args[0]} is missing") from error
