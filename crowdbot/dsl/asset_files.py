@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 from crowdbot.dsl.assets import Asset, sha256_of
@@ -12,6 +12,7 @@ from crowdbot.dsl.diagnostics import Diagnostic, Mark
 from crowdbot.dsl.finder import Finder
 from crowdbot.dsl.nodes import Node
 from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.spec import ComponentSpec
 from crowdbot.dsl.validation import mark_of
 
 
@@ -33,9 +34,16 @@ class AssetFiles:
             data: of the tree; it stays as it is.
             problems: errors are added.
         """
-        for path, asset in _waiting(scenario):
-            found = self._found(asset, _mark(tree, path), problems)
-            data = data if found is None else _replaced(data, path, found)
+        for path, asset, spec in _waiting(scenario):
+            mark = _mark(tree, path)
+            found = self._found(asset, mark, problems)
+            if found is None:
+                continue
+            data = _replaced(data, path, found)
+            for name, text in spec.beside(path[-1], found.file).items():
+                beside = Asset(path=str(PurePosixPath(asset.path).parent / text))
+                other = self._found(beside, mark, problems)
+                data = data if other is None else _replaced(data, (*path[:-1], name), other)
         return data
 
     def _found(self, asset: Asset, mark: Mark, problems: list[Diagnostic]) -> Asset | None:
@@ -59,11 +67,11 @@ class AssetFiles:
         return Asset.at(file, self._finder.name_of(file), digest)
 
 
-def _waiting(scenario: Scenario) -> Iterator[tuple[tuple[str, ...], Asset]]:
+def _waiting(scenario: Scenario) -> Iterator[tuple[tuple[str, ...], Asset, ComponentSpec]]:
     for path, spec in components(scenario):
         for name, value in vars(spec).items():
             if isinstance(value, Asset) and not value.is_found:
-                yield (*path, name), value
+                yield (*path, name), value, spec
 
 
 def _mark(tree: Node, path: tuple[str, ...]) -> Mark:

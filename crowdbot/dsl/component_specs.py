@@ -42,6 +42,14 @@ class EnvironmentSpec(ComponentSpec):
         """The floor, if people who leave it on one side come in again on the other."""
         return None
 
+    def extent(self) -> Rectangle | None:
+        """The box around it where its zones do not say; None where they do.
+
+        Raises:
+            InputError: as of `place`.
+        """
+        return None
+
 
 class RobotSpec(ComponentSpec):
     """Abstract: a robot's body, drive and limits."""

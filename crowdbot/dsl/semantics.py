@@ -22,7 +22,8 @@ def check(scenario: Scenario, tree: Node) -> list[Diagnostic]:
     found, facts = list(_check_kinds(scenario, tree)), Facts(scenario, tree)
     if scenario.crowd is not None:
         found += [*check_crowd(facts), *check_streams(facts), *check_spawns(facts)]
-        found += [*check_agents(facts), *check_ways(facts)]
+        found += check_agents(facts)
+    found += check_ways(facts)
     for name, robot in scenario.robots.items():
         found += _check_task(facts, name, robot.task)
     return found

@@ -13,7 +13,7 @@ from crowdbot.dsl.nodes import Node
 from crowdbot.dsl.scenario import Crowd, Scenario
 from crowdbot.dsl.spec import Rectangle
 from crowdbot.dsl.validation import mark_of
-from crowdbot.errors import did_you_mean, nearest
+from crowdbot.errors import InputError, did_you_mean, nearest
 
 Path = tuple[str | int, ...]
 
@@ -36,8 +36,14 @@ class Facts:
 
     @cached_property
     def bounds(self) -> Rectangle | None:
-        """The box around all zones, m; None without zones."""
-        zones = self.scenario.environment.zones.values()
+        """The box around all zones, or around the environment where it knows; m; or None."""
+        environment = self.scenario.environment
+        zones = list(environment.zones.values())
+        try:
+            whole = environment.extent()
+        except InputError:  # which is reported with the environment
+            return None
+        zones += [] if whole is None else [whole]
         if not zones:
             return None
         xs, ys = [x for z in zones for x in z.x], [y for z in zones for y in z.y]

@@ -20,14 +20,14 @@ _SLACK = 1e-6
 
 
 def check_ways(facts: Facts) -> Iterator[Diagnostic]:
-    """Nobody starts in a wall; who finds ways finds one, on a floor that has borders."""
+    """The place can be read; nobody starts in a wall; who finds ways finds one."""
     environment = facts.scenario.environment
     try:
         place = environment.place()
     except InputError as error:
-        yield Diagnostic("E144", str(error), facts.mark("environment"))
+        yield Diagnostic("E144", str(error), facts.mark("environment", "file"))
         return
-    if place is None:
+    if place is None or facts.scenario.crowd is None:
         return
     finds_way = isinstance(facts.crowd.routing, MeshRouting)
     if finds_way and place.torus is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -43,6 +44,16 @@ class ComponentSpec(Spec):
         if abstract and not isinstance(value, cls):
             raise ValueError(f"{cls.__name__} is abstract; build the model from a registry")
         return value
+
+    def beside(self, name: str, file: Path) -> Mapping[str, str]:
+        """Further assets that a file names and the document does not, by field, as paths from it.
+
+        Args:
+            name: field of the asset that was found.
+            file: where it lies.
+        """
+        del name, file
+        return {}
 
     def parts(self) -> Mapping[str, ComponentSpec]:
         """Specs that are built before this one, by name; empty where there are none."""

@@ -1,0 +1,279 @@
+"""Floor plans as places: read, repaired, simplified."""
+
+from __future__ import annotations
+
+import json
+import logging
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shapely  # type: ignore[import-untyped,unused-ignore]
+from shapely.geometry import shape as shape_of  # type: ignore[import-untyped,unused-ignore]
+
+from crowdbot.dsl import Face, Place, Solid
+from crowdbot.dsl.outlines import Outline
+from crowdbot.errors import InputError
+from crowdbot.plugins.environments.floor_plan import FloorPlanSpec
+from crowdbot.plugins.environments.ros_map_build import (
+    free_cells,
+    outline_cells,
+    read_grey,
+    read_map,
+)
+
+_LOG = logging.getLogger(__name__)
+_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
+#: Mean radius of the earth, m.
+_EARTH = 6_371_008.8
+#: More corners than this cannot be simulated.
+MOST_CORNERS = 20_000
+#: Coordinates are whole multiples of this, so that shapely's answers are the same everywhere, m.
+_GRID = 1e-6
+
+
+@dataclass
+class _Plan:
+    """What was read: the walkable floor, and solids with their heights."""
+
+    walkable: list[Any] = field(default_factory=list)
+    solids: list[tuple[Any, tuple[float, float]]] = field(default_factory=list)
+
+
+def place_of(spec: FloorPlanSpec) -> Place:
+    """The walls of a plan.
+
+    Raises:
+        InputError: its file cannot be read, or is no plan.
+    """
+    file = None if spec.file is None else spec.file.file
+    image = None if spec.image is None else spec.image.file
+    words = spec.model_dump_json(exclude={"zones", "portals"})
+    return _place_of(words, type(spec), (file, image), tuple(map(_stamp, (file, image))))
+
+
+def _stamp(file: Path | None) -> tuple[int, int]:
+    """What changes with a file that no hash guards."""
+    if file is None:
+        return 0, 0
+    found = file.stat()
+    return found.st_mtime_ns, found.st_size
+
+
+@lru_cache(maxsize=8)
+def _place_of(
+    words: str,
+    model: type[FloorPlanSpec],
+    files: tuple[Path | None, Path | None],
+    stamps: tuple[tuple[int, int], ...],
+) -> Place:
+    del stamps  # part of the cache's key
+    file, image = files
+    spec = model.model_validate_json(words)
+    name = "wkt" if file is None else file.name
+    plan = _read(spec, file, image, name)
+    floor = shapely.union_all([_repaired(p, name) for p in plan.walkable])
+    floor = _simple(_polygons(floor), spec, name)
+    solids = [
+        (part, heights)
+        for shape, heights in plan.solids
+        for part in _simple(_polygons(_repaired(shape, name)), spec, name)
+    ]
+    count = sum(shapely.get_num_coordinates(p) for p in (*floor, *(s for s, _ in solids)))
+    if not count:
+        raise InputError(f"{name}: there is neither a floor nor a wall in it")
+    if count > MOST_CORNERS:
+        raise InputError(
+            f"{name}: the plan has {count} corners, more than {MOST_CORNERS}; raise 'tolerance' "
+            "or 'least_area', or cut a part out of it"
+        )
+    heights = (0.0, spec.wall_height)
+    return Place(
+        faces=tuple(_face(p, heights) for p in floor),
+        solids=(
+            *(Solid(outline=_ring(h), heights=heights) for p in floor for h in p.interiors),
+            *(
+                Solid(
+                    outline=_ring(s.exterior),
+                    holes=tuple(_ring(hole) for hole in s.interiors),
+                    heights=own,
+                )
+                for s, own in solids
+            ),
+        ),
+    )
+
+
+def _read(spec: FloorPlanSpec, file: Path | None, image: Path | None, name: str) -> _Plan:
+    if spec.read_as == "ros_map":
+        return _Plan(walkable=[_read_ros_map(spec, file, image)])
+    if file is None:
+        text = spec.wkt or ""
+    else:
+        try:
+            text = file.read_text("utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"{name}: cannot be read as text: {error}") from error
+    if spec.read_as == "wkt":
+        found = [(_from_wkt(text, name), dict[str, Any]())]
+    else:
+        found = list(_features(_from_json(text, name), name))
+    plan = _Plan()
+    for shape, properties in found:
+        _sort_in(_in_metres(shape, spec, name), properties, spec, plan, name)
+    return plan
+
+
+def _read_ros_map(spec: FloorPlanSpec, file: Path | None, image: Path | None) -> Any:
+    assert file is not None  # checked with the document
+    found = read_map(file)
+    grey = read_grey(image or file.parent / found.image)
+    cells = free_cells(found, grey, unknown_is_free=spec.unknown == "free")
+    if not cells.any():
+        raise InputError(f"{file.name}: no cell of its image is free")
+    shape = outline_cells(cells, found)
+    if spec.origin != (0.0, 0.0) or spec.rotation:
+        shape = shapely.transform(shape, lambda points: _moved(points, spec))
+    tolerance = found.resolution if spec.tolerance is None else spec.tolerance
+    return shapely.simplify(shape, tolerance, preserve_topology=True)
+
+
+# ------------------------------------------------------------------------- vector formats
+def _from_wkt(text: str, name: str) -> Any:
+    try:
+        return shapely.from_wkt(text.strip())
+    except shapely.errors.ShapelyError as error:
+        raise InputError(f"{name}: is not well-known text: {error}") from error
+
+
+def _from_json(text: str, name: str) -> Any:
+    try:
+        return json.loads(text)
+    except (json.JSONDecodeError, RecursionError) as error:
+        where = getattr(error, "lineno", None)
+        at = f"line {where}: " if where else ""
+        raise InputError(f"{name}: {at}is not JSON: {getattr(error, 'msg', error)}") from error
+
+
+def _features(content: Any, name: str) -> Iterator[tuple[Any, dict[str, Any]]]:
+    """Each geometry with its properties."""
+    kind = content.get("type") if isinstance(content, dict) else None
+    if kind == "FeatureCollection":
+        for feature in content.get("features") or ():
+            yield from _features(feature, name)
+    elif kind == "Feature":
+        for shape, _ in _features(content.get("geometry"), name):
+            yield shape, dict(content.get("properties") or {})
+    elif kind in ("Polygon", "MultiPolygon", "LineString", "MultiLineString", "GeometryCollection"):
+        try:
+            yield shape_of(content), {}
+        except Exception as error:  # whatever shapely makes of wrong nesting
+            raise InputError(f"{name}: a {kind} is damaged: {error}") from error
+    elif kind not in ("Point", "MultiPoint"):
+        raise InputError(f"{name}: is not GeoJSON: a geometry has type {kind!r}")
+
+
+def _in_metres(shape: Any, spec: FloorPlanSpec, name: str) -> Any:
+    if not np.all(np.isfinite(shapely.get_coordinates(shape))):
+        raise InputError(f"{name}: a coordinate is not finite")
+    if spec.unit != "deg":
+        scale = _UNITS[spec.unit]
+        return shapely.transform(shape, lambda points: _moved(scale * points, spec))
+    longitude, latitude = spec.origin
+    east = math.radians(1.0) * _EARTH * math.cos(math.radians(latitude))
+    north = math.radians(1.0) * _EARTH
+
+    def local(points: Any) -> Any:
+        return _turned((points - [longitude, latitude]) * [east, north], spec.rotation)
+
+    return shapely.transform(shape, local)
+
+
+def _moved(points: Any, spec: FloorPlanSpec) -> Any:
+    return _turned(points, spec.rotation) + np.array(spec.origin)
+
+
+def _turned(points: Any, angle: float) -> Any:
+    c, s = math.cos(angle), math.sin(angle)
+    return points @ np.array([[c, s], [-s, c]])
+
+
+def _sort_in(
+    shape: Any, properties: dict[str, Any], spec: FloorPlanSpec, plan: _Plan, name: str
+) -> None:
+    """Put a geometry among the floor or the solids; zones and portals are neither."""
+    kind = properties.get("kind", "")
+    if kind in ("zone", "portal"):
+        return
+    for part in shapely.get_parts(shape) if _is_many(shape) else [shape]:
+        if _is_many(part):
+            _sort_in(part, properties, spec, plan, name)
+        elif part.geom_type in ("LineString", "LinearRing"):
+            wall = shapely.buffer(part, 0.5 * spec.thickness, cap_style="flat", join_style="mitre")
+            plan.solids.append((wall, _heights(properties, spec, name)))
+        elif part.geom_type == "Polygon":
+            solid = kind == "obstacle" or (kind != "walkable" and spec.polygons == "obstacles")
+            if solid:
+                plan.solids.append((part, _heights(properties, spec, name)))
+            else:
+                plan.walkable.append(part)
+
+
+def _is_many(shape: Any) -> bool:
+    return bool(shape.geom_type.startswith("Multi") or shape.geom_type == "GeometryCollection")
+
+
+def _heights(properties: dict[str, Any], spec: FloorPlanSpec, name: str) -> tuple[float, float]:
+    try:
+        base = float(properties.get("base", 0.0))
+        top = float(properties.get("height", spec.wall_height))
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{name}: base and height of an obstacle must be numbers") from error
+    if not 0.0 <= base < top < math.inf:
+        raise InputError(f"{name}: an obstacle has base {base:g} m and height {top:g} m")
+    return base, top
+
+
+# ----------------------------------------------------------------------------- polygons
+def _repaired(shape: Any, name: str) -> Any:
+    """A valid geometry on a grid; what was not valid is repaired, and said."""
+    if not shapely.is_valid(shape):
+        why = shapely.is_valid_reason(shape)
+        _LOG.warning("%s: an outline was repaired: %s", name, why)
+        shape = shapely.make_valid(shape)
+    return shapely.set_precision(shape, _GRID)
+
+
+def _polygons(shape: Any) -> list[Any]:
+    parts = shapely.get_parts(shape)
+    nested = [shapely.get_parts(p) for p in parts]
+    return [p for group in nested for p in group if p.geom_type == "Polygon" and not p.is_empty]
+
+
+def _simple(polygons: list[Any], spec: FloorPlanSpec, name: str) -> list[Any]:
+    """Polygons without what is too small, in an order of their own."""
+    del name
+    found = []
+    for polygon in polygons:
+        if spec.tolerance and spec.read_as != "ros_map":
+            polygon = shapely.simplify(polygon, spec.tolerance, preserve_topology=True)
+        if polygon.area <= max(spec.least_area, 1e-9):
+            continue
+        holes = [h for h in polygon.interiors if shapely.Polygon(h).area > spec.least_area]
+        found.append(shapely.normalize(shapely.Polygon(polygon.exterior, holes)))
+    return sorted(found, key=lambda p: (-p.area, *p.bounds))
+
+
+def _ring(ring: Any) -> Outline:
+    """Corners of a closed ring, counter-clockwise."""
+    points = tuple((float(x) + 0.0, float(y) + 0.0) for x, y in ring.coords[:-1])
+    return points if shapely.is_ccw(ring) else points[::-1]
+
+
+def _face(polygon: Any, heights: tuple[float, float]) -> Face:
+    outline = _ring(polygon.exterior)
+    return Face(points=(*outline, outline[0]), heights=heights)

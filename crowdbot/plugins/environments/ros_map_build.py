@@ -1,0 +1,165 @@
+"""Occupancy grids of ROS: ``map.yaml`` with a PGM or PNG image, as nav2's map server reads them.
+
+Format: https://docs.nav2.org/configuration/packages/configuring-map-server.html.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shapely  # type: ignore[import-untyped,unused-ignore]
+from numpy.typing import NDArray
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
+
+from crowdbot.errors import InputError
+
+#: Larger images than this are a mistake, px.
+MOST_PIXELS = 64_000_000
+#: Thresholds of a map that names none: those of ROS, by which the grey 205 is unknown.
+_OCCUPIED, _FREE = 0.65, 0.196
+_HEADER = re.compile(rb"(P[25])\s+((?:#[^\n]*\n\s*)*)(\d+)\s+(?:#[^\n]*\n\s*)*(\d+)\s+"
+                     rb"(?:#[^\n]*\n\s*)*(\d+)\s")  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RosMap:
+    """A ``map.yaml``.
+
+    Attributes:
+        image: path of the image, as written.
+        resolution: side of a cell, m.
+        origin: x, y (m) and yaw (rad) of the lower left corner of the image.
+        negate: whether dark cells are free.
+        occupied, free: probability above which a cell is occupied, below which it is free.
+    """
+
+    image: str
+    resolution: float
+    origin: tuple[float, float, float]
+    negate: bool
+    occupied: float
+    free: float
+
+    def occupancy(self, grey: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Probability that each pixel (H, W), grey from 0 to 1, is occupied."""
+        return grey if self.negate else 1.0 - grey
+
+
+def read_map(file: Path) -> RosMap:
+    """Read a ``map.yaml``.
+
+    Raises:
+        InputError: it is not one; with what is wrong.
+    """
+    try:
+        content = YAML(typ="safe", pure=True).load(file.read_text("utf-8"))
+    except (OSError, UnicodeDecodeError, YAMLError) as error:
+        raise InputError(f"{file.name}: is not a map.yaml: {error}") from error
+    if not isinstance(content, dict) or "image" not in content:
+        raise InputError(f"{file.name}: is not a map.yaml: it names no image")
+    try:
+        origin = tuple(float(v) for v in content["origin"])
+        found = RosMap(
+            image=str(content["image"]),
+            resolution=float(content["resolution"]),
+            origin=(origin[0], origin[1], origin[2] if len(origin) > 2 else 0.0),
+            negate=bool(int(content.get("negate", 0))),
+            occupied=float(content.get("occupied_thresh", _OCCUPIED)),
+            free=float(content.get("free_thresh", _FREE)),
+        )
+    except KeyError as error:
+        raise InputError(f"{file.name}: {error.args[0]} is missing") from error
+    except (TypeError, ValueError, IndexError) as error:
+        raise InputError(f"{file.name}: {error}") from error
+    numbers = (found.resolution, *found.origin, found.occupied, found.free)
+    if not (np.all(np.isfinite(numbers)) and found.resolution > 0.0):
+        raise InputError(f"{file.name}: resolution must be above 0, and all numbers finite")
+    if not 0.0 <= found.free <= found.occupied <= 1.0:
+        raise InputError(f"{file.name}: thresholds must be 0 <= free <= occupied <= 1")
+    return found
+
+
+def image_of(file: Path) -> str | None:
+    """The path of the image that a ``map.yaml`` names; None where it is not one."""
+    try:
+        return read_map(file).image
+    except InputError:
+        return None
+
+
+def read_grey(file: Path) -> NDArray[np.float64]:
+    """A PGM or PNG image as grey values (H, W) from 0 to 1; the first row is on top.
+
+    Raises:
+        InputError: it is neither.
+    """
+    try:
+        content = file.read_bytes()
+    except OSError as error:
+        raise InputError(f"{file.name}: cannot be read: {error.strerror}") from error
+    if content[:2] in (b"P2", b"P5"):
+        return _read_pgm(file.name, content)
+    if content[:4] == b"\x89PNG":
+        return _read_png(file)
+    raise InputError(f"{file.name}: is neither a PGM (P2, P5) nor a PNG image")
+
+
+def _read_pgm(name: str, content: bytes) -> NDArray[np.float64]:
+    header = _HEADER.match(content)
+    if header is None:
+        raise InputError(f"{name}: its PGM header is damaged")
+    width, height, most = (int(header[k]) for k in (3, 4, 5))
+    if not (0 < width * height <= MOST_PIXELS and 0 < most < 65536):
+        raise InputError(f"{name}: {width} x {height} pixels up to {most} is not an image of a map")
+    rest = content[header.end() :]
+    try:
+        if header[1] == b"P2":
+            cells = np.array(rest.split()[: width * height], np.float64)
+        else:
+            cells = np.frombuffer(rest, ">u2" if most > 255 else "u1", width * height)
+    except ValueError as error:
+        raise InputError(f"{name}: fewer pixels than {width} x {height}") from error
+    if len(cells) != width * height:
+        raise InputError(f"{name}: fewer pixels than {width} x {height}")
+    return cells.astype(np.float64).reshape(height, width) / most
+
+
+def _read_png(file: Path) -> NDArray[np.float64]:
+    from matplotlib.image import imread
+
+    try:
+        image: Any = np.asarray(imread(file), np.float64)
+    except Exception as error:  # whatever its decoder finds
+        raise InputError(f"{file.name}: is a damaged PNG image: {error}") from error
+    if image.size > 4 * MOST_PIXELS:
+        raise InputError(f"{file.name}: has too many pixels")
+    if image.ndim == 3:
+        image = image[..., :3].mean(axis=2)
+    return np.asarray(image, np.float64)
+
+
+def free_cells(
+    found: RosMap, grey: NDArray[np.float64], *, unknown_is_free: bool
+) -> NDArray[np.bool_]:
+    """Cells (H, W) on which one can walk."""
+    probability = found.occupancy(grey)
+    taken = probability > found.occupied if unknown_is_free else probability >= found.free
+    return ~taken
+
+
+def outline_cells(free: NDArray[np.bool_], found: RosMap) -> Any:
+    """The free cells as a shapely (multi)polygon, world frame, m."""
+    boxes = []
+    for row, cells in enumerate(free[::-1]):  # from below
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], cells.astype(np.int8), [0]])))
+        boxes.append(np.array([(a, row, b, row + 1) for a, b in edges.reshape(-1, 2)]))
+    table = np.concatenate([np.zeros((0, 4)), *(b for b in boxes if len(b))])
+    shape = shapely.union_all(shapely.box(*table.T))
+    c, s = np.cos(found.origin[2]), np.sin(found.origin[2])
+    turn = found.resolution * np.array([[c, -s], [s, c]])
+    return shapely.transform(shape, lambda p: p @ turn.T + found.origin[:2])
