@@ -102,7 +102,13 @@ def _scenario(registry: Registry) -> Iterator[str]:
 
 def _kinds_of(model: Any) -> list[Any]:
     """The models that a choice between them stands for; none for a plain model."""
-    return model.__subclasses__() if "usual" in vars(model) else []
+    return _concrete(model) if "usual" in vars(model) else []
+
+
+def _concrete(model: Any) -> list[Any]:
+    """The models at the end of a tree of classes, in the order of their definition."""
+    below = model.__subclasses__()
+    return [leaf for child in below for leaf in _concrete(child)] if below else [model]
 
 
 def _components(registry: Registry) -> Iterator[str]:
@@ -129,10 +135,11 @@ def _nested(model: type[BaseModel], prefix: str) -> Iterator[tuple[str, type[Bas
         inner, named = _model_of(info.annotation)
         if info.exclude or inner is None or issubclass(inner, ComponentSpec) or inner in _SHARED:
             continue
-        inner = next((base for base in inner.__bases__ if "usual" in vars(base)), inner)
+        inner = next((base for base in inner.__mro__ if "usual" in vars(base)), inner)
         path = f"{prefix}{name}.NAME" if named else f"{prefix}{name}"
         yield path, inner
-        yield from _nested(inner, f"{path}.")
+        below = [b for kind in _kinds_of(inner) or [inner] for b in _nested(kind, f"{path}.")]
+        yield from dict(below).items()
 
 
 def _model_of(annotation: Any) -> tuple[type[BaseModel] | None, bool]:

@@ -20,6 +20,7 @@ from crowdbot.dsl.stream_kinds import (
     TalkingStream,
     ThroughStream,
     WanderingStream,
+    places_of,
 )
 
 
@@ -28,7 +29,7 @@ def check_streams(facts: Facts) -> Iterator[Diagnostic]:
     for name, stream in facts.crowd.streams.items():
         path: Path = ("crowd", "streams", name)
         yield from _check_names(facts, stream, f"stream '{name}'", path)
-        for field, place in _places(stream):
+        for field, place in places_of(stream):
             yield from _check_place(facts, place, f"stream '{name}'", (*path, *field))
         yield from _check_number(facts, stream, name, path)
         if isinstance(stream, QueueStream):
@@ -54,17 +55,6 @@ def _check_names(facts: Facts, stream: Stream, who: str, path: Path) -> Iterator
         yield Diagnostic("E137", text, facts.mark(*path, "groups"))
     if stream.speed is None and crowd.speed is None:
         yield missing_speed(facts, who, *path)
-
-
-def _places(stream: Stream) -> Iterator[tuple[Path, Place]]:
-    """The places that a stream names, by field."""
-    for field in ("origin", "start", "area", "destination"):
-        place = getattr(stream, field, None)
-        if place is not None:
-            yield (field,), place
-    if isinstance(stream, ThroughStream):
-        for i, place in enumerate(stream.via):
-            yield ("via", i), place
 
 
 def _check_place(facts: Facts, place: Place, who: str, path: Path) -> Iterator[Diagnostic]:

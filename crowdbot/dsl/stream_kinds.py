@@ -5,7 +5,8 @@ Everything is drawn once by `crowdbot.core.population.realise`; these are its sp
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Gt, Le, MinLen
 from pydantic import Field, model_validator
@@ -76,8 +77,10 @@ class StreamBody(Spec):
 
 
 class Stream(Spec):
-    """What all streams have in common."""
+    """A stream of people, of the pattern that its `kind` names."""
 
+    #: No kind is usual: each stream names its own.
+    usual: ClassVar[str] = ""
     kind: str = Field(description="Pattern of the stream.")
     count: Count | None = Field(default=None, description="How many people there are.")
     speed: SpeedChoice | None = Field(
@@ -135,7 +138,7 @@ class ThroughStream(_Populated):
     Two of them are a counterflow or a crossing at any angle.
     """
 
-    kind: Literal["through"] = Field(description="Pattern of the stream.")
+    kind: Literal["through"] = Field(default="through", description="Pattern of the stream.")
     origin: Place = Field(
         description="Where they come from: name of a zone or portal, or an area of its own."
     )
@@ -179,7 +182,7 @@ class DirectionsStream(Stream):
     On a torus for ever; elsewhere to the border of the area, where each turns to a new direction.
     """
 
-    kind: Literal["directions"] = Field(description="Pattern of the stream.")
+    kind: Literal["directions"] = Field(default="directions", description="Pattern of the stream.")
     area: Place = Field(description="Where they walk: name of a zone, or an area of its own.")
     density: PositiveDensity | None = Field(
         default=None, description="People per area, 1/m^2; this or `count`."
@@ -200,7 +203,7 @@ class DirectionsStream(Stream):
 class QueueStream(Stream):
     """People in a line, who move up, are served at its head one after the other, and go."""
 
-    kind: Literal["queue"] = Field(description="Pattern of the stream.")
+    kind: Literal["queue"] = Field(default="queue", description="Pattern of the stream.")
     line: Annotated[tuple[Point, ...], MinLen(2)] = Field(
         strict=False, description="Where the line runs, from the counter backwards, m."
     )
@@ -230,7 +233,7 @@ class QueueStream(Stream):
 class TalkingStream(Stream):
     """Groups who stand in circles and talk; with a destination they go there afterwards."""
 
-    kind: Literal["talking"] = Field(description="Pattern of the stream.")
+    kind: Literal["talking"] = Field(default="talking", description="Pattern of the stream.")
     count: Count = Field(description="How many people there are.")
     area: Place = Field(description="Where they stand: name of a zone, or an area of its own.")
     groups: Annotated[tuple[GroupSize, ...], MinLen(1)] = Field(
@@ -254,7 +257,7 @@ class TalkingStream(Stream):
 class WanderingStream(_Populated):
     """People who stroll from goal area to goal area, by chance, and linger there."""
 
-    kind: Literal["wandering"] = Field(description="Pattern of the stream.")
+    kind: Literal["wandering"] = Field(default="wandering", description="Pattern of the stream.")
     area: Place = Field(description="Where they start: name of a zone, or an area of its own.")
     areas: Annotated[tuple[str, ...], MinLen(1)] = Field(
         strict=False, description="Names of goal areas; where they have `next`, that follows."
@@ -276,6 +279,18 @@ StreamChoice = Annotated[
     Field(discriminator="kind"),
 ]
 
+
+def places_of(stream: Stream) -> Iterator[tuple[tuple[str | int, ...], Place]]:
+    """The places that a stream names, by field."""
+    for field in ("origin", "start", "area", "destination"):
+        place = getattr(stream, field, None)
+        if place is not None:
+            yield (field,), place
+    if isinstance(stream, ThroughStream):
+        for i, place in enumerate(stream.via):
+            yield ("via", i), place
+
+
 __all__ = [
     "Arrivals",
     "DirectionsStream",
@@ -288,4 +303,5 @@ __all__ = [
     "TalkingStream",
     "ThroughStream",
     "WanderingStream",
+    "places_of",
 ]

@@ -18,6 +18,7 @@ from crowdbot.core.view.map_content import MapContent, RobotView, Sector
 from crowdbot.dsl.areas import Area
 from crowdbot.dsl.component_specs import SensorSpec
 from crowdbot.dsl.scenario import Crowd, Robot, Scenario
+from crowdbot.dsl.stream_kinds import places_of
 
 
 def build_map_content(scenario: Scenario, people: Realisation, registry: Registry) -> MapContent:
@@ -41,6 +42,11 @@ def _areas(crowd: Crowd) -> dict[str, dict[str, tuple[Point, ...]]]:
     """Areas of their own; those that are zones are drawn as zones."""
     spawns = {n: s.area.corners for n, s in crowd.spawns.items() if isinstance(s.area, Area)}
     goals = {n: g.area.corners for n, g in crowd.goal_areas.items() if isinstance(g.area, Area)}
+    for name, stream in crowd.streams.items():
+        for field, place in places_of(stream):
+            if isinstance(place, Area):
+                role = spawns if field[0] in ("origin", "start", "area") else goals
+                role[" ".join([name, *map(str, field)])] = place.corners
     return {"spawn": spawns, "goal-area": goals}
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.stream_kinds import Stream
 
 
 def scenario_facts(scenario: Scenario, people: Realisation, spec_hash: str) -> dict[str, str]:
@@ -16,12 +19,17 @@ def scenario_facts(scenario: Scenario, people: Realisation, spec_hash: str) -> d
     if flow is not None:
         facts["density"] = f"{flow.density:g} 1/m² in {flow.area} at the start"
         facts["flow"] = flow.direction
+    for name, stream in sorted(scenario.crowd.streams.items()) if scenario.crowd else ():
+        facts[f"stream {name}"] = _stream(stream)
     if len(people):
         low, high = float(people.speed.min()), float(people.speed.max())
         facts["speeds"] = f"{low:.2f}–{high:.2f} m/s, mean {float(people.speed.mean()):.2f}"
     groups = len(np.unique(people.group[people.group >= 0]))
     if groups:
         facts["groups"] = str(groups)
+    looks = Counter(look for look in people.look if look)
+    if looks:
+        facts["looks"] = ", ".join(f"{n} {look}" for look, n in sorted(looks.items()))
     later = int(np.count_nonzero(people.start_time > 0))
     if later:
         facts["entering later"] = str(later)
@@ -31,3 +39,16 @@ def scenario_facts(scenario: Scenario, people: Realisation, spec_hash: str) -> d
     if len(people):
         facts["agents"] = people.hash
     return facts
+
+
+def _stream(stream: Stream) -> str:
+    """Pattern and number of a stream of people."""
+    density, arrivals = getattr(stream, "density", None), getattr(stream, "arrivals", None)
+    if density is not None:
+        return f"{stream.kind}, {density:g} 1/m²"
+    if arrivals is None:
+        return f"{stream.kind}, {stream.count}"
+    if arrivals.rate is not None:
+        return f"{stream.kind}, {arrivals.rate:g} 1/s at random"
+    every = f"one every {arrivals.every:g} s" if arrivals.every else f"{len(arrivals.times)} times"
+    return f"{stream.kind}, {every}"

@@ -188,4 +188,4 @@ def test_who_finds_the_place_taken_enters_elsewhere_in_the_origin() -> None:
 )
 def test_ways_that_make_no_sense_are_refused(given: dict[str, Any], why: str) -> None:
     with pytest.raises(ValueError, match=why):
-        Agents.of(**({"x": [0.0], "y": [0.0], "routes": [[(1.0, 0.0)]]} | given))
+        Agents.of(x=[0.0], y=[0.0], routes=[[(1.0, 0.0)]], **given)
