@@ -13,14 +13,18 @@ import io
 import logging
 import os
 import pkgutil
+import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, nullcontext, redirect_stdout
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 from typer.main import get_command
 
+from crowdbot.cli._complete import offer
 from crowdbot.errors import CrowdbotError, SpecError, did_you_mean, nearest
 
 _SETTINGS: dict[str, Any] = {
@@ -61,13 +65,36 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(argv: Sequence[str] | None) -> int:
+    words = sys.argv[1:] if argv is None else list(argv)
     try:
-        get_command(_app())(None if argv is None else list(argv), prog_name="crowdbot")
+        with _silence() if _wants_silence(words) else nullcontext():
+            get_command(_app())(words, prog_name="crowdbot")
         sys.stdout.flush()
     except SystemExit as done:
         sys.stdout.flush()
         return done.code if isinstance(done.code, int) else int(done.code is not None)
     return 0
+
+
+#: Commands whose output only tells what they did; with ``-q`` they say only what went wrong.
+_TELLING = frozenset(
+    ("bundle", "campaign", "evaluate", "export-urdf", "lock", "report", "simulate", "validate",
+     "verify", "view")
+)  # fmt: skip
+
+
+def _wants_silence(words: Sequence[str]) -> bool:
+    """Whether a command line asks for nothing but what went wrong."""
+    options = set(words)
+    quiet = any(w == "--quiet" or re.fullmatch("-v*q[qv]*", w) for w in words)
+    return quiet and not _TELLING.isdisjoint(words[:2]) and not options & {"--json", "-h", "--help"}
+
+
+@contextmanager
+def _silence() -> Iterator[None]:
+    """Nothing on stdout; messages on stderr stay."""
+    with Path(os.devnull).open("w", encoding="utf-8") as nowhere, redirect_stdout(nowhere):
+        yield
 
 
 class _Commands(TyperGroup):
@@ -104,6 +131,9 @@ def _load(name: str) -> Any:
     for one in (command, *getattr(command, "commands", {}).values()):
         taken = {text for param in one.params for text in param.opts}
         one.params += [p for p in _verbosity_params() if not taken & set(p.opts)]
+        for param in one.params:
+            if completes := offer(param.name):
+                param._custom_shell_complete = completes
     return command
 
 
@@ -162,7 +192,8 @@ _Version = Annotated[
 
 def _app() -> typer.Typer:
     _start_log()
-    app = typer.Typer(cls=_Commands, no_args_is_help=True, **_SETTINGS)
+    settings = {**_SETTINGS, "add_completion": True}
+    app = typer.Typer(cls=_Commands, no_args_is_help=True, **settings)
 
     @app.callback()
     def crowdbot(

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
-from crowdbot.core.support.compile_cache import nothing_compiled
+from crowdbot.core.support.compile_cache import USUAL, compiled, nothing_compiled
 
 if TYPE_CHECKING:
     from crowdbot.core.runs.outcome import Progress as Report
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _COMPILES = "the first run compiles"
 #: How long nothing may be seen without an excuse, s.
 PATIENCE = 1.0
+_LINE_EVERY = 10.0
 
 
 @contextmanager
@@ -38,15 +39,31 @@ def show_progress() -> Iterator[Callable[[Report], None]]:
 @contextmanager
 def _excuse() -> Iterator[None]:
     """Say why nothing is seen yet, unless it is over at once, as with a wrong name."""
-    text = f"preparing: {_COMPILES}, about half a minute"
-    timer = threading.Timer(PATIENCE, print, [text], {"file": sys.stderr})
-    timer.daemon = True
+    done = threading.Event()
     if nothing_compiled():
-        timer.start()
+        threading.Thread(target=_tell_of_compiling, args=(done,), daemon=True).start()
     try:
         yield
     finally:
-        timer.cancel()
+        done.set()
+
+
+def _tell_of_compiling(done: threading.Event) -> None:
+    """A line at once, and one now and then with how far it is, until all is compiled."""
+    if done.wait(PATIENCE):
+        return
+    print(f"preparing: {_COMPILES}, about half a minute", file=sys.stderr)
+    before = 0
+    while not done.wait(_LINE_EVERY):
+        now = compiled()
+        if now == before:
+            return
+        print(f"preparing: {_how_far(now)}", file=sys.stderr)
+        before = now
+
+
+def _how_far(count: int) -> str:
+    return f"{count} of about {max(count, USUAL)} functions compiled"
 
 
 @contextmanager
@@ -57,18 +74,32 @@ def _bars() -> Iterator[Callable[[Report], None]]:
         TextColumn("{task.fields[state]}"),
     )
     with Progress(*columns, console=Console(stderr=True)) as progress:
+        first, done = nothing_compiled(), threading.Event()
         preparing = progress.add_task(
-            "preparing", total=None, state=_COMPILES if nothing_compiled() else ""
+            "preparing", total=USUAL if first else None, state=_COMPILES if first else ""
         )
+
+        def follow() -> None:
+            while not done.wait(0.5):
+                count = compiled()
+                state = f"{_COMPILES}: {_how_far(count)}"
+                progress.update(preparing, completed=min(count, USUAL), state=state)
+
+        if first:
+            threading.Thread(target=follow, daemon=True).start()
         tasks: dict[str, TaskID] = {}
 
         def show(report: Report) -> None:
+            done.set()
             progress.update(preparing, visible=False)
             if report.stage not in tasks:
                 tasks[report.stage] = progress.add_task(report.stage, total=report.limit, state="")
             progress.update(tasks[report.stage], completed=report.t, state=_state(report))
 
-        yield show
+        try:
+            yield show
+        finally:
+            done.set()
 
 
 def _state(report: Report) -> str:

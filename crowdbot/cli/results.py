@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import sys
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -274,12 +276,14 @@ def _print_table(lines: list[dict[str, Any]]) -> None:
     from rich.table import Table
     from rich.text import Text
 
+    seen = sys.stdout.isatty() or "COLUMNS" in os.environ  # elsewhere nothing need be folded
+    console = Console() if seen else Console(width=_WIDTH)
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for name in lines[0]:
-        table.add_column(name, no_wrap=True)
+        table.add_column(name, overflow="fold", no_wrap=not seen)
     for line in lines:
         table.add_row(*(Text(_shown(v)) for v in line.values()))
-    Console(width=_WIDTH).print(table)
+    console.print(table)
 
 
 def _shown(value: Any) -> str:

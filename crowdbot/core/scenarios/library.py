@@ -170,8 +170,15 @@ def pick(expansion: Expansion, pattern: str | None) -> Scenario:
     exact = [s for s in found if s.id == _bare(expansion, pattern)]
     if not found:
         prefix = f"{expansion.suite_id}/" if "/" in pattern else ""
-        raise UnknownNameError("scenario", pattern, [prefix + s.id for s in expansion.scenarios])
+        known = [prefix + s.id for s in expansion.scenarios]
+        raise UnknownNameError("scenario", pattern, _like(pattern, known))
     return _only(expansion, exact or found, f"'{pattern}' fits more than one")
+
+
+def _like(pattern: str, ids: Sequence[str]) -> Sequence[str]:
+    """What a pattern may have meant: ids, or their beginnings of as many parts."""
+    parts = pattern.count("-") + 1
+    return sorted({"-".join(i.split("-")[:parts]) for i in ids})
 
 
 def select(expansion: Expansion, pattern: str) -> list[Scenario]:

@@ -35,7 +35,7 @@ COLUMNS = (
     "lower",
     "upper",
 )
-_VALUE_WIDTH = 20
+_VALUE_WIDTH, _WHOLE_NAMES = 20, 80
 _NUMBERS = ("value", "lower", "upper")
 _TEXTS = ("category", "metric", "symbol", "variant", "unit", "better", "status", "reason")
 
@@ -186,19 +186,22 @@ def section_of(score: Score) -> str:
 
 
 def scores_table(scores: Sequence[Score]) -> Table:
-    """A table for people, the four scores first, then by category; fits 80 columns.
+    """A table for people, the four scores first, then by category.
 
+    It fits the terminal: in one of less than 80 columns names are folded, and none is left out.
     The last column says what is better: + higher, - lower, = like the people.
     """
     from rich.box import SIMPLE_HEAD
+    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
     table = Table(box=SIMPLE_HEAD, padding=0, pad_edge=False)
+    whole = Console().width >= _WHOLE_NAMES
     for name in ("metric", "symbol", "variant"):
-        table.add_column(name, overflow="fold", no_wrap=True)
-    table.add_column("value", overflow="fold", min_width=_VALUE_WIDTH)
-    table.add_column("")
+        table.add_column(name, overflow="fold", no_wrap=whole)
+    table.add_column("value", overflow="fold", min_width=_VALUE_WIDTH if whole else None)
+    table.add_column("", min_width=1, no_wrap=True)
     by_category = main_first(sorted(scores, key=lambda s: s.category), _name)
     for category, group in groupby(by_category, key=section_of):
         table.add_section()

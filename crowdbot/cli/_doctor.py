@@ -1,0 +1,126 @@
+"""What ``crowdbot doctor`` looks at."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import platform
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+from crowdbot.errors import CrowdbotError
+
+#: Packages without which nothing runs, and those of extras.
+_NEEDED = ("crowdbot", "drake", "numba", "numpy", "mcap", "pydantic", "rosbags", "scipy")
+_EXTRAS = {"duckdb": "analysis", "pandas": "analysis", "pyarrow": "analysis",
+           "distributed": "cluster", "jupedsim": "jupedsim"}  # fmt: skip
+#: A campaign of 162 scenarios and three seeds takes about this much, bytes.
+_DISK = 2 * 10**9
+
+
+class Finding(NamedTuple):
+    """One thing that was looked at: ``ok``, ``note`` (something cannot be done) or ``missing``."""
+
+    what: str
+    verdict: Literal["ok", "note", "missing"]
+    found: str
+
+
+def machine(out: Path) -> Iterator[Finding]:
+    """Everything but the self-test; quick.
+
+    Args:
+        out: where runs would go.
+    """
+    yield Finding("system", "ok", f"{platform.platform()}, Python {platform.python_version()}")
+    yield from _packages()
+    yield _drake()
+    yield _egl()
+    yield _kernels()
+    yield _cores()
+    yield _disk(out)
+
+
+def _packages() -> Iterator[Finding]:
+    for name in _NEEDED:
+        found = _version(name)
+        yield Finding(name, "ok" if found else "missing", found or "not installed")
+    for name, extra in _EXTRAS.items():
+        found = _version(name)
+        hint = f"not installed; 'pip install crowdbot[{extra}]' brings it"
+        yield Finding(name, "ok" if found else "note", found or hint)
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return ""
+
+
+def _drake() -> Finding:
+    try:
+        import pydrake.common  # noqa: F401
+    except ImportError as error:
+        return Finding("Drake", "missing", f"cannot be imported: {error}")
+    return Finding("Drake", "ok", "can be imported")
+
+
+def _egl() -> Finding:
+    """Colour images of cameras are rendered through EGL; nothing else needs it."""
+    for name in ("libEGL.so.1", "libEGL.so"):
+        try:
+            ctypes.CDLL(name)
+        except OSError:
+            continue
+        return Finding("EGL", "ok", name)
+    return Finding("EGL", "note", "no libEGL: cameras have depth, but no colour images")
+
+
+def _kernels() -> Finding:
+    from crowdbot.core.support.compile_cache import kernel_folder, nothing_compiled
+
+    folder = os.environ.get("NUMBA_CACHE_DIR") or str(kernel_folder())
+    if nothing_compiled():
+        return Finding("kernels", "note", f"not compiled yet: the first run does it, in {folder}")
+    return Finding("kernels", "ok", f"compiled, in {folder}")
+
+
+def _cores() -> Finding:
+    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    return Finding("cores", "ok", f"{usable} usable; a campaign runs as many scenarios at a time")
+
+
+def _disk(out: Path) -> Finding:
+    folder = next(p for p in (out.absolute(), *out.absolute().parents) if p.is_dir())
+    free = shutil.disk_usage(folder).free
+    text = f"{free / 1e9:.1f} GB free at {folder}"
+    if not os.access(folder, os.W_OK):
+        return Finding("disk", "missing", f"{folder} cannot be written")
+    return Finding("disk", "ok" if free > _DISK else "note", text)
+
+
+def self_test() -> Finding:
+    """One simulated second among people, recorded and scored, in a folder that goes away."""
+    from crowdbot import api
+
+    begin = time.perf_counter()
+    try:
+        scenario = api.load(
+            "challenge-2020",
+            "counter-d0250-dispersed-c20-r05",
+            set="robots.robot.task.time_limit=1",
+        )
+        with tempfile.TemporaryDirectory(prefix="crowdbot-") as folder:
+            run = api.simulate(scenario, planner="dwa", out=folder)
+            good = run.status == "timeout" and len(api.evaluate(run, "speed")) > 0
+    except (CrowdbotError, ImportError) as error:
+        return Finding("self-test", "missing", f"failed: {error}")
+    seconds = time.perf_counter() - begin
+    text = f"simulated, recorded and scored in {seconds:.1f} s"
+    return Finding("self-test", "ok" if good else "missing", text)
