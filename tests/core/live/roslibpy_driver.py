@@ -12,7 +12,7 @@ import sys
 import threading
 from typing import Any
 
-import roslibpy
+import roslibpy  # type: ignore[import-untyped]
 
 from tests.core.live.pursuit import follow
 

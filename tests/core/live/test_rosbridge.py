@@ -36,6 +36,12 @@ def _scan() -> Any:
     return told("/scan", 3_000_000_004, ros.laser_scan(3_000_000_004, SCAN, SCAN.angles, ranges))
 
 
+def _cbor(socket: ClientConnection) -> Any:
+    frame = socket.recv(timeout=30.0)
+    assert isinstance(frame, bytes)
+    return cbor2.loads(frame)
+
+
 def _subscribed(server: RosbridgeServer, socket: ClientConnection, topic: str, **more: Any) -> None:
     say(socket, "subscribe", topic=topic, **more)
     until(lambda: server.wants(topic))
@@ -66,7 +72,7 @@ def test_cbor_has_typed_arrays_and_infinity() -> None:
     with serving() as (server, _), client(server) as socket:
         _subscribed(server, socket, "/scan", compression="cbor")
         server.publish([_scan()])
-        message = cbor2.loads(socket.recv(timeout=30.0))
+        message = _cbor(socket)
         tag = message["msg"]["ranges"]
         assert tag.tag == 85  # RFC 8746: float32, little-endian
         assert as_numbers(tag) == [1.5, 2.5, np.inf, pytest.approx(0.1)]
@@ -78,7 +84,7 @@ def test_cbor_raw_has_the_serialised_message(version: int) -> None:
     with serving(ros=version) as (server, _), client(server) as socket:
         _subscribed(server, socket, "/scan", compression="cbor-raw", fragment_size=10)
         server.publish([scan])
-        message = cbor2.loads(socket.recv(timeout=30.0))["msg"]
+        message = _cbor(socket)["msg"]
         assert (message["secs"], message["nsecs"]) == (3, 4)
         expected = scan.data if version == 2 else ros.to_ros1(scan.data, scan.msgtype)
         assert message["bytes"] == expected
@@ -154,7 +160,7 @@ def _bad_frames(rng: random.Random, count: int) -> list[str | bytes]:
     """Garbage, half messages, and messages with a field that is wrong."""
     ops = ["subscribe", "publish", "advertise", "fragment", "call_service", "unsubscribe",
            "set_level", "auth", "status", "png", "", "unadvertise"]  # fmt: skip
-    values = [None, True, -1, 1e308, "x", "/cmd_vel", [], {}, [[]], {"x": 1}, "9" * 50, 2**80,
+    values: list[Any] = [None, True, -1, 1e308, "x", "/cmd_vel", [], {}, [[]], {"x": 1}, "9" * 50, 2**80,
               {"linear": 3}, {"twist": []}, {"linear": {"x": "1"}},
               {"linear": {"x": None}}]  # fmt: skip
     frames: list[str | bytes] = []
