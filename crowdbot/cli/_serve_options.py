@@ -24,6 +24,15 @@ class ClockChoice(StrEnum):
     external = "external"
 
 
+class DistroChoice(StrEnum):
+    """Distribution of ROS 2."""
+
+    humble = "humble"
+    jazzy = "jazzy"
+    kilted = "kilted"
+    lyrical = "lyrical"
+
+
 class MissedChoice(StrEnum):
     """What a step does that gets no command."""
 
@@ -40,6 +49,12 @@ class Listen:
     port: int
     token: str | None
     ros: int
+    connect: str | None = None
+    stamped: bool = False
+    zenoh: str | None = None
+    zenoh_router: bool = False
+    domain: int = 0
+    distro: DistroChoice = DistroChoice.jazzy
 
 
 def manner_of(
@@ -87,10 +102,49 @@ def listening(session: Session, manner: Manner, listen: Listen) -> Iterator[list
         InputError: the address cannot be had.
     """
     with ExitStack() as stack:
-        doors: list[Door] = [_rosbridge(session, manner, listen)]
-        for door in doors:
-            stack.callback(door.close)
+        first = _rosbridge if listen.connect is None else _connected
+        doors: list[Door] = [first(session, manner, listen)]
+        stack.callback(doors[0].close)
+        if listen.zenoh is not None:
+            doors.append(_zenoh(session, manner, listen.zenoh, listen))
+            stack.callback(doors[1].close)
         yield doors
+
+
+def _connected(session: Session, manner: Manner, listen: Listen) -> Door:
+    from crowdbot.core.live.rosbridge.client import RosbridgeClient
+
+    needs("live", "websockets")
+    assert listen.connect is not None
+    door = RosbridgeClient(
+        session,
+        listen.connect,
+        ros=1 if listen.ros == 1 else 2,
+        stamped=listen.stamped,
+        external_clock=manner.external_clock,
+    )
+    _say(f"rosbridge: connected to {listen.connect}; waiting for commands on /cmd_vel")
+    return door
+
+
+def _zenoh(session: Session, manner: Manner, endpoint: str, listen: Listen) -> Door:
+    needs("ros2", "zenoh")
+    from crowdbot.core.live.zenoh_door import Network, ZenohDoor
+
+    door = ZenohDoor(
+        session,
+        Network(
+            endpoint=endpoint,
+            router=listen.zenoh_router,
+            domain=listen.domain,
+            distro=listen.distro.value,
+        ),
+        resend=manner.lockstep,
+        external_clock=manner.external_clock,
+    )
+    role = "router at" if listen.zenoh_router else "connected to"
+    _say(f"ROS 2 ({listen.distro.value}, domain {listen.domain}): zenoh, {role} {endpoint}")
+    return door
 
 
 def _rosbridge(session: Session, manner: Manner, listen: Listen) -> Door:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli._options import NoPlugins, Plugins, installed
-from crowdbot.cli._serve_options import ClockChoice, MissedChoice
+from crowdbot.cli._serve_options import ClockChoice, DistroChoice, MissedChoice
 from crowdbot.cli.simulate import RecordChoice
 
 if TYPE_CHECKING:
@@ -30,6 +30,24 @@ def serve(
     token: Annotated[
         str | None, typer.Option(help="What clients must know; default on the network: a new one.")
     ] = None,
+    connect: Annotated[
+        str | None,
+        typer.Option(metavar="ws://HOST:PORT", help="Be a client of this rosbridge server."),
+    ] = None,
+    stamped: Annotated[
+        bool, typer.Option("--stamped", help="With --connect: commands are TwistStamped.")
+    ] = False,
+    zenoh: Annotated[
+        str | None,
+        typer.Option(metavar="tcp/HOST:PORT", help="ROS 2 topics, too, through this zenoh router."),
+    ] = None,
+    zenoh_router: Annotated[
+        bool, typer.Option("--zenoh-router", help="Be the zenoh router at that endpoint.")
+    ] = False,
+    domain: Annotated[int, typer.Option(min=0, max=232, help="ROS_DOMAIN_ID.")] = 0,
+    distro: Annotated[
+        DistroChoice, typer.Option(help="ROS 2 distribution of the nodes.")
+    ] = DistroChoice.jazzy,
     rate: Annotated[
         float | None,
         typer.Option(metavar="FACTOR", help="Keep to real time, times FACTOR; else lockstep."),
@@ -114,7 +132,18 @@ def serve(
 
         with _interruptible() as stop:
             session = Session(interrupted=stop)
-            listen = Listen(host=host, port=port, token=token, ros=ros)
+            listen = Listen(
+                host=host,
+                port=port,
+                token=token,
+                ros=ros,
+                connect=connect,
+                stamped=stamped,
+                zenoh=zenoh,
+                zenoh_router=zenoh_router,
+                domain=domain,
+                distro=distro,
+            )
             with listening(session, manner, listen) as doors:
                 service = Service(
                     session=session,

@@ -40,7 +40,7 @@ def _names(msgtype: str, kind: type[Any]) -> tuple[str, ...]:
     """The fields of a type."""
     names = _KNOWN.get(msgtype)
     if names is None:
-        names = _KNOWN[msgtype] = tuple(field.name for field in fields(kind))
+        names = _KNOWN[msgtype] = tuple(f.name for f in fields(kind) if not f.name.startswith("_"))
     return names
 
 

@@ -82,10 +82,11 @@ class Session:
         """A run begins."""
         with self._changed:
             self.scenario, self.seed, self.t = scenario, seed, 0.0
+            if self.run:  # what was said before the first run begins counts
+                self._latest, self._fresh, self._clock = None, False, -math.inf
             self.run += 1
             self.counts, self.state = Counts(), "waiting"
-            self._asked = self._latest = None
-            self._fresh = False
+            self._asked = None
             self._request = ""
 
     def finish(self, state: State) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from struct import pack
 from typing import Any
@@ -93,6 +94,28 @@ class McapFile:
         opened.messages += 1
         if chunk.size >= CHUNK_SIZE:
             self._finish_chunk()
+
+    def copy(self, channel: Channel, schema: Schema | None, ns: int, data: Piece) -> None:
+        """Append a message of another file, whose topic is described as there."""
+        opened = self._topics.get(channel.topic)
+        if opened is None:
+            opened = self._adopt(channel, schema)
+        self._chunk.add(opened.id, opened.messages, ns, data)
+        opened.messages += 1
+        if self._chunk.size >= CHUNK_SIZE:
+            self._finish_chunk()
+
+    def _adopt(self, channel: Channel, schema: Schema | None) -> _Topic:
+        mine = None if schema is None else self._schemas.get(schema.name)
+        if schema is not None and mine is None:
+            mine = replace(schema, id=len(self._schemas) + 1)
+            self._schemas[schema.name] = mine
+            self._chunk.define(mine)
+        number = 0 if mine is None else mine.id
+        record = replace(channel, id=len(self._topics) + 1, schema_id=number)
+        self._chunk.define(record)
+        opened = self._topics[channel.topic] = _Topic(record)
+        return opened
 
     def flush(self) -> None:
         """Finish the open chunk and hand all bytes to the operating system."""

@@ -95,6 +95,22 @@ def _store(*, oldest: bool = False) -> Any:
     return store
 
 
+def ros2_store() -> Any:
+    """The types of a recording, for rosbags."""
+    return _store()
+
+
+@cache
+def ros1_store() -> Any:
+    """The types of ROS 1 noetic, and crowdbot's."""
+    store = get_typestore(Stores.ROS1_NOETIC)
+    types: dict[str, Any] = {}
+    for name, text in {**DEFINITIONS, **OLD_DEFINITIONS}.items():
+        types.update(get_types_from_msg(text, f"crowdbot_msgs/msg/{name}"))
+    store.register(types)
+    return store
+
+
 def new(kind: str, **fields: Any) -> Any:
     """A message of type ``package/Name``."""
     return _type(kind)(**fields)
@@ -365,6 +381,23 @@ def marker(
         mesh_file=new("visualization_msgs/MeshFile", filename="", data=np.zeros(0, np.uint8)),
         mesh_use_embedded_materials=False,
     )
+
+
+def marker_array(markers: Iterable[Any]) -> Any:
+    """Several markers in one message."""
+    return new("visualization_msgs/MarkerArray", markers=list(markers))
+
+
+def delete_all_markers() -> Any:
+    """A marker that takes away those before it."""
+    gone = marker(0, "", "CUBE", (1.0, 1.0, 1.0), (0.0, 0.0, 0.0, 0.0), np.zeros((0, 3)))
+    gone.action = gone.DELETEALL
+    return gone
+
+
+def plane_pose(pose: Pose) -> Any:
+    """A pose on the floor as ``geometry_msgs/Pose``."""
+    return _pose(*pose)
 
 
 def table(values: ArrayLike | None) -> Any:

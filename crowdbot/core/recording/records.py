@@ -45,6 +45,13 @@ _BROKEN = (
 )
 
 
+class Opened(NamedTuple):
+    """A topic as a file describes it: its channel, and its schema if it has one."""
+
+    record: Channel
+    schema: Schema | None
+
+
 class Record(NamedTuple):
     """One message, still serialised."""
 
@@ -78,6 +85,11 @@ class Records:
                 yield from self._records(data)
         except OSError as error:
             raise InputError(f"{self._path}: cannot be read: {error.strerror}") from error
+
+    def channel(self, topic: str) -> Opened:
+        """How the file describes a topic whose messages were seen; the latest of its channels."""
+        channel = next(c for c in reversed(self._channels.values()) if c.topic == topic)
+        return Opened(channel, self._schemas.get(channel.schema_id))
 
     def _records(self, data: mmap.mmap) -> Iterator[Record]:
         broken = False

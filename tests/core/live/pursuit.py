@@ -18,6 +18,7 @@ class Pursuit:
     needs = ()
 
     def reset(self, task: Any, limits: Any, sensors: Any, seed: int) -> None:
+        del limits, sensors, seed
         self._goal = task.goal
 
     def step(self, obs: Any) -> tuple[float, float]:

@@ -12,7 +12,7 @@ import sys
 import threading
 from typing import Any
 
-import roslibpy
+import roslibpy  # type: ignore[import-untyped]
 
 from tests.core.live.pursuit import follow
 
@@ -45,7 +45,7 @@ def main(port: int, kind: str) -> int:
     status = roslibpy.Topic(ros, "/crowdbot/status", "crowdbot_msgs/LiveStatus")
     status.subscribe(on_status)
     command.advertise()
-    ended = done.wait(120.0)
+    ended = done.wait(600.0)
     ros.terminate()
     return 0 if ended else 1
 

@@ -57,7 +57,7 @@ class Connection:
     def __init__(self, hub: Hub, send: Callable[[Frame], Awaitable[None]]) -> None:
         self._hub, self._send = hub, send
         self.feeds: dict[str, Feed] = {}
-        self._outbox = Outbox()
+        self._outbox, self._sending = Outbox(), False
         self._joiner = Joiner()
         self._numbers = itertools.count()
         self._level = _LEVELS["error"]
@@ -215,7 +215,15 @@ class Connection:
     async def write(self) -> None:
         """Send what is to be sent, for ever."""
         while True:
-            await self._send(await self._outbox.get())
+            frame = await self._outbox.get()
+            self._sending = True
+            await self._send(frame)
+            self._sending = False
+
+    @property
+    def waiting(self) -> bool:
+        """Whether something is still to be sent."""
+        return self._sending or len(self._outbox) > 0
 
     def close(self) -> None:
         """The client is gone."""

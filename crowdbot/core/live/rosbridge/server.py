@@ -6,6 +6,7 @@ import asyncio
 import logging
 import secrets
 import threading
+import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -31,6 +32,7 @@ _LOOPBACK = ("localhost", "127.0.0.1", "::1")
 #: The largest frame that a client may send, bytes; what may come in between two looks.
 _LARGEST, _WAITING = 2**20, 16
 _MOST_CLIENTS = 200
+_FAREWELL = 1.0  # s
 
 
 def is_loopback(host: str) -> bool:
@@ -196,6 +198,10 @@ class RosbridgeServer:
         )
 
     async def _stop(self) -> None:
+        """Send what waits, the last state above all, but not for ever."""
+        end = time.monotonic() + _FAREWELL
+        while any(c.waiting for c in self._connections) and time.monotonic() < end:
+            await asyncio.sleep(0.005)
         self._server.close()
         await asyncio.wait_for(self._server.wait_closed(), 10.0)
 

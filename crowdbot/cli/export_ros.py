@@ -1,0 +1,31 @@
+"""``crowdbot export-ros``: what tools of ROS need to know of crowdbot."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def export_ros(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to write to.")],
+) -> None:
+    """Write the ROS 2 package `crowdbot_msgs`, and a layout for Foxglove and Lichtblick.
+
+    Example: crowdbot export-ros ros2_ws/src
+    """
+    from importlib.metadata import version
+
+    from crowdbot.core.recording.export.ros_package import layout, write_package
+    from crowdbot.core.support.atomic_write import atomic_write
+    from crowdbot.errors import InputError
+
+    try:
+        files = write_package(folder, version("crowdbot"))
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be written: {error.strerror or error}") from error
+    path = folder / "crowdbot_layout.json"
+    atomic_write(path, layout())
+    for file in (*files, path):
+        typer.echo(str(file))

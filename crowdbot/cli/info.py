@@ -1,0 +1,92 @@
+"""``crowdbot info``: what is in a recording."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from crowdbot.core.recording.contents import Contents
+
+
+def info(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE|RUN_DIR", help="A recording, or a run directory.")
+    ],
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """Say what is in a recording: topics with rates and sizes, duration, hash, complete or not.
+
+    Example: crowdbot info runs/challenge-2020/in-d0125-slow-c01-r02/dwa/seed-0/run.mcap
+    """
+    from crowdbot.core.recording.contents import contents
+    from crowdbot.core.runs.run_directory import RECORDING
+
+    path = file / RECORDING if file.is_dir() else file
+    found = contents(path)
+    about = _about(path, found)
+    if as_json:
+        topics = [
+            {
+                "topic": t.name, "type": t.msgtype, "messages": t.count, "rate": t.rate,
+                "bytes": t.size,
+            }
+            for t in found.topics
+        ]  # fmt: skip
+        typer.echo(json.dumps({**about, "topics": topics}, indent=2))
+        return
+    _show(about, found)
+
+
+def _about(path: Path, found: Contents) -> dict[str, Any]:
+    from crowdbot.core.recording.reader import recording_info
+
+    about: dict[str, Any] = {
+        "file": str(path),
+        "bytes": found.size,
+        "duration": found.end,
+        "finished": found.finished,
+        "complete": found.complete,
+        "status": found.status,
+        "messages": sum(t.count for t in found.topics),
+    }
+    if any(t.name == "/crowdbot/header" for t in found.topics):
+        header = recording_info(path).header
+        about |= {"scenario": header.scenario, "trajectory": _hash(path)}
+    return about
+
+
+def _hash(path: Path) -> str | None:
+    """The trajectory hash; None where there is not a single sample."""
+    from crowdbot.core.recording.reader import read_trajectories
+    from crowdbot.core.runs.provenance import trajectory_hash
+    from crowdbot.errors import InputError
+
+    try:
+        return trajectory_hash(read_trajectories(path))
+    except InputError:
+        return None
+
+
+def _show(about: dict[str, Any], found: Contents) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(soft_wrap=True, highlight=False)
+    ending = "complete" if found.complete else "NOT complete"
+    if not found.finished:
+        ending += ": the file was cut off; crowdbot recover makes a whole one of it"
+    elif found.status and not found.complete:
+        ending += f": {found.status}"
+    console.print(f"{about['file']}: {found.size} bytes, {found.end:.2f} s, {ending}", markup=False)
+    for name in ("scenario", "trajectory"):
+        if about.get(name):
+            console.print(f"{name}: {about[name]}", markup=False)
+    table = Table("topic", "type", "messages", "Hz", "bytes", box=None, pad_edge=False)
+    for topic in found.topics:
+        rate = "" if topic.rate is None else f"{topic.rate:.1f}"
+        table.add_row(topic.name, topic.msgtype, str(topic.count), rate, str(topic.size))
+    console.print(table)

@@ -1,0 +1,39 @@
+"""``crowdbot recover``: a complete file of a recording that was cut off."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def recover(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE|DIR.partial", help="An interrupted recording.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="File to write; default: beside it.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """Make a complete recording of an interrupted one; all but its last second is kept.
+
+    Example: crowdbot recover runs/challenge-2020/in-d0125-slow-c01-r02/dwa/seed-0.partial
+    """
+    from crowdbot.core.recording.recover import recover as recover_it
+    from crowdbot.core.runs.run_directory import RECORDING
+    from crowdbot.errors import InputError
+
+    path = file / RECORDING if file.is_dir() else file
+    target = out or path.with_name(f"{path.name.removesuffix('.mcap')}.recovered.mcap")
+    if target.exists():
+        raise InputError(f"{target}: exists already; it is not written over")
+    found = recover_it(path, target)
+    if as_json:
+        typer.echo(
+            json.dumps({"file": str(target), "messages": found.messages, "duration": found.end})
+        )
+        return
+    typer.echo(f"{target}: {found.messages} messages, {found.end:.2f} s, marked as recovered")

@@ -1,0 +1,104 @@
+"""How ROS 2 names topics on zenoh (rmw_zenoh): keys of data, tokens of who is there, attachments.
+
+Source: the design document of rmw_zenoh, https://github.com/ros2/rmw_zenoh.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import struct
+from dataclasses import dataclass
+from functools import cache
+from typing import Literal
+
+from rosbags.typesys import Stores, get_typestore
+
+from crowdbot.core.recording import messages as ros
+
+Distro = Literal["humble", "jazzy", "kilted", "lyrical"]
+#: Kinds of entities in tokens: node, publisher, subscription.
+NODE, PUBLISHER, SUBSCRIPTION = "NN", "MP", "MS"
+#: Humble knows no hashes of types.
+_NO_HASH = "TypeHashNotSupported"
+#: Reliable, keep last; depth 10 and volatile, or depth 1 and transient local.
+_QOS, _LATCHED_QOS = "::,10:,:,:,,", ":1:,1:,:,:,,"
+_ATTACHMENT = struct.Struct("<qqB16s")
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """A topic as ROS 2 knows it; ``hash`` depends on the distribution."""
+
+    name: str
+    msgtype: str
+    hash: str
+    latched: bool = False
+
+    @property
+    def dds_type(self) -> str:
+        """``package::msg::dds_::Name_``."""
+        package, _, name = self.msgtype.split("/")
+        return f"{package}::msg::dds_::{name}_"
+
+    def key(self, domain: int) -> str:
+        """The key under which its messages are put."""
+        return f"{domain}/{self.name.strip('/')}/{self.dds_type}/{self.hash}"
+
+    def token(self, domain: int, session: str, entity: int, kind: str, node: str) -> str:
+        """What says that a node publishes it, or listens to it."""
+        mangled = self.name.replace("/", "%")
+        qos = _LATCHED_QOS if self.latched else _QOS
+        return (
+            f"@ros2_lv/{domain}/{session}/0/{entity}/{kind}/%/%/{node}/"
+            f"{mangled}/{self.dds_type}/{self.hash}/{qos}"
+        )
+
+
+def node_token(domain: int, session: str, node: str) -> str:
+    """What says that a node is there."""
+    return f"@ros2_lv/{domain}/{session}/0/0/{NODE}/%/%/{node}"
+
+
+def drivers_of(domain: int, name: str) -> str:
+    """Fits the tokens of all who publish a topic."""
+    return f"@ros2_lv/{domain}/*/*/*/{PUBLISHER}/*/*/*/{name.replace('/', '%')}/**"
+
+
+def attachment(sequence: int, time_ns: int, gid: bytes) -> bytes:
+    """What goes with each message: 33 bytes."""
+    return _ATTACHMENT.pack(sequence, time_ns, len(gid), gid)
+
+
+def gid_of(token: str) -> bytes:
+    """16 bytes that name a publisher."""
+    return hashlib.blake2b(token.encode(), digest_size=16).digest()
+
+
+@cache
+def hash_in(msgtype: str, distro: Distro) -> str:
+    """The hash of a type in a distribution."""
+    if distro == "humble":
+        return _NO_HASH
+    if msgtype in _changed(distro):
+        text = get_typestore(Stores(f"ros2_{distro}")).hash_rihs01(msgtype)
+        return f"RIHS01_{text.removeprefix('RIHS01_')}"
+    return ros.type_hash(msgtype)
+
+
+def in_distro(data: bytes, msgtype: str, distro: Distro) -> bytes:
+    """A message as a distribution has it: types that grew a field since have it at the end, 0."""
+    if distro == "humble" or msgtype not in _changed(distro):
+        return data
+    store = get_typestore(Stores(f"ros2_{distro}"))
+    old = ros.from_cdr(data, msgtype)
+    names = [name for name, _ in store.fielddefs[msgtype][1]]
+    values = {name: getattr(old, name, 0.0) for name in names}
+    return bytes(store.serialize_cdr(store.types[msgtype](**values), msgtype))
+
+
+@cache
+def _changed(distro: Distro) -> frozenset[str]:
+    """Types of ours whose definition differs from that of Humble, which recordings have."""
+    store, mine = get_typestore(Stores(f"ros2_{distro}")), ros.ros2_store()
+    known = set(store.types) & set(mine.types)
+    return frozenset(t for t in known if store.fielddefs[t][1] != mine.fielddefs[t][1])

@@ -1,0 +1,221 @@
+"""ROS 2 topics without ROS: the wire format of rmw_zenoh, through eclipse-zenoh."""
+
+from __future__ import annotations
+
+import itertools
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from crowdbot.core.live.message import LiveMessage, Offer
+from crowdbot.core.live.ros2_keys import (
+    PUBLISHER,
+    SUBSCRIPTION,
+    Distro,
+    Topic,
+    attachment,
+    drivers_of,
+    gid_of,
+    hash_in,
+    in_distro,
+    node_token,
+)
+from crowdbot.core.live.session import Session
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.types.motion import Command
+from crowdbot.errors import InputError
+
+COMMAND, CLOCK = "/cmd_vel", "/clock"
+TWIST, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
+_CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
+_NODE = "crowdbot"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Network:
+    """Where ROS 2 is.
+
+    Attributes:
+        endpoint: of the router, ``tcp/HOST:PORT``.
+        router: whether to be the router there, instead of connecting to one.
+        domain: as in ``ROS_DOMAIN_ID``.
+        distro: whose type hashes keys have.
+    """
+
+    endpoint: str = "tcp/127.0.0.1:7447"
+    router: bool = False
+    domain: int = 0
+    distro: Distro = "jazzy"
+
+
+class _Publisher:
+    """One topic that we publish."""
+
+    def __init__(self, topic: Topic, publisher: Any, token: Any, gid: bytes) -> None:
+        self.topic, self.publisher, self.token = topic, publisher, token
+        self._gid, self._sequence = gid, itertools.count(1)
+        self.wanted = topic.latched
+        self.latest: LiveMessage | None = None
+
+    def put(self, message: LiveMessage, distro: Distro) -> None:
+        about = attachment(next(self._sequence), message.ns, self._gid)
+        data = in_distro(message.data, message.msgtype, distro)
+        self.publisher.put(data, attachment=about)
+
+    def undeclare(self) -> None:
+        self.publisher.undeclare()
+        self.token.undeclare()
+
+
+class ZenohDoor:
+    """A door that speaks what ROS 2 nodes with rmw_zenoh speak."""
+
+    def __init__(
+        self, session: Session, network: Network, *, resend: bool = True, external_clock: bool
+    ) -> None:
+        """Connect.
+
+        Raises:
+            InputError: there is no router at the endpoint, or it cannot be one.
+        """
+        self._session, self._network = session, network
+        self._resend, self._external_clock = resend, external_clock
+        self._zenoh = _opened(network)
+        self._name = str(self._zenoh.zid())
+        self._entities = itertools.count(10)
+        self._publishers: dict[str, _Publisher] = {}
+        self._lock = threading.Lock()
+        self._drivers: set[str] = set()
+        live = self._zenoh.liveliness()
+        self._kept: list[Any] = [live.declare_token(node_token(network.domain, self._name, _NODE))]
+        self._hear(COMMAND, TWIST, self._on_twist)
+        self._hear(COMMAND, STAMPED, self._on_stamped)
+        if external_clock:
+            self._hear(CLOCK, _CLOCK_TYPE, self._on_clock)
+        fits = drivers_of(network.domain, COMMAND)
+        self._kept.append(live.declare_subscriber(fits, self._on_driver, history=True))
+
+    # ---------------------------------------------------------------- the simulation's thread
+    def open(self, offers: Sequence[Offer]) -> None:
+        """A run begins that offers these topics."""
+        names = {o.topic for o in offers}
+        for name in [n for n in self._publishers if n not in names]:
+            self._publishers.pop(name).undeclare()
+        for offer in offers:
+            if offer.topic in self._publishers:
+                self._publishers[offer.topic].latest = None
+            elif not (self._external_clock and offer.topic == CLOCK):
+                self._publishers[offer.topic] = self._declare(offer)
+
+    def wants(self, topic: str) -> bool:
+        """Whether somebody listens to a topic."""
+        found = self._publishers.get(topic)
+        return found is not None and found.wanted
+
+    def publish(self, messages: Sequence[LiveMessage]) -> None:
+        """Tell those who listen."""
+        for message in messages:
+            found = self._publishers.get(message.topic)
+            if found is not None:
+                with self._lock:
+                    found.latest = message
+                    found.put(message, self._network.distro)
+
+    def close(self) -> None:
+        """Leave."""
+        if not self._zenoh.is_closed():
+            self._zenoh.close()
+
+    def _topic(self, name: str, msgtype: str, *, latched: bool = False) -> Topic:
+        return Topic(name, msgtype, hash_in(msgtype, self._network.distro), latched)
+
+    def _declare(self, offer: Offer) -> _Publisher:
+        topic = self._topic(offer.topic, offer.msgtype, latched=offer.latched)
+        key, domain = topic.key(self._network.domain), self._network.domain
+        text = topic.token(domain, self._name, next(self._entities), PUBLISHER, _NODE)
+        token = self._zenoh.liveliness().declare_token(text)
+        if offer.latched:
+            from zenoh import ext
+
+            cache = ext.CacheConfig(max_samples=1)
+            made: Any = ext.declare_advanced_publisher(self._zenoh, key, cache=cache)
+            return _Publisher(topic, made, token, gid_of(text))
+        made = self._zenoh.declare_publisher(key)
+        found = _Publisher(topic, made, token, gid_of(text))
+        made.declare_matching_listener(lambda status: self._on_listener(found, status))
+        found.wanted = bool(made.matching_status.matching)
+        return found
+
+    # ----------------------------------------------------------------------- zenoh's threads
+    def _hear(self, name: str, msgtype: str, heard: Any) -> None:
+        topic = self._topic(name, msgtype)
+        domain = self._network.domain
+        text = topic.token(domain, self._name, next(self._entities), SUBSCRIPTION, _NODE)
+        self._kept.append(self._zenoh.declare_subscriber(topic.key(domain), heard))
+        self._kept.append(self._zenoh.liveliness().declare_token(text))
+
+    def _on_listener(self, found: _Publisher, status: Any) -> None:
+        found.wanted = bool(status.matching)
+        if not found.wanted:
+            return
+        with self._lock:
+            if self._resend and found.latest is not None:
+                found.put(found.latest, self._network.distro)
+        self._session.listened()
+
+    def _on_driver(self, sample: Any) -> None:
+        """Somebody who publishes commands came, or left."""
+        import zenoh
+
+        key = str(sample.key_expr)
+        if sample.kind == zenoh.SampleKind.PUT:
+            self._drivers.add(key)
+            self._session.drive(self)
+        else:
+            self._drivers.discard(key)
+            if not self._drivers:
+                self._session.leave(self)
+
+    def _on_twist(self, sample: Any) -> None:
+        message = _read(sample, TWIST)
+        if message is not None:
+            self._command(message, None)
+
+    def _on_stamped(self, sample: Any) -> None:
+        message = _read(sample, STAMPED)
+        if message is not None:
+            stamp = message.header.stamp
+            self._command(message.twist, stamp.sec * 10**9 + stamp.nanosec)
+
+    def _command(self, twist: Any, stamp: int | None) -> None:
+        command = Command(twist.linear.x, twist.angular.z, twist.linear.y)
+        self._session.command(self, command, stamp)
+
+    def _on_clock(self, sample: Any) -> None:
+        message = _read(sample, _CLOCK_TYPE)
+        if message is not None:
+            self._session.clock(message.clock.sec + message.clock.nanosec / 1e9)
+
+
+def _read(sample: Any, msgtype: str) -> Any | None:
+    """The message; None of bytes that are not one."""
+    try:
+        return ros.from_cdr(sample.payload.to_bytes(), msgtype)
+    except Exception:  # generated code, fed with anything
+        return None
+
+
+def _opened(network: Network) -> Any:
+    import zenoh
+
+    config = zenoh.Config()
+    where = "listen/endpoints" if network.router else "connect/endpoints"
+    config.insert_json5("mode", '"router"' if network.router else '"client"')
+    config.insert_json5("scouting/multicast/enabled", "false")
+    try:
+        config.insert_json5(where, f'["{network.endpoint}"]')
+        return zenoh.open(config)
+    except Exception as error:  # of one kind only, zenoh.ZError, whose text is for programmers
+        doing = "be a router at" if network.router else "find a router of ROS 2 at"
+        raise InputError(f"{network.endpoint}: cannot {doing} that endpoint") from error

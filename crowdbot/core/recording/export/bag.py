@@ -1,0 +1,180 @@
+"""Recordings as bags of ROS 2 (a folder) and of ROS 1 (a file)."""
+
+from __future__ import annotations
+
+import heapq
+import shutil
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+from rosbags.interfaces import (
+    Qos,
+    QosDurability,
+    QosHistory,
+    QosLiveliness,
+    QosReliability,
+    QosTime,
+)
+
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording.export.extras import Extra, extras
+from crowdbot.core.recording.export.stamps import moved
+from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.reader import read_trajectories, recording_info
+from crowdbot.core.recording.records import Records
+from crowdbot.core.recording.scenery import BASE
+from crowdbot.core.recording.topics import Topic, is_scan, scan_topic
+
+Tree = Literal["truth", "odometry"]
+_FOREVER = QosTime(2147483647, 4294967295)
+_TF, _ODOMETRY = "tf2_msgs/msg/TFMessage", "nav_msgs/msg/Odometry"
+_LATCHED = (Topic.HEADER, Topic.END, Topic.TF_STATIC, Topic.WALLS, Topic.GOAL)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BagOptions:
+    """How a bag is to be.
+
+    Attributes:
+        offset: ns that are added to all times.
+        tree: whose pose ``/tf`` has: the true one, or that of odometry below ``odom``.
+        ros_names: whether topics get the names that users of ROS expect.
+        markers: whether people and contacts are added as markers, one for each.
+        description: the robot's URDF, if it is known.
+    """
+
+    offset: int = 0
+    tree: Tree = "truth"
+    ros_names: bool = True
+    markers: bool = True
+    description: str | None = None
+
+
+class _Message(NamedTuple):
+    ns: int
+    order: int
+    topic: str
+    msgtype: str
+    data: bytes
+    latched: bool
+
+
+def write_ros2(path: Path, out: Path, options: BagOptions) -> int:
+    """Write a folder with ``metadata.yaml`` (version 8) and an MCAP file; how many messages.
+
+    Raises:
+        InputError: no recording of crowdbot, or the folder exists.
+    """
+    from rosbags.rosbag2 import StoragePlugin, Writer
+
+    with Writer(out, version=8, storage_plugin=StoragePlugin.MCAP) as bag:
+        return _write(bag, path, options)
+
+
+def write_ros1(path: Path, out: Path, options: BagOptions) -> int:
+    """Write a bag of ROS 1, whose types are those of noetic; how many messages.
+
+    Raises:
+        InputError: no recording of crowdbot, or it cannot be written.
+    """
+    from rosbags.convert.converter import convert
+
+    folder = out.with_name(f".{out.name}.ros2")
+    shutil.rmtree(folder, ignore_errors=True)
+    try:
+        count = write_ros2(path, folder, options)
+        store = ros.ros1_store()
+        convert([folder], out, "", 0, None, "", None, store, [], [], [], [])
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    return count
+
+
+def _write(bag: Any, path: Path, options: BagOptions) -> int:
+    connections: dict[str, Any] = {}
+    count = 0
+    for message in _merged(path, options):
+        connection = connections.get(message.topic)
+        if connection is None:
+            connection = connections[message.topic] = bag.add_connection(
+                message.topic,
+                message.msgtype,
+                typestore=ros.ros2_store(),
+                offered_qos_profiles=[_qos(latched=message.latched)],
+            )
+        data = moved(message.data, message.msgtype, options.offset)
+        bag.write(connection, message.ns + options.offset, data)
+        count += 1
+    return count
+
+
+def _merged(path: Path, options: BagOptions) -> Iterator[_Message]:
+    """What was recorded and what is added, in the order of time."""
+    header = recording_info(path).header
+    run = read_trajectories(path)
+    added = extras(header, run, options.description, markers=options.markers)
+    recorded = _recorded(path, header, options)
+    yield from heapq.merge(_sorted(recorded), _sorted(_added(added)))
+
+
+def _sorted(messages: Iterable[_Message]) -> list[_Message]:
+    """A recording writes a second at once; a bag is in the order of time."""
+    return sorted(messages, key=lambda m: m.ns)
+
+
+def _added(found: Iterable[Extra]) -> Iterator[_Message]:
+    for k, extra in enumerate(found):
+        kind = extra.message.__msgtype__
+        yield _Message(extra.ns, k, extra.topic, kind, ros.to_cdr(extra.message), extra.latched)
+
+
+def _recorded(path: Path, header: RecordingHeader, options: BagOptions) -> Iterator[_Message]:
+    names = _names(header) if options.ros_names else {}
+    for k, record in enumerate(Records(path)):
+        if record.topic == Topic.TF and options.tree == "odometry":
+            continue
+        topic, latched = names.get(record.topic, record.topic), record.topic in _LATCHED
+        yield _Message(record.ns, k, topic, record.msgtype, record.data, latched)
+        if record.msgtype == _ODOMETRY and options.tree == "odometry" and record.topic == "/odom":
+            data = _believed(record.data)
+            yield _Message(record.ns, k, str(Topic.TF), _TF, data, False)
+
+
+def _believed(data: bytes) -> bytes:
+    """The transform ``odom`` to ``base_footprint`` of a message of odometry."""
+    odometry = ros.from_cdr(data, _ODOMETRY)
+    at = odometry.pose.pose
+    stamped = ros.transform(0, "odom", BASE, (at.position.x, at.position.y, at.position.z), 0.0)
+    stamped.header, stamped.transform.rotation = odometry.header, at.orientation
+    return ros.to_cdr(ros.transforms([stamped]))
+
+
+def _names(header: RecordingHeader) -> dict[str, str]:
+    """Our topics -> those of other robots: ``/scan``, ``/imu/data``, ``/NAME/color/...``."""
+    names: dict[str, str] = {}
+    lidars = [n for n, i in header.sensors.items() if is_scan(i)]
+    imus = [n for n, i in header.sensors.items() if i.ros_type == "sensor_msgs/msg/Imu"]
+    if lidars:
+        names[scan_topic(lidars[0])] = "/scan"
+    if imus:
+        names[f"/{imus[0]}/imu"] = "/imu/data"
+    for name in header.sensors:
+        for leaf in ("image_raw", "camera_info"):
+            names[f"/{name}/colour/{leaf}"] = f"/{name}/color/{leaf}"
+    return names
+
+
+def _qos(*, latched: bool) -> Qos:
+    return Qos(
+        QosHistory.KEEP_LAST if latched else QosHistory.UNKNOWN,
+        1 if latched else 0,
+        QosReliability.RELIABLE,
+        QosDurability.TRANSIENT_LOCAL if latched else QosDurability.VOLATILE,
+        _FOREVER,
+        _FOREVER,
+        QosLiveliness.AUTOMATIC,
+        _FOREVER,
+        False,
+    )

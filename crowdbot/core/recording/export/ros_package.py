@@ -1,0 +1,110 @@
+"""The messages and services of crowdbot as a package for ROS 2, and a layout for Foxglove."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.recording.messages import DEFINITIONS, LIVE_DEFINITIONS
+
+NAME = "crowdbot_msgs"
+SERVICES = {
+    "Step": "uint32 steps\n---\nbool success\nstring message",
+    "SetSeed": "int64 seed\n---\nbool success\nstring message",
+}
+_PACKAGE = """\
+<?xml version="1.0"?>
+<package format="3">
+  <name>crowdbot_msgs</name>
+  <version>{version}</version>
+  <description>Messages in recordings and live runs of crowdbot.</description>
+  <maintainer email="crowdbot@example.org">The crowdbot developers</maintainer>
+  <license>BSD-3-Clause</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <buildtool_depend>rosidl_default_generators</buildtool_depend>
+  <depend>std_msgs</depend>
+  <exec_depend>rosidl_default_runtime</exec_depend>
+  <member_of_group>rosidl_interface_packages</member_of_group>
+  <export><build_type>ament_cmake</build_type></export>
+</package>
+"""
+_CMAKE = """\
+cmake_minimum_required(VERSION 3.8)
+project(crowdbot_msgs)
+find_package(ament_cmake REQUIRED)
+find_package(rosidl_default_generators REQUIRED)
+find_package(std_msgs REQUIRED)
+rosidl_generate_interfaces(${{PROJECT_NAME}}
+{files}
+  DEPENDENCIES std_msgs)
+ament_export_dependencies(rosidl_default_runtime)
+ament_package()
+"""
+
+
+def write_package(folder: Path, version: str) -> list[Path]:
+    """Write the package's files into ``folder/crowdbot_msgs``; their paths."""
+    root = folder / NAME
+    texts = {f"msg/{n}.msg": t for n, t in {**DEFINITIONS, **LIVE_DEFINITIONS}.items()}
+    texts |= {f"srv/{n}.srv": t for n, t in SERVICES.items()}
+    names = "\n".join(f'  "{name}"' for name in texts)
+    texts = {n: f"{t.replace(f'{NAME}/', '')}\n" for n, t in texts.items()}
+    texts |= {
+        "package.xml": _PACKAGE.format(version=version),
+        "CMakeLists.txt": _CMAKE.format(files=names),
+    }
+    written = []
+    for name, text in texts.items():
+        path = root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        written.append(path)
+    return written
+
+
+def layout() -> str:
+    """A layout for Foxglove and Lichtblick, which hide all topics that no layout names."""
+    shown: dict[str, Any] = {"visible": True}
+    topics = {
+        name: dict(shown)
+        for name in (
+            "/walls_marker", "/map", "/goal_zone", "/goal_pose", "/pedestrians_marker",
+            "/people_markers", "/contact_markers", "/robot/pose", "/robot/path", "/robot_path",
+            "/scan", "/front/scan", "/rear/scan",
+        )
+    }  # fmt: skip
+    scene = {
+        "cameraState": {"perspective": True, "distance": 30, "phi": 45, "thetaOffset": 90},
+        "followMode": "follow-position",
+        "followTf": "base_link",
+        "scene": {"transforms": {"labelSize": 0}},
+        "transforms": {},
+        "topics": topics,
+        "layers": {
+            "grid": {"layerId": "foxglove.Grid", "visible": True, "size": 60, "divisions": 60},
+            "robot": {
+                "layerId": "foxglove.Urdf", "visible": True, "sourceType": "topic",
+                "topic": "/robot_description",
+            },
+        },
+    }  # fmt: skip
+    speed = {
+        "paths": [
+            {"value": "/cmd_vel.linear.x", "enabled": True, "timestampMethod": "receiveTime"},
+            {"value": "/odom.twist.twist.linear.x", "enabled": True,
+             "timestampMethod": "receiveTime"},
+        ],
+        "showLegend": True,
+    }  # fmt: skip
+    document = {
+        "configById": {"3D!scene": scene, "Plot!speed": speed},
+        "globalVariables": {},
+        "userNodes": {},
+        "playbackConfig": {"speed": 1},
+        "layout": {
+            "direction": "column", "first": "3D!scene", "second": "Plot!speed",
+            "splitPercentage": 75,
+        },
+    }  # fmt: skip
+    return json.dumps(document, indent=2) + "\n"

@@ -1,0 +1,35 @@
+"""Moves the times that messages carry: tf2 takes a stamp of 0 for "the latest"."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording.template import stamp
+
+_TF, _MARKERS = "tf2_msgs/msg/TFMessage", "visualization_msgs/msg/MarkerArray"
+_HEAD = 4  # bytes in front of a CDR message
+
+
+def moved(data: bytes, msgtype: str, by: int) -> bytes:
+    """A CDR message whose stamps are ``by`` ns later; as it is where it has none."""
+    if not by:
+        return data
+    if msgtype in (_TF, _MARKERS):
+        message = ros.from_cdr(data, msgtype)
+        for item in message.transforms if msgtype == _TF else message.markers:
+            total = item.header.stamp.sec * 10**9 + item.header.stamp.nanosec + by
+            item.header.stamp.sec, item.header.stamp.nanosec = divmod(total, 10**9)
+        return ros.to_cdr(message)
+    if not _begins_with_time(msgtype):
+        return data
+    sec = int.from_bytes(data[_HEAD : _HEAD + 4], "little", signed=True)
+    rest = int.from_bytes(data[_HEAD + 4 : _HEAD + 8], "little")
+    return data[:_HEAD] + stamp(sec * 10**9 + rest + by) + data[_HEAD + 8 :]
+
+
+@cache
+def _begins_with_time(msgtype: str) -> bool:
+    fields = ros.field_types(msgtype)
+    first = next(iter(fields.values()), "") if fields else ""
+    return first in ("std_msgs/Header", "builtin_interfaces/Time")

@@ -1,0 +1,194 @@
+"""ROS 2 topics over zenoh; the other side is zenoh and rosbags alone."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+import pytest
+import zenoh
+from rosbags.typesys import Stores, get_typestore
+
+from crowdbot.core.live.message import Offer, told
+from crowdbot.core.live.ros2_keys import Topic, attachment, hash_in, in_distro
+from crowdbot.core.live.session import Session
+from crowdbot.core.live.zenoh_door import Network, ZenohDoor
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.types.motion import Command
+from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.errors import InputError
+from tests.core.live.live_cases import clock, until
+
+CLOCK = "rosgraph_msgs/msg/Clock"
+JAZZY: Any = get_typestore(Stores.ROS2_JAZZY)
+#: Published with rmw_zenoh's own documentation.
+STRING = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
+
+
+def _endpoint() -> str:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        return f"tcp/127.0.0.1:{server.getsockname()[1]}"
+
+
+@contextmanager
+def _both(**more: Any) -> Iterator[tuple[ZenohDoor, Session, Any]]:
+    """A door that is the router, and a plain session of zenoh that connects to it."""
+    session, endpoint = Session(), _endpoint()
+    network = Network(endpoint=endpoint, router=True)
+    door = ZenohDoor(session, network, **{"external_clock": False, **more})
+    config = zenoh.Config()
+    config.insert_json5("mode", '"client"')
+    config.insert_json5("scouting/multicast/enabled", "false")
+    config.insert_json5("connect/endpoints", f'["{endpoint}"]')
+    try:
+        with zenoh.open(config) as other:
+            yield door, session, other
+    finally:
+        door.close()
+
+
+def test_hashes_are_those_that_are_published() -> None:
+    assert hash_in("std_msgs/msg/String", "jazzy") == STRING
+    assert hash_in("std_msgs/msg/String", "humble") == "TypeHashNotSupported"
+    topic = Topic("/chatter", "std_msgs/msg/String", STRING)
+    assert topic.key(2) == f"2/chatter/std_msgs::msg::dds_::String_/{STRING}"
+    assert topic.token(2, "abc", 11, "MP", "talker") == (
+        f"@ros2_lv/2/abc/0/11/MP/%/%/talker/%chatter/std_msgs::msg::dds_::String_/{STRING}/"
+        "::,10:,:,:,,"
+    )
+
+
+@pytest.mark.parametrize("distro", ["jazzy", "kilted", "lyrical"])
+def test_a_type_that_grew_has_its_new_field(distro: Any) -> None:
+    info = SensorInfo(
+        category="ultrasound", frame="us1", mount=(0.0, 0.0, 0.0, 0.0), rate=10.0, shape=(1,),
+        ros_type="sensor_msgs/msg/Range", angles=np.array([-0.1, 0.1]), range_max=4.0,
+    )  # fmt: skip
+    kind = "sensor_msgs/msg/Range"
+    data = in_distro(ros.to_cdr(ros.range_reading(5, info, 1.5)), kind, distro)
+    message: Any = get_typestore(Stores(f"ros2_{distro}")).deserialize_cdr(data, kind)
+    assert (message.range, message.variance) == (1.5, 0.0)
+    assert in_distro(b"same", kind, "humble") == b"same"
+
+
+def test_an_attachment_has_33_bytes() -> None:
+    data = attachment(7, 2**40, bytes(range(16)))
+    assert len(data) == 33
+    assert data[:8] == (7).to_bytes(8, "little")
+    assert data[16] == 16
+    assert data[17:] == bytes(range(16))
+
+
+def test_a_listener_gets_messages_with_their_attachment() -> None:
+    with _both() as (door, _, other):
+        door.open([Offer("/clock", "rosgraph_msgs/msg/Clock")])
+        assert not door.wants("/clock")
+        heard: list[Any] = []
+        key = f"0/clock/rosgraph_msgs::msg::dds_::Clock_/{hash_in(CLOCK, 'jazzy')}"
+        subscriber = other.declare_subscriber(key, heard.append)
+        until(lambda: door.wants("/clock"))
+        door.publish([clock(3_000_000_007)])
+        until(lambda: len(heard) == 1)
+        message = JAZZY.deserialize_cdr(heard[0].payload.to_bytes(), "rosgraph_msgs/msg/Clock")
+        assert (message.clock.sec, message.clock.nanosec) == (3, 7)
+        assert len(heard[0].attachment.to_bytes()) == 33
+        subscriber.undeclare()
+        until(lambda: not door.wants("/clock"))
+
+
+def test_who_comes_late_gets_the_map() -> None:
+    from zenoh import ext
+
+    with _both() as (door, _, other):
+        door.open([Offer("/map", "rosgraph_msgs/msg/Clock", latched=True)])
+        door.publish([told("/map", 5, ros.clock(5), latched=True)])
+        heard: list[Any] = []
+        key = (
+            f"0/map/rosgraph_msgs::msg::dds_::Clock_/{hash_in('rosgraph_msgs/msg/Clock', 'jazzy')}"
+        )
+        ext.declare_advanced_subscriber(other, key, heard.append, history=ext.HistoryConfig())
+        until(lambda: len(heard) == 1)
+
+
+def test_ros2_topic_list_sees_us() -> None:
+    with _both() as (door, _, other):
+        door.open([Offer("/clock", "rosgraph_msgs/msg/Clock")])
+
+        def tokens() -> list[str]:
+            return [str(r.ok.key_expr) for r in other.liveliness().get("@ros2_lv/**") if r.ok]
+
+        until(lambda: any("/MP/%/%/crowdbot/%clock/" in t for t in tokens()))
+        found = tokens()
+        assert any(t.endswith("/NN/%/%/crowdbot") for t in found)
+        listens = [t for t in found if "/MS/%/%/crowdbot/%cmd_vel/" in t]
+        assert len(listens) == 2  # Twist and TwistStamped
+
+
+@pytest.mark.parametrize("stamped", [False, True])
+def test_lockstep_over_zenoh(stamped: bool) -> None:
+    kind = "geometry_msgs/msg/TwistStamped" if stamped else "geometry_msgs/msg/Twist"
+    with _both() as (door, session, other):
+        door.open([Offer("/clock", "rosgraph_msgs/msg/Clock")])
+        types = JAZZY.types
+        vector, time = types["geometry_msgs/msg/Vector3"], types["builtin_interfaces/msg/Time"]
+        command = Topic("/cmd_vel", kind, hash_in(kind, "jazzy"))
+        publisher = other.declare_publisher(command.key(0))
+        token = other.liveliness().declare_token(command.token(0, "me", 11, "MP", "driver"))
+        until(lambda: session.driven)
+
+        def on_clock(sample: Any) -> None:
+            at = JAZZY.deserialize_cdr(sample.payload.to_bytes(), "rosgraph_msgs/msg/Clock").clock
+            twist = types["geometry_msgs/msg/Twist"](
+                vector(0.001 * at.sec, 0.0, 0.0), vector(0.0, 0.0, 0.25)
+            )
+            if stamped:
+                head = types["std_msgs/msg/Header"](time(at.sec, at.nanosec), "")
+                twist = types[kind](head, twist)
+            publisher.put(bytes(JAZZY.serialize_cdr(twist, kind)))
+
+        key = Topic(
+            "/clock", "rosgraph_msgs/msg/Clock", hash_in("rosgraph_msgs/msg/Clock", "jazzy")
+        )
+        subscriber = other.declare_subscriber(key.key(0), on_clock)
+        until(lambda: door.wants("/clock"))
+        for k in range(1, 200):
+            session.ask(k * 10**9)
+            door.publish([clock(k * 10**9)])
+            assert session.answer(30.0, lambda: None) == Command(0.001 * k, 0.25)
+        subscriber.undeclare()
+        token.undeclare()
+        until(lambda: not session.driven)
+
+
+def test_garbage_is_not_a_command() -> None:
+    with _both() as (_, session, other):
+        session.ask(0)
+        for kind in ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"):
+            key = Topic("/cmd_vel", kind, hash_in(kind, "jazzy")).key(0)
+            for data in (b"", b"\0", b"\0\1\0\0" + b"\xff" * 20, b"x" * 1000):
+                other.put(key, data)
+        done = threading.Event()
+        threading.Timer(0.3, done.set).start()
+        done.wait()
+        assert session._asked is not None
+        assert session._asked.answer is None or session._asked.answer == Command(0.0, 0.0)
+
+
+def test_the_clock_may_come_from_outside() -> None:
+    with _both(external_clock=True) as (door, session, other):
+        door.open([Offer("/clock", "rosgraph_msgs/msg/Clock")])
+        assert not door.wants("/clock")
+        kind = "rosgraph_msgs/msg/Clock"
+        other.put(Topic("/clock", kind, hash_in(kind, "jazzy")).key(0), clock(2 * 10**9).data)
+        session.wait_for_clock(2.0)
+
+
+def test_an_endpoint_without_a_router_is_told() -> None:
+    with pytest.raises(InputError, match="cannot find a router"):
+        ZenohDoor(Session(), Network(endpoint=_endpoint()), external_clock=False)
+    with pytest.raises(InputError, match="cannot be a router"):
+        ZenohDoor(Session(), Network(endpoint="nonsense", router=True), external_clock=False)
