@@ -27,6 +27,12 @@ _Planner = Annotated[
     list[str] | None,
     typer.Option(metavar="NAME|FILE|file.py:Class", help="A planner; repeatable."),
 ]
+_Crowds = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME,NAME", help="Run every scenario in each of these crowds: the axis 'crowd'."
+    ),
+]
 _Only = Annotated[str | None, typer.Option(metavar="GLOB", help="Only scenarios that match.")]
 _Seeds = Annotated[str, typer.Option(metavar="0,1,2|0..4", help="Run seeds.")]
 _Out = Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")]
@@ -39,6 +45,7 @@ def campaign(
     planner: _Planner = None,
     seeds: _Seeds = "0",
     only: _Only = None,
+    crowds: _Crowds = None,
     out: _Out = Path("runs"),
     jobs: _Jobs = 0,
     record: _Record = RecordChoice.used,
@@ -74,6 +81,7 @@ def campaign(
         floors=floors,
         seeds=read_seeds(seeds),
         only=only,
+        crowds=[name.strip() for name in (crowds or "").split(",") if name.strip()],
         out=out,
         record=record.value,
         replay=replay,
