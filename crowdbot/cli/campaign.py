@@ -35,6 +35,12 @@ _Planner = Annotated[
     list[str] | None,
     typer.Option(metavar="NAME|FILE|file.py:Class", help="A planner; repeatable."),
 ]
+_Crowds = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME,NAME", help="Run every scenario in each of these crowds: the axis 'crowd'."
+    ),
+]
 _Only = Annotated[str | None, typer.Option(metavar="GLOB", help="Only scenarios that match.")]
 _Seeds = Annotated[
     str | None,
@@ -50,6 +56,7 @@ def campaign(
     planner: _Planner = None,
     seeds: _Seeds = None,
     only: _Only = None,
+    crowds: _Crowds = None,
     out: _Out = Path("runs"),
     jobs: _Jobs = 0,
     record: _Record = RecordChoice.used,
@@ -91,6 +98,7 @@ def campaign(
         floors=floors,
         seeds=None if seeds is None else read_seeds(seeds),
         only=only,
+        crowds=[name.strip() for name in (crowds or "").split(",") if name.strip()],
         out=out,
         record=record.value,
         replay=replay,

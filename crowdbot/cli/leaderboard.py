@@ -60,6 +60,8 @@ def leaderboard(
     if as_json:
         document = [
             {"edition": t.edition, "class": t.classed, "by": t.by, "suspicion": t.suspicion,
+             "crowds": t.crowds,
+             "by_crowd": None if t.by_crowd is None else t.by_crowd.as_json(),
              "entries": [{"name": e.name, "rank": t.rank(by, e), "file": e.path.name}
                          for e in t.entries]}
             for t in tables

@@ -191,7 +191,13 @@ def _tell(
         counts = contents.counts()
         said = ", ".join(f"{n} {name.replace('_', ' ')}" for name, n in counts.items() if n)
         print(f"{', '.join(contents.planners)}: {said}", file=sys.stderr)
-        told = [contents.suspicion, *(check.text for check in contents.floors)]
+        ranks = contents.ranks.verdicts if contents.ranks else ()
+        told = [
+            *(f"crowd: {line}" for line in contents.crowds),
+            contents.suspicion,
+            *(check.text for check in contents.floors),
+            *(verdict.text for verdict in ranks),
+        ]
         print("\n".join(text for text in told if text), file=sys.stderr)
         typer.echo(paths["html"])
         return
@@ -207,5 +213,7 @@ def _tell(
             for c in contents.floors
         ],
         "suspicion": contents.suspicion,
+        "crowds": contents.crowds,
+        "ranks_by_crowd": None if contents.ranks is None else contents.ranks.as_json(),
     }
     typer.echo(json.dumps(document, indent=2, ensure_ascii=False))

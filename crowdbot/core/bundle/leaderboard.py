@@ -63,6 +63,8 @@ def _table(table: Standings, here: Path) -> dict[str, Any]:
         "findings": [(f.severity, str(f), f.accepted) for f in table.findings],
         "tests": table.summary.tests,
         "suspicion": table.suspicion,
+        "crowds": table.crowds,
+        "by_crowd": table.by_crowd,
         "audit": table.audit.text if table.audit else "nobody has audited this suite",
         "level": f"{table.summary.level:.0%}",
     }

@@ -8,10 +8,12 @@ from dataclasses import dataclass, replace
 
 from crowdbot.core.bundle.entries import LeaderboardEntry
 from crowdbot.core.bundle.rows import results_of
+from crowdbot.core.realism.crowds import lines_of
 from crowdbot.core.results.confounds import Finding, check_comparable, confounds
 from crowdbot.core.scoring.score_scale import Scales
 from crowdbot.core.statistics import PlannerScore, Summary, summarise
 from crowdbot.core.statistics.audit import Audit, suspicion
+from crowdbot.core.statistics.crowds import AXIS, CrowdRanks, crowd_ranks
 from crowdbot.errors import InputError
 
 
@@ -27,6 +29,8 @@ class Standings:
         by: metric that decides the order.
         audit: of the suite; None where nobody has audited it.
         suspicion: why ranks here may mean nothing, from the audit.
+        crowds: how human the people are, a line for each different crowd.
+        by_crowd: what the order owes to the crowd; None for runs in one crowd.
     """
 
     edition: str
@@ -37,6 +41,8 @@ class Standings:
     by: str
     audit: Audit | None = None
     suspicion: str = ""
+    crowds: tuple[str, ...] = ()
+    by_crowd: CrowdRanks | None = None
 
     def rank(self, metric: str, entry: LeaderboardEntry) -> int | None:
         """1 + how many are better for certain; None where it is not ranked."""
@@ -182,6 +188,8 @@ def _table(
     findings = confounds(results, accept)
     check_comparable(findings)
     summary = summarise(results)
+    told = [(r.axes.get(AXIS, ""), str(r.record.get("crowd") or "")) for r in results.runs]
+    crowds = [(name, like) for name, like in told if name or like]
     ranks = summary.ranks(by)
     scores = [s for s in summary.scores if s.metric == by and s.mean.value is not None]
     sign = {s.planner: -1.0 if s.better == "higher" else 1.0 for s in scores}
@@ -201,4 +209,6 @@ def _table(
         by=by,
         audit=audit,
         suspicion=suspicion(audit, results.runs),
+        crowds=tuple(lines_of(crowds)),
+        by_crowd=crowd_ranks(results, by),
     )

@@ -20,6 +20,7 @@ from crowdbot.core.runs.identity import Populate, prepare, references_of
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.runs.request import Request
 from crowdbot.core.scenarios.library import open_spec
+from crowdbot.core.scenarios.with_crowds import with_crowds
 from crowdbot.core.sim.references import make_reference
 from crowdbot.dsl.expand import Expansion
 from crowdbot.errors import CrowdbotError, InputError, SimulationError
@@ -119,7 +120,8 @@ def _discovered(plugins: tuple[str, ...], allowed: tuple[str, ...] | None) -> Re
 
 @cache
 def _open(source: SuiteSource) -> Expansion:
-    return open_spec(source.spec, _registry(source), source.overrides)
+    registry = _registry(source)
+    return with_crowds(open_spec(source.spec, registry, source.overrides), source.crowds, registry)
 
 
 @cache

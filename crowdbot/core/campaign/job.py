@@ -21,12 +21,14 @@ class SuiteSource:
         overrides: ``key=value`` texts.
         plugins: absolute paths of plugins that are not installed.
         allowed: the allow-list of installed plugins; None allows all.
+        crowds: names or absolute paths of crowds that take the place of the scenarios' own.
     """
 
     spec: str
     overrides: tuple[str, ...] = ()
     plugins: tuple[str, ...] = ()
     allowed: tuple[str, ...] | None = None
+    crowds: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,6 +12,7 @@ from crowdbot.core.planning.resolve import PlannerChoice, kinds_of_role, resolve
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.request import Recorded
 from crowdbot.core.scenarios.library import open_spec, select
+from crowdbot.core.scenarios.with_crowds import with_crowds
 from crowdbot.dsl.component_specs import PlannerRole
 from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.scenario import Scenario
@@ -31,6 +32,7 @@ class CampaignRequest:
         only: pattern of scenario ids; must fit something in some suite.
         sample: run so many scenarios of each suite, drawn; None: all.
         planner_settings: ``key=value`` texts, for all planners.
+        crowds: names of crowds, in each of which every scenario is run; none: in its own.
         retry_failed: run again what ended with a planner that failed.
         force: run everything again, calibration runs too.
         place: where planners run.
@@ -52,6 +54,7 @@ class CampaignRequest:
     retry_failed: bool = False
     force: bool = False
     place: PlannerPlace = ANYWHERE
+    crowds: Sequence[str] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,13 +98,16 @@ def open_suites(request: CampaignRequest, registry: Registry) -> list[SelectedSu
     """
     suites = []
     plugins = tuple(str(p.resolve()) for p in request.plugins)
+    crowds = tuple(dict.fromkeys(_absolute(c) for c in request.crowds))
     for spec in dict.fromkeys(request.suites):
         expansion = open_spec(spec, registry, request.overrides)
+        expansion = with_crowds(expansion, crowds, registry)
         source = SuiteSource(
             spec=_absolute(spec),
             overrides=tuple(request.overrides),
             plugins=plugins,
             allowed=registry.allowed,
+            crowds=crowds,
         )
         chosen = expansion.scenarios if request.only is None else select(expansion, request.only)
         suites.append(SelectedSuite(source=source, expansion=expansion, scenarios=chosen))

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from crowdbot.core.realism.crowds import lines_of
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.report.cards import cards
 from crowdbot.core.report.encode import Attempt, attempts, axes_of, status_of
@@ -16,6 +17,7 @@ from crowdbot.core.results.rows import Results, RunRow
 from crowdbot.core.scoring.score_scale import score_scales
 from crowdbot.core.statistics import FloorCheck, Table, check_floors, headline_names
 from crowdbot.core.statistics.audit import Audit, suspicion
+from crowdbot.core.statistics.crowds import AXIS, CrowdRanks, crowd_ranks
 from crowdbot.errors import InputError
 
 STATUSES = ("arrived", "timeout", "planner_failed", "failed")
@@ -55,6 +57,8 @@ class Contents:
         replays: run id -> address of its replay page, relative to the report.
         floors: what each planner is told first: whether it beats the floors.
         suspicion: why nothing here may mean anything; empty without a reason to think so.
+        crowds: how human the people of the runs are, a line for each different crowd.
+        ranks: what the order of planners owes to the crowd; None for runs of one crowd.
     """
 
     heading: Heading
@@ -67,6 +71,8 @@ class Contents:
     replays: Mapping[str, str]
     floors: tuple[FloorCheck, ...]
     suspicion: str
+    crowds: tuple[str, ...] = ()
+    ranks: CrowdRanks | None = None
 
     @property
     def planners(self) -> tuple[str, ...]:
@@ -102,6 +108,12 @@ class Contents:
         return all(a.pinned for a in self.of(planner) if isinstance(a, RunRow))
 
 
+def crowd_lines(runs: Sequence[RunRow]) -> list[str]:
+    """How human the people of some runs are; nothing of runs without people."""
+    told = [(r.axes.get(AXIS, ""), str(r.record.get("crowd") or "")) for r in runs]
+    return lines_of((name, like) for name, like in told if name or like)
+
+
 def gather(
     results: Results, registry: Registry, heading: Heading, replays: Mapping[str, str]
 ) -> Contents:
@@ -134,4 +146,6 @@ def gather(
         replays=replays,
         floors=check_floors(results),
         suspicion=suspicion(heading.audit, results.runs),
+        crowds=tuple(crowd_lines(results.runs)),
+        ranks=crowd_ranks(results),
     )

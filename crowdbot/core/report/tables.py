@@ -11,6 +11,7 @@ from crowdbot.core.report.provenance import short
 from crowdbot.core.results.rows import FailureRow, RunRow, ScoreRow
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main
 from crowdbot.core.statistics import Comparison, Estimate, PlannerScore, Summary
+from crowdbot.core.statistics.crowds import CrowdRanks
 
 _RUN = ("suite", "scenario", "planner", "seed", "run_status", "run_id", "realisation", "density")
 _SCORE = (
@@ -67,6 +68,7 @@ def markdown(contents: Contents) -> str:
     summary, heading = contents.figures.headline, contents.heading
     lines = [f"# {_plain(heading.suite)}", ""]
     lines += [f"Made {_plain(heading.made)}.", ""] if heading.made else []
+    lines += [text for line in contents.crowds for text in (f"Crowd: {_plain(line)}.", "")]
     lines += [f"**{_plain(contents.suspicion)}.**", ""] if contents.suspicion else []
     for check in contents.floors:
         mark = "**" if check.leads and not check.beats_all else ""
@@ -77,12 +79,33 @@ def markdown(contents: Contents) -> str:
         lines += [f"Warning: {_plain(text)}", ""]
     lines += [*_table(*_endings(contents)), "", "## Scores", "", _meaning(summary), ""]
     lines += [*_table(*_scores(contents)), ""]
+    lines += _by_crowd(contents.ranks) if contents.ranks else []
     if any(not v.reason for v in summary.variances):
         lines += ["## What varies with which", "", *_table(*_variances(summary)), ""]
     if summary.comparisons:
         lines += ["## Planner against planner", "", _family(summary), ""]
         lines += [*_table(*_comparisons(summary)), ""]
     return "\n".join(lines)
+
+
+def _by_crowd(ranks: CrowdRanks) -> list[str]:
+    """Order per crowd, how alike the orders are, and who is first in how many."""
+    orders = [
+        (
+            _plain(o.crowd),
+            "not measured" if o.realism is None else f"{o.realism:.2f}",
+            ", ".join(f"{_plain(p)} {v:.4g}" for p, v in o.means.items()),
+            str(o.pairs),
+        )
+        for o in ranks.orders
+    ]
+    taus = [(_plain(a), _plain(b), f"{tau:+.2f}") for (a, b), tau in ranks.taus.items()]
+    return [
+        "## Crowd by crowd", "", f"By {_plain(ranks.metric)}, the best first.", "",
+        *_table(("crowd", "realism, index", "order", "pairs"), orders), "",
+        *_table(("crowd", "crowd", "Kendall's tau"), taus), "",
+        *(f"- {_plain(v.text)}" for v in ranks.verdicts), "",
+    ]  # fmt: skip
 
 
 def _meaning(summary: Summary) -> str:

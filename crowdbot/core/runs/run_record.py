@@ -16,6 +16,7 @@ from crowdbot.core.scoring.evaluate import Scores
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.canonical import dump_scenario_yaml
+from crowdbot.dsl.crowd_likeness import fingerprint
 from crowdbot.dsl.robot_response import RobotResponse
 from crowdbot.dsl.scenario import Scenario
 
@@ -52,6 +53,7 @@ def run_record(
         },
         "density": mean_density(run, scenario, parts),
         "conditions": _conditions(scenario, run),
+        "crowd": "" if scenario.crowd is None else fingerprint(scenario.crowd),
         "metrics": _metrics(registry, scores),
         "machine": provenance.machine(),
     }

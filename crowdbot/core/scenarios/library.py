@@ -76,7 +76,7 @@ def open_suite(
     spec: str, registry: Registry, overrides: Sequence[str] = ()
 ) -> tuple[Expansion, LockFiles]:
     """As `open_spec`, with the files of the lock, which need not exist."""
-    roots = _folders(registry)
+    roots = plugin_folders(registry)
     path, name = _find(spec, roots, registry)
     try:
         suite = load_document(path, roots, name=name, installed=installed(registry))
@@ -149,7 +149,7 @@ def installed(registry: Registry) -> Installed:
 
 def suite_names(registry: Registry) -> list[str]:
     """Names of all packaged suites."""
-    return sorted(_packaged(_folders(registry)))
+    return sorted(_packaged(plugin_folders(registry)))
 
 
 def pick(expansion: Expansion, pattern: str | None) -> Scenario:
@@ -229,7 +229,7 @@ def _packaged(roots: dict[str, list[Path]]) -> dict[str, Path]:
     }
 
 
-def _folders(registry: Registry) -> dict[str, list[Path]]:
+def plugin_folders(registry: Registry) -> dict[str, list[Path]]:
     """Plugin name -> its scenario folders as real ones; those inside archives are unpacked."""
     roots: dict[str, list[Path]] = {}
     for plugin in registry.plugins:

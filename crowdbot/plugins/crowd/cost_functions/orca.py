@@ -22,6 +22,12 @@ class OrcaSpec(CostFunctionSpec):
     time_horizon: PositiveDuration = Field(
         default=5.0, description="How long the velocity has to be safe, s."
     )
+    limit: Literal["max_speed", "preferred_speed"] = Field(
+        default="max_speed",
+        exclude_if=lambda value: value == "max_speed",
+        description="Largest speed of the optimum: the agent's, as in the original, or the "
+        "preferred one, so that nobody hurries out of others' way.",
+    )
 
 
 ORCA = Component(

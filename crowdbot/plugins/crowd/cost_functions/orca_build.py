@@ -39,7 +39,7 @@ from crowdbot.core.interfaces import (
 from crowdbot.plugins.crowd.cost_functions.half_planes_build import best_velocity, put, violation
 from crowdbot.plugins.crowd.cost_functions.orca import OrcaSpec
 
-_HORIZON = 2  # entry of params
+_HORIZON, _LIMIT = 2, 3  # entries of params
 _BRAKING = 0.5  # s in which the gap to a wall may be used up
 
 
@@ -155,7 +155,10 @@ def _excess(
 
 @njit(OPTIMUM, cache=True, error_model="numpy")
 def _optimum(agent: Pointer, work: Pointer, params: Pointer, out: Pointer) -> int:
-    out[0], out[1] = best_velocity(work, int(work[0]), agent[MAX_SPEED], agent[PVX], agent[PVY])
+    fastest = agent[MAX_SPEED]
+    if params[_LIMIT] != 0.0:
+        fastest = min(fastest, math.hypot(agent[PVX], agent[PVY]))
+    out[0], out[1] = best_velocity(work, int(work[0]), fastest, agent[PVX], agent[PVY])
     return 1
 
 
@@ -167,6 +170,8 @@ def build(spec: OrcaSpec) -> CompiledCost:
         prepare=_prepare,
         excess=_excess,
         optimum=_optimum,
-        params=np.array([spec.range.value, surface, spec.time_horizon]),
+        params=np.array(
+            [spec.range.value, surface, spec.time_horizon, float(spec.limit == "preferred_speed")]
+        ),
         weight=spec.weight,
     )

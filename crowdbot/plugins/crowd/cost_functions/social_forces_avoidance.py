@@ -27,6 +27,12 @@ class SocialForcesAvoidanceSpec(CostFunctionSpec):
     dt: PositiveDuration = Field(
         default=1.0, description="Time of the stride that others are going to make, s."
     )
+    stride: Literal["other", "relative"] = Field(
+        default="other",
+        exclude_if=lambda value: value == "other",
+        description="Whose stride makes the ellipse: the other's, as in the original, or the "
+        "other's relative to one's own, which does not drive a one-way crowd.",
+    )
 
 
 SOCIAL_FORCES_AVOIDANCE = Component(

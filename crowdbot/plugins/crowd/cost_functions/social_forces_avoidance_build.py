@@ -49,7 +49,7 @@ from crowdbot.plugins.crowd.cost_functions.force_build import (
 from crowdbot.plugins.crowd.cost_functions.social_forces_avoidance import SocialForcesAvoidanceSpec
 from crowdbot.plugins.crowd.cost_functions.wall_points_build import SAME, counts
 
-_V0, _SIGMA, _U0, _R, _DT = range(2, 7)  # entries of params
+_V0, _SIGMA, _U0, _R, _DT, _RELATIVE = range(2, 8)  # entries of params
 _CLOSEST = 0.001  # m; nothing nearer exerts a force
 _SEEN = math.cos(math.radians(100.0))  # half the field of view
 
@@ -64,11 +64,15 @@ def _people(agent: Pointer, near: Pointer, j: int, params: Pointer) -> tuple[flo
     stride *= params[_DT]
     yx = near[j, NPX] / wanted * stride if wanted > 0.0 else 0.0
     yy = near[j, NPY] / wanted * stride if wanted > 0.0 else 0.0
+    if params[_RELATIVE] != 0.0:
+        yx = (near[j, NVX] - agent[VX]) * params[_DT]
+        yy = (near[j, NVY] - agent[VY]) * params[_DT]
+        stride = math.hypot(yx, yy)
     moved = math.hypot(xx - yx, xy - yy)
     if distance <= near[j, REACH] or moved == 0.0:
         return 0.0, 0.0
     around = distance + moved
-    counted = stride if parity or wanted > 0.0 else 0.0
+    counted = stride if parity or wanted > 0.0 or params[_RELATIVE] != 0.0 else 0.0
     minor2 = 0.25 * (around * around - counted * counted)
     if minor2 <= 0.0 or math.sqrt(minor2) < _CLOSEST:
         return 0.0, 0.0
@@ -144,7 +148,8 @@ def _prepare(
 def build(spec: SocialForcesAvoidanceSpec) -> CompiledCost:
     """Compiled functions with this spec's parameters."""
     surface = 1.0 if spec.range.measure == "surface" else 0.0
-    own = [spec.v0, spec.sigma, spec.u0, spec.r, spec.dt]
+    relative = 1.0 if spec.stride == "relative" else 0.0
+    own = [spec.v0, spec.sigma, spec.u0, spec.r, spec.dt, relative]
     return CompiledCost(
         base=no_base,
         prepare=_prepare,

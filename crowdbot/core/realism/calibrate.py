@@ -1,0 +1,257 @@
+"""Fits the numbers of a crowd to recorded people, by CMA-ES.
+
+Source: Hansen, "The CMA evolution strategy: a tutorial", 2016, by the library cmaes. A fit keeps a
+log of all points and losses: the strategy is repeatable, so that one that was interrupted is
+repeated from its log and goes on.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from cmaes import CMA
+
+from crowdbot.core.realism.compare import beside, score
+from crowdbot.core.realism.corridor import corridors, simulate
+from crowdbot.core.realism.model import model_of
+from crowdbot.core.realism.parameters import Parameter, overrides_of, shares_of
+from crowdbot.core.realism.reference import Reference, read_reference, shipped
+from crowdbot.core.realism.statistics import Statistics, statistics_of
+from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.core.scenarios.named_crowds import open_crowd
+from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.errors import CrowdbotError, InputError
+
+#: Spread of the first generation, as a share of each parameter's range.
+_SPREAD = 0.15
+#: Loss of a crowd that cannot be simulated.
+_WORST = 1.0
+#: Errors below these cost nothing, and what those above cost.
+_FREE_ERROR, _ERROR_WEIGHT = 0.03, 0.4
+_FREE_OVERLAP, _OVERLAP_WEIGHT = 0.006, 2.0
+#: Draws of which generations take one after the other, and those of the last word.
+_DRAWS, HELD_OUT_DRAWS = 7, (101, 102, 103)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task:
+    """What a fit is about; plain values, so that workers can have it.
+
+    Attributes:
+        crowd: name or path, as `open_crowd` takes it.
+        overrides: ``key=value`` texts, laid over the crowd.
+        plugins, allowed: as `discover` takes them.
+        files: recordings of the user; empty is what crowdbot ships.
+        warm_up, duration: of each corridor, s.
+    """
+
+    crowd: str
+    overrides: tuple[str, ...] = ()
+    plugins: tuple[str, ...] = ()
+    allowed: tuple[str, ...] | None = None
+    files: tuple[str, ...] = ()
+    warm_up: float = 5.0
+    duration: float = 7.0
+
+    @property
+    def reference(self) -> Reference:
+        """Recorded people: the first half is fitted to, the second held out."""
+        return _reference(self.files)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fit:
+    """How a fit ended.
+
+    Attributes:
+        values, spread: key -> value and standard deviation, SI units.
+        training, held_out: scores beside both halves of the recordings.
+        ceiling: score of one half of the recordings beside the other.
+        evaluations: how many crowds were simulated.
+    """
+
+    values: dict[str, float]
+    spread: dict[str, float]
+    training: float
+    held_out: float
+    ceiling: float
+    evaluations: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Generation:
+    """One step of a fit, for who watches: number, losses, and whether the log had it."""
+
+    number: int
+    losses: Sequence[float]
+    from_log: bool
+
+
+def fit(
+    task: Task,
+    parameters: Sequence[Parameter],
+    log: Path,
+    *,
+    generations: int,
+    population: int = 0,
+    seed: int = 1,
+    jobs: int = 1,
+    watch: Callable[[Generation], None] = lambda _generation: None,
+) -> Fit:
+    """Fit, going on from the log if there is one.
+
+    Args:
+        log: a line for each generation.
+        population: crowds in each generation; 0 is 4 + 3 ln(parameters).
+        seed: of the strategy; equal seeds give equal fits, whatever ``jobs`` is.
+        jobs: processes.
+
+    Raises:
+        InputError: the log is of another fit.
+    """
+    size = population or 4 + math.floor(3.0 * math.log(len(parameters)))
+    strategy = CMA(
+        mean=shares_of(parameters),
+        sigma=_SPREAD,
+        bounds=np.array([[0.0, 1.0]] * len(parameters)),
+        seed=seed,
+        population_size=max(4, size),
+    )
+    head = _head(task, parameters, seed, strategy.population_size)
+    done = _read_log(log, head)
+    logged = len(done)
+    with _losses(task, jobs) as losses_of:
+        for number in range(generations):
+            points = [strategy.ask() for _ in range(strategy.population_size)]
+            known = done[number] if number < len(done) else None
+            if known is None:
+                asked = [(overrides_of(parameters, p), 1 + number % _DRAWS) for p in points]
+                known = losses_of(asked)
+                _write_log(log, head, done := [*done[:number], list(known)])
+            strategy.tell(list(zip(points, known, strict=True)))
+            watch(Generation(number=number, losses=known, from_log=number < logged))
+    return _result(task, parameters, strategy, generations)
+
+
+def loss(task: Task, overrides: Sequence[str], seed: int) -> float:
+    """1 - score beside the first half, and what errors of speed, lanes and overlap cost."""
+    try:
+        own = _walk(task, overrides, (seed,), task.warm_up, task.duration)
+    except CrowdbotError:
+        return _WORST
+    half = task.reference.halves[0]
+    near = beside(own, half)
+    errors = [e for e in (near.diagram_error, near.lane_error) if math.isfinite(e)]
+    cost = sum(_ERROR_WEIGHT * max(0.0, e - _FREE_ERROR) for e in errors)
+    if math.isfinite(near.overlap):
+        cost += _OVERLAP_WEIGHT * max(0.0, near.overlap - _FREE_OVERLAP)
+    return float(1.0 - score(own, half, seed).score + cost)
+
+
+def _walk(
+    task: Task, overrides: Sequence[str], seeds: Sequence[int], warm_up: float, duration: float
+) -> Statistics:
+    registry = _registry(task.plugins, task.allowed)
+    crowd = open_crowd(task.crowd, registry, [*task.overrides, *overrides])
+    model = model_of(crowd, registry)
+    return statistics_of(
+        [
+            simulate(model, c)
+            for seed in seeds
+            for c in corridors(seed, warm_up=warm_up, duration=duration)
+        ]
+    )
+
+
+def _result(task: Task, parameters: Sequence[Parameter], strategy: CMA, generations: int) -> Fit:
+    """The middle of the last generation: one best draw is luck."""
+    mean = np.clip(np.asarray(strategy.mean, np.float64), 0.0, 1.0)
+    deviation = strategy._sigma * np.sqrt(np.diag(strategy._C))
+    own = _walk(task, overrides_of(parameters, mean), HELD_OUT_DRAWS, 6.0, 10.0)
+    first, second = task.reference.halves
+    return Fit(
+        values={p.key: p.value(float(m)) for p, m in zip(parameters, mean, strict=True)},
+        spread={
+            p.key: 0.5 * abs(p.value(float(m + d)) - p.value(float(m - d)))
+            for p, m, d in zip(parameters, mean, deviation, strict=True)
+        },
+        training=score(own, first).score,
+        held_out=score(own, second).score,
+        ceiling=task.reference.ceiling.score,
+        evaluations=generations * strategy.population_size,
+    )
+
+
+def _head(task: Task, parameters: Sequence[Parameter], seed: int, size: int) -> str:
+    """What a log has to begin with to be of this fit."""
+    what = [
+        task.crowd, task.overrides, [_digest(Path(f)) for f in task.files], seed, size,
+        [(p.key, p.start, p.low, p.high) for p in parameters],
+    ]  # fmt: skip
+    return hashlib.sha256(json.dumps(what).encode()).hexdigest()
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def _read_log(log: Path, head: str) -> list[list[float]]:
+    """Losses of the generations that are done; a line that was cut off is not."""
+    if not log.exists():
+        return []
+    lines: list[Any] = []
+    for line in log.read_text(encoding="utf-8").splitlines():
+        try:
+            lines.append(json.loads(line))
+        except ValueError:
+            break
+    if not lines or not isinstance(lines[0], dict) or lines[0].get("fit") != head:
+        raise InputError(f"{log}: the log of another calibration; remove it, or give another --out")
+    return [[float(v) for v in line["losses"]] for line in lines[1:]]
+
+
+def _write_log(log: Path, head: str, done: Sequence[Sequence[float]]) -> None:
+    lines = [{"fit": head}, *({"losses": list(losses)} for losses in done)]
+    atomic_write(log, "".join(json.dumps(line) + "\n" for line in lines))
+
+
+_Asked = Sequence[tuple[Sequence[str], int]]
+
+
+@contextmanager
+def _losses(task: Task, jobs: int) -> Iterator[Callable[[_Asked], list[float]]]:
+    """What computes the losses of a generation: here, or in some processes."""
+    if jobs <= 1:
+        yield lambda asked: [loss(task, overrides, seed) for overrides, seed in asked]
+        return
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+
+        def all_of(asked: _Asked) -> list[float]:
+            waiting = [pool.submit(loss, task, list(o), seed) for o, seed in asked]
+            return [one.result() for one in waiting]
+
+        yield all_of
+
+
+@cache
+def _registry(plugins: tuple[str, ...], allowed: tuple[str, ...] | None) -> Registry:
+    return discover(extra=[Path(p) for p in plugins], allow=allowed)
+
+
+@cache
+def _reference(files: tuple[str, ...]) -> Reference:
+    return read_reference([Path(f) for f in files]) if files else shipped()
+
+
+__all__ = ["Fit", "Generation", "Task", "fit", "loss"]

@@ -1,0 +1,179 @@
+"""A crowd in a corridor without ends, at the densities at which people were recorded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from statistics import NormalDist
+
+import numpy as np
+
+from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.agents import Agents
+from crowdbot.core.crowd.engine import CrowdEngine
+from crowdbot.core.crowd.world import CrowdWorld
+from crowdbot.core.realism.bins import CELLS, FLOWS, RATE, WINDOW
+from crowdbot.core.realism.model import CrowdModel
+from crowdbot.core.realism.tracks import Tracks
+from crowdbot.core.support.ticks import TICKS_PER_SECOND
+from crowdbot.core.types.arrays import Array
+
+#: Width of the corridor, m: those of most of the recordings.
+WIDTH = {"uni": 3.0, "counter": 3.6}
+#: Densities, 1/m^2: one below the recorded cells, then theirs.
+DENSITIES = (0.2, *(float(c) for c in CELLS))
+#: Time in which the crowd sorts itself, and after which it is compared, s.
+WARM_UP, DURATION = 6.0, 10.0
+#: Samples per second of which quarters of a second are means, Hz.
+_FINE = 16
+_FAR = 1e5
+#: Preferred speeds are between these shares of their mean.
+_SLOWEST, _FASTEST = 0.4, 1.6
+_TRIES = 4000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Corridor:
+    """One corridor full of people.
+
+    Attributes:
+        flow: ``uni`` or ``counter``.
+        density: people for each square metre, 1/m^2.
+        seed: of places and speeds.
+        warm_up, duration: before and while people are compared, s.
+    """
+
+    flow: str
+    density: float
+    seed: int = 0
+    warm_up: float = WARM_UP
+    duration: float = DURATION
+
+    @property
+    def length(self) -> float:
+        """Period along x, m: shorter where there are more people."""
+        for density, length in ((0.7, 40.0), (1.2, 26.0), (1.7, 18.0)):
+            if self.density < density:
+                return length
+        return 14.0
+
+
+def corridors(seed: int, *, warm_up: float = WARM_UP, duration: float = DURATION) -> list[Corridor]:
+    """Both flows at all densities."""
+    return [
+        Corridor(flow=f, density=d, seed=seed, warm_up=warm_up, duration=duration)
+        for f in FLOWS
+        for d in DENSITIES
+    ]
+
+
+def simulate(model: CrowdModel, corridor: Corridor) -> Tracks:
+    """Walk a crowd through a corridor.
+
+    Raises:
+        PluginError: the policy fails.
+    """
+    rng = np.random.default_rng([corridor.seed, round(100 * corridor.density), 0xC0])
+    width, length = WIDTH[corridor.flow], corridor.length
+    count = round(corridor.density * width * length)
+    at = _places(count, length, width, model.radius, rng)
+    way = np.ones(count)
+    if corridor.flow == "counter":
+        way[::2] = -1.0
+    speed = _speeds(model, count, rng)
+    engine = _engine(model, corridor, at, way, speed)
+    return _tracks(_walk(engine, corridor), corridor, model.radius)
+
+
+def _speeds(model: CrowdModel, count: int, rng: np.random.Generator) -> Array:
+    """Preferred speeds, one from each slice of the distribution: a few people are no outliers."""
+    normal = NormalDist(model.speed, max(model.speed_deviation, 1e-9))
+    slices = (rng.permutation(count) + rng.uniform(0.001, 0.999, count)) / count
+    drawn = np.array([normal.inv_cdf(u) for u in slices])
+    return np.asarray(np.clip(drawn, _SLOWEST * model.speed, _FASTEST * model.speed))
+
+
+def _engine(
+    model: CrowdModel, corridor: Corridor, at: Array, way: Array, speed: Array
+) -> CrowdEngine:
+    width, length = WIDTH[corridor.flow], corridor.length
+    agents = Agents.of(
+        x=at[:, 0], y=at[:, 1], preferred_speed=speed, radius=model.radius,
+        avoided_radius=model.avoided_radius, max_speed=model.max_speed,
+        max_acceleration=model.max_acceleration,
+        routes=[[(x + _FAR * g, y)] for (x, y), g in zip(at, way, strict=True)],
+    )  # fmt: skip
+    half = 0.5 * width
+    wander = model.steering.wander
+    steering = model.steering
+    if wander is not None:
+        steering = replace(steering, wander=replace(wander, key=corridor.seed))
+    world = CrowdWorld(
+        walls=np.array([[-6.0, -half, length + 6.0, -half], [-6.0, half, length + 6.0, half]]),
+        periodic_boundary=(0.0, length, -np.inf, np.inf),
+        steering=steering,
+        decision_rate=model.decision_rate,
+    )
+    return CrowdEngine(agents, world, model.policy)
+
+
+def _walk(engine: CrowdEngine, corridor: Corridor) -> Array:
+    """Ways walked (S, N, 2) at 16 Hz, without jumps at the border, m."""
+    flat = engine.initial_state()
+    _, rows = s.view(flat)
+    steps = round((corridor.warm_up + corridor.duration) * _FINE)
+    found = np.empty((steps, len(rows), 2))
+    pause = TICKS_PER_SECOND // _FINE
+    # In a crowd nobody starts at full speed.
+    slow = min(1.0, (1.2 if corridor.density < 1.0 else 0.7) / max(0.1, _mean_speed(rows)))
+    rows[:, s.VX : s.VY + 1] *= slow
+    for k in range(steps):
+        done = 0
+        while done < pause:
+            done += engine.advance_alone(flat, pause - done)
+        found[k, :, 0] = rows[:, s.X] - rows[:, s.LAP_X]
+        found[k, :, 1] = rows[:, s.Y]
+    return found
+
+
+def _mean_speed(rows: Array) -> float:
+    return float(np.hypot(rows[:, s.VX], rows[:, s.VY]).mean())
+
+
+def _tracks(way: Array, corridor: Corridor, radius: float) -> Tracks:
+    """Means over quarters of a second."""
+    per = round(_FINE / RATE)
+    mean = way.reshape(-1, per, *way.shape[1:]).mean(axis=1)
+    at = mean.copy()
+    at[..., 0] %= corridor.length
+    windows = [(WINDOW * k, WINDOW * (k + 1)) for k in range(int(corridor.length // WINDOW))]
+    return Tracks(
+        position=at,
+        way=mean,
+        width=WIDTH[corridor.flow],
+        period=corridor.length,
+        windows=np.array(windows),
+        first=round(corridor.warm_up * RATE),
+        last=len(mean),
+        radius=radius,
+    )
+
+
+def _places(
+    count: int, length: float, width: float, radius: float, rng: np.random.Generator
+) -> Array:
+    """(N, 2) random places apart from each other, m; closer ones where nothing else is left."""
+    room = width - 2.0 * radius - 0.04
+    apart = min(2.0 * radius + 0.06, 0.72 / np.sqrt(max(count / (length * width), 0.3)))
+    at, n, tries = np.empty((count, 2)), 0, 0
+    while n < count:
+        p = np.array([rng.uniform(0.0, length), rng.uniform(-0.5 * room, 0.5 * room)])
+        tries += 1
+        if tries > _TRIES:
+            apart, tries = 0.93 * apart, 0
+        dx = at[:n, 0] - p[0]
+        dx -= length * np.round(dx / length)
+        if n and float((dx**2 + (at[:n, 1] - p[1]) ** 2).min()) < apart * apart:
+            continue
+        at[n] = p
+        n += 1
+    return at

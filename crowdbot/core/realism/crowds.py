@@ -1,0 +1,68 @@
+"""Which crowds a suite has, and what is known of crowds without simulating them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from importlib import resources
+from typing import Any
+
+from crowdbot.dsl.crowd_likeness import fingerprint
+from crowdbot.dsl.scenario import Crowd, Scenario
+
+KNOWN = "known_crowds.json"
+
+
+def different_crowds(scenarios: Sequence[Scenario]) -> dict[str, Crowd]:
+    """The crowds of some scenarios that are not alike, by the id of the first that has each."""
+    found: dict[str, tuple[str, Crowd]] = {}
+    for scenario in scenarios:
+        if scenario.crowd is not None:
+            found.setdefault(fingerprint(scenario.crowd), (scenario.id, scenario.crowd))
+    return dict(found.values())
+
+
+@cache
+def known() -> Mapping[str, Mapping[str, Any]]:
+    """Fingerprint -> name, score, index, ceiling and floor of crowds that were measured."""
+    text = resources.files(__package__).joinpath(KNOWN).read_text(encoding="utf-8")
+    found: Mapping[str, Mapping[str, Any]] = json.loads(text)
+    return found
+
+
+def by_name(name: str) -> Mapping[str, Any] | None:
+    """What is known of a crowd that comes with crowdbot."""
+    return next((row for row in known().values() if row["name"] == name), None)
+
+
+def realism_by_name(name: str) -> float | None:
+    """Index of a crowd that comes with crowdbot; None for others."""
+    row = by_name(name)
+    return None if row is None else float(row["index"])
+
+
+def lines_of(crowds: Iterable[tuple[str, str]]) -> list[str]:
+    """What a report's head says: a line for each different crowd of its runs.
+
+    Args:
+        crowds: name, where the campaign gave one, and fingerprint of the crowd of each run.
+    """
+    rows: dict[str, Mapping[str, Any] | None] = {}
+    for name, like in crowds:
+        row = by_name(name) if name else known().get(like)
+        rows.setdefault(name or (row["name"] if row else like), row)
+    found = [_line(name, row) for name, row in rows.items() if row is not None]
+    missing = [name for name, row in rows.items() if row is None]
+    if missing:
+        found.append(
+            f"{len(missing)} crowd{'s' * (len(missing) != 1)} whose realism was not measured; "
+            "crowdbot realism SUITE does"
+        )
+    return found
+
+
+def _line(name: str, row: Mapping[str, Any]) -> str:
+    return (
+        f"{name}, realism {row['score']:.2f} (real {row['ceiling']:.2f}, ghosts {row['floor']:.2f})"
+    )

@@ -1,0 +1,170 @@
+"""How human a crowd is: simulated, or from its runs, beside recorded people."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.realism.bins import FEATURES
+from crowdbot.core.realism.compare import Beside, Score, beside, compared_cells
+from crowdbot.core.realism.corridor import corridors, simulate
+from crowdbot.core.realism.model import CrowdModel
+from crowdbot.core.realism.reference import Reference
+from crowdbot.core.realism.statistics import Statistics, statistics_of
+from crowdbot.core.realism.tracks import Tracks
+
+#: Draws of the corridors: three keep the index within 0.01.
+SEEDS = (1, 2, 3)
+#: What is told beside the five features, as parts from 0 to 1.
+DIAGRAM, LANES, PAIRS = "fundamental_diagram", "lanes", "pair_correlation"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Realism:
+    """How near a crowd is to recorded people.
+
+    Attributes:
+        name: of the crowd.
+        score, low, high: mean over draws, smallest and largest.
+        index: (score - floor)/(ceiling - floor).
+        ceiling, floor: scores of recorded people and of those who avoid nobody.
+        parts: the five features, then fundamental diagram, lanes and pair correlation; 1 is equal.
+        cells: (flow, density) -> mean of the five features.
+        beside: errors in their own units.
+        statistics: of the crowd in all draws.
+        reference: what it was compared with.
+    """
+
+    name: str
+    score: float
+    low: float
+    high: float
+    index: float
+    ceiling: float
+    floor: float
+    parts: Mapping[str, float]
+    cells: Mapping[tuple[str, str], float]
+    beside: Beside
+    statistics: Statistics
+    reference: Reference
+
+    @property
+    def line(self) -> str:
+        """One line for the head of a report."""
+        return (
+            f"{self.name}, realism {self.score:.2f} "
+            f"(real {self.ceiling:.2f}, ghosts {self.floor:.2f})"
+        )
+
+    def as_json(self) -> dict[str, Any]:
+        """Plain data."""
+        b = self.beside
+        return {
+            "crowd": self.name,
+            "index": _rounded(self.index),
+            "score": _rounded(self.score),
+            "score_range": [_rounded(self.low), _rounded(self.high)],
+            "ceiling": _rounded(self.ceiling),
+            "floor": _rounded(self.floor),
+            "parts": {name: _rounded(v) for name, v in self.parts.items()},
+            "cells": {"/".join(cell): _rounded(v) for cell, v in self.cells.items()},
+            "beside": {
+                "fundamental_diagram_error": _rounded(b.diagram_error),
+                "lane_order_error": _rounded(b.lane_error),
+                "nearest_error_m": [_rounded(v) for v in b.nearest_error],
+                "pair_correlation_error": _rounded(b.pair_error),
+                "overlap": _rounded(b.overlap),
+            },
+            "lane_order": {
+                "/".join(c): [
+                    _rounded(self.statistics.lanes.get(c, np.nan)),
+                    _rounded(self.reference.whole.lanes[c]),
+                ]
+                for c in compared_cells(self.reference.whole)
+            },
+            "nearest_m": {
+                "/".join(c): [
+                    [_rounded(v) for v in s.nearest[c]] if c in s.nearest else None
+                    for s in (self.statistics, self.reference.whole)
+                ]
+                for c in compared_cells(self.reference.whole)
+            },
+            "fundamental_diagram": {
+                flow: [[_rounded(v) for v in row] for row in rows]
+                for flow, rows in self.statistics.diagram.items()
+            },
+            "sources": list(self.reference.sources),
+        }
+
+
+def measure(
+    name: str,
+    model: CrowdModel,
+    reference: Reference,
+    seeds: Sequence[int] = SEEDS,
+    walk: Callable[[CrowdModel, Sequence[int]], Sequence[Sequence[Tracks]]] | None = None,
+) -> Realism:
+    """Simulate a crowd where people were recorded, and compare.
+
+    Args:
+        name: of the crowd.
+        model: what it is like.
+        reference: recorded people.
+        seeds: draws of places and speeds.
+        walk: simulates a model for each seed, elsewhere; by default here, one after the other.
+
+    Raises:
+        PluginError: the policy fails.
+    """
+    found = (walk or walk_here)(model, seeds)
+    return measure_tracks(name, found, reference)
+
+
+def walk_here(model: CrowdModel, seeds: Sequence[int]) -> list[list[Tracks]]:
+    """All corridors of each seed, simulated in this process."""
+    return [[simulate(model, c) for c in corridors(seed)] for seed in seeds]
+
+
+def measure_tracks(name: str, draws: Sequence[Sequence[Tracks]], reference: Reference) -> Realism:
+    """Compare tracks, draw by draw."""
+    each = [reference.score(statistics_of(tracks), k) for k, tracks in enumerate(draws)]
+    whole = statistics_of([t for tracks in draws for t in tracks])
+    near = beside(whole, reference.whole)
+    values = [s.score for s in each]
+    score = float(np.mean(values))
+    return Realism(
+        name=name,
+        score=score,
+        low=min(values),
+        high=max(values),
+        index=reference.index(score),
+        ceiling=reference.ceiling.score,
+        floor=reference.floor.score,
+        parts={**_parts(each), **_others(near)},
+        cells={c: float(np.mean([s.cells[c] for s in each])) for c in each[0].cells},
+        beside=near,
+        statistics=whole,
+        reference=reference,
+    )
+
+
+def _parts(scores: Sequence[Score]) -> dict[str, float]:
+    return {f: float(np.mean([s.parts[f] for s in scores])) for f in FEATURES}
+
+
+def _others(near: Beside) -> dict[str, float]:
+    return {
+        DIAGRAM: max(0.0, 1.0 - near.diagram_error),
+        LANES: max(0.0, 1.0 - near.lane_error),
+        PAIRS: max(0.0, 1.0 - near.pair_error),
+    }
+
+
+def _rounded(value: float) -> float | None:
+    return round(float(value), 4) if np.isfinite(value) else None
+
+
+__all__ = ["DIAGRAM", "LANES", "PAIRS", "SEEDS", "Realism", "measure", "measure_tracks"]

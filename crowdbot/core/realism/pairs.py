@@ -1,0 +1,73 @@
+"""Pair correlation: how often two people are at some distance, over how often by chance.
+
+Chance is the same people at other times: who is in a window now, and who is in view in a frame
+some seconds away. So walls and the shape of the window do not matter.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numba import njit
+
+from crowdbot.core.realism.bins import CELLS, DENSITY_EDGES, PAIR_EDGES
+from crowdbot.core.realism.tracks import Tracks
+from crowdbot.core.types.arrays import Array
+
+#: Shifts in time that stand for chance, as shares of the compared frames.
+_SHIFTS = (0.31, 0.5, 0.69)
+
+
+def pair_correlation(tracks: Sequence[Tracks]) -> Array:
+    """(cells, B) by `PAIR_EDGES` for each density; NaN where chance has no pair."""
+    now = np.zeros((len(CELLS), len(PAIR_EDGES) - 1))
+    chance = np.zeros_like(now)
+    for t in tracks:
+        args = (
+            np.ascontiguousarray(t.position), t.width, np.asarray(t.windows, np.float64),
+            t.period, DENSITY_EDGES, float(PAIR_EDGES[1]), t.first, t.last,
+        )  # fmt: skip
+        _count(*args, 0, now)
+        for share in _SHIFTS:
+            _count(*args, max(1, round(share * (t.last - t.first))), chance)
+    # Chance has the same number of windows' people; each shift counts its own pairs.
+    with np.errstate(invalid="ignore", divide="ignore"):
+        found = np.where(chance > 0.0, now / (chance / len(_SHIFTS)), np.nan)
+        found /= (now.sum(1) / (chance.sum(1) / len(_SHIFTS)))[:, np.newaxis]
+    return np.asarray(found)
+
+
+@njit(cache=True, error_model="numpy")
+def _count(
+    position: Array, width: float, windows: Array, period: float, edges: Array, bin_width: float,
+    first: int, last: int, shift: int, counts: Array,
+) -> None:  # fmt: skip
+    """Count pairs of who is in a window in frame k and who is anywhere in frame k + shift."""
+    for k in range(first, last):
+        other = first + (k - first + shift) % (last - first)
+        for w in range(windows.shape[0]):
+            low, high, inside = windows[w, 0], windows[w, 1], 0
+            for i in range(position.shape[1]):
+                if low <= position[k, i, 0] < high:
+                    inside += 1
+            cell = np.searchsorted(edges, inside / ((high - low) * width), side="right") - 1
+            if cell < 0 or cell >= counts.shape[0]:
+                continue
+            for i in range(position.shape[1]):
+                if not low <= position[k, i, 0] < high:
+                    continue
+                for j in range(position.shape[1]):
+                    if j == i or math.isnan(position[other, j, 0]):
+                        continue
+                    dx = position[k, i, 0] - position[other, j, 0]
+                    dy = position[k, i, 1] - position[other, j, 1]
+                    if period > 0.0:
+                        dx -= period * round(dx / period)
+                    b = int(math.sqrt(dx * dx + dy * dy) / bin_width)
+                    if b < counts.shape[1]:
+                        counts[cell, b] += 1.0
+
+
+__all__ = ["pair_correlation"]

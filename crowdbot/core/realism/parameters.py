@@ -1,0 +1,122 @@
+"""Which numbers of a crowd are fitted, and between which bounds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.types.arrays import Array
+from crowdbot.dsl.scenario import Crowd
+from crowdbot.errors import InputError, UnknownNameError
+
+#: What a fit leaves alone: limits of bodies, how far people look, how contacts push.
+_FIXED = (
+    "mass", "max_speed", "max_acceleration", "height", "range", "angle", "contact_stiffness",
+)  # fmt: skip
+_PLACES = ("policy", "costs", "steering", "speed", "body")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """One number that is fitted.
+
+    Attributes:
+        key: path in the scenario, such as ``crowd.costs.way.d_max``.
+        start, low, high: in SI units.
+    """
+
+    key: str
+    start: float
+    low: float
+    high: float
+
+    def value(self, share: float) -> float:
+        """The value at a share of the way from low to high, by ratio where both are above 0."""
+        share = min(1.0, max(0.0, share))
+        if self.low > 0.0:
+            return float(self.low * (self.high / self.low) ** share)
+        return self.low + share * (self.high - self.low)
+
+    def share(self, value: float) -> float:
+        """The other way round."""
+        if self.low > 0.0:
+            return math.log(value / self.low) / math.log(self.high / self.low)
+        return (value - self.low) / (self.high - self.low)
+
+
+def parameters_of(crowd: Crowd, chosen: Sequence[str] = ()) -> list[Parameter]:
+    """What is fitted: the chosen numbers, or all positive ones from half to twice.
+
+    Args:
+        crowd: whose numbers they are.
+        chosen: ``key=low..high`` texts; ``crowd.`` may be left out; without bounds, half to twice.
+
+    Raises:
+        UnknownNameError: the crowd has no such number.
+        InputError: bounds make no sense.
+    """
+    known = dict(numbers(crowd))
+    if not chosen:
+        keys = [k for k in known if known[k] > 0.0 and not _is_fixed(k)]
+        return [_around(k, known[k]) for k in keys]
+    return [_chosen(text, known) for text in chosen]
+
+
+def numbers(crowd: Crowd) -> Iterator[tuple[str, float]]:
+    """Key and value of every number of what a crowd is like."""
+    content = crowd.model_dump(mode="json", include=set(_PLACES))
+    for place in _PLACES:
+        if isinstance(content.get(place), Mapping):
+            yield from _numbers(f"crowd.{place}", content[place])
+
+
+def overrides_of(parameters: Sequence[Parameter], shares: Array) -> list[str]:
+    """``key=value`` texts of a point, as `--set` takes them."""
+    return [
+        f"{p.key}={p.value(float(share))!r}" for p, share in zip(parameters, shares, strict=True)
+    ]
+
+
+def shares_of(parameters: Sequence[Parameter]) -> Array:
+    """Where the start lies."""
+    return np.array([p.share(p.start) for p in parameters])
+
+
+def _numbers(above: str, content: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    for name, value in content.items():
+        if isinstance(value, Mapping):
+            yield from _numbers(f"{above}.{name}", value)
+        elif isinstance(value, float):
+            yield f"{above}.{name}", value
+
+
+def _is_fixed(key: str) -> bool:
+    return any(word in _FIXED for word in key.split(".")[1:])
+
+
+def _around(key: str, value: float) -> Parameter:
+    return Parameter(key=key, start=value, low=0.5 * value, high=2.0 * value)
+
+
+def _chosen(text: str, known: Mapping[str, float]) -> Parameter:
+    key, equals, bounds = text.partition("=")
+    key = key.strip() if key.startswith("crowd.") else f"crowd.{key.strip()}"
+    if key not in known:
+        raise UnknownNameError("number of the crowd", key, sorted(known))
+    if not equals:
+        if known[key] <= 0.0:
+            raise InputError(f"--fit {text}: it is 0; give bounds, {text}=LOW..HIGH")
+        return _around(key, known[key])
+    low, dots, high = bounds.partition("..")
+    try:
+        ends = float(low), float(high)
+    except ValueError:
+        ends = math.nan, math.nan
+    if not (dots and ends[0] < ends[1] and all(map(math.isfinite, ends))):
+        raise InputError(f"--fit {text}: bounds are written LOW..HIGH, in SI units")
+    start = min(max(known[key], ends[0]), ends[1])
+    return Parameter(key=key, start=start, low=ends[0], high=ends[1])

@@ -1,0 +1,188 @@
+"""The recorded people that crowds are compared with: as shipped, or from files of the user."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.realism.compare import Score, compared_cells, score
+from crowdbot.core.realism.corridor import corridors, simulate
+from crowdbot.core.realism.model import CrowdModel, avoid_nobody, ghosts
+from crowdbot.core.realism.statistics import Statistics, statistics_of
+from crowdbot.core.realism.tracks import Tracks, tracks_of
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.errors import InputError
+
+SHIPPED = "recorded_corridors.json"
+#: People who avoid nobody, and straight lines through each other.
+FLOORS: Mapping[str, CrowdModel] = {
+    "avoid nobody": CrowdModel(policy=avoid_nobody),
+    "straight lines": CrowdModel(policy=ghosts),
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reference:
+    """Recorded people, in two halves that are compared with each other, too.
+
+    Attributes:
+        halves: statistics of every second recording; a crowd is compared with both.
+        whole: of all.
+        floors: name -> statistics of people who avoid nobody.
+        sources: where the recordings come from.
+    """
+
+    halves: tuple[Statistics, Statistics]
+    whole: Statistics
+    floors: Mapping[str, Statistics]
+    sources: tuple[str, ...]
+
+    def score(self, crowd: Statistics, seed: int = 0) -> Score:
+        """Mean of the scores beside both halves."""
+        return _mean([score(crowd, half, seed) for half in self.halves])
+
+    @property
+    def ceiling(self) -> Score:
+        """One half beside the other: what recorded people reach."""
+        a, b = self.halves
+        return _mean([score(a, b), score(b, a)])
+
+    @property
+    def floor(self) -> Score:
+        """The better of those who avoid nobody."""
+        return max((self.score(f) for f in self.floors.values()), key=lambda s: s.score)
+
+    def index(self, value: float) -> float:
+        """(score - floor)/(ceiling - floor): 0 is ghosts, 1 is as near as people."""
+        low, high = self.floor.score, self.ceiling.score
+        return (value - low) / (high - low) if high > low else float("nan")
+
+    def as_json(self) -> dict[str, Any]:
+        """What `from_json` reads."""
+        return {
+            "sources": list(self.sources),
+            "halves": [half.as_json() for half in self.halves],
+            "whole": self.whole.as_json(),
+            "floors": {name: f.as_json() for name, f in self.floors.items()},
+        }
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Reference:
+        """What `as_json` wrote."""
+        first, second = (Statistics.from_json(half) for half in data["halves"])
+        return cls(
+            halves=(first, second),
+            whole=Statistics.from_json(data["whole"]),
+            floors={name: Statistics.from_json(f) for name, f in data["floors"].items()},
+            sources=tuple(data["sources"]),
+        )
+
+
+@cache
+def shipped() -> Reference:
+    """The recorded corridors that come with crowdbot, as derived numbers."""
+    text = resources.files(__package__).joinpath(SHIPPED).read_text(encoding="utf-8")
+    return Reference.from_json(json.loads(text))
+
+
+def reference_of(
+    tracks: Sequence[Tracks],
+    sources: Sequence[str],
+    floors: Mapping[str, Statistics] | None = None,
+) -> Reference:
+    """A reference from tracks: every second one is of the other half.
+
+    One recording alone is halved in time.
+
+    Raises:
+        InputError: there is nothing in it that can be compared.
+    """
+    if not tracks:
+        raise InputError("a reference needs one recording at least")
+    halves = _halved(tracks[0]) if len(tracks) == 1 else _alternate(tracks)
+    found = Reference(
+        halves=(statistics_of(halves[0]), statistics_of(halves[1])),
+        whole=statistics_of(tracks),
+        floors=shipped().floors if floors is None else floors,
+        sources=tuple(sources),
+    )
+    if not any(compared_cells(half) for half in found.halves):
+        raise InputError(
+            f"{', '.join(sources)}: nobody walks among 0.3 to 2.4 people per m² in windows of 4 m"
+        )
+    return found
+
+
+def read_reference(files: Sequence[Path]) -> Reference:
+    """A reference from files of the user: recordings (.mcap) or tables t,id,x,y (.csv).
+
+    Raises:
+        InputError: a file cannot be read, or there is nothing to compare in it.
+    """
+    return reference_of([read_tracks(f) for f in files], [str(f) for f in files])
+
+
+def read_tracks(path: Path) -> Tracks:
+    """Tracks from a recording or from a table of people.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    if not path.is_file():
+        raise InputError(f"{path}: no such file")
+    if path.suffix.lower() == ".mcap":
+        return tracks_of(Trajectories.from_mcap(path), str(path))
+    if path.suffix.lower() == ".csv":
+        return tracks_of(Trajectories.from_csv(agents=path, agent_radius=0.0), str(path))
+    raise InputError(f"{path}: neither a recording (.mcap) nor a table of people (.csv)")
+
+
+def floors_of(seeds: Sequence[int]) -> dict[str, Statistics]:
+    """Statistics of those who avoid nobody, simulated."""
+    return {
+        name: statistics_of([simulate(model, c) for seed in seeds for c in corridors(seed)])
+        for name, model in FLOORS.items()
+    }
+
+
+def _alternate(tracks: Sequence[Tracks]) -> tuple[Sequence[Tracks], Sequence[Tracks]]:
+    """Every second one, flow by flow."""
+    first: list[Tracks] = []
+    second: list[Tracks] = []
+    for flow in ("uni", "counter"):
+        some = [t for t in tracks if t.flow == flow]
+        first += some[::2]
+        second += some[1::2]
+    return first, second
+
+
+def _halved(tracks: Tracks) -> tuple[Sequence[Tracks], Sequence[Tracks]]:
+    middle = (tracks.first + tracks.last) // 2
+    return [replace(tracks, last=middle)], [replace(tracks, first=middle)]
+
+
+def _mean(scores: Sequence[Score]) -> Score:
+    some = [s for s in scores if s.parts]
+    if not some:
+        return scores[0]
+    cells = dict.fromkeys(c for s in some for c in s.cells)
+    return Score(
+        score=sum(s.score for s in some) / len(some),
+        parts={f: sum(s.parts[f] for s in some) / len(some) for f in some[0].parts},
+        cells={c: _of(c, some) for c in cells},
+    )
+
+
+def _of(cell: tuple[str, str], scores: Sequence[Score]) -> float:
+    known = [s.cells[cell] for s in scores if cell in s.cells]
+    return sum(known) / len(known)
+
+
+__all__ = [
+    "FLOORS", "Reference", "floors_of", "read_reference", "read_tracks", "reference_of", "shipped",
+]  # fmt: skip

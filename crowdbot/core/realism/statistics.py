@@ -1,0 +1,180 @@
+"""Statistics of a crowd: all that is kept of recordings, and all that crowds are compared by."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.realism.bins import (
+    CELLS,
+    DIAGRAM_EDGES,
+    EDGES,
+    FEATURES,
+    FLOWS,
+    PAIR_EDGES,
+)
+from crowdbot.core.realism.features import (
+    CELL,
+    DENSITY,
+    LANES,
+    NEAREST,
+    PACE,
+    SPEED,
+    features,
+)
+from crowdbot.core.realism.pairs import pair_correlation
+from crowdbot.core.realism.tracks import Tracks
+from crowdbot.core.types.arrays import Array
+
+#: Name of a cell: flow and density.
+Cell = tuple[str, str]
+_LARGEST = 9e8
+#: Samples are of so few windows that a curve would be chance below this.
+_LEAST_WINDOWS = 8
+#: Percentiles of the nearest distance that are told.
+PERCENTILES = (1.0, 5.0, 50.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Statistics:
+    """What a crowd does, by flow and density.
+
+    Attributes:
+        histograms: cell -> feature -> (B,) numbers of samples by `EDGES`.
+        diagram: flow -> (K, 2) density, 1/m^2, and mean speed, m/s.
+        lanes: cell -> lane order, 0 to 1.
+        nearest: cell -> percentiles 1, 5, 50 of the nearest distance, m.
+        pairs: cell -> (B,) pair correlation by `PAIR_EDGES`; 1 is chance.
+        overlap: share of person-time in which bodies overlap; NaN where sizes are not known.
+        people: rows of people by cell, from which samples are drawn; empty where only the
+            histograms are left.
+    """
+
+    histograms: Mapping[Cell, Mapping[str, Array]]
+    diagram: Mapping[str, Array]
+    lanes: Mapping[Cell, float]
+    nearest: Mapping[Cell, Array]
+    pairs: Mapping[Cell, Array]
+    overlap: float = float("nan")
+    people: Mapping[Cell, Array] = field(default_factory=dict)
+
+    def count(self, cell: Cell) -> int:
+        """Number of samples of a cell."""
+        found = self.histograms.get(cell)
+        return 0 if found is None else int(np.sum(found["speed"]))
+
+    def as_json(self) -> dict[str, Any]:
+        """Numbers that `from_json` reads, rounded; histograms as shares of 10 000."""
+        return {
+            "cells": {
+                "/".join(cell): {
+                    "samples": self.count(cell),
+                    "histograms": {f: _shares(h) for f, h in self.histograms[cell].items()},
+                    "lanes": _rounded(self.lanes.get(cell, np.nan)),
+                    "nearest": [_rounded(v) for v in self.nearest[cell]],
+                    "pairs": [_rounded(v) for v in self.pairs[cell]],
+                }
+                for cell in self.histograms
+            },
+            "diagram": {
+                flow: [[_rounded(v) for v in row] for row in rows]
+                for flow, rows in self.diagram.items()
+            },
+        }
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Statistics:
+        """What `as_json` wrote; without rows."""
+        histograms, lanes, nearest, pairs = {}, {}, {}, {}
+        for name, found in data["cells"].items():
+            flow, _, density = name.partition("/")
+            cell, count = (flow, density), found["samples"]
+            histograms[cell] = {
+                f: np.array(h, np.float64) * (count / max(1, sum(h)))
+                for f, h in found["histograms"].items()
+            }
+            lanes[cell] = _number(found["lanes"])
+            nearest[cell] = np.array([_number(v) for v in found["nearest"]])
+            pairs[cell] = np.array([_number(v) for v in found["pairs"]])
+        diagram = {flow: np.array(rows, np.float64) for flow, rows in data["diagram"].items()}
+        return cls(
+            histograms=histograms, diagram=diagram, lanes=lanes, nearest=nearest, pairs=pairs
+        )
+
+
+def statistics_of(tracks: Sequence[Tracks]) -> Statistics:
+    """Statistics of all people in some tracks, flow by flow."""
+    by_flow = {flow: [t for t in tracks if t.flow == flow] for flow in FLOWS}
+    histograms: dict[Cell, dict[str, Array]] = {}
+    lanes, nearest, pairs, people = {}, {}, {}, {}
+    diagram, close, all_ = {}, 0, 0
+    for flow, some in by_flow.items():
+        if not some:
+            continue
+        found = [features(t) for t in some]
+        rows = np.concatenate([f[0] for f in found])
+        windows = np.concatenate([f[1] for f in found])
+        diagram[flow] = _diagram(windows)
+        curves = pair_correlation(some)
+        for number, density in enumerate(CELLS):
+            cell = flow, density
+            mine = rows[rows[:, CELL] == number]
+            if not len(mine):
+                continue
+            people[cell], histograms[cell] = mine, histograms_of(mine)
+            lanes[cell] = _mean(windows[windows[:, CELL] == number, LANES])
+            nearest[cell] = np.percentile(np.minimum(mine[:, NEAREST], _LARGEST), PERCENTILES)
+            pairs[cell] = curves[number]
+        for t, (r, _) in zip(some, found, strict=True):
+            if t.radius > 0.0:
+                close += int(np.sum(r[:, NEAREST] < 2.0 * t.radius))
+                all_ += len(r)
+    return Statistics(
+        histograms=histograms, diagram=diagram, lanes=lanes, nearest=nearest, pairs=pairs,
+        overlap=close / all_ if all_ else float("nan"), people=people,
+    )  # fmt: skip
+
+
+def histograms_of(rows: Array) -> dict[str, Array]:
+    """Feature -> (B,) numbers of finite samples among rows of people."""
+    found = {}
+    for column, name in enumerate(FEATURES, SPEED):
+        values = rows[:, column]
+        values = np.minimum(values[~np.isnan(values)], _LARGEST)
+        found[name] = np.histogram(values, EDGES[name])[0].astype(np.float64)
+    return found
+
+
+def _diagram(windows: Array) -> Array:
+    """(K, 2) mean density and mean speed of windows of about the same density."""
+    rows = []
+    for low, high in pairwise(DIAGRAM_EDGES):
+        here = windows[(windows[:, DENSITY] >= low) & (windows[:, DENSITY] < high)]
+        if len(here) >= _LEAST_WINDOWS:
+            rows.append(here[:, [DENSITY, PACE]].mean(axis=0))
+    return np.array(rows).reshape(-1, 2)
+
+
+def _mean(values: Array) -> float:
+    known = values[~np.isnan(values)]
+    return float(known.mean()) if len(known) else float("nan")
+
+
+def _shares(histogram: Array) -> list[int]:
+    total = float(np.sum(histogram))
+    return [round(10_000 * v / total) if total else 0 for v in histogram]
+
+
+def _rounded(value: float) -> float | None:
+    return round(float(value), 3) if np.isfinite(value) else None
+
+
+def _number(value: float | None) -> float:
+    return float("nan") if value is None else float(value)
+
+
+__all__ = ["PAIR_EDGES", "Cell", "Statistics", "histograms_of", "statistics_of"]

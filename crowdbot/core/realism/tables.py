@@ -1,0 +1,58 @@
+"""The numbers of crowds beside those of recorded people, as rows of text."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crowdbot.core.realism.bins import FEATURES
+from crowdbot.core.realism.compare import Beside, beside
+from crowdbot.core.realism.measure import DIAGRAM, LANES, PAIRS, Realism
+from crowdbot.core.realism.reference import Reference
+
+_NAMES = {
+    "time_to_collision": "time to collision",
+    DIAGRAM: "fundamental diagram",
+    LANES: "lanes",
+    PAIRS: "pair correlation",
+}
+
+
+def rows(found: Realism) -> list[list[str]]:
+    """Part, this crowd, recorded people, people who avoid nobody."""
+    reference = found.reference
+    real, none = reference.ceiling, reference.floor
+    out = [["score", _two(found.score), _two(found.ceiling), _two(found.floor)]]
+    for name in FEATURES:
+        parts = [s.parts.get(name, np.nan) for s in (real, none)]
+        out.append([_NAMES.get(name, name), _two(found.parts[name]), *map(_two, parts)])
+    between, ghosts = real_beside(reference), ghosts_beside(reference)
+    for label, name in (
+        ("error of the fundamental diagram", "diagram_error"),
+        ("error of the lane order", "lane_error"),
+        ("error of the pair correlation", "pair_error"),
+    ):
+        errors = [getattr(b, name) for b in (found.beside, between, ghosts)]
+        out.append([label, *map(_two, errors)])
+    for k, percent in enumerate(("1 %", "5 %", "50 %")):
+        distances = [float(b.nearest_error[k]) for b in (found.beside, between, ghosts)]
+        out.append([f"error of the {percent} nearest distance, m", *map(_two, distances)])
+    out.append(["person-time overlapping", _percent(found.beside.overlap), "–", "–"])
+    return out
+
+
+def real_beside(reference: Reference) -> Beside:
+    """Errors of one half of the recordings beside the other."""
+    return beside(*reference.halves)
+
+
+def ghosts_beside(reference: Reference) -> Beside:
+    """Errors of those who avoid nobody."""
+    return beside(reference.floors["avoid nobody"], reference.whole)
+
+
+def _two(value: float) -> str:
+    return f"{value:.3f}" if np.isfinite(value) else "–"
+
+
+def _percent(value: float) -> str:
+    return f"{100 * value:.2f} %" if np.isfinite(value) else "–"

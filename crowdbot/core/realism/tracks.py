@@ -1,0 +1,173 @@
+"""Tracks: where people are, four times a second, in a corridor along x."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.realism.bins import DT, RATE, WINDOW
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.arrays import Array
+from crowdbot.errors import InputError
+
+#: Share of a recording that is left out at its begin and at its end: people come and go.
+_MARGIN = 0.15
+#: Share of the people who walk the other way from which on a flow is a counterflow.
+_MINORITY = 0.1
+#: What the outermost centres keep from the walls, m.
+_BODY = 0.2
+#: Outermost positions that do not count as the corridor's.
+_TAIL = 0.005
+#: Longer recordings are of corridors without ends in view, m.
+_LONG = 20.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tracks:
+    """People in a corridor along x, at 4 Hz.
+
+    Attributes:
+        position: (T, N, 2) m, within the period; NaN where absent.
+        way: (T, N, 2) m, as walked: without jumps at the period's border.
+        width: of the corridor, m.
+        period: length of a corridor without ends, m; 0 for one with ends.
+        windows: (W, 2) from and to along x in which people are compared, m.
+        first, last: frames that are compared: from the first to before the last.
+        radius: of the bodies, m, where it is known, else 0.
+    """
+
+    position: Array
+    way: Array
+    width: float
+    period: float
+    windows: Array
+    first: int
+    last: int
+    radius: float = 0.0
+
+    @property
+    def direction(self) -> Array:
+        """(N,) 1 for people who walk along x, -1 for the others, 0 for who does not move."""
+        step = np.diff(self.way[..., 0], axis=0)
+        known = np.isfinite(step)
+        return np.asarray(np.sign(np.where(known, step, 0.0).sum(axis=0)))
+
+    @property
+    def flow(self) -> str:
+        """``counter`` where at least a tenth walks the other way, else ``uni``."""
+        way = self.direction[self.direction != 0.0]
+        minority = min(np.mean(way > 0), np.mean(way < 0)) if len(way) else 0.0
+        return "counter" if minority >= _MINORITY else "uni"
+
+
+def tracks_of(
+    run: Trajectories, name: str, *, width: float | None = None, centre: bool = False
+) -> Tracks:
+    """Tracks from trajectories in any direction, at any rate.
+
+    The corridor lies along the axis on which people walk. Its width is where they were, if none
+    is given.
+
+    Args:
+        run: with people.
+        name: of the file, for messages.
+        width: of the corridor, m.
+        centre: compare only one window, about x = 0 (recordings whose cameras see no more).
+
+    Raises:
+        InputError: nobody walks, or the run is too short.
+    """
+    if run.agents is None or not np.any(np.isfinite(run.agents.x)):
+        raise InputError(f"{name}: there are no people in it")
+    at = _at_rate(run.t, run.agents.x, run.agents.y, run.agents.jump)
+    at = _along_x(at)
+    frames = len(at)
+    first, last = int(_MARGIN * frames), int((1.0 - _MARGIN) * frames)
+    if last - first < 8:
+        raise InputError(
+            f"{name}: {frames / RATE:.1f} s are too short; 3 s and more can be compared"
+        )
+    windows = np.array([[-WINDOW / 2, WINDOW / 2]]) if centre else _windows(at[..., 0])
+    return Tracks(
+        position=at,
+        way=at,
+        width=float(width or _width(at, windows)),
+        period=0.0,
+        windows=windows,
+        first=first,
+        last=last,
+        radius=float(np.median(run.agents.radius)) if len(run.agents.radius) else 0.0,
+    )
+
+
+def _at_rate(t: Array, x: Array, y: Array, jump: NDArray[np.bool_] | None) -> Array:
+    """(T, N, 2) at 4 Hz: means over a quarter of a second, or points on the lines between."""
+    at = np.stack([x, y], axis=-1)
+    if len(t) < 2:
+        return at
+    if np.median(np.diff(t)) > 0.6 * DT:
+        return _between(t, at)
+    frame = np.floor((t - t[0]) * RATE + 1e-9).astype(np.int64)
+    out = np.full((int(frame[-1]) + 1, *at.shape[1:]), np.nan)
+    jumped = np.zeros(at.shape[:2], np.bool_)
+    if jump is not None:
+        jumped[1:] = jump
+    starts = np.searchsorted(frame, np.arange(len(out)))
+    ends = np.append(starts[1:], len(t))
+    for k, (a, b) in enumerate(zip(starts, ends, strict=True)):
+        if b > a:
+            mean = at[a:b].mean(axis=0)
+            mean[jumped[a + 1 : b].any(axis=0)] = np.nan
+            out[k] = mean
+    return out
+
+
+def _between(t: Array, at: Array) -> Array:
+    """Points on the straight lines between samples; NaN where a sample beside is missing."""
+    when = np.arange(t[0], t[-1] + 1e-9, DT)
+    after = np.clip(np.searchsorted(t, when, side="left"), 1, len(t) - 1)
+    share = ((when - t[after - 1]) / (t[after] - t[after - 1]))[:, np.newaxis, np.newaxis]
+    before = np.where(share < 1.0, at[after - 1], at[after])
+    return np.asarray(np.where(share > 0.0, before + share * (at[after] - before), before))
+
+
+def _along_x(at: Array) -> Array:
+    """Turned so that people walk along x, whichever way."""
+    step = np.diff(at, axis=0)
+    step = step[np.isfinite(step).all(axis=-1)]
+    size = np.hypot(step[:, 0], step[:, 1])
+    step = step[size < 4.0 * DT]  # jumps
+    twice = np.sum((step[:, 0] + 1j * step[:, 1]) ** 2)
+    angle = 0.5 * float(np.angle(twice))
+    if abs(angle) < 0.02:  # a corridor that lies along x already
+        return at
+    c, s = np.cos(angle), np.sin(angle)
+    return np.asarray(at @ np.array([[c, -s], [s, c]]))
+
+
+def _windows(x: Array) -> Array:
+    """Windows of 4 m: side by side over a long corridor, one in the middle of a short one.
+
+    Cameras see those in the middle with everybody around them. What lies beyond is often no
+    corridor: the middle is at 0 where that is among the people, as in most experiments.
+    """
+    known = x[np.isfinite(x)]
+    low, high = np.quantile(known, [_TAIL, 1.0 - _TAIL])
+    count = max(1, int((high - low - 2.0 * WINDOW) // WINDOW)) if high - low > _LONG else 1
+    middle = 0.5 * (low + high)
+    if count == 1 and abs(middle) < 0.25 * (high - low):
+        middle = 0.0
+    begin = middle - 0.5 * count * WINDOW
+    return np.array([[begin + k * WINDOW, begin + (k + 1) * WINDOW] for k in range(count)])
+
+
+def _width(at: Array, windows: Array) -> float:
+    """Where people were in the windows, and what the outermost keep from walls, m."""
+    x, y = at[..., 0], at[..., 1]
+    inside = (x >= windows[0, 0]) & (x < windows[-1, 1])
+    if not np.any(inside):
+        inside = np.isfinite(x)
+    low, high = np.quantile(y[inside], [_TAIL, 1.0 - _TAIL])
+    return float(high - low) + 2.0 * _BODY

@@ -1,0 +1,84 @@
+"""The same scenarios with other crowds: how people decide changes, who walks where does not."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.scenarios.named_crowds import open_crowd
+from crowdbot.dsl.expand import Expansion
+from crowdbot.dsl.scenario import Crowd, Scenario
+from crowdbot.errors import InputError
+
+#: Axis that tells the crowds apart.
+AXIS = "crowd"
+
+
+def with_crowds(expansion: Expansion, names: Sequence[str], registry: Registry) -> Expansion:
+    """Every scenario once for each named crowd, with the axis ``crowd``; by crowds, then as before.
+
+    Policy, cost functions, steering and what the named crowd says of bodies are laid over; flows,
+    places, speeds and what people do about robots stay the scenario's. So do the draws.
+
+    Args:
+        expansion: of a suite or a scenario.
+        names: as `open_crowd` takes them; without any, the expansion is as it was.
+
+    Raises:
+        InputError: a scenario has no crowd, a name is there twice, or the suite has such an axis.
+        SpecError, UnknownNameError: there is no such crowd, or it is wrong.
+    """
+    if not names:
+        return expansion
+    crowds = {label_of(name): open_crowd(name, registry) for name in dict.fromkeys(names)}
+    if len(crowds) < len(set(names)):
+        raise InputError(f"--crowds {','.join(names)}: two crowds have the same label")
+    if any(AXIS in axes for axes in expansion.axes.values()):
+        raise InputError(f"{expansion.suite_id} has an axis '{AXIS}' already; --crowds makes one")
+    scenarios, axes, trees = [], {}, {}
+    for label, crowd in crowds.items():
+        for scenario in expansion.scenarios:
+            made = _with_crowd(scenario, label, crowd)
+            scenarios.append(made)
+            axes[made.id] = {**expansion.axes.get(scenario.id, {}), AXIS: label}
+            if scenario.id in expansion.trees:
+                trees[made.id] = expansion.trees[scenario.id]
+    return replace(expansion, scenarios=scenarios, axes=axes, trees=trees)
+
+
+def label_of(name: str) -> str:
+    """What a crowd is called in ids and on axes."""
+    stem = re.sub(r"\.ya?ml$", "", name.rpartition("/")[2])
+    return re.sub(r"[^A-Za-z0-9_.-]", ".", stem)
+
+
+def _with_crowd(scenario: Scenario, label: str, crowd: Crowd) -> Scenario:
+    if scenario.crowd is None:
+        raise InputError(f"{scenario.id} has no crowd that another one could take the place of")
+    references: Mapping[str, Scenario] = {
+        name: r if r.crowd is None else r.model_copy(update={"crowd": _laid_over(r.crowd, crowd)})
+        for name, r in scenario.references.items()
+    }
+    return scenario.model_copy(
+        update={
+            "id": f"{scenario.id}+{label}",
+            "crowd": _laid_over(scenario.crowd, crowd),
+            "references": references,
+        }
+    )
+
+
+def _laid_over(own: Crowd, other: Crowd) -> Crowd:
+    body = own.body.model_copy(
+        update={name: getattr(other.body, name) for name in other.body.model_fields_set}
+    )
+    return own.model_copy(
+        update={
+            "policy": other.policy,
+            "costs": other.costs,
+            "steering": other.steering,
+            "body": body,
+        }
+    )

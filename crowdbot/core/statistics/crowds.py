@@ -1,0 +1,222 @@
+"""Whether ranks depend on the crowd: the order of planners in each, and who is first in how many.
+
+Runs are told apart by the axis ``crowd`` (`crowdbot campaign --crowds`). Kendall's tau-b (1945)
+says how alike two orders are; ties count as ties.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations, permutations
+from typing import Any
+
+from crowdbot.core.realism.crowds import realism_by_name
+from crowdbot.core.results.rows import Results, RunRow
+from crowdbot.core.statistics.floors import PRIMARY
+from crowdbot.core.statistics.summary import headline_names
+from crowdbot.core.statistics.table import Table
+
+AXIS = "crowd"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CrowdOrder:
+    """The order of planners in one crowd.
+
+    Attributes:
+        crowd: label.
+        realism: index of the crowd, None where it was not measured.
+        means: planner -> mean over ``pairs`` scenarios and seeds that all planners have, the best
+            first.
+    """
+
+    crowd: str
+    realism: float | None
+    means: Mapping[str, float]
+    pairs: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CrowdVerdict:
+    """How often one planner is before another.
+
+    Attributes:
+        first, second: ``first`` is before ``second`` in most, by realism.
+        before: labels of the crowds where it is; ``against``: where it is the other way round.
+        crowds: in how many both were run.
+        weighted: share of the crowds where it is, each counted by its realism.
+    """
+
+    first: str
+    second: str
+    before: tuple[str, ...]
+    against: tuple[str, ...]
+    crowds: int
+    weighted: float
+
+    @property
+    def text(self) -> str:
+        """One sentence."""
+        said = (
+            f"{self.first} before {self.second} in {len(self.before)} of {self.crowds} crowds, "
+            f"{100 * self.weighted:.0f} % weighted by realism"
+        )
+        return said + (
+            f"; the other way round in {', '.join(self.against)}" if self.against else ""
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CrowdRanks:
+    """What ranks owe to the crowd.
+
+    Attributes:
+        metric: that decides the order.
+        orders: one for each crowd, the most human first.
+        taus: (crowd, crowd) -> Kendall's tau-b; NaN where an order is all ties.
+        verdicts: one for each pair of planners.
+    """
+
+    metric: str
+    orders: tuple[CrowdOrder, ...]
+    taus: Mapping[tuple[str, str], float]
+    verdicts: tuple[CrowdVerdict, ...]
+
+    def as_json(self) -> dict[str, Any]:
+        """Plain data."""
+        return {
+            "metric": self.metric,
+            "orders": [
+                {"crowd": o.crowd, "realism": o.realism, "means": dict(o.means), "pairs": o.pairs}
+                for o in self.orders
+            ],
+            "kendall_tau": [
+                {"crowds": list(pair), "tau": None if math.isnan(tau) else tau}
+                for pair, tau in self.taus.items()
+            ],
+            "verdicts": [
+                {
+                    "first": v.first,
+                    "second": v.second,
+                    "before": list(v.before),
+                    "against": list(v.against),
+                    "crowds": v.crowds,
+                    "weighted": v.weighted,
+                    "text": v.text,
+                }
+                for v in self.verdicts
+            ],
+        }
+
+
+def crowd_ranks(results: Results, metric: str | None = None) -> CrowdRanks | None:
+    """Orders by crowd; None where runs are of fewer than two crowds or planners.
+
+    Args:
+        results: of one suite.
+        metric: that decides the order; by default the primary score.
+    """
+    labels = list(dict.fromkeys(r.axes[AXIS] for r in results.runs if AXIS in r.axes))
+    planners = sorted({r.planner for r in results.runs})
+    if len(labels) < 2 or len(planners) < 2:
+        return None
+    chosen = metric or _primary(results)
+    values, better = _values(results, chosen)
+    if better not in ("higher", "lower"):
+        return None
+    orders = [_order(label, planners, results.runs, values, better == "higher") for label in labels]
+    found = [o for o in orders if o.pairs]
+    if len(found) < 2:
+        return None
+    found.sort(key=lambda o: -(o.realism if o.realism is not None else -math.inf))
+    sign = 1.0 if better == "higher" else -1.0
+    return CrowdRanks(
+        metric=chosen,
+        orders=tuple(found),
+        taus={
+            (a.crowd, b.crowd): kendall(
+                [a.means[p] for p in planners], [b.means[p] for p in planners]
+            )
+            for a, b in combinations(found, 2)
+        },
+        verdicts=tuple(_verdict(a, b, found, sign) for a, b in combinations(planners, 2)),
+    )
+
+
+def kendall(x: Sequence[float], y: Sequence[float]) -> float:
+    """Kendall's tau-b of two rows of values; NaN where one of them is all ties."""
+    concordant, tied_x, tied_y, pairs = 0, 0, 0, 0
+    for i, j in combinations(range(len(x)), 2):
+        a, b = _sign(x[i] - x[j]), _sign(y[i] - y[j])
+        concordant += a * b
+        tied_x, tied_y, pairs = tied_x + (a == 0), tied_y + (b == 0), pairs + 1
+    root = math.sqrt((pairs - tied_x) * (pairs - tied_y))
+    return concordant / root if root else math.nan
+
+
+def _primary(results: Results) -> str:
+    there = {s.metric for s in results.scores}
+    return next((m for m in PRIMARY if m in there), "")
+
+
+def _values(results: Results, metric: str) -> tuple[dict[str, float], str]:
+    """Run id -> value in the metric's headline variant, and which direction is better."""
+    variants = dict(headline_names(Table(results)))
+    rows = [s for s in results.scores if (s.metric, s.variant) == (metric, variants.get(metric))]
+    if not rows:
+        return {}, ""
+    kept = [s for s in rows if s.value is not None]
+    return {s.run_id: float(s.value or 0.0) for s in kept}, rows[0].better
+
+
+def _order(
+    label: str,
+    planners: Sequence[str],
+    runs: Sequence[RunRow],
+    values: Mapping[str, float],
+    higher: bool,
+) -> CrowdOrder:
+    found: dict[tuple[str, int], dict[str, float]] = {}
+    for run in runs:
+        if run.axes.get(AXIS) == label and run.run_id in values:
+            found.setdefault((run.scenario, run.seed), {})[run.planner] = values[run.run_id]
+    shared = [row for row in found.values() if len(row) == len(planners)]
+    means = {p: sum(row[p] for row in shared) / len(shared) for p in planners} if shared else {}
+    ordered = sorted(means.items(), key=lambda item: (-item[1] if higher else item[1], item[0]))
+    return CrowdOrder(
+        crowd=label, realism=realism_by_name(label), means=dict(ordered), pairs=len(shared)
+    )
+
+
+def _verdict(a: str, b: str, orders: Sequence[CrowdOrder], sign: float) -> CrowdVerdict:
+    """Of the two ways round the one with more weight; of equal ones the first by name."""
+    weights = _weights(orders)
+    ways = []
+    for first, second in permutations((a, b)):
+        lead = {o.crowd: _sign(sign * (o.means[first] - o.means[second])) for o in orders}
+        before = tuple(c for c, s in lead.items() if s > 0)
+        against = tuple(c for c, s in lead.items() if s < 0)
+        weighted = sum(weights[c] for c in before)
+        ways.append(
+            CrowdVerdict(
+                first=first, second=second, before=before, against=against,
+                crowds=len(orders), weighted=weighted,
+            )
+        )  # fmt: skip
+    return max(ways, key=lambda v: (round(v.weighted, 12), len(v.before)))
+
+
+def _weights(orders: Sequence[CrowdOrder]) -> dict[str, float]:
+    """Shares of 1, by realism; the same for all where none is known or above the ghosts."""
+    raw = {o.crowd: max(0.0, o.realism or 0.0) for o in orders}
+    total = sum(raw.values())
+    return {c: (w / total if total else 1.0 / len(raw)) for c, w in raw.items()}
+
+
+def _sign(value: float) -> int:
+    return (value > 0) - (value < 0)
+
+
+__all__ = ["CrowdOrder", "CrowdRanks", "CrowdVerdict", "crowd_ranks", "kendall"]
