@@ -10,7 +10,7 @@ import numpy as np
 
 
 @numba.njit
-def _warm(values: np.ndarray) -> float:  # type: ignore[type-arg]
+def _warm(values: np.ndarray) -> float:
     return float(values[0]) * 0.5
 
 
