@@ -18,8 +18,12 @@ from crowdbot.core.support.source_digest import imported_names
 from crowdbot.errors import InputError, PlannerError, did_you_mean, nearest
 
 _METHODS = ("reset", "step")
-#: Libraries that take long to import and start no threads by that.
-_SLOW = ("numba", "scipy", "torch")
+#: Libraries that take long to import and start no threads by that, and what makes them ready.
+_SLOW = {
+    "numba": "crowdbot.core.planning.process.warm_numba",
+    "scipy": "scipy",
+    "torch": "torch",
+}
 
 
 def planner_class(path: Path, name: str) -> type[Any]:
@@ -138,4 +142,5 @@ def preloads(path: Path) -> tuple[str, ...]:
 
     A process that has them can be forked for every run.
     """
-    return tuple(n for n in _SLOW if n in imported_names(path))
+    names = imported_names(path)
+    return tuple(module for name, module in _SLOW.items() if name in names)

