@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from typing import Literal
 
 from pydantic import Field, model_validator
@@ -65,7 +66,7 @@ def walkway(outline: Outline, ends: Collection[int], top: float) -> tuple[Face, 
     Args:
         outline: counter-clockwise.
         ends: numbers of the sides through which people go on: there, walls for the robot alone,
-            and stubs beside them that lead people into a portal.
+            and a niche behind for a portal, closed so that no way leads around outside.
         top: of the walls, m.
     """
     heights = (0.0, top)
@@ -78,14 +79,14 @@ def walkway(outline: Outline, ends: Collection[int], top: float) -> tuple[Face, 
             a, b = outline[k], outline[(k + 1) % count]
             faces.append(Face(points=(*line, a, _beyond(outline, k, k)), heights=heights))
             faces.append(Face(points=(a, b), heights=heights, stops_crowd=False))
-            line = [_beyond(outline, k, k + 1)]
+            far = (_beyond(outline, k, k), _beyond(outline, k, k + 1))
+            faces.append(Face(points=far, heights=heights, stops_robot=False))
+            line = [far[1]]
         else:
             line.append(outline[k])
     if not ends:
         faces.append(Face(points=(*outline, outline[0]), heights=heights))
-    return tuple(Face(
-        points=_without_repeats(face.points), heights=heights, stops_crowd=face.stops_crowd
-    ) for face in faces)  # fmt: skip
+    return tuple(replace(face, points=_without_repeats(face.points)) for face in faces)
 
 
 def _beyond(outline: Outline, side: int, corner: int) -> Point:
