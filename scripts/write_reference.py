@@ -117,6 +117,8 @@ def _components(registry: Registry) -> Iterator[str]:
         for kind, component in registry.components(category).items():
             about = f"`kind: {kind}`, {component.summary}."
             yield _section(f"### {kind}", component.spec, about)
+            for path, model in _nested(component.spec, "") if category == "environment" else ():
+                yield _section(f"#### {kind}: {path}", model)
 
 
 def _plural(category: str) -> str:

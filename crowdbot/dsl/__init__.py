@@ -5,6 +5,7 @@ Its names here are what the spec side of a plugin imports; the build side is in
 only.
 """
 
+from crowdbot.dsl import outlines
 from crowdbot.dsl.assets import Asset
 from crowdbot.dsl.component import Component
 from crowdbot.dsl.component_specs import (
@@ -98,4 +99,5 @@ __all__ = [
     "Spec",
     "Speed",
     "declare_metric",
+    "outlines",
 ]

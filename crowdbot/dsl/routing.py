@@ -5,10 +5,10 @@ The numbers of `mesh` are proposed here; decision 0020 says what they do.
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from annotated_types import Ge
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from crowdbot.dsl.quantities import NonNegativeLength, PositiveDuration
 from crowdbot.dsl.spec import Spec
@@ -18,6 +18,8 @@ class Routing(Spec):
     """How people find their way."""
 
     category: ClassVar[str] = "routing"
+    #: The kind of a routing that names none.
+    usual: ClassVar[str] = "straight"
     kind: str = Field(description="Name of the routing.")
 
 
@@ -44,7 +46,14 @@ class MeshRouting(Routing):
     )
 
 
-#: One of the routings.
-RoutingChoice = Annotated[StraightRouting | MeshRouting, Field(discriminator="kind")]
+def _usual(value: Any) -> Any:
+    return {"kind": Routing.usual, **value} if isinstance(value, dict) else value
+
+
+#: One of the routings; of the usual kind where none is named.
+RoutingChoice = Annotated[
+    Annotated[StraightRouting | MeshRouting, Field(discriminator="kind")],
+    BeforeValidator(_usual),
+]
 
 __all__ = ["MeshRouting", "Routing", "RoutingChoice", "StraightRouting"]

@@ -7,6 +7,7 @@
   `desired_acceleration` asks them, `from_spec` makes one from fields as in a scenario.
 - `contact/`: forces between people, walls, pillars and robots.
 - `response/`: how people take robots.
+- `routing/`: how people find their way around walls.
 - `velocity_search/`: policies that minimise costs over candidate velocities.
 - `recorded`: trajectories of real people, from a CSV file.
 """

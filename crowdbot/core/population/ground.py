@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crowdbot.core.crowd.routing.free_space import FreeSpace
 from crowdbot.core.types.arrays import Array, Point
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.scenario import Crowd
 from crowdbot.errors import InputError
+
+if TYPE_CHECKING:
+    from crowdbot.core.crowd.routing.free_space import FreeSpace
 
 #: Who is nearer to a wall by no more than this touches it by rounding, m.
 _SLACK = 1e-6
@@ -70,6 +73,8 @@ class Ground:
             start = goal
 
     def _free_space(self, radius: float) -> FreeSpace:
+        from crowdbot.core.crowd.routing.free_space import FreeSpace  # with the engine
+
         everything = np.concatenate([self._walls.reshape(-1, 2), self._pillars[:, :2]])
         far = np.zeros((0, 2))
         if len(everything):

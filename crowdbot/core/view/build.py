@@ -15,6 +15,7 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots import build_model
 from crowdbot.core.types.arrays import Point
 from crowdbot.core.view.map_content import MapContent, RobotView, Sector
+from crowdbot.core.view.ways import ways_of
 from crowdbot.dsl.areas import Area
 from crowdbot.dsl.component_specs import SensorSpec
 from crowdbot.dsl.scenario import Crowd, Robot, Scenario
@@ -30,11 +31,13 @@ def build_map_content(scenario: Scenario, people: Realisation, registry: Registr
         registry: the installed components.
     """
     areas = {} if scenario.crowd is None else _areas(scenario.crowd)
+    parts = build_environment(registry, scenario.environment)
     return MapContent(
-        parts=build_environment(registry, scenario.environment),
+        parts=parts,
         people=people,
         robots=tuple(_robot(n, r, registry) for n, r in scenario.robots.items()),
         areas=areas,
+        ways=ways_of(scenario.crowd, people, parts),
     )
 
 

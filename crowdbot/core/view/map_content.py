@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
@@ -13,9 +13,12 @@ from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.types.arrays import Point
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.view.shapes import SPEEDS, Disc, Path, Shape, Text
+from crowdbot.core.view.ways import Ways
 from crowdbot.core.view.world import Map
 
 _ARC = 120  # corners of a full circle that is drawn as an area
+#: What is not higher is drawn as low, m.
+LOW = 0.4
 _TALL = 1.6  # an area this much taller than wide has its name turned
 
 
@@ -51,7 +54,12 @@ class RobotView:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapContent:
-    """What a map shows; ``areas``: role -> name -> polygon, of spawns and goal areas."""
+    """What a map shows.
+
+    Attributes:
+        areas: role -> name -> polygon, of spawns and goal areas.
+        ways: of people through their goals.
+    """
 
     parts: EnvironmentParts
     people: Realisation
@@ -59,6 +67,7 @@ class MapContent:
     areas: Mapping[str, Mapping[str, tuple[Point, ...]]] = field(
         default_factory=lambda: MappingProxyType({})
     )
+    ways: Ways = field(default_factory=lambda: Ways(of_agents=()))
 
 
 def extent(content: MapContent) -> Iterator[Point]:
@@ -93,8 +102,9 @@ def shapes(content: MapContent, world: Map) -> Iterator[Shape]:
     yield from world.grid()
     yield from _places(content, world)
     yield from _sensors(content.robots, world)
+    yield from _mesh(content.ways, world)
     yield from _walls(content.parts, world)
-    yield from _routes(content.people, world)
+    yield from _routes(content, world)
     yield from _people(content, world)
     yield from _robots(content, world)
     yield from _names(content, world)
@@ -121,21 +131,42 @@ def _places(content: MapContent, world: Map) -> Iterator[Shape]:
 
 
 def _walls(parts: EnvironmentParts, world: Map) -> Iterator[Shape]:
+    """Solids as areas, walls that are no side of one as lines, pillars as discs."""
+    corners = {_rounded(p) for outline in parts.solids for p in outline.tolist()}
+    for outline, heights in zip(parts.solids, parts.solid_heights.tolist(), strict=True):
+        yield world.path(outline.tolist(), solid_role(*heights), closed=True)
     rows = zip(parts.walls.tolist(), parts.stops_robot, parts.stops_crowd, strict=True)
     for (x0, y0, x1, y1), robot, crowd in rows:
+        if not robot and _rounded((x0, y0)) in corners and _rounded((x1, y1)) in corners:
+            continue
         role = "wall" if robot and crowd else "wall-robot" if robot else "wall-crowd"
         yield world.path([(x0, y0), (x1, y1)], role)
     for x, y, r in parts.pillars.tolist():
         yield Disc(centre=world.at(x, y), radius=r * world.scale, role="pillar")
 
 
-def _routes(people: Realisation, world: Map) -> Iterator[Shape]:
+def solid_role(bottom: float, top: float) -> str:
+    """How something is drawn: by whether it is raised, low, or neither."""
+    return "solid-raised" if bottom > 0.0 else "solid-low" if top <= LOW else "solid"
+
+
+def _rounded(point: Sequence[float]) -> tuple[float, float]:
+    return round(point[0], 6), round(point[1], 6)
+
+
+def _mesh(ways: Ways, world: Map) -> Iterator[Shape]:
+    for link in ways.links:
+        yield world.path(link, "mesh-link")
+    for ring in ways.margins:
+        yield world.path(ring, "mesh", closed=True)
+
+
+def _routes(content: MapContent, world: Map) -> Iterator[Shape]:
     """The way of each agent through its goals; one line for those who share it."""
-    for i, route in enumerate(people.goals):
-        if route:
-            start = (float(people.x[i]), float(people.y[i]))
-            back = route[:1] if people.at_goal[i] == "loop" and len(route) > 2 else ()
-            yield world.path([start, *route, *back], "route")
+    people = content.people
+    for way in content.ways.of_agents:
+        if way:
+            yield world.path(way, "route")
     for x, y in dict.fromkeys(point for route in people.goals for point in route):
         yield Disc(centre=world.at(x, y), radius=3.5, role="route-end")
 

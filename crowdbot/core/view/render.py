@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from crowdbot.core.view.map_content import MapContent, extent, fastest, shapes
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.view.map_content import (
+    LOW,
+    MapContent,
+    extent,
+    fastest,
+    shapes,
+    solid_role,
+)
 from crowdbot.core.view.shapes import SPEEDS, Disc, Drawing, Path, Shape, Text
 from crowdbot.core.view.world import LEFT, TOP, Map
 
@@ -88,20 +96,36 @@ def _entries(content: MapContent) -> Iterator[tuple[str, str]]:
         yield "goal", "its goal"
     if any(robot.sensors for robot in content.robots):
         yield "sensor", "what its sensors reach"
-    pairs = list(zip(parts.stops_robot.tolist(), parts.stops_crowd.tolist(), strict=True))
-    for role, pair, label in (
-        ("wall", (True, True), "wall"),
-        ("wall-robot", (True, False), "wall for robots only"),
-        ("wall-crowd", (False, True), "wall for people only"),
-    ):
-        if pair in pairs:
-            yield role, label
+    if content.ways.margins:
+        yield "mesh", "mesh: no centre of a body beyond, and lines of sight"
+    yield from _wall_entries(parts)
     if len(parts.portals):
         yield "portal", "portal"
     if parts.periodic_boundary is not None:
         yield "torus", "border that leads to the other side"
     for role, label in (("spawn", "spawn area"), ("goal-area", "goal area")):
         if content.areas.get(role):
+            yield role, label
+
+
+def _wall_entries(parts: EnvironmentParts) -> Iterator[tuple[str, str]]:
+    """Of what stands there."""
+    solids = {solid_role(*heights) for heights in parts.solid_heights.tolist()}
+    for role, label in (
+        ("solid", "block"),
+        ("solid-low", f"not higher than {LOW:g} m"),
+        ("solid-raised", "raised: open below"),
+    ):
+        if role in solids:
+            yield role, label
+    pairs = list(zip(parts.stops_robot.tolist(), parts.stops_crowd.tolist(), strict=True))
+    pairs = [pair for pair in pairs if pair[0] or not len(parts.solids)]  # the rest are sides
+    for role, pair, label in (
+        ("wall", (True, True), "wall"),
+        ("wall-robot", (True, False), "wall for robots only"),
+        ("wall-crowd", (False, True), "wall for people only"),
+    ):
+        if pair in pairs:
             yield role, label
 
 
@@ -119,7 +143,7 @@ def _swatch(role: str, x: float, y: float) -> Iterator[Shape]:
         yield Path(points=((x, middle), (end, middle)), role=role, inside=False)
         wings = ((end - 5.0, middle - 3.0), (end, middle), (end - 5.0, middle + 3.0))
         yield Path(points=wings, role=role, inside=False)
-    elif role.startswith("wall") or role in ("group", "route", "torus"):
+    elif role.startswith("wall") or role in ("group", "route", "torus", "mesh"):
         yield Path(points=((x, middle), (end, middle)), role=role, inside=False)
     else:
         yield Path(points=_box(x, low, end, high), role=role, closed=True, inside=False)

@@ -112,6 +112,11 @@ LOOKS = {
     "sensor": Look(fill="sensor", opacity=0.05, stroke="sensor", width=1.0, dash=(5.0, 4.0)),
     "group": Look(stroke="arrow", width=5.0, opacity=0.35),
     "route": Look(stroke="route", width=1.0, dash=(3.0, 3.0)),
+    "mesh": Look(stroke="zone", width=1.0, dash=(1.5, 2.5)),
+    "mesh-link": Look(stroke="zone", width=0.5, opacity=0.25),
+    "solid": Look(fill="wall"),
+    "solid-low": Look(fill="wall", opacity=0.35, stroke="wall", width=1.0),
+    "solid-raised": Look(fill="wall", opacity=0.1, stroke="wall", width=1.5, dash=(5.0, 3.0)),
     "robot-goal": Look(fill="goal", stroke="floor", width=1.5),
     "route-end": Look(fill="route", stroke="floor", width=1.0),
     **{

@@ -8,8 +8,15 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le
 from pydantic import Field
 
-from crowdbot.dsl import Component, NonNegativeLength, Place, PositiveLength, Quantity, Rectangle
-from crowdbot.dsl.outlines import Outline, Point
+from crowdbot.dsl import (
+    Component,
+    NonNegativeLength,
+    Place,
+    PositiveLength,
+    Quantity,
+    Rectangle,
+    outlines,
+)
 from crowdbot.plugins.environments.walkways import (
     PORTAL_DEPTH,
     WalkwaySpec,
@@ -40,7 +47,7 @@ class CrossingCorridorSpec(WalkwaySpec):
 
     def place(self) -> Place:
         """Four arms; people walk through their ends."""
-        plain, points, ends = self._outline(), list[Point](), list[int]()
+        plain, points, ends = self._outline(), list[outlines.Point](), list[int]()
         for k, point in enumerate(plain):
             if k in _CORNERS:
                 after = plain[(k + 1) % len(plain)]
@@ -96,13 +103,13 @@ class CrossingCorridorSpec(WalkwaySpec):
                     f"corner_radius {self.corner_radius:g} m is too large for the arms"
                 )
 
-    def _corner(self, above: int, beside: int) -> Point:
+    def _corner(self, above: int, beside: int) -> outlines.Point:
         """Where a side wall of the first corridor meets one of the second."""
         y = 0.5 * above * self.width
         cos, sin = math.cos(self.angle), math.sin(self.angle)
         return (y * cos - 0.5 * beside * self.cross_width) / sin, y
 
-    def _outline(self) -> Outline:
+    def _outline(self) -> outlines.Outline:
         """East end, corner, end of the second corridor, and on, counter-clockwise."""
         a, b, half = 0.5 * self.width, 0.5 * self.cross_width, 0.5 * self.length
         ux, uy = math.cos(self.angle), math.sin(self.angle)
@@ -117,7 +124,7 @@ class CrossingCorridorSpec(WalkwaySpec):
         )  # fmt: skip
 
 
-def _dot(one: Point, other: Point) -> float:
+def _dot(one: outlines.Point, other: outlines.Point) -> float:
     return one[0] * other[0] + one[1] * other[1]
 
 

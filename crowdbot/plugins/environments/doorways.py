@@ -14,8 +14,8 @@ from crowdbot.dsl import (
     PositiveLength,
     Rectangle,
     Solid,
+    outlines,
 )
-from crowdbot.dsl.outlines import Outline
 from crowdbot.plugins.environments.walkways import PORTAL_DEPTH, WalkwaySpec, box, walkway
 
 
@@ -44,7 +44,7 @@ class _TwoRoomsSpec(WalkwaySpec):
     def place(self) -> Place:
         """A room, two solids with the way between them, and the other room."""
         half, far = 0.5 * self.width, 0.5 * self.depth + self.room_length
-        outline: Outline = ((-far, -half), (far, -half), (far, half), (-far, half))
+        outline: outlines.Outline = ((-far, -half), (far, -half), (far, half), (-far, half))
         ends = (1, 3) if self.ends == "open" else ()
         heights, low, high = (0.0, self.wall_height), self._low, self._high
         return Place(
@@ -55,7 +55,7 @@ class _TwoRoomsSpec(WalkwaySpec):
             ),
         )
 
-    def _post(self, wall: float, edge: float) -> Outline:
+    def _post(self, wall: float, edge: float) -> outlines.Outline:
         """One side of the way, from the wall of the rooms to its edge."""
         before, behind = -0.5 * self.depth, 0.5 * self.depth
         if self.cut == 0.0:

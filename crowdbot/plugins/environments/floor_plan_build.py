@@ -15,8 +15,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped,unused-ignore]
 from shapely.geometry import shape as shape_of  # type: ignore[import-untyped,unused-ignore]
 
-from crowdbot.dsl import Face, Place, Solid
-from crowdbot.dsl.outlines import Outline
+from crowdbot.dsl import Face, Place, Solid, outlines
 from crowdbot.errors import InputError
 from crowdbot.plugins.environments.floor_plan import FloorPlanSpec
 from crowdbot.plugins.environments.ros_map_build import (
@@ -268,7 +267,7 @@ def _simple(polygons: list[Any], spec: FloorPlanSpec, name: str) -> list[Any]:
     return sorted(found, key=lambda p: (-p.area, *p.bounds))
 
 
-def _ring(ring: Any) -> Outline:
+def _ring(ring: Any) -> outlines.Outline:
     """Corners of a closed ring, counter-clockwise."""
     points = tuple((float(x) + 0.0, float(y) + 0.0) for x, y in ring.coords[:-1])
     return points if shapely.is_ccw(ring) else points[::-1]

@@ -8,8 +8,15 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le
 from pydantic import Field
 
-from crowdbot.dsl import Component, NonNegativeLength, Place, PositiveLength, Quantity, Rectangle
-from crowdbot.dsl.outlines import Outline, Point
+from crowdbot.dsl import (
+    Component,
+    NonNegativeLength,
+    Place,
+    PositiveLength,
+    Quantity,
+    Rectangle,
+    outlines,
+)
 from crowdbot.plugins.environments.walkways import (
     PORTAL_DEPTH,
     WalkwaySpec,
@@ -56,7 +63,7 @@ class CornerSpec(WalkwaySpec):
         xs, ys = zip(*(right, left, *back), strict=True)
         return found | {"end": box(min(xs), max(xs), min(ys), max(ys))}
 
-    def _away(self, inner: Point) -> float:
+    def _away(self, inner: outlines.Point) -> float:
         """From the inner corner to the end, along the part behind the turn, m."""
         along = inner[0] * math.cos(self.angle) + inner[1] * math.sin(self.angle)
         return self.beyond - along
@@ -82,7 +89,7 @@ class CornerSpec(WalkwaySpec):
         if reach > room - 1e-9:
             raise ValueError(f"corner_radius {self.corner_radius:g} m is too large for the turn")
 
-    def _outline(self) -> Outline:
+    def _outline(self) -> outlines.Outline:
         """Start, outer corner, both sides of the end, inner corner, start again."""
         half, cos, sin = 0.5 * self.width, math.cos(self.angle), math.sin(self.angle)
         cos = 0.0 if self.angle == _RIGHT else cos

@@ -9,8 +9,7 @@ from typing import Annotated
 from annotated_types import Ge, Le
 from pydantic import Field
 
-from crowdbot.dsl import NonNegativeLength, Pillar, PositiveLength, Rectangle, Spec
-from crowdbot.dsl.outlines import Point
+from crowdbot.dsl import NonNegativeLength, Pillar, PositiveLength, Rectangle, Spec, outlines
 
 Count = Annotated[int, Ge(1), Le(1000)]
 #: Draws for one pillar before there is no room for it.
@@ -77,7 +76,9 @@ class PillarFieldSpec(Spec):
         largest = self.radius if self.largest_radius is None else self.largest_radius
         return self.radius + (largest - self.radius) * self._uniform("radius", number, 0)
 
-    def _place(self, area: Rectangle, radius: float, number: int, attempt: int) -> Point | None:
+    def _place(
+        self, area: Rectangle, radius: float, number: int, attempt: int
+    ) -> outlines.Point | None:
         margin = radius + self.wall_gap
         (x0, x1), (y0, y1) = area.x, area.y
         if x1 - x0 < 2.0 * margin or y1 - y0 < 2.0 * margin:
@@ -85,7 +86,7 @@ class PillarFieldSpec(Spec):
         u, v = self._uniform("x", number, attempt), self._uniform("y", number, attempt)
         return x0 + margin + u * (x1 - x0 - 2 * margin), y0 + margin + v * (y1 - y0 - 2 * margin)
 
-    def _apart(self, at: Point, radius: float, other: Pillar) -> bool:
+    def _apart(self, at: outlines.Point, radius: float, other: Pillar) -> bool:
         return math.dist(at, (other.x, other.y)) >= radius + other.radius + self.gap
 
     def _uniform(self, what: str, number: int, attempt: int) -> float:

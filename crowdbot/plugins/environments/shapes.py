@@ -9,9 +9,7 @@ from typing import Annotated
 from annotated_types import Len
 from pydantic import Field, field_validator, model_validator
 
-from crowdbot.dsl import Face, Heights, Length, Pillar, PositiveLength, Solid, Spec
-from crowdbot.dsl.outlines import contains, counter_clockwise, first_crossing, signed_area, touch
-from crowdbot.dsl.outlines import sides as sides_of
+from crowdbot.dsl import Face, Heights, Length, Pillar, PositiveLength, Solid, Spec, outlines
 
 Point = Annotated[tuple[Length, Length], Field(strict=False)]
 Corners = Annotated[tuple[Point, ...], Len(3, 4096), Field(strict=False)]
@@ -157,16 +155,16 @@ def simple_outline(corners: tuple[Point, ...], name: str) -> tuple[Point, ...]:
     for k, point in enumerate(corners):
         if point == corners[k - 1]:
             raise ValueError(f"{name}: corner {k} at {_at(point)} is there twice in a row")
-    if abs(signed_area(corners)) < _LEAST_AREA:
+    if abs(outlines.signed_area(corners)) < _LEAST_AREA:
         raise ValueError(f"{name} must have an area")
-    found = first_crossing(corners)
+    found = outlines.first_crossing(corners)
     if found is not None:
-        (a, b), (c, d) = (list(sides_of(corners))[k] for k in found)
+        (a, b), (c, d) = (list(outlines.sides(corners))[k] for k in found)
         raise ValueError(
             f"{name}: the side from {_at(a)} to {_at(b)} meets the one from {_at(c)} to {_at(d)}; "
             "an outline must not cross or touch itself"
         )
-    return counter_clockwise(corners)
+    return outlines.counter_clockwise(corners)
 
 
 def check_holes(outline: tuple[Point, ...], holes: tuple[tuple[Point, ...], ...]) -> None:
@@ -177,11 +175,16 @@ def check_holes(outline: tuple[Point, ...], holes: tuple[tuple[Point, ...], ...]
     """
     for k, hole in enumerate(holes):
         others = [outline, *holes[:k]]
-        if any(touch(a, b) for other in others for a in sides_of(hole) for b in sides_of(other)):
+        if any(
+            outlines.touch(a, b)
+            for other in others
+            for a in outlines.sides(hole)
+            for b in outlines.sides(other)
+        ):
             raise ValueError(f"holes.{k} touches the outline or another hole")
-        if not contains(outline, *hole[0]):
+        if not outlines.contains(outline, *hole[0]):
             raise ValueError(f"holes.{k} lies outside of the outline")
-        if any(contains(o, *hole[0]) or contains(hole, *o[0]) for o in holes[:k]):
+        if any(outlines.contains(o, *hole[0]) or outlines.contains(hole, *o[0]) for o in holes[:k]):
             raise ValueError(f"holes.{k} and another hole contain each other")
 
 

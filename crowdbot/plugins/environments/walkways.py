@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from typing import Literal
 
 from pydantic import Field, model_validator
 
-from crowdbot.dsl import EnvironmentSpec, Face, Length, PositiveLength, Rectangle, Spec
-from crowdbot.dsl.outlines import Outline, Point
+from crowdbot.dsl import EnvironmentSpec, Face, Length, PositiveLength, Rectangle, Spec, outlines
 
 #: Portals reach so far beyond an end, and the walls beside it as far, m.
 PORTAL_DEPTH = 1.0
@@ -59,13 +59,13 @@ def box(x0: float, x1: float, y0: float, y1: float) -> Rectangle:
     return Rectangle(x=(min(x0, x1), max(x0, x1)), y=(min(y0, y1), max(y0, y1)))
 
 
-def walkway(outline: Outline, ends: Collection[int], top: float) -> tuple[Face, ...]:
+def walkway(outline: outlines.Outline, ends: Collection[int], top: float) -> tuple[Face, ...]:
     """Walls around a walkway.
 
     Args:
         outline: counter-clockwise.
         ends: numbers of the sides through which people go on: there, walls for the robot alone,
-            and stubs beside them that lead people into a portal.
+            and a niche behind for a portal, closed so that no way leads around outside.
         top: of the walls, m.
     """
     heights = (0.0, top)
@@ -78,17 +78,17 @@ def walkway(outline: Outline, ends: Collection[int], top: float) -> tuple[Face, 
             a, b = outline[k], outline[(k + 1) % count]
             faces.append(Face(points=(*line, a, _beyond(outline, k, k)), heights=heights))
             faces.append(Face(points=(a, b), heights=heights, stops_crowd=False))
-            line = [_beyond(outline, k, k + 1)]
+            far = (_beyond(outline, k, k), _beyond(outline, k, k + 1))
+            faces.append(Face(points=far, heights=heights, stops_robot=False))
+            line = [far[1]]
         else:
             line.append(outline[k])
     if not ends:
         faces.append(Face(points=(*outline, outline[0]), heights=heights))
-    return tuple(Face(
-        points=_without_repeats(face.points), heights=heights, stops_crowd=face.stops_crowd
-    ) for face in faces)  # fmt: skip
+    return tuple(replace(face, points=_without_repeats(face.points)) for face in faces)
 
 
-def _beyond(outline: Outline, side: int, corner: int) -> Point:
+def _beyond(outline: outlines.Outline, side: int, corner: int) -> outlines.Point:
     """A corner of a side, moved out of the walkway by the depth of a portal."""
     count = len(outline)
     (ax, ay), (bx, by) = outline[side % count], outline[(side + 1) % count]
@@ -97,11 +97,13 @@ def _beyond(outline: Outline, side: int, corner: int) -> Point:
     return x + (by - ay) * scale, y - (bx - ax) * scale
 
 
-def _without_repeats(points: tuple[Point, ...]) -> tuple[Point, ...]:
+def _without_repeats(points: tuple[outlines.Point, ...]) -> tuple[outlines.Point, ...]:
     return tuple(p for k, p in enumerate(points) if k == 0 or p != points[k - 1])
 
 
-def rounded(before: Point, corner: Point, after: Point, radius: float) -> tuple[Point, ...]:
+def rounded(
+    before: outlines.Point, corner: outlines.Point, after: outlines.Point, radius: float
+) -> tuple[outlines.Point, ...]:
     """A corner as an arc that touches both sides; the corner itself without a radius."""
     if radius == 0.0:
         return (corner,)
@@ -124,7 +126,7 @@ def rounded(before: Point, corner: Point, after: Point, radius: float) -> tuple[
     )
 
 
-def _unit(start: Point, end: Point) -> Point:
+def _unit(start: outlines.Point, end: outlines.Point) -> outlines.Point:
     length = math.dist(start, end)
     return (end[0] - start[0]) / length, (end[1] - start[1]) / length
 
@@ -137,7 +139,7 @@ def hall(
     Raises:
         ValueError: an opening does not fit into its wall, or overlaps another one.
     """
-    points: list[Point] = []
+    points: list[outlines.Point] = []
     ends: list[int] = []
     (x0, x1), (y0, y1) = area.x, area.y
     runs: dict[Side, tuple[float, float]] = {
@@ -166,7 +168,7 @@ def hall(
     return walkway(tuple(points), ends, top), portals
 
 
-def _on(side: Side, along: float, across: float) -> Point:
+def _on(side: Side, along: float, across: float) -> outlines.Point:
     return (along, across) if side in ("south", "north") else (across, along)
 
 

@@ -1,0 +1,92 @@
+"""The ways of people who find them, and the mesh that these ways are found on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from crowdbot.core.population.realisation import Realisation
+from crowdbot.core.types.arrays import Point
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.dsl.scenario import Crowd
+
+if TYPE_CHECKING:
+    from crowdbot.core.crowd.routing.route_map import RouteMap
+
+#: More links than this are not drawn.
+_MOST_LINKS = 3000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ways:
+    """What is drawn of routing, world frame, m.
+
+    Attributes:
+        of_agents: the way of each agent through its goals; empty without goals.
+        margins: outlines beyond which no centre of a body of the largest radius can be.
+        links: pairs of corners between which ways may lead.
+    """
+
+    of_agents: tuple[tuple[Point, ...], ...]
+    margins: tuple[tuple[Point, ...], ...] = ()
+    links: tuple[tuple[Point, Point], ...] = ()
+
+
+def ways_of(crowd: Crowd | None, people: Realisation, parts: EnvironmentParts) -> Ways:
+    """The ways as they are planned at the start; straight ones where nobody finds any other."""
+    straight = [_stops(people, i) for i in range(len(people))]
+    if crowd is None or crowd.routing is None or crowd.routing.kind != "mesh":
+        return Ways(of_agents=tuple(map(tuple, straight)))
+    # Compiled code, which only drawings of such ways wait for.
+    from crowdbot.core.crowd.routing.route_map import RouteMap
+    from crowdbot.core.crowd.routing.router import rounded
+
+    walls, pillars, _ = parts.in_the_way(crowd.body.height)
+    points = np.array([p for way in straight for p in way], np.float64).reshape(-1, 2)
+    sizes = rounded(people.radius)
+    largest = crowd.body.radius if not len(people) else float(sizes.max())
+    maps = {
+        float(size): RouteMap.of(walls, pillars, float(size), points)
+        for size in {*sizes.tolist(), largest}
+    }
+    found = []
+    for i, stops in enumerate(straight):
+        way = list(stops[:1])
+        for start, goal in pairwise(stops):
+            leg = maps[float(sizes[i])].way(start, goal).tolist()
+            way += [(float(x), float(y)) for x, y in leg[1:]]
+        found.append(tuple(way))
+    return Ways(
+        of_agents=tuple(found), margins=_margins(maps[largest]), links=_links(maps[largest])
+    )
+
+
+def _stops(people: Realisation, i: int) -> list[Point]:
+    """Where an agent starts and its goals in turn, the first again for one who walks in a loop."""
+    route = people.goals[i]
+    if not route:
+        return []
+    back = route[:1] if people.at_goal[i] == "loop" and len(route) > 2 else ()
+    return [(float(people.x[i]), float(people.y[i])), *route, *back]
+
+
+def _margins(routes: RouteMap) -> tuple[tuple[Point, ...], ...]:
+    return tuple(tuple((float(x), float(y)) for x, y in ring) for ring in routes.space.rings())
+
+
+def _links(routes: RouteMap) -> tuple[tuple[Point, Point], ...]:
+    corners = routes.corners
+    from crowdbot.core.crowd.routing.corners import X, Y
+
+    if len(corners.linked) > 2 * _MOST_LINKS:
+        return ()
+    at = [(float(x), float(y)) for x, y in corners.table[:, [X, Y]]]
+    return tuple(
+        (at[v], at[w])
+        for v in range(len(at))
+        for w in corners.linked[corners.first[v] : corners.first[v + 1]].tolist()
+        if v < w
+    )
