@@ -72,7 +72,7 @@ class PeopleKind(Spec):
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class UsualBody:
     """Usual numbers of a look; None is as in `crowd.body`.
 
     Attributes:
@@ -88,13 +88,13 @@ class Look:
 
 
 #: Where these come from: docs/reference/people.md.
-LOOKS: dict[LookName, Look] = {
-    "adult": Look((1.70, 0.09), (75.0, 13.0), None, 1.0),
-    "child": Look((1.27, 0.06), (25.5, 4.0), 0.20, 1.0),
-    "elderly": Look((1.64, 0.08), (71.0, 12.0), None, 0.8),
-    "wheelchair_user": Look((1.30, 0.05), (92.0, 14.0), 0.40, 0.6),
-    "stroller": Look((1.70, 0.09), (75.0, 13.0), None, 0.9),
-    "suitcase": Look((1.70, 0.09), (75.0, 13.0), None, 0.95),
+LOOKS: dict[LookName, UsualBody] = {
+    "adult": UsualBody((1.70, 0.09), (75.0, 13.0), None, 1.0),
+    "child": UsualBody((1.27, 0.06), (25.5, 4.0), 0.20, 1.0),
+    "elderly": UsualBody((1.64, 0.08), (71.0, 12.0), None, 0.8),
+    "wheelchair_user": UsualBody((1.30, 0.05), (92.0, 14.0), 0.40, 0.6),
+    "stroller": UsualBody((1.70, 0.09), (75.0, 13.0), None, 0.9),
+    "suitcase": UsualBody((1.70, 0.09), (75.0, 13.0), None, 0.95),
 }
 
-__all__ = ["LOOKS", "WIDEST", "Look", "LookName", "PeopleKind"]
+__all__ = ["LOOKS", "WIDEST", "LookName", "PeopleKind", "UsualBody"]

@@ -14,7 +14,7 @@ Numbers = tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class OptionalColumn:
     """One optional column: what those have who lack it, and how it is written and read."""
 
     missing: Any
@@ -69,7 +69,7 @@ def _write_measure(value: float) -> str:
     return repr(float(value)) if value else ""
 
 
-_MEASURE = Column(0.0, _write_measure, _number)
+_MEASURE = OptionalColumn(0.0, _write_measure, _number)
 
 #: In the order of the alphabet, in which they stand after the others. ``goal_areas``: sizes
 #: along own x and y and rotation of the area around each goal, m and rad; 0 0 0: a point.
@@ -78,15 +78,15 @@ _MEASURE = Column(0.0, _write_measure, _number)
 #: ``origin``: centre, size and rotation of where the agent comes in; ``pauses``: how long it
 #: stays at each goal, s; ``queue``: number of the queue in which it stands behind the agent
 #: before it.
-OPTIONAL: Mapping[str, Column] = MappingProxyType(
+OPTIONAL: Mapping[str, OptionalColumn] = MappingProxyType(
     {
-        "goal_areas": Column((), _write_rows, _read_areas),
+        "goal_areas": OptionalColumn((), _write_rows, _read_areas),
         "height": _MEASURE,
         "leg_length": _MEASURE,
-        "look": Column("", str, _read_look),
-        "origin": Column((), _write_numbers, _read_origin),
-        "pauses": Column((), _write_numbers, _read_numbers),
+        "look": OptionalColumn("", str, _read_look),
+        "origin": OptionalColumn((), _write_numbers, _read_origin),
+        "pauses": OptionalColumn((), _write_numbers, _read_numbers),
         "phase": _MEASURE,
-        "queue": Column(-1, lambda n: "" if n < 0 else str(int(n)), int),
+        "queue": OptionalColumn(-1, lambda n: "" if n < 0 else str(int(n)), int),
     }
 )
