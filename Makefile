@@ -4,7 +4,7 @@
 #   make test    set up, then run every check
 #   make setup   only prepare .venv/
 #   make coverage  run all tests, then write docs/reference/coverage.md
-#   make docs    the site of the documentation, in docs/_build/html; fails on a dead link
+#   make docs    the site of the documentation, in build/site; fails on a dead link
 #   make pictures  draw the pictures of README and documents anew, with the figures beside them
 #   make changelog show the entries since the last release, as they will be printed
 #   make check-js  lint the JavaScript of the pages (needs node and npm)
@@ -52,8 +52,8 @@ coverage: setup
 	$(BIN)/python scripts/write_coverage.py
 
 docs: setup
-	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet -b html docs docs/_build/html
-	@echo "docs/_build/html/index.html"
+	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet -b html docs build/site
+	@echo "build/site/index.html"
 
 pictures: setup
 	$(BIN)/python scripts/make_pictures.py

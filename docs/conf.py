@@ -8,7 +8,7 @@ release = version = installed("crowdbot")
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 root_doc = "index"
 source_suffix = {".md": "markdown"}
-exclude_patterns = ["_build", "**/.pytest_cache", "**/node_modules"]
+exclude_patterns = ["**/.pytest_cache", "**/node_modules"]
 
 # Every link within the documents must resolve. Types in signatures are not pages.
 nitpicky = True

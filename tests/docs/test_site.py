@@ -26,7 +26,7 @@ def _navigated() -> set[Path]:
 
 
 def test_the_navigation_reaches_every_page() -> None:
-    pages = {p for p in DOCS.rglob("*.md") if "_build" not in p.parts} - {DOCS / "index.md"}
+    pages = set(DOCS.rglob("*.md")) - {DOCS / "index.md"}
     assert {p.relative_to(DOCS).as_posix() for p in pages - _navigated()} == set()
 
 
