@@ -4,6 +4,8 @@
 #   make test    set up, then run every check
 #   make setup   only prepare .venv/
 #   make coverage  run all tests, then write docs/reference/coverage.md
+#   make docs    the site of the documentation, in build/site; fails on a dead link
+#   make pictures  draw the pictures of README and documents anew, with the figures beside them
 #   make changelog show the entries since the last release, as they will be printed
 #   make check-js  lint the JavaScript of the pages (needs node and npm)
 #   make lock    rewrite requirements.lock (needs uv)
@@ -18,7 +20,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 JS := scripts/js
 JS_READY := $(JS)/node_modules/.package-lock.json
 
-.PHONY: demo check test lint kernels coverage changelog check-js js-where-node-is setup lock clean
+.PHONY: demo check test lint kernels coverage docs pictures changelog check-js js-where-node-is setup lock clean
 
 demo: setup
 	$(BIN)/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
@@ -48,6 +50,13 @@ lint: setup
 
 coverage: setup
 	$(BIN)/python scripts/write_coverage.py
+
+docs: setup
+	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet -b html docs build/site
+	@echo "build/site/index.html"
+
+pictures: setup
+	$(BIN)/python scripts/make_pictures.py
 
 changelog: setup
 	$(BIN)/towncrier build --draft --version next

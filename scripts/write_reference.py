@@ -41,7 +41,7 @@ _HEAD = """\
 A *scenario* holds everything the robot meets; the planner is never part of it. A *suite* expands
 to a list of scenarios; [Change a scenario](../howto/change_a_scenario.md) shows one. What each
 error means is on the page [errors](errors.md). The fields of planners are on
-[planners](planners.md), those of metrics on their pages in [metrics](metrics/).
+[planners](planners.md), those of metrics on their pages in [metrics](metrics_by_category.md).
 `crowdbot plugins show KIND` prints the fields of any component that is installed.
 
 A quantity is a number in the unit of its column, or text with a unit of the same dimension, such

@@ -21,7 +21,9 @@ results = typer.Typer(
     add_completion=False, invoke_without_command=True, pretty_exceptions_enable=False
 )
 
-_Out = Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")]
+_Out = Annotated[
+    Path, typer.Option("--runs", "--out", metavar="DIR", help="Root of the run directories.")
+]
 _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 _ROOT = Path("runs")
 #: Wide enough for every table; a terminal wraps what it cannot hold.
@@ -61,7 +63,7 @@ def show(
 ) -> None:
     """Show what planners reached, by metric and group.
 
-    Example: crowdbot results --out runs --metric 'collision*' --by planner,density
+    Example: crowdbot results --runs runs --metric 'collision*' --by planner,density
     """
     if context.invoked_subcommand is not None:
         return
@@ -94,7 +96,7 @@ def export(
 ) -> None:
     """Write all scores, or all runs, as one table.
 
-    Example: crowdbot results export --out runs --csv scores.csv
+    Example: crowdbot results export --runs runs --csv scores.csv
     """
     from crowdbot.core.results import tables
     from crowdbot.core.results.store import load
@@ -118,7 +120,7 @@ def failures(
 ) -> None:
     """List the runs that a campaign could not make.
 
-    Example: crowdbot results failures --out runs --traceback
+    Example: crowdbot results failures --runs runs --traceback
     """
     from crowdbot.core.results.store import load
 
@@ -147,7 +149,7 @@ def atlas(
 ) -> None:
     """Tell what moves each score, whether it tells floors from planners, and what repeats it.
 
-    Example: crowdbot results atlas --out runs --floor goal_seek --md atlas.md
+    Example: crowdbot results atlas --runs runs --floor goal_seek --md atlas.md
     """
     from crowdbot.cli._atlas_page import atlas_page
     from crowdbot.core.results.store import load

@@ -109,7 +109,7 @@ def test_silence(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["validate", FILE, "-q", "--json"]) == 0
     assert capsys.readouterr().out
     assert cli.main(["expand", FILE, "--count", "-q"]) == 0
-    assert capsys.readouterr().out.strip() == "1", "what a command was asked for is no message"
+    assert capsys.readouterr().out.strip() == "1", "what was asked for"
 
 
 def test_an_unknown_scenario_is_answered_with_the_nearest(

@@ -1,0 +1,35 @@
+"""How Sphinx makes the site: ``make docs``; pages stay readable as they are."""
+
+from importlib.metadata import version as installed
+
+project = "crowdbot"
+author = "The crowdbot developers"
+release = version = installed("crowdbot")
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+root_doc = "index"
+source_suffix = {".md": "markdown"}
+exclude_patterns = ["**/.pytest_cache", "**/node_modules"]
+
+# Every link within the documents must resolve. Types in signatures are not pages.
+nitpicky = True
+nitpick_ignore_regex = [(r"py:.*", r".*")]
+suppress_warnings = ["myst.strikethrough"]
+myst_heading_anchors = 6
+myst_enable_extensions = ["dollarmath"]
+myst_links_external_new_tab = False
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_class_signature = "separated"
+python_use_unqualified_type_names = True
+napoleon_google_docstring = True
+napoleon_numpy_docstring = False
+napoleon_use_rtype = False
+
+html_theme = "furo"
+html_title = "crowdbot"
+html_show_sphinx = False
+html_copy_source = False
+# Nothing is loaded from elsewhere: the site, its search too, works from a folder.
+html_theme_options = {"navigation_with_keys": True, "top_of_page_buttons": []}
+highlight_language = "text"

@@ -1,0 +1,136 @@
+"""Draws the pictures of README and documents, and writes the figures beside them, from one state.
+
+The gallery is drawn from the scenarios. One run is made for the replay in the README; the scores
+and times in the text beside it are those of the same run. Pictures of pages need a browser of
+playwright; without one they are left as they are, which the last line says.
+
+Examples:
+    .venv/bin/python scripts/make_pictures.py
+    .venv/bin/python scripts/make_pictures.py --gallery
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent
+IMAGES = ROOT / "docs" / "images"
+BIN = Path(sys.executable).parent / "crowdbot"
+SUITE, ID = "challenge-2020", "counter-d0250-dispersed-c20-r05"
+#: Picture -> what is drawn.
+GALLERY = {
+    "counter": (SUITE, ID),
+    "in": (SUITE, "in-d0500-fast-c20-r05"),
+    "hall": ("docs/tutorial/files/my_scenario.yaml",),
+    "floor": ("docs/howto/files/my_floor.yaml", "heeded"),
+}
+#: Metrics that the README shows, each with its line.
+SHOWN = (
+    "safe_efficiency", "contacts_per_km", "push_work", "intrusion", "effect_on_velocity",
+    "relative_jerk", "relative_path_length", "relative_time_to_goal",
+)  # fmt: skip
+#: Seconds of the run at which the replay is pictured.
+MOMENT = 40
+
+
+def main() -> int:
+    """Everything, or the gallery alone."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--gallery", action="store_true", help="only what needs no run")
+    only_gallery = parser.parse_args().gallery
+    draw_gallery(IMAGES / "gallery")
+    if only_gallery:
+        return 0
+    with tempfile.TemporaryDirectory() as folder:
+        shown = _crowdbot(
+            "simulate", SUITE, ID, "--planner", "dwa", "--out", "runs", cwd=Path(folder)
+        )
+        readme = ROOT / "README.md"
+        readme.write_text(with_figures(readme.read_text(encoding="utf-8"), shown), encoding="utf-8")
+        _crowdbot("simulate", SUITE, ID, "--planner", "stop_and_go", "--out", "runs",
+                  cwd=Path(folder))  # fmt: skip
+        _crowdbot("report", "runs", "--out", "report.html", cwd=Path(folder))
+        run = Path(folder) / "runs" / SUITE / ID / "dwa" / "seed-0" / "replay.html"
+        pages = {"replay": f"{run.as_uri()}#t={MOMENT}",
+                 "report": (Path(folder) / "report.html").as_uri()}  # fmt: skip
+        missing = [
+            name for name, url in pages.items() if not photograph(url, IMAGES / f"{name}.png")
+        ]
+    if missing:
+        print(f"no browser of playwright is installed: left as they were: {', '.join(missing)}")
+    return 0
+
+
+def draw_gallery(folder: Path) -> list[Path]:
+    """All pictures of scenarios; equal scenarios give equal bytes."""
+    folder.mkdir(parents=True, exist_ok=True)
+    made = []
+    for name, words in GALLERY.items():
+        file = folder / f"{name}.svg"
+        _crowdbot("view", *words, "--out", str(file), cwd=ROOT)
+        made.append(file)
+    return made
+
+
+def with_figures(readme: str, shown: str) -> str:
+    """The README with the scores and the time that a run printed.
+
+    Args:
+        readme: its text.
+        shown: what ``crowdbot simulate`` printed.
+
+    Raises:
+        SystemExit: the run printed no such line, or the README shows none.
+    """
+    for metric in SHOWN:
+        pattern = re.compile(rf"^ {metric} .*$", re.MULTILINE)
+        line = pattern.search(shown)
+        if line is None or not pattern.search(readme):
+            raise SystemExit(f"{metric} is not shown by the run, or not in the README")
+        readme = pattern.sub(_constant(line[0].rstrip()), readme, count=1)
+    ending = re.compile(rf"^{ID} · dwa · seed 0: .*?\n?.*?real\s+time\)$", re.MULTILINE | re.DOTALL)
+    told = ending.search(shown)
+    if told is None or not ending.search(readme):
+        raise SystemExit("how the run ended is not shown by the run, or not in the README")
+    return ending.sub(_constant(told[0]), readme, count=1)
+
+
+def _constant(text: str) -> Callable[[re.Match[str]], str]:
+    """What replaces every match by one text, in which a backslash is a backslash."""
+    return lambda _: text
+
+
+def photograph(url: str, file: Path) -> bool:
+    """A picture of a page, 1280 by 800; False without a browser."""
+    from playwright.sync_api import Error, sync_playwright
+
+    try:
+        with sync_playwright() as playwright:
+            browser = playwright.chromium.launch()
+            page = browser.new_page(viewport={"width": 1280, "height": 800})
+            page.goto(url)
+            page.wait_for_timeout(1000)
+            page.screenshot(path=file)
+            browser.close()
+    except Error:
+        return False
+    return True
+
+
+def _crowdbot(*words: str, cwd: Path) -> str:
+    environment = {**os.environ, "COLUMNS": "80", "NO_COLOR": "1"}
+    done = subprocess.run(
+        [BIN, *words], cwd=cwd, env=environment, capture_output=True, text=True, check=True
+    )
+    return done.stdout
+
+
+if __name__ == "__main__":
+    sys.exit(main())
