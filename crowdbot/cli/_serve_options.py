@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
+from crowdbot.errors import MissingLibraryError, UsageError
+
 if TYPE_CHECKING:
     from crowdbot.core.live.door import Door
     from crowdbot.core.live.planner import Manner
@@ -55,6 +57,7 @@ class Listen:
     zenoh_router: bool = False
     domain: int = 0
     distro: DistroChoice = DistroChoice.jazzy
+    foxglove: int | None = None
 
 
 def manner_of(
@@ -73,7 +76,6 @@ def manner_of(
         UsageError: two options contradict each other, or a number is out of range.
     """
     from crowdbot.core.live.planner import Manner
-    from crowdbot.errors import UsageError
 
     external = clock is ClockChoice.external
     if external and rate is not None:
@@ -107,7 +109,10 @@ def listening(session: Session, manner: Manner, listen: Listen) -> Iterator[list
         stack.callback(doors[0].close)
         if listen.zenoh is not None:
             doors.append(_zenoh(session, manner, listen.zenoh, listen))
-            stack.callback(doors[1].close)
+            stack.callback(doors[-1].close)
+        if listen.foxglove is not None:
+            doors.append(_foxglove(session, listen, listen.foxglove))
+            stack.callback(doors[-1].close)
         yield doors
 
 
@@ -125,6 +130,24 @@ def _connected(session: Session, manner: Manner, listen: Listen) -> Door:
     )
     _say(f"rosbridge: connected to {listen.connect}; waiting for commands on /cmd_vel")
     return door
+
+
+def _foxglove(session: Session, listen: Listen, port: int) -> Door:
+    needs("live", "foxglove")
+    from crowdbot.core.live.foxglove_door import FoxgloveDoor
+    from crowdbot.core.live.services import services
+
+    if not _is_this_machine(listen.host):
+        raise UsageError("--foxglove knows no token: it listens on this machine only")
+    door = FoxgloveDoor(session, listen.host, port, services(session))
+    _say(f"foxglove: ws://{listen.host}:{door.port}")
+    return door
+
+
+def _is_this_machine(host: str) -> bool:
+    from crowdbot.core.live.rosbridge.server import is_loopback
+
+    return is_loopback(host)
 
 
 def _zenoh(session: Session, manner: Manner, endpoint: str, listen: Listen) -> Door:
@@ -180,8 +203,6 @@ def needs(extra: str, *modules: str) -> None:
         MissingLibraryError: one of them is not.
     """
     from importlib.util import find_spec
-
-    from crowdbot.errors import MissingLibraryError
 
     missing = [m for m in modules if find_spec(m) is None]
     if missing:

@@ -48,6 +48,10 @@ def serve(
     distro: Annotated[
         DistroChoice, typer.Option(help="ROS 2 distribution of the nodes.")
     ] = DistroChoice.jazzy,
+    foxglove: Annotated[
+        int | None,
+        typer.Option(min=0, max=65535, metavar="PORT", help="A live view for Foxglove as well."),
+    ] = None,
     rate: Annotated[
         float | None,
         typer.Option(metavar="FACTOR", help="Keep to real time, times FACTOR; else lockstep."),
@@ -143,6 +147,7 @@ def serve(
                 zenoh_router=zenoh_router,
                 domain=domain,
                 distro=distro,
+                foxglove=foxglove,
             )
             with listening(session, manner, listen) as doors:
                 service = Service(

@@ -43,14 +43,14 @@ def latched(scene: Scene, task: Task, seed: int, ns: int) -> list[LiveMessage]:
     found = [
         (Topic.TF_STATIC, ros.transforms(scenery.static_frames(header))),
         (Topic.GOAL, ros.polygon(ns, task.goal_zone)),
-        ("/goal_pose", scenery.goal_pose(ns, header)),
+        (Topic.GOAL_POSE, scenery.goal_pose(ns, header)),
         ("/robot_description", ros.new("std_msgs/String", data=_description(scene))),
         ("/crowdbot/task", _task(scene, task, scene.model.limits, seed)),
     ]
     walls = scene.parts.walls
     if len(walls):
         found.append((Topic.WALLS, scenery.wall_lines(walls)))
-        found.append(("/map", scenery.occupancy_grid(ns, walls)))
+        found.append((Topic.MAP, scenery.occupancy_grid(ns, walls)))
     return [told(str(topic), ns, message, latched=True) for topic, message in found]
 
 

@@ -29,7 +29,7 @@ class Counts:
     Attributes:
         steps: planner steps so far.
         missed: steps for which no new command came in time.
-        refused: commands that were no command, came from somebody who does not drive, or answered
+        refused: commands that were not finite, came from somebody who does not drive, or answered
             another step.
         lag, most_lag: how far the simulation is behind the time it should keep, s.
     """

@@ -32,6 +32,8 @@ class Topic(StrEnum):
     PEOPLE_MARKER = "/pedestrians_marker"
     WALLS = "/walls_marker"
     GOAL = "/goal_zone"
+    GOAL_POSE = "/goal_pose"
+    MAP = "/map"
 
 
 class SensorTopic(NamedTuple):

@@ -285,5 +285,9 @@ class RecordingWriter:
         walls, zone = self._header.walls, self._header.goal_zone
         if walls is not None and len(walls):
             self._file.put(Topic.WALLS, 0, scenery.wall_lines(walls), latched=True)
+            self._file.put(Topic.MAP, 0, scenery.occupancy_grid(0, walls), latched=True)
         if zone is not None and len(zone):
             self._file.put(Topic.GOAL, 0, ros.polygon(0, zone), latched=True)
+        goal = scenery.goal_pose(0, self._header)
+        if goal is not None:
+            self._file.put(Topic.GOAL_POSE, 0, goal, latched=True)

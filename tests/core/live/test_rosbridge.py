@@ -160,8 +160,8 @@ def _bad_frames(rng: random.Random, count: int) -> list[str | bytes]:
     """Garbage, half messages, and messages with a field that is wrong."""
     ops = ["subscribe", "publish", "advertise", "fragment", "call_service", "unsubscribe",
            "set_level", "auth", "status", "png", "", "unadvertise"]  # fmt: skip
-    values: list[Any] = [None, True, -1, 1e308, "x", "/cmd_vel", [], {}, [[]], {"x": 1}, "9" * 50, 2**80,
-              {"linear": 3}, {"twist": []}, {"linear": {"x": "1"}},
+    values: list[Any] = [None, True, -1, 1e308, "x", "/cmd_vel", [], {}, [[]], {"x": 1}, "9" * 50,
+              2**80, {"linear": 3}, {"twist": []}, {"linear": {"x": "1"}},
               {"linear": {"x": None}}]  # fmt: skip
     frames: list[str | bytes] = []
     for _ in range(count):

@@ -100,11 +100,15 @@ def test_what_is_complete_is_left_alone(tmp_path: Path) -> None:
 
 
 def test_damage_in_the_middle_is_told(tmp_path: Path) -> None:
-    path = _cut(tmp_path)
+    path = tmp_path / "two.mcap"
+    writer = RecordingWriter(path, header_of(RUN))
+    write_samples(writer, RUN, flush_at=20)
+    writer.flush()
     data = bytearray(path.read_bytes())
-    data[len(data) // 2] ^= 0xFF
-    path.write_bytes(data + path.read_bytes())
-    with pytest.raises(InputError):
+    writer.close(None, False, "interrupted")
+    data[len(data) // 4] ^= 0xFF  # in the first of two chunks
+    path.write_bytes(data)
+    with pytest.raises(InputError, match="damaged"):
         recover(path, tmp_path / "whole.mcap")
     assert not (tmp_path / "whole.mcap").exists()
 
@@ -150,7 +154,7 @@ def test_info_reads_what_others_recorded(
         channel = writer.register_channel("/x", "json", schema)
         for k in range(5):
             writer.add_message(channel, k * 10**9, b"{}", k * 10**9)
-        writer.finish()
+        writer.finish()  # type: ignore[no-untyped-call]
     found = _json(["info", str(path), "--json"], capsys)
     assert found["topics"] == [
         {"topic": "/x", "type": "a", "messages": 5, "rate": 1.0, "bytes": 10}

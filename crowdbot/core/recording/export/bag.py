@@ -30,7 +30,9 @@ from crowdbot.core.recording.topics import Topic, is_scan, scan_topic
 Tree = Literal["truth", "odometry"]
 _FOREVER = QosTime(2147483647, 4294967295)
 _TF, _ODOMETRY = "tf2_msgs/msg/TFMessage", "nav_msgs/msg/Odometry"
-_LATCHED = (Topic.HEADER, Topic.END, Topic.TF_STATIC, Topic.WALLS, Topic.GOAL)
+_LATCHED = (
+    Topic.HEADER, Topic.END, Topic.TF_STATIC, Topic.WALLS, Topic.GOAL, Topic.GOAL_POSE, Topic.MAP,
+)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,9 +114,10 @@ def _write(bag: Any, path: Path, options: BagOptions) -> int:
 
 def _merged(path: Path, options: BagOptions) -> Iterator[_Message]:
     """What was recorded and what is added, in the order of time."""
-    header = recording_info(path).header
-    run = read_trajectories(path)
-    added = extras(header, run, options.description, markers=options.markers)
+    info = recording_info(path)
+    header, run = info.header, read_trajectories(path)
+    every = extras(header, run, options.description, markers=options.markers)
+    added = [extra for extra in every if extra.topic not in info.topics]
     recorded = _recorded(path, header, options)
     yield from heapq.merge(_sorted(recorded), _sorted(_added(added)))
 

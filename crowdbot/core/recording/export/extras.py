@@ -12,6 +12,7 @@ from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import scenery
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.people import HEADING_MIN_SPEED
+from crowdbot.core.recording.topics import Topic
 from crowdbot.core.trajectories.trajectories import RobotTrack, Trajectories
 from crowdbot.core.types.motion import Pose
 
@@ -40,12 +41,12 @@ def extras(
         markers: whether to add people and contacts as markers, one for each.
     """
     if header.walls is not None and len(header.walls):
-        yield Extra("/map", 0, scenery.occupancy_grid(0, header.walls), True)
+        yield Extra(Topic.MAP, 0, scenery.occupancy_grid(0, header.walls), True)
     if description is not None:
         yield Extra("/robot_description", 0, ros.new("std_msgs/String", data=description), True)
     goal = scenery.goal_pose(0, header)
     if goal is not None:
-        yield Extra("/goal_pose", 0, goal, True)
+        yield Extra(Topic.GOAL_POSE, 0, goal, True)
     if run.robot is not None:
         yield Extra("/robot/path", 0, _path(run, run.robot), True)
     if markers and run.agents is not None:

@@ -1,0 +1,173 @@
+"""A live view in Foxglove: its websocket protocol, through foxglove-sdk."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import threading
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from typing import Any
+
+from crowdbot.core.live.commands import twist
+from crowdbot.core.live.message import LiveMessage, Offer
+from crowdbot.core.live.services import Service
+from crowdbot.core.live.session import Session
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.types.motion import Command
+from crowdbot.errors import InputError
+
+COMMAND = "/cmd_vel"
+_TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+
+
+class FoxgloveDoor:
+    """A door for Foxglove; what it publishes on ``/cmd_vel`` drives, as from any client."""
+
+    def __init__(
+        self, session: Session, host: str, port: int, services: Mapping[str, Service]
+    ) -> None:
+        """Start to listen.
+
+        Raises:
+            InputError: the address cannot be had.
+        """
+        import foxglove
+        from foxglove.websocket import Capability
+
+        self._session = session
+        self._context = foxglove.Context()
+        self._channels: dict[str, Any] = {}
+        self._latest: dict[str, LiveMessage] = {}
+        self._clients: dict[tuple[int, int], str] = {}
+        self._lock = threading.Lock()
+        try:
+            self._server = foxglove.start_server(
+                name="crowdbot",
+                host=host,
+                port=port,
+                capabilities=[Capability.ClientPublish, Capability.Services, Capability.Time],
+                server_listener=self,
+                supported_encodings=["cdr", "json"],
+                services=[_offered(name, service) for name, service in services.items()],
+                context=self._context,
+            )
+        except RuntimeError as error:
+            raise InputError(f"{host}:{port}: cannot listen there: {error}") from error
+
+    @property
+    def port(self) -> int:
+        """The port that it has."""
+        return int(self._server.port)
+
+    # ---------------------------------------------------------------- the simulation's thread
+    def open(self, offers: Sequence[Offer]) -> None:
+        """A run begins that offers these topics."""
+        from foxglove import Channel, Schema
+
+        with self._lock:
+            self._latest.clear()
+        for offer in offers:
+            if offer.topic not in self._channels:
+                kind, text = offer.msgtype, ros.definition(offer.msgtype)
+                schema = Schema(name=kind, encoding="ros2msg", data=text)
+                self._channels[offer.topic] = Channel(
+                    offer.topic, message_encoding="cdr", schema=schema, context=self._context
+                )
+
+    def wants(self, topic: str) -> bool:
+        """Whether somebody looks at a topic."""
+        channel = self._channels.get(topic)
+        return channel is not None and bool(channel.has_sinks())
+
+    def publish(self, messages: Sequence[LiveMessage]) -> None:
+        """Show it."""
+        for message in messages:
+            if message.latched:
+                with self._lock:
+                    self._latest[message.topic] = message
+            channel = self._channels.get(message.topic)
+            if channel is not None:
+                channel.log(message.data, log_time=message.ns)
+        if messages:
+            self._server.broadcast_time(max(m.ns for m in messages))
+
+    def close(self) -> None:
+        """End all connections."""
+        self._server.stop()
+
+    # ------------------------------------------------------------------ the server's threads
+    def on_subscribe(self, client: Any, channel: Any) -> None:
+        """Somebody looks at a topic: what is latched is said again."""
+        del client
+        with self._lock:
+            message = self._latest.get(channel.topic)
+        if message is not None:
+            self._channels[channel.topic].log(message.data, log_time=message.ns)
+        self._session.listened()
+
+    def on_unsubscribe(self, client: Any, channel: Any) -> None:
+        """Nobody has to know."""
+
+    def on_client_advertise(self, client: Any, channel: Any) -> None:
+        """Somebody wants to publish."""
+        if channel.topic == COMMAND:
+            self._clients[client.id, channel.id] = f"{channel.encoding} {channel.schema_name}"
+            self._session.drive(self)
+
+    def on_client_unadvertise(self, client: Any, client_channel_id: int) -> None:
+        """Somebody does not want to any more, or is gone."""
+        if self._clients.pop((client.id, client_channel_id), None) and not self._clients:
+            self._session.leave(self)
+
+    def on_message_data(self, client: Any, client_channel_id: int, data: bytes) -> None:
+        """A command, in JSON or CDR; whatever else it is does nothing."""
+        about = self._clients.get((client.id, client_channel_id))
+        if about is None:
+            return
+        encoding, _, kind = about.partition(" ")
+        with suppress(Exception):  # decoders of others, fed with anything
+            self._session.command(self, *_command(encoding, kind, data))
+
+
+def _command(encoding: str, kind: str, data: bytes) -> tuple[Command, int | None]:
+    if encoding == "json":
+        return twist(json.loads(data))
+    package, _, name = kind.replace("/msg/", "/").partition("/")
+    full = f"{package}/msg/{name}"
+    if full not in _TWISTS:
+        raise InputError(f"{kind} is not a command")
+    message = ros.from_cdr(data, full)
+    stamp = None
+    if full.endswith("Stamped"):
+        stamp, message = message.header.stamp, message.twist
+        stamp = stamp.sec * 10**9 + stamp.nanosec
+    return Command(message.linear.x, message.angular.z, message.linear.y), stamp
+
+
+def _offered(name: str, service: Service) -> Any:
+    """A service with requests and answers in JSON."""
+    from foxglove import MessageSchema, Schema, ServiceSchema
+    from foxglove import Service as Offered
+
+    def schema(part: str, fields: Mapping[str, str]) -> Any:
+        text = json.dumps({"type": "object", "properties": {f: {} for f in fields}}).encode()
+        inner = Schema(name=f"{service.kind}{part}", encoding="jsonschema", data=text)
+        return MessageSchema(encoding="json", schema=inner)
+
+    def call(request: Any) -> bytes:
+        try:
+            values = json.loads(request.payload or b"{}")
+            if not isinstance(values, dict):
+                raise InputError("a request is an object")
+            answer = asyncio.run(service.call(values))
+        except (InputError, ValueError) as error:
+            answer = {"success": False, "message": str(error)}
+        return json.dumps(answer).encode()
+
+    described = ServiceSchema(
+        name=service.kind,
+        request=schema("_Request", service.request),
+        response=schema("_Response", service.response),
+    )
+    return Offered(name=name, schema=described, handler=call)

@@ -1,0 +1,163 @@
+"""Stand-ins for nav2: drive through rosbridge, and through zenoh, with the topics that it needs."""
+
+from __future__ import annotations
+
+import json
+import math
+import socket
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import zenoh
+from rosbags.typesys import Stores, get_typestore
+
+from crowdbot import cli
+from crowdbot.core.live.ros2_keys import Topic, hash_in
+from crowdbot.core.recording import read_trajectories
+from tests.cli.simulate_cases import ID, limit
+from tests.cli.test_serve import _connected, _free_port, _say
+from tests.core.live.standin import HEARS, PurePursuit
+
+pytestmark = pytest.mark.slow
+JAZZY: Any = get_typestore(Stores.ROS2_JAZZY)
+SECONDS = 3.0
+
+
+def _over_rosbridge(port: int, planner: PurePursuit) -> None:
+    with _connected(port) as client:
+        for topic in (*HEARS, "/crowdbot/status"):
+            _say(client, "subscribe", topic)
+        _say(client, "advertise", "/cmd_vel", type="geometry_msgs/Twist")
+        for frame in client:
+            message = json.loads(frame)
+            topic, body = message.get("topic"), message.get("msg")
+            if topic == "/map":
+                about = body["info"]
+                planner.on_map(
+                    about["origin"]["position"]["y"], about["height"], about["resolution"]
+                )
+            elif topic == "/tf":
+                for t in body["transforms"]:
+                    at, turn = t["transform"]["translation"], t["transform"]["rotation"]
+                    frames = t["header"]["frame_id"], t["child_frame_id"]
+                    planner.on_tf(*frames, at["x"], at["y"], turn["z"], turn["w"])
+            elif topic == "/odom":
+                planner.on_odom(body["twist"]["twist"]["linear"]["x"])
+            elif topic == "/scan":
+                planner.on_scan([math.inf if r is None else r for r in body["ranges"]])
+            elif topic == "/clock":
+                planner.seen.add("/clock")
+                v, w = planner.command()
+                twist = {"linear": {"x": v}, "angular": {"z": w}}
+                _say(client, "publish", "/cmd_vel", msg=twist)
+            elif topic == "/crowdbot/status" and body["state"] in ("arrived", "timeout"):
+                return
+
+
+class _OverZenoh:
+    """The same as a node of ROS 2 would, with TwistStamped; until it is closed."""
+
+    def __init__(self, endpoint: str, planner: PurePursuit) -> None:
+        self._planner = planner
+        config = zenoh.Config()
+        config.insert_json5("mode", '"client"')
+        config.insert_json5("scouting/multicast/enabled", "false")
+        config.insert_json5("connect/endpoints", f'["{endpoint}"]')
+        self.session = self._when_there(config)
+        kind = "geometry_msgs/msg/TwistStamped"
+        command = Topic("/cmd_vel", kind, hash_in(kind, "jazzy"))
+        self._publisher = self.session.declare_publisher(command.key(0))
+        from zenoh import ext
+
+        self._kept: list[Any] = []
+        for name, msgtype in HEARS.items():
+            key = Topic(name, msgtype, hash_in(msgtype, "jazzy")).key(0)
+            hear: Callable[[Any], None] = self._heard(msgtype)
+            past = ext.HistoryConfig() if name == "/map" else None
+            self._kept.append(
+                ext.declare_advanced_subscriber(self.session, key, hear, history=past)
+            )
+        token = command.token(0, "standin", 11, "MP", "standin")
+        self._kept.append(self.session.liveliness().declare_token(token))
+
+    @staticmethod
+    def _when_there(config: zenoh.Config) -> zenoh.Session:
+        end = time.monotonic() + 600.0
+        while True:
+            try:
+                return zenoh.open(config)
+            except zenoh.ZError:
+                assert time.monotonic() < end
+                time.sleep(0.1)
+
+    def _heard(self, msgtype: str) -> Callable[[Any], None]:
+        def hear(sample: Any) -> None:
+            self._take(msgtype, JAZZY.deserialize_cdr(sample.payload.to_bytes(), msgtype))
+
+        return hear
+
+    def _take(self, msgtype: str, m: Any) -> None:
+        planner = self._planner
+        if msgtype.endswith("OccupancyGrid"):
+            planner.on_map(m.info.origin.position.y, m.info.height, m.info.resolution)
+        elif msgtype.endswith("TFMessage"):
+            for t in m.transforms:
+                at, turn = t.transform.translation, t.transform.rotation
+                planner.on_tf(t.header.frame_id, t.child_frame_id, at.x, at.y, turn.z, turn.w)
+        elif msgtype.endswith("Odometry"):
+            planner.on_odom(m.twist.twist.linear.x)
+        elif msgtype.endswith("LaserScan"):
+            planner.on_scan(m.ranges.tolist())
+        else:
+            planner.seen.add("/clock")
+            self._answer(m.clock)
+
+    def _answer(self, at: Any) -> None:
+        types, kind = JAZZY.types, "geometry_msgs/msg/TwistStamped"
+        vector = types["geometry_msgs/msg/Vector3"]
+        v, w = self._planner.command()
+        twist = types["geometry_msgs/msg/Twist"](vector(v, 0.0, 0.0), vector(0.0, 0.0, w))
+        stamp = types["builtin_interfaces/msg/Time"](at.sec, at.nanosec)
+        message = types[kind](types["std_msgs/msg/Header"](stamp, "base_link"), twist)
+        self._publisher.put(bytes(JAZZY.serialize_cdr(message, kind)))
+
+
+def _serve(
+    out: Path, capsys: pytest.CaptureFixture[str], name: str, port: int, *more: str
+) -> dict[str, Any]:
+    argv = ["challenge-2020", ID, *limit(SECONDS), "--out", str(out), "--record", "used"]
+    code = cli.main(["serve", *argv, "--port", str(port), "--json", "--name", name, *more])
+    shown = capsys.readouterr()
+    assert code == 0, shown.err
+    return dict(json.loads(shown.out))
+
+
+def _way(run: dict[str, Any]) -> float:
+    robot = read_trajectories(Path(run["directory"]) / "run.mcap").robot
+    assert robot is not None
+    return float(robot.x[-1] - robot.x[0])
+
+
+def test_both_drive_alike(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    port, first = _free_port(), PurePursuit()
+    thread = threading.Thread(target=_over_rosbridge, args=(port, first), daemon=True)
+    thread.start()
+    bridged = _serve(tmp_path, capsys, "bridged", port)
+    thread.join(600.0)
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        endpoint = f"tcp/127.0.0.1:{free.getsockname()[1]}"
+    second, made = PurePursuit(), list[_OverZenoh]()
+    thread = threading.Thread(target=lambda: made.append(_OverZenoh(endpoint, second)), daemon=True)
+    thread.start()
+    options = ("--zenoh", endpoint, "--zenoh-router")
+    over_zenoh = _serve(tmp_path, capsys, "zenoh", 0, *options)
+    thread.join(600.0)
+    made[0].session.close()  # type: ignore[no-untyped-call]
+    for run, planner in ((bridged, first), (over_zenoh, second)):
+        assert planner.seen == set(HEARS)
+        assert _way(run) > 0.5
+        assert run["live"]["steps"] == 16 * SECONDS

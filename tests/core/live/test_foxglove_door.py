@@ -1,0 +1,126 @@
+"""The live view: the other side speaks Foxglove's protocol by hand."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+from websockets.sync.client import ClientConnection, connect
+
+from crowdbot.core.live.foxglove_door import FoxgloveDoor
+from crowdbot.core.live.message import Offer, told
+from crowdbot.core.live.services import services
+from crowdbot.core.live.session import Session
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.types.motion import Command
+from crowdbot.errors import InputError
+from tests.core.live.live_cases import AT_MOST, clock, until
+
+TWIST = {"linear": {"x": 0.25, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": -0.5}}
+
+
+@contextmanager
+def _both() -> Iterator[tuple[FoxgloveDoor, Session, ClientConnection]]:
+    session = Session()
+    door = FoxgloveDoor(session, "127.0.0.1", 0, services(session))
+    try:
+        door.open(
+            [
+                Offer("/clock", "rosgraph_msgs/msg/Clock"),
+                Offer("/map", "rosgraph_msgs/msg/Clock", True),
+            ]
+        )
+        uri = f"ws://127.0.0.1:{door.port}"
+        speaks: Any = ["foxglove.sdk.v1"]
+        with connect(uri, subprotocols=speaks, compression=None, close_timeout=0.5) as socket:
+            yield door, session, socket
+    finally:
+        door.close()
+
+
+def _hear(socket: ClientConnection, op: str) -> dict[str, Any]:
+    while True:
+        frame = socket.recv(timeout=AT_MOST)
+        if isinstance(frame, str):
+            message: dict[str, Any] = json.loads(frame)
+            if message["op"] == op:
+                return message
+
+
+def _data(socket: ClientConnection, opcode: int) -> bytes:
+    while True:
+        frame = socket.recv(timeout=AT_MOST)
+        if isinstance(frame, bytes) and frame[0] == opcode:
+            return frame
+
+
+def _channels(socket: ClientConnection) -> dict[str, int]:
+    found: dict[str, int] = {}
+    while len(found) < 2:
+        found |= {c["topic"]: c["id"] for c in _hear(socket, "advertise")["channels"]}
+    return found
+
+
+def _subscribe(socket: ClientConnection, number: int, channel: int) -> None:
+    wish = {"op": "subscribe", "subscriptions": [{"id": number, "channelId": channel}]}
+    socket.send(json.dumps(wish))
+
+
+def test_who_looks_gets_cdr() -> None:
+    with _both() as (door, _, socket):
+        _subscribe(socket, 7, _channels(socket)["/clock"])
+        until(lambda: door.wants("/clock"))
+        door.publish([clock(3)])
+        frame = _data(socket, 1)
+        number, ns = struct.unpack_from("<IQ", frame, 1)
+        assert (number, ns) == (7, 3)
+        assert frame[13:] == clock(3).data
+
+
+def test_who_comes_late_gets_the_map() -> None:
+    with _both() as (door, _, socket):
+        still = told("/map", 5, ros.clock(5), latched=True)
+        door.publish([still])
+        _subscribe(socket, 1, _channels(socket)["/map"])
+        assert _data(socket, 1)[13:] == still.data
+
+
+@pytest.mark.parametrize("encoding", ["json", "cdr"])
+def test_client_publish_drives(encoding: str) -> None:
+    cdr = ros.to_cdr(ros.twist(0.25, 0.0, -0.5))
+    data = json.dumps(TWIST).encode() if encoding == "json" else cdr
+    with _both() as (_, session, socket):
+        session.ask(0)
+        channel = {
+            "id": 1, "topic": "/cmd_vel", "encoding": encoding,
+            "schemaName": "geometry_msgs/msg/Twist",
+        }  # fmt: skip
+        socket.send(json.dumps({"op": "advertise", "channels": [channel]}))
+        until(lambda: session.driven)
+        for garbage in (b"", b"\xff" * 5):
+            socket.send(struct.pack("<BI", 1, 1) + garbage)
+        socket.send(struct.pack("<BI", 1, 1) + data)
+        assert session.answer(AT_MOST, lambda: None) == Command(0.25, -0.5)
+        socket.send(json.dumps({"op": "unadvertise", "channelIds": [1]}))
+        until(lambda: not session.driven)
+
+
+def test_services_reset_and_pause() -> None:
+    with _both() as (_, session, socket):
+        offered = {s["name"]: s["id"] for s in _hear(socket, "advertiseServices")["services"]}
+        for name in ("/crowdbot/pause", "/crowdbot/reset"):
+            head = struct.pack("<BIII", 2, offered[name], 1, 4) + b"json"
+            socket.send(head + b"{}")
+            answer = _data(socket, 3)
+            assert json.loads(answer[17:])["success"]
+        assert session.paused
+        assert session.take_request() == "reset"
+
+
+def test_an_address_that_is_taken_is_told() -> None:
+    with _both() as (door, session, _), pytest.raises(InputError, match="cannot listen"):
+        FoxgloveDoor(session, "127.0.0.1", door.port, {})
