@@ -45,7 +45,7 @@ def open_document(spec: str, registry: Registry) -> OpenDocument:
         SpecError: the document cannot be taken apart.
         UnknownNameError: neither a file nor a packaged suite has this name.
     """
-    roots = _folders(registry)
+    roots = plugin_folders(registry)
     path, name = _find(spec, roots, registry)
     try:
         suite = load_document(path, roots, name=name, installed=installed(registry))
