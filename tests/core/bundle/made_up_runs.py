@@ -168,6 +168,7 @@ def rewrite(
 
     with zipfile.ZipFile(bundle) as file:
         members = {n: file.read(n) for n in file.namelist()}
+        kept = {i.filename for i in file.infolist() if i.compress_type == zipfile.ZIP_STORED}
     for name, function in change.items():
         changed = function(members[name])
         if changed is None:
@@ -185,7 +186,7 @@ def rewrite(
     target = bundle.with_name(f"changed-{bundle.name}")
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as file:
         for name, content in members.items():
-            stored = honest and name.endswith(".mcap")
+            stored = name in kept
             kind = zipfile.ZIP_STORED if stored else zipfile.ZIP_DEFLATED
             file.writestr(name, content, kind)
     return target
