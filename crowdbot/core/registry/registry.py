@@ -36,7 +36,7 @@ Built = TypeVar("Built")
 
 
 @dataclass(frozen=True, slots=True)
-class Discovery:
+class RegistrySource:
     """What `discover` was asked for."""
 
     extra: tuple[Path, ...]
@@ -59,7 +59,7 @@ class Registry:
     _by_category: Mapping[str, Mapping[str, Component[Any]]] = field(repr=False)
     excluded: tuple[Plugin, ...] = ()
     allowed: tuple[str, ...] | None = None
-    source: Discovery | None = None
+    source: RegistrySource | None = None
 
     def components(self, category: str) -> Mapping[str, Component[Any]]:
         """Kind -> component, sorted by kind."""
@@ -254,7 +254,7 @@ def discover(
     """
     names = None if allow is None else tuple(allow)
     found = find_plugins(extra=extra, allow=names, entry_points=entry_points)
-    source = Discovery(tuple(Path(p).resolve() for p in extra), names, entry_points)
+    source = RegistrySource(tuple(Path(p).resolve() for p in extra), names, entry_points)
     registry = assemble(found.plugins)
     return replace(registry, excluded=found.excluded, allowed=found.allowed, source=source)
 

@@ -111,9 +111,9 @@ class OwnSide:
 
     def _kind(self) -> tuple[type, Callable[[], Planner]]:
         from crowdbot.core.planning.registered import build_of_kind, load_kind  # they are slow
-        from crowdbot.core.registry.registry import Discovery, discover
+        from crowdbot.core.registry.registry import RegistrySource, discover
 
-        where: Discovery = self._what["plugins"]
+        where: RegistrySource = self._what["plugins"]
         registry = discover(extra=where.extra, allow=where.allow, entry_points=where.entry_points)
         spec = load_kind(self._what["kind"], self._what["parameters"], registry)
         return type(spec), lambda: build_of_kind(spec, registry)

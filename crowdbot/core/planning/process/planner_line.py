@@ -20,7 +20,9 @@ LONGEST_ANSWER = 1 << 20
 #: So much of what a planner prints in a run is shown, bytes.
 LONGEST_OUTPUT = 1 << 20
 _TAIL = 16_384
-_CRASH = re.compile(r"Fatal Python error: .*?File \"([^\"]+)\", line (\d+) in", re.DOTALL)
+_CRASH = "Fatal Python error: "
+#: A frame of what Python says then; not of code that has no file.
+_FRAME = re.compile(r"File \"([^<\"][^\"]*)\", line (\d+) in")
 
 
 class LineClosed(Exception):  # noqa: N818 - what happened, told by who knows the planner
@@ -98,8 +100,9 @@ class PlannerLine:
     def last_words(self) -> str:
         """The last line that was printed, or where Python says that it crashed."""
         text = self._tail.decode(errors="replace")
-        if crash := _CRASH.search(text):
-            return f"{crash[1]}:{crash[2]}"
+        _, crash, trace = text.rpartition(_CRASH)
+        if crash and (frame := _FRAME.search(trace)):
+            return f"{frame[1]}:{frame[2]}"
         lines = [line.strip() for line in text.splitlines() if line.strip()]
         return lines[-1][:200] if lines else ""
 

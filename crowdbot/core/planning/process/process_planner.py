@@ -197,6 +197,7 @@ class ProcessPlanner:
         except BaseException:
             for one in (ours_out, ours_in, output):
                 os.close(one)
+            server.sweep()
             raise
         finally:
             for one in (theirs_in, theirs_out, theirs_output):
