@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from crowdbot.core.crowd.routing.router import rounded
 from tests.core.crowd.routing.floor_plans import SIZE, crossings, outline, rooms
 
 Array = NDArray[np.float64]
-COSTS = {
+COSTS: dict[str, dict[str, Any]] = {
     "avoid": {"kind": "ttca_dca", "weight": 20, "range": 5.0},
     "reflex": {"kind": "rvo", "range": {"value": 0.3, "measure": "surface"}},
 }
