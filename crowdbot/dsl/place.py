@@ -87,7 +87,7 @@ class Place:
     torus: tuple[float, float, float, float] | None = None
 
     def bodies(self, height: float) -> Place:
-        """What people of a height go around: it begins below their heads, and is no mere step."""
+        """What people of a height go around: it begins below their heads, and is not a step."""
         return Place(
             faces=tuple(f for f in self.faces if f.stops_crowd and f.heights[0] < height),
             solids=tuple(s for s in self.solids if s.stops_crowd and s.heights[0] < height),

@@ -52,7 +52,7 @@ def validate(model: type[M], data: Any, tree: Node) -> tuple[M | None, list[Diag
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class TreePlace:
     """How far a path leads into a tree.
 
     Attributes:
@@ -75,7 +75,7 @@ class Place:
         return ".".join(self.path) or "the document"
 
 
-def locate(tree: Node, loc: Iterable[str | int], model: type[BaseModel] | None = None) -> Place:
+def locate(tree: Node, loc: Iterable[str | int], model: type[BaseModel] | None = None) -> TreePlace:
     """Follow a path; pydantic's discriminator tags in it are dropped."""
     node, entry, path, rest = tree, None, [], list(loc)
     types: tuple[Any, ...] = (model,) if model else ()
@@ -94,7 +94,7 @@ def locate(tree: Node, loc: Iterable[str | int], model: type[BaseModel] | None =
         entry = node.entries.get(str(rest[0]))
         path.append(str(rest.pop(0)))
         node = child
-    return Place(node, entry, tuple(path), tuple(rest), types)
+    return TreePlace(node, entry, tuple(path), tuple(rest), types)
 
 
 def mark_of(tree: Node, *path: str | int) -> Mark:
@@ -102,7 +102,7 @@ def mark_of(tree: Node, *path: str | int) -> Mark:
     return locate(tree, path).node.mark
 
 
-def field_names(place: Place) -> list[str]:
+def field_names(place: TreePlace) -> list[str]:
     """The fields that the model knows at a place."""
     tag = kind_of(place.node)
     models = [t for t in place.types if _is_model(t) and _has_kind(t, tag)]
@@ -132,7 +132,7 @@ def diagnose(error: Error, tree: Node, model: type[BaseModel]) -> Diagnostic:
     return Diagnostic(code, message, place.node.mark, hint)
 
 
-def _unknown_field(parent: Place, name: str) -> Diagnostic:
+def _unknown_field(parent: TreePlace, name: str) -> Diagnostic:
     entry = parent.node.entries.get(name)
     mark = entry.key if entry else parent.node.mark
     others = [known for known in field_names(parent) if known != name]
@@ -150,7 +150,7 @@ def _unknown_field(parent: Place, name: str) -> Diagnostic:
     return Diagnostic("E102", f"unknown field '{name}'{where}", mark, hint)
 
 
-def _of_another_kind(parent: Place, name: str) -> str:
+def _of_another_kind(parent: TreePlace, name: str) -> str:
     """A hint where a kind that is not the one chosen has the field."""
     tag = kind_of(parent.node)
     kinds = [k for t in parent.types if _is_model(t) for k in _kinds(t) if name in t.model_fields]
@@ -161,7 +161,7 @@ def _of_another_kind(parent: Place, name: str) -> str:
     return f"a field of kind '{kinds[0]}', and this is '{chosen}'"
 
 
-def missing_field(tree: Node, place: Place, name: str) -> Diagnostic:
+def missing_field(tree: Node, place: TreePlace, name: str) -> Diagnostic:
     """A field that is required at a place; an override that made the place up is to blame."""
     node = tree
     for depth, key in enumerate(place.path):
@@ -190,7 +190,7 @@ def missing_package(kind: str) -> str:
     return f"is the package providing '{prefix}' installed?" if dot else ""
 
 
-def _unknown_kind(error: Error, place: Place) -> Diagnostic:
+def _unknown_kind(error: Error, place: TreePlace) -> Diagnostic:
     kind = place.node.child("kind") or place.node
     context = error["ctx"]
     listed = str(context.get("expected_tags") or context.get("expected"))
@@ -207,7 +207,7 @@ def _unknown_kind(error: Error, place: Place) -> Diagnostic:
     return Diagnostic("E120", f"unknown {category} kind '{kind.value}'", kind.mark, hint)
 
 
-def _bad_value(error: Error, kind: str, place: Place) -> tuple[str, str, str]:
+def _bad_value(error: Error, kind: str, place: TreePlace) -> tuple[str, str, str]:
     """Code, message and hint for a value that is there and wrong."""
     given, name, context = _describe(place.node), place.name, error.get("ctx", {})
     text = str(error["msg"]).removeprefix("Value error, ")
@@ -240,7 +240,7 @@ def _bad_value(error: Error, kind: str, place: Place) -> tuple[str, str, str]:
     return "E115", f"{name}: {text}", ""
 
 
-def _as_map(wanted: str, place: Place) -> str:
+def _as_map(wanted: str, place: TreePlace) -> str:
     """How to write a map where there is something else."""
     if wanted == "a map of names":
         return "write {NAME: …}"

@@ -11,7 +11,7 @@ from crowdbot.core.crowd.agents import PORTAL, Agents
 from crowdbot.core.crowd.groups import Cohesion
 from crowdbot.core.crowd.periodic_boundary import Box
 from crowdbot.core.crowd.response.parameters import Human, Response
-from crowdbot.core.crowd.routing.parameters import MeshRouting
+from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.types.arrays import Array
 
@@ -58,7 +58,7 @@ class CrowdWorld:
     dissipation: float = 0.3
     goal_key: int = 0
     decision_rate: float = 16.0
-    routing: MeshRouting | None = None
+    routing: WayFinding | None = None
     parity: bool = False
 
     def __post_init__(self) -> None:

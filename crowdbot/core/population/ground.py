@@ -33,7 +33,7 @@ class Ground:
         self._solids: tuple[Array, ...] = ()
         if parts is not None and crowd is not None:
             self._walls, self._pillars, self._solids = parts.in_the_way(crowd.body.height)
-        routing = None if crowd is None else crowd.routing
+        routing = None if crowd is None or parts is None else crowd.routing
         self.finds_way = routing is not None and routing.kind == "mesh"
         self._space = cache(self._free_space)
 

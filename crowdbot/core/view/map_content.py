@@ -131,7 +131,7 @@ def _places(content: MapContent, world: Map) -> Iterator[Shape]:
 
 
 def _walls(parts: EnvironmentParts, world: Map) -> Iterator[Shape]:
-    """Solids as areas, walls that are no side of one as lines, pillars as discs."""
+    """Solids as areas, walls that are not a side of one as lines, pillars as discs."""
     corners = {_rounded(p) for outline in parts.solids for p in outline.tolist()}
     for outline, heights in zip(parts.solids, parts.solid_heights.tolist(), strict=True):
         yield world.path(outline.tolist(), solid_role(*heights), closed=True)

@@ -115,7 +115,7 @@ class FloorPlanSpec(EnvironmentSpec):
         """The walls of the plan.
 
         Raises:
-            InputError: the file cannot be read, or is no plan.
+            InputError: the file cannot be read, or is not a plan.
         """
         # Polygons need shapely, with numpy: only documents with a plan wait for them.
         build = import_module("crowdbot.plugins.environments.floor_plan_build")

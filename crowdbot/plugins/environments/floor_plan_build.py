@@ -47,7 +47,7 @@ def place_of(spec: FloorPlanSpec) -> Place:
     """The walls of a plan.
 
     Raises:
-        InputError: its file cannot be read, or is no plan.
+        InputError: its file cannot be read, or is not a plan.
     """
     file = None if spec.file is None else spec.file.file
     image = None if spec.image is None else spec.image.file

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely  # type: ignore[import-untyped,unused-ignore]
+from numpy.typing import NDArray
 
 from crowdbot.cli import main
 from crowdbot.core.interfaces import EnvironmentParts
-from crowdbot.core.types.arrays import Array
 from crowdbot.plugins.environments.floor_plan import FloorPlanSpec
 from crowdbot.plugins.environments.halls import ShedSpec
 from crowdbot.plugins.environments.place_build import build
@@ -53,7 +53,7 @@ def test_the_geojson_gives_the_same_place(folder: Path) -> None:
     assert kinds.count("portal") == 1
 
 
-def _cells(folder: Path) -> tuple[Array, tuple[float, float], float]:
+def _cells(folder: Path) -> tuple[NDArray[np.uint8], tuple[float, float], float]:
     content = (folder / "map.pgm").read_bytes()
     magic, size, most, pixels = content.split(b"\n", 3)
     width, height = map(int, size.split())

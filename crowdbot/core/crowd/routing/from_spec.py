@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from crowdbot.core.crowd.routing.parameters import MeshRouting
+from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.dsl import routing as dsl
 from crowdbot.dsl.scenario import Crowd
 from crowdbot.dsl.seeds import stream_seed
 
 
-def routing_of(crowd: Crowd) -> MeshRouting | None:
+def routing_of(crowd: Crowd) -> WayFinding | None:
     """How a crowd finds its way; None straight to its goals. Draws are the stream's "routing"."""
     spec = crowd.routing
     if not isinstance(spec, dsl.MeshRouting):
         return None
-    return MeshRouting(
+    return WayFinding(
         spread=spec.spread,
         patience=spec.patience,
         detour=spec.detour,

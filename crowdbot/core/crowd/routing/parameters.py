@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MeshRouting:
+class WayFinding:
     """People find their way around walls and pillars; see `crowdbot.dsl.routing`.
 
     Attributes:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.crowd.routing.aims import Habits, find_aims
-from crowdbot.core.crowd.routing.parameters import MeshRouting
+from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.crowd.routing.route_map import RouteMap
 from crowdbot.core.types.arrays import Array
 
@@ -28,7 +28,7 @@ class Router:
         routing: how they choose.
     """
 
-    def __init__(self, agents: Agents, walls: Array, pillars: Array, routing: MeshRouting) -> None:
+    def __init__(self, agents: Agents, walls: Array, pillars: Array, routing: WayFinding) -> None:
         points = np.concatenate([np.stack([agents.x, agents.y], axis=1), agents.route])
         self._agents = agents
         self._habits = Habits(

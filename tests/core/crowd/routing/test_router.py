@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,12 +13,12 @@ from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.agents import REMOVE
 from crowdbot.core.crowd.from_spec import policy_of
-from crowdbot.core.crowd.routing.parameters import MeshRouting
+from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.crowd.routing.router import rounded
 from tests.core.crowd.routing.floor_plans import SIZE, crossings, outline, rooms
 
 Array = NDArray[np.float64]
-COSTS = {
+COSTS: dict[str, dict[str, Any]] = {
     "avoid": {"kind": "ttca_dca", "weight": 20, "range": 5.0},
     "reflex": {"kind": "rvo", "range": {"value": 0.3, "measure": "surface"}},
 }
@@ -27,13 +28,13 @@ DOOR = np.array([*ROOM, *outline(-0.1, -5, 0.1, 2.4), *outline(-0.1, 3.6, 0.1, 5
 
 
 def _engine(
-    walls: Array, starts: Array, goals: Array, routing: MeshRouting | None = None
+    walls: Array, starts: Array, goals: Array, routing: WayFinding | None = None
 ) -> CrowdEngine:
     agents = Agents.of(
         x=starts[:, 0], y=starts[:, 1], preferred_speed=1.3,
         routes=[[tuple(g)] for g in goals.tolist()], at_goal=REMOVE,
     )  # fmt: skip
-    world = CrowdWorld(walls=walls, routing=routing or MeshRouting(key=3))
+    world = CrowdWorld(walls=walls, routing=routing or WayFinding(key=3))
     return CrowdEngine(agents, world, policy_of({"kind": "velocity_space"}, COSTS))
 
 
@@ -52,9 +53,9 @@ def test_they_aim_beside_the_corner_each_at_a_place_of_its_own() -> None:
     assert len(np.unique(aims[:, 1])) == 20
     again = _aims(_engine(DOOR, starts, goals))
     assert np.array_equal(aims, again)
-    other = _aims(_engine(DOOR, starts, goals, MeshRouting(key=4)))
+    other = _aims(_engine(DOOR, starts, goals, WayFinding(key=4)))
     assert not np.array_equal(aims, other)
-    together = _aims(_engine(DOOR, starts, goals, MeshRouting(key=4, spread=0.0)))
+    together = _aims(_engine(DOOR, starts, goals, WayFinding(key=4, spread=0.0)))
     assert len(np.unique(together[:, 1])) <= 2
 
 
@@ -83,7 +84,7 @@ def test_who_makes_no_headway_takes_the_other_door() -> None:
         ]
     )
     start, goal = np.array([[-4.0, 0.2]]), np.array([[4.0, -0.2]])
-    engine = _engine(walls, start, goal, MeshRouting(patience=1.0, detour=1.5))
+    engine = _engine(walls, start, goal, WayFinding(patience=1.0, detour=1.5))
     flat = engine.initial_state()
     _, rows = s.view(flat)
     assert rows[0, s.AIM_Y] < 0.0
@@ -93,7 +94,7 @@ def test_who_makes_no_headway_takes_the_other_door() -> None:
             engine.advance(flat)
     assert rows[0, s.AIM_Y] > 1.0
     assert rows[0, s.DETOURS] == 1.0
-    stubborn = _engine(walls, start, goal, MeshRouting(patience=1.0, detour=1.0))
+    stubborn = _engine(walls, start, goal, WayFinding(patience=1.0, detour=1.0))
     flat = stubborn.initial_state()
     _, rows = s.view(flat)
     for _ in range(20):
@@ -120,7 +121,7 @@ def test_few_maps_for_many_radii() -> None:
 
 def test_no_routing_on_a_torus() -> None:
     with pytest.raises(ValueError, match="periodic boundary"):
-        CrowdWorld(routing=MeshRouting(), periodic_boundary=(0.0, 1.0, 0.0, 1.0))
+        CrowdWorld(routing=WayFinding(), periodic_boundary=(0.0, 1.0, 0.0, 1.0))
 
 
 @pytest.mark.slow
