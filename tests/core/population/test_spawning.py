@@ -82,7 +82,9 @@ def test_density_counts_people_on_the_area() -> None:
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(1, 30), st.lists(st.integers(1, 6), min_size=1, max_size=3), st.integers(0, 99))
-def test_groups_are_near_and_share_their_goals(count: int, sizes: list[int], seed: int) -> None:
+def test_groups_are_near_and_go_to_goals_beside_each_other(
+    count: int, sizes: list[int], seed: int
+) -> None:
     spawn = {
         "area": {"centre": [20, 0], "size": [20, 20]},
         "count": count,
@@ -97,7 +99,10 @@ def test_groups_are_near_and_share_their_goals(count: int, sizes: list[int], see
         first = members[0]
         away = np.hypot(table.x[members] - table.x[first], table.y[members] - table.y[first])
         assert np.all(away <= group_reach(len(members), 0.4) + 1e-12)
-        assert len({table.goals[i] for i in members}) == 1
+        for stop in np.array([table.goals[i] for i in members]).swapaxes(0, 1):
+            apart = np.hypot(*(stop[:, np.newaxis] - stop).T) + 9.0 * np.eye(len(members))
+            assert apart.min() == pytest.approx(2.5 * 0.2)  # neighbours on a circle
+            assert np.ptp(np.hypot(*(stop - stop.mean(axis=0)).T)) < 1e-9
         assert len(members) > 1
     if 1 not in sizes:
         cut += int(np.count_nonzero(alone))
