@@ -15,7 +15,7 @@ from crowdbot.core.types.arrays import Array
 SAMPLES = 2000
 #: Added to each bin, so that an empty one is not impossible.
 _PRIOR = 0.1
-#: Fewer samples of the crowd than this are no match at all.
+#: Fewer samples of the crowd than this match nothing.
 _FEWEST = 30
 
 

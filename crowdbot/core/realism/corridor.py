@@ -85,7 +85,7 @@ def simulate(model: CrowdModel, corridor: Corridor) -> Tracks:
 
 
 def _speeds(model: CrowdModel, count: int, rng: np.random.Generator) -> Array:
-    """Preferred speeds, one from each slice of the distribution: a few people are no outliers."""
+    """Preferred speeds, one from each slice of the distribution: nobody is an outlier."""
     normal = NormalDist(model.speed, max(model.speed_deviation, 1e-9))
     slices = (rng.permutation(count) + rng.uniform(0.001, 0.999, count)) / count
     drawn = np.array([normal.inv_cdf(u) for u in slices])

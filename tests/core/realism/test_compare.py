@@ -58,9 +58,10 @@ def test_features_of_two_who_meet() -> None:
     assert tracks.flow == "counter"
     rows, windows = features(tracks)
     assert np.allclose(rows[:, SPEED], 1.0)
-    assert rows[:, NEAREST].min() >= 0.0
-    # The two side by side are 0.6 m apart, all the time; nobody touches a disc of 0.4 m at 0.6 m.
-    assert np.allclose(rows[rows[:, NEAREST] > 0.59][:, NEAREST].max(), 0.6, atol=0.25)
+    # The two who walk side by side are 0.6 m apart, all the time; the third meets one of them.
+    beside = rows[np.isclose(rows[:, NEAREST], 0.6, atol=1e-6)]
+    assert len(beside) >= 0.6 * len(rows)
+    assert rows[:, NEAREST].max() == pytest.approx(3.5)
     assert len(windows)
 
 

@@ -26,7 +26,7 @@ def steering_of(spec: SteeringSpec | None, key: int = 0) -> Steering:
     """The steering that a spec describes; units are those of its fields.
 
     Args:
-        spec: None is none.
+        spec: None has no part.
         key: of the random numbers of `Wander`: the seed of the stream ``crowd.wander``.
     """
     found = {}
