@@ -15,7 +15,6 @@ nitpicky = True
 nitpick_ignore_regex = [(r"py:.*", r".*")]
 suppress_warnings = ["myst.strikethrough"]
 myst_heading_anchors = 6
-myst_enable_extensions = ["dollarmath"]
 myst_links_external_new_tab = False
 
 autodoc_member_order = "bysource"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import importlib
 import os
 import platform
 import shutil
@@ -23,7 +24,7 @@ _EXTRAS = {"duckdb": "analysis", "pandas": "analysis", "pyarrow": "analysis",
 _DISK = 2 * 10**9
 
 
-class Finding(NamedTuple):
+class Examined(NamedTuple):
     """One thing that was looked at: ``ok``, ``note`` (something cannot be done) or ``missing``."""
 
     what: str
@@ -31,13 +32,13 @@ class Finding(NamedTuple):
     found: str
 
 
-def machine(out: Path) -> Iterator[Finding]:
+def machine(out: Path) -> Iterator[Examined]:
     """Everything but the self-test; quick.
 
     Args:
         out: where runs would go.
     """
-    yield Finding("system", "ok", f"{platform.platform()}, Python {platform.python_version()}")
+    yield Examined("system", "ok", f"{platform.platform()}, Python {platform.python_version()}")
     yield from _packages()
     yield _drake()
     yield _egl()
@@ -46,14 +47,14 @@ def machine(out: Path) -> Iterator[Finding]:
     yield _disk(out)
 
 
-def _packages() -> Iterator[Finding]:
+def _packages() -> Iterator[Examined]:
     for name in _NEEDED:
         found = _version(name)
-        yield Finding(name, "ok" if found else "missing", found or "not installed")
+        yield Examined(name, "ok" if found else "missing", found or "not installed")
     for name, extra in _EXTRAS.items():
         found = _version(name)
         hint = f"not installed; 'pip install crowdbot[{extra}]' brings it"
-        yield Finding(name, "ok" if found else "note", found or hint)
+        yield Examined(name, "ok" if found else "note", found or hint)
 
 
 def _version(name: str) -> str:
@@ -63,49 +64,49 @@ def _version(name: str) -> str:
         return ""
 
 
-def _drake() -> Finding:
+def _drake() -> Examined:
     try:
-        import pydrake.common  # noqa: F401
+        importlib.import_module("crowdbot.core.sim.simulate")
     except ImportError as error:
-        return Finding("Drake", "missing", f"cannot be imported: {error}")
-    return Finding("Drake", "ok", "can be imported")
+        return Examined("Drake", "missing", f"cannot be imported: {error}")
+    return Examined("Drake", "ok", "can be imported")
 
 
-def _egl() -> Finding:
+def _egl() -> Examined:
     """Colour images of cameras are rendered through EGL; nothing else needs it."""
     for name in ("libEGL.so.1", "libEGL.so"):
         try:
             ctypes.CDLL(name)
         except OSError:
             continue
-        return Finding("EGL", "ok", name)
-    return Finding("EGL", "note", "no libEGL: cameras have depth, but no colour images")
+        return Examined("EGL", "ok", name)
+    return Examined("EGL", "note", "no libEGL: cameras have depth, but no colour images")
 
 
-def _kernels() -> Finding:
+def _kernels() -> Examined:
     from crowdbot.core.support.compile_cache import kernel_folder, nothing_compiled
 
     folder = os.environ.get("NUMBA_CACHE_DIR") or str(kernel_folder())
     if nothing_compiled():
-        return Finding("kernels", "note", f"not compiled yet: the first run does it, in {folder}")
-    return Finding("kernels", "ok", f"compiled, in {folder}")
+        return Examined("kernels", "note", f"not compiled yet: the first run does it, in {folder}")
+    return Examined("kernels", "ok", f"compiled, in {folder}")
 
 
-def _cores() -> Finding:
+def _cores() -> Examined:
     usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    return Finding("cores", "ok", f"{usable} usable; a campaign runs as many scenarios at a time")
+    return Examined("cores", "ok", f"{usable} usable; a campaign runs as many scenarios at a time")
 
 
-def _disk(out: Path) -> Finding:
+def _disk(out: Path) -> Examined:
     folder = next(p for p in (out.absolute(), *out.absolute().parents) if p.is_dir())
     free = shutil.disk_usage(folder).free
     text = f"{free / 1e9:.1f} GB free at {folder}"
     if not os.access(folder, os.W_OK):
-        return Finding("disk", "missing", f"{folder} cannot be written")
-    return Finding("disk", "ok" if free > _DISK else "note", text)
+        return Examined("disk", "missing", f"{folder} cannot be written")
+    return Examined("disk", "ok" if free > _DISK else "note", text)
 
 
-def self_test() -> Finding:
+def self_test() -> Examined:
     """One simulated second among people, recorded and scored, in a folder that goes away."""
     from crowdbot import api
 
@@ -120,7 +121,7 @@ def self_test() -> Finding:
             run = api.simulate(scenario, planner="dwa", out=folder)
             good = run.status == "timeout" and len(api.evaluate(run, "speed")) > 0
     except (CrowdbotError, ImportError) as error:
-        return Finding("self-test", "missing", f"failed: {error}")
+        return Examined("self-test", "missing", f"failed: {error}")
     seconds = time.perf_counter() - begin
     text = f"simulated, recorded and scored in {seconds:.1f} s"
-    return Finding("self-test", "ok" if good else "missing", text)
+    return Examined("self-test", "ok" if good else "missing", text)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from crowdbot.core.registry.entry_points import ALLOW
-from crowdbot.core.registry.plugin import Plugin
-from crowdbot.core.registry.registry import Registry
-from crowdbot.dsl.component import Component
+if TYPE_CHECKING:
+    from crowdbot.core.registry.plugin import Plugin
+    from crowdbot.core.registry.registry import Registry
+    from crowdbot.dsl.component import Component
 
 _HEAD = ["plugin", "distribution", "api", "state", "provides"]
 _FEW = 6
@@ -16,6 +16,8 @@ _FEW = 6
 
 def as_text(registry: Registry) -> str:
     """One row for each plugin; those that are not allowed come last."""
+    from crowdbot.core.registry.entry_points import ALLOW
+
     rows = [_row(p) for p in registry.plugins]
     why = f"not on the list {ALLOW}" if registry.allowed else "--no-plugins"
     rows += [[p.name, p.distribution, "–", "off", why] for p in registry.excluded]

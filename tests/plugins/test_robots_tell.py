@@ -108,10 +108,12 @@ def test_a_partial_mount_keeps_the_other_defaults() -> None:
 
 def _sensor(**fields: Any) -> SensorSpec:
     annotations = dict.fromkeys(fields, float)
-    return type("S", (SensorSpec,), {
+    made: Any = type("S", (SensorSpec,), {
         "__annotations__": {"kind": Literal["x"], **annotations}, "kind": "x", **fields,
         "__module__": __name__,
     })()  # fmt: skip
+    assert isinstance(made, SensorSpec)
+    return made
 
 
 def test_sensors_of_plugins_show_what_they_reach() -> None:

@@ -14,10 +14,10 @@ from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.errors import SimulationError
 from crowdbot.plugins.sensors.wheel_odometry import WHEEL_ODOMETRY, WheelOdometrySpec
-from crowdbot.plugins.sensors.wheel_odometry_build import build
+from crowdbot.plugins.sensors.wheel_odometry_build import TRACK, WHEEL_RADIUS, build
 
 SPEC = WheelOdometrySpec()
-TICK = 2 * math.pi * SPEC.wheel_radius / SPEC.ticks_per_turn
+TICK = 2 * math.pi * WHEEL_RADIUS / SPEC.ticks_per_turn
 DT = 1 / 64
 Array = NDArray[np.float64]
 START = Pose(2.5, -1.0, 0.7)
@@ -37,8 +37,8 @@ def drive(left: Array, right: Array, spec: WheelOdometrySpec = SPEC, start: Pose
 
 def wheels(v: float, w: float, seconds: float, offset: float = 0.0) -> tuple[Array, Array]:
     t: Array = np.arange(round(seconds / DT) + 1, dtype=np.float64) * DT
-    left, right = v - w * SPEC.track / 2, v + w * SPEC.track / 2
-    return offset + left * t / SPEC.wheel_radius, offset + right * t / SPEC.wheel_radius
+    left, right = v - w * TRACK / 2, v + w * TRACK / 2
+    return offset + left * t / WHEEL_RADIUS, offset + right * t / WHEEL_RADIUS
 
 
 def test_info() -> None:
@@ -71,18 +71,18 @@ def test_straight_lines_and_circles(v: float, w: float, offset: float) -> None:
         ahead, aside = v * seconds, 0.0
     c, s = math.cos(0.7), math.sin(0.7)
     # A count is off by up to a tick at either end; that turns the whole way by 2 ticks / track.
-    doubt = 2 * TICK + 2 * TICK / SPEC.track * abs(v) * seconds + 1e-4
+    doubt = 2 * TICK + 2 * TICK / TRACK * abs(v) * seconds + 1e-4
     assert end[0] == pytest.approx(2.5 + c * ahead - s * aside, abs=doubt)
     assert end[1] == pytest.approx(-1.0 + s * ahead + c * aside, abs=doubt)
     error = math.remainder(end[2] - 0.7 - turn, 2 * math.pi)
-    assert abs(error) <= 2 * TICK / SPEC.track + 1e-9
+    assert abs(error) <= 2 * TICK / TRACK + 1e-9
     assert -math.pi <= end[2] <= math.pi
     assert abs(end[3] - v) <= TICK / DT + 1e-9
-    assert abs(end[4] - w) <= 2 * TICK / SPEC.track / DT + 1e-9
+    assert abs(end[4] - w) <= 2 * TICK / TRACK / DT + 1e-9
 
 
 def test_quantised_to_whole_ticks() -> None:
-    slow = np.linspace(0.0, 3.5 * TICK / SPEC.wheel_radius, 30)
+    slow = np.linspace(0.0, 3.5 * TICK / WHEEL_RADIUS, 30)
     x = drive(slow, slow, start=Pose(0, 0, 0))[:, 0] / TICK
     assert x == pytest.approx(np.round(x), abs=1e-9)
     assert sorted(set(np.round(x))) == [0, 1, 2, 3]
@@ -141,10 +141,10 @@ def test_noisy_wheels_drift_as_a_random_walk() -> None:
     rows = drive(still, still, spec, Pose(0, 0, 0))
     assert build(spec).info().random
     turn = np.diff(np.unwrap(rows[:, 2]))
-    expected = 0.5 * DT * SPEC.wheel_radius / SPEC.track * math.sqrt(2.0)
+    expected = 0.5 * DT * WHEEL_RADIUS / TRACK * math.sqrt(2.0)
     assert turn.std() == pytest.approx(expected, rel=0.05)
     assert abs(turn.mean()) < 4 * expected / math.sqrt(steps)
-    assert rows[1:, 3].std() == pytest.approx(0.5 * SPEC.wheel_radius / math.sqrt(2.0), rel=0.05)
+    assert rows[1:, 3].std() == pytest.approx(0.5 * WHEEL_RADIUS / math.sqrt(2.0), rel=0.05)
 
 
 def turned(spec: WheelOdometrySpec, yaws: Array, wheel: float = 0.0) -> Array:
