@@ -16,6 +16,7 @@ from crowdbot.errors import MissingLibraryError, UsageError
 if TYPE_CHECKING:
     from crowdbot.core.live.door import Door
     from crowdbot.core.live.planner import Manner
+    from crowdbot.core.live.services import Service
     from crowdbot.core.live.session import Session
 
 
@@ -135,11 +136,10 @@ def _connected(session: Session, manner: Manner, listen: Listen) -> Door:
 def _foxglove(session: Session, listen: Listen, port: int) -> Door:
     needs("live", "foxglove")
     from crowdbot.core.live.foxglove_door import FoxgloveDoor
-    from crowdbot.core.live.services import services
 
     if not _is_this_machine(listen.host):
         raise UsageError("--foxglove knows no token: it listens on this machine only")
-    door = FoxgloveDoor(session, listen.host, port, services(session))
+    door = FoxgloveDoor(session, listen.host, port, _services(session))
     _say(f"foxglove: ws://{listen.host}:{door.port}")
     return door
 
@@ -172,7 +172,6 @@ def _zenoh(session: Session, manner: Manner, endpoint: str, listen: Listen) -> D
 
 def _rosbridge(session: Session, manner: Manner, listen: Listen) -> Door:
     from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer, is_loopback
-    from crowdbot.core.live.services import services
 
     needs("live", "websockets", "cbor2")
     token = listen.token or ""
@@ -185,7 +184,7 @@ def _rosbridge(session: Session, manner: Manner, listen: Listen) -> Door:
     server = RosbridgeServer(
         session,
         Address(host=listen.host, port=listen.port, token=token),
-        services(session),
+        _services(session),
         ros=1 if listen.ros == 1 else 2,
         resend=manner.lockstep,
         external_clock=manner.external_clock,
@@ -194,6 +193,14 @@ def _rosbridge(session: Session, manner: Manner, listen: Listen) -> Door:
     query = f"/?token={token}" if token else ""
     _say(f"rosbridge: ws://{shown}:{server.port}{query}; waiting for a client that drives /cmd_vel")
     return server
+
+
+def _services(session: Session) -> dict[str, Service]:
+    """All services that clients may call."""
+    from crowdbot.core.live.services import services
+    from crowdbot.core.live.simulation_interfaces import simulation_services
+
+    return {**services(session), **simulation_services(session)}
 
 
 def needs(extra: str, *modules: str) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from crowdbot.core.recording.export.bag import BagOptions
 
 
-class Format(StrEnum):
+class ExportFormat(StrEnum):
     """What other tools read."""
 
     rosbag1 = "rosbag1"
@@ -32,14 +32,18 @@ class TreeChoice(StrEnum):
     odometry = "odometry"
 
 
-_ENDINGS = {Format.rosbag1: ".bag", Format.geojson: ".geojson", Format.trajnet: ".ndjson"}
+_ENDINGS = {
+    ExportFormat.rosbag1: ".bag",
+    ExportFormat.geojson: ".geojson",
+    ExportFormat.trajnet: ".ndjson",
+}
 
 
 def export(
     run: Annotated[
         Path, typer.Argument(metavar="RUN_DIR|FILE.mcap", help="A run, or its recording.")
     ],
-    to: Annotated[Format, typer.Option("--to", help="The format.")],
+    to: Annotated[ExportFormat, typer.Option("--to", help="The format.")],
     out: Annotated[
         Path | None, typer.Option(metavar="PATH", help="File or folder to write.")
     ] = None,
@@ -70,7 +74,7 @@ def export(
     target = out or _target(run, to)
     if target.exists():
         raise InputError(f"{target}: exists already; it is not written over")
-    if to in (Format.rosbag1, Format.rosbag2):
+    if to in (ExportFormat.rosbag1, ExportFormat.rosbag2):
         options = BagOptions(
             offset=offset * 10**9,
             tree=tf.value,
@@ -84,7 +88,7 @@ def export(
     typer.echo(str(target))
 
 
-def _target(run: Path, to: Format) -> Path:
+def _target(run: Path, to: ExportFormat) -> Path:
     """Beside the recording, named by the format."""
     stem = run.resolve().with_suffix("") if run.is_file() else run.resolve()
     return stem.with_name(f"{stem.name}-{to.value}{_ENDINGS.get(to, '')}")
@@ -106,11 +110,11 @@ def _whole(target: Path, write: Callable[[Path], None]) -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _bag(to: Format, recording: Path, out: Path, options: BagOptions, run: Path) -> None:
+def _bag(to: ExportFormat, recording: Path, out: Path, options: BagOptions, run: Path) -> None:
     from crowdbot.core.recording.export.bag import write_ros1, write_ros2
     from crowdbot.core.runs import run_directory as files
 
-    if to is Format.rosbag1:
+    if to is ExportFormat.rosbag1:
         write_ros1(recording, out, options)
         return
     write_ros2(recording, out, options)
@@ -120,17 +124,17 @@ def _bag(to: Format, recording: Path, out: Path, options: BagOptions, run: Path)
                 shutil.copyfile(run / name, out / name)
 
 
-def _tables(to: Format, recording: Path, out: Path) -> None:
+def _tables(to: ExportFormat, recording: Path, out: Path) -> None:
     from crowdbot.core.recording import read_trajectories, recording_info
     from crowdbot.core.recording.export import tables
 
     run = read_trajectories(recording)
-    if to is Format.geojson:
+    if to is ExportFormat.geojson:
         out.write_text(tables.geojson(run), encoding="utf-8")
-    elif to is Format.trajnet:
+    elif to is ExportFormat.trajnet:
         scenario = recording_info(recording).header.scenario
         out.write_text(tables.trajnet(run, scenario), encoding="utf-8")
-    elif to is Format.csv:
+    elif to is ExportFormat.csv:
         out.mkdir()
         tables.write_csv(run, out)
     else:

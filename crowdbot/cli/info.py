@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from crowdbot.core.recording.contents import Contents
+    from crowdbot.core.recording.contents import RecordingContents
 
 
 def info(
@@ -41,7 +41,7 @@ def info(
     _show(about, found)
 
 
-def _about(path: Path, found: Contents) -> dict[str, Any]:
+def _about(path: Path, found: RecordingContents) -> dict[str, Any]:
     from crowdbot.core.recording.reader import recording_info
 
     about: dict[str, Any] = {
@@ -71,7 +71,7 @@ def _hash(path: Path) -> str | None:
         return None
 
 
-def _show(about: dict[str, Any], found: Contents) -> None:
+def _show(about: dict[str, Any], found: RecordingContents) -> None:
     from rich.console import Console
     from rich.table import Table
 

@@ -115,7 +115,7 @@ def serve(
         whole = scenario is None and not expansion.single
         chosen = expansion.scenarios[0] if whole else pick(expansion, scenario)
         _import_simulate()
-        from crowdbot.core.live.serve import Service, serve_runs
+        from crowdbot.core.live.serve import LiveServe, serve_runs
         from crowdbot.core.live.session import Session
         from crowdbot.core.runs.request import Request
 
@@ -150,7 +150,7 @@ def serve(
                 foxglove=foxglove,
             )
             with listening(session, manner, listen) as doors:
-                service = Service(
+                service = LiveServe(
                     session=session,
                     doors=doors,
                     manner=manner,

@@ -16,7 +16,7 @@ import zenoh
 from rosbags.typesys import Stores, get_typestore
 
 from crowdbot import cli
-from crowdbot.core.live.ros2_keys import Topic, hash_in
+from crowdbot.core.live.ros2_keys import Ros2Topic, hash_in
 from crowdbot.core.recording import read_trajectories
 from tests.cli.simulate_cases import ID, limit
 from tests.cli.test_serve import _connected, _free_port, _say
@@ -69,13 +69,13 @@ class _OverZenoh:
         config.insert_json5("connect/endpoints", f'["{endpoint}"]')
         self.session = self._when_there(config)
         kind = "geometry_msgs/msg/TwistStamped"
-        command = Topic("/cmd_vel", kind, hash_in(kind, "jazzy"))
+        command = Ros2Topic("/cmd_vel", kind, hash_in(kind, "jazzy"))
         self._publisher = self.session.declare_publisher(command.key(0))
         from zenoh import ext
 
         self._kept: list[Any] = []
         for name, msgtype in HEARS.items():
-            key = Topic(name, msgtype, hash_in(msgtype, "jazzy")).key(0)
+            key = Ros2Topic(name, msgtype, hash_in(msgtype, "jazzy")).key(0)
             hear: Callable[[Any], None] = self._heard(msgtype)
             past = ext.HistoryConfig() if name == "/map" else None
             self._kept.append(

@@ -7,7 +7,7 @@ import json
 import threading
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from typing import Any
+from typing import Any, cast
 
 from crowdbot.core.live.commands import twist
 from crowdbot.core.live.message import LiveMessage, Offer
@@ -47,7 +47,7 @@ class FoxgloveDoor:
                 host=host,
                 port=port,
                 capabilities=[Capability.ClientPublish, Capability.Services, Capability.Time],
-                server_listener=self,
+                server_listener=cast(Any, self),
                 supported_encodings=["cdr", "json"],
                 services=[_offered(name, service) for name, service in services.items()],
                 context=self._context,
@@ -145,6 +145,10 @@ def _command(encoding: str, kind: str, data: bytes) -> tuple[Command, int | None
     return Command(message.linear.x, message.angular.z, message.linear.y), stamp
 
 
+async def _awaited(service: Service, values: dict[str, Any]) -> dict[str, Any]:
+    return await service.call(values)
+
+
 def _offered(name: str, service: Service) -> Any:
     """A service with requests and answers in JSON."""
     from foxglove import MessageSchema, Schema, ServiceSchema
@@ -156,11 +160,12 @@ def _offered(name: str, service: Service) -> Any:
         return MessageSchema(encoding="json", schema=inner)
 
     def call(request: Any) -> bytes:
+        answer: dict[str, Any]
         try:
             values = json.loads(request.payload or b"{}")
             if not isinstance(values, dict):
                 raise InputError("a request is an object")
-            answer = asyncio.run(service.call(values))
+            answer = asyncio.run(_awaited(service, values))
         except (InputError, ValueError) as error:
             answer = {"success": False, "message": str(error)}
         return json.dumps(answer).encode()

@@ -11,7 +11,7 @@ from typing import Literal
 from crowdbot.core.live.door import Door
 from crowdbot.core.live.message import LiveMessage, Offer, told
 from crowdbot.core.live.observed import Observed
-from crowdbot.core.live.scene import Scene, latched
+from crowdbot.core.live.scene import LiveScene, latched
 from crowdbot.core.live.session import Session
 from crowdbot.core.planning.planner import NoValidCommand, Observation, Task
 from crowdbot.core.recording import messages as ros
@@ -59,7 +59,7 @@ class LivePlanner:
     """Drives as it is told from outside."""
 
     def __init__(
-        self, session: Session, doors: Sequence[Door], scene: Scene, manner: Manner
+        self, session: Session, doors: Sequence[Door], scene: LiveScene, manner: Manner
     ) -> None:
         self._session, self._doors, self._scene, self._manner = session, doors, scene, manner
         self._began = self._told = -math.inf

@@ -26,7 +26,7 @@ _ATTACHMENT = struct.Struct("<qqB16s")
 
 
 @dataclass(frozen=True, slots=True)
-class Topic:
+class Ros2Topic:
     """A topic as ROS 2 knows it; ``hash`` depends on the distribution."""
 
     name: str

@@ -20,7 +20,7 @@ from crowdbot.core.types.sensor import SensorInfo
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scene:
+class LiveScene:
     """Where a live run happens, and with what robot.
 
     Attributes:
@@ -37,7 +37,7 @@ class Scene:
     messages: tuple[LiveMessage, ...] = field(default=())
 
 
-def latched(scene: Scene, task: Task, seed: int, ns: int) -> list[LiveMessage]:
+def latched(scene: LiveScene, task: Task, seed: int, ns: int) -> list[LiveMessage]:
     """Everything that is said once, stamped ``ns``."""
     header = _header(scene, task)
     found = [
@@ -54,7 +54,7 @@ def latched(scene: Scene, task: Task, seed: int, ns: int) -> list[LiveMessage]:
     return [told(str(topic), ns, message, latched=True) for topic, message in found]
 
 
-def _header(scene: Scene, task: Task) -> RecordingHeader:
+def _header(scene: LiveScene, task: Task) -> RecordingHeader:
     model = scene.model
     robot = RobotHeader(
         radius=model.footprint_radius,
@@ -67,11 +67,11 @@ def _header(scene: Scene, task: Task) -> RecordingHeader:
     return RecordingHeader(scenario=scene.scenario, robot=robot, sensors=scene.sensors)
 
 
-def _description(scene: Scene) -> str:
+def _description(scene: LiveScene) -> str:
     return to_urdf(scene.model, scene.sensors, scene.name)
 
 
-def _task(scene: Scene, task: Task, limits: RobotLimits, seed: int) -> object:
+def _task(scene: LiveScene, task: Task, limits: RobotLimits, seed: int) -> object:
     return ros.new(
         "crowdbot_msgs/Task",
         scenario=scene.scenario,

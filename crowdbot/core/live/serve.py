@@ -11,7 +11,7 @@ from typing import Any, cast
 
 from crowdbot.core.live.door import Door
 from crowdbot.core.live.planner import LivePlanner, Manner, status
-from crowdbot.core.live.scene import Scene
+from crowdbot.core.live.scene import LiveScene
 from crowdbot.core.live.session import Session, State
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.runs import run_directory as files
@@ -25,7 +25,7 @@ _SWITCH = 0.0005  # s
 
 
 @dataclass(frozen=True, kw_only=True)
-class Service:
+class LiveServe:
     """What is served.
 
     Attributes:
@@ -47,7 +47,7 @@ class Service:
     on_run: Callable[[Run], object] = lambda _: None
 
 
-def serve_runs(service: Service) -> Run:
+def serve_runs(service: LiveServe) -> Run:
     """Serve runs until one is complete, or with ``stay`` until the user ends it.
 
     Returns:
@@ -91,12 +91,12 @@ def _quick_switches() -> Iterator[None]:
         sys.setswitchinterval(usual)
 
 
-def _serve_one(service: Service, scenario: Scenario) -> Run | None:
+def _serve_one(service: LiveServe, scenario: Scenario) -> Run | None:
     """One run; None where a client wanted another one before its end."""
     from crowdbot.core.sim.simulate import make_run
 
     session = service.session
-    scene: list[Scene] = []
+    scene: list[LiveScene] = []
     choice = live_choice(
         service.name, service.manner, lambda: LivePlanner(session, service.doors, scene[0], manner)
     )
@@ -144,11 +144,11 @@ def live_choice(name: str, manner: Manner, build: Callable[[], LivePlanner]) -> 
     )
 
 
-def _scene(request: Request) -> Scene:
+def _scene(request: Request) -> LiveScene:
     if len(request.scenario.robots) != 1:
         raise InputError(f"{request.scenario.id} has {len(request.scenario.robots)} robots, not 1")
     built = build_run(request.scenario, request.registry, request.choice, request.record)
-    return Scene(
+    return LiveScene(
         scenario=request.scenario.id,
         name=built.name,
         parts=built.parts,

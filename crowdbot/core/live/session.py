@@ -23,7 +23,7 @@ _ROUNDING = 1_000
 
 
 @dataclass
-class Counts:
+class LiveCounts:
     """What is told about a run.
 
     Attributes:
@@ -60,7 +60,7 @@ class Session:
     """
 
     interrupted: Callable[[], bool] = lambda: False
-    counts: Counts = field(default_factory=Counts)
+    counts: LiveCounts = field(default_factory=LiveCounts)
     state: State = "waiting"
     scenario: str = ""
     run: int = 0
@@ -85,7 +85,7 @@ class Session:
             if self.run:  # what was said before the first run begins counts
                 self._latest, self._fresh, self._clock = None, False, -math.inf
             self.run += 1
-            self.counts, self.state = Counts(), "waiting"
+            self.counts, self.state = LiveCounts(), "waiting"
             self._asked = None
             self._request = ""
 

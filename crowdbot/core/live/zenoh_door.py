@@ -13,7 +13,7 @@ from crowdbot.core.live.ros2_keys import (
     PUBLISHER,
     SUBSCRIPTION,
     Distro,
-    Topic,
+    Ros2Topic,
     attachment,
     drivers_of,
     gid_of,
@@ -52,7 +52,7 @@ class Network:
 class _Publisher:
     """One topic that we publish."""
 
-    def __init__(self, topic: Topic, publisher: Any, token: Any, gid: bytes) -> None:
+    def __init__(self, topic: Ros2Topic, publisher: Any, token: Any, gid: bytes) -> None:
         self.topic, self.publisher, self.token = topic, publisher, token
         self._gid, self._sequence = gid, itertools.count(1)
         self.wanted = topic.latched
@@ -127,8 +127,8 @@ class ZenohDoor:
         if not self._zenoh.is_closed():
             self._zenoh.close()
 
-    def _topic(self, name: str, msgtype: str, *, latched: bool = False) -> Topic:
-        return Topic(name, msgtype, hash_in(msgtype, self._network.distro), latched)
+    def _topic(self, name: str, msgtype: str, *, latched: bool = False) -> Ros2Topic:
+        return Ros2Topic(name, msgtype, hash_in(msgtype, self._network.distro), latched)
 
     def _declare(self, offer: Offer) -> _Publisher:
         topic = self._topic(offer.topic, offer.msgtype, latched=offer.latched)

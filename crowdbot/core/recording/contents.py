@@ -37,7 +37,7 @@ class TopicContents:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Contents:
+class RecordingContents:
     """A whole file.
 
     Attributes:
@@ -58,7 +58,7 @@ class Contents:
     size: int
 
 
-def contents(path: Path) -> Contents:
+def contents(path: Path) -> RecordingContents:
     """Look through a file.
 
     Raises:
@@ -75,7 +75,7 @@ def contents(path: Path) -> Contents:
         is_run = is_run or record.topic.endswith(Topic.HEADER)
         if record.topic.endswith(Topic.END):
             end = decode(path, record)
-    return Contents(
+    return RecordingContents(
         topics=tuple(topics[key] for key in sorted(topics)),
         finished=records.finished,
         complete=records.finished and bool(getattr(end, "complete", not is_run)),

@@ -14,7 +14,7 @@ import zenoh
 from rosbags.typesys import Stores, get_typestore
 
 from crowdbot.core.live.message import Offer, told
-from crowdbot.core.live.ros2_keys import Topic, attachment, hash_in, in_distro
+from crowdbot.core.live.ros2_keys import Ros2Topic, attachment, hash_in, in_distro
 from crowdbot.core.live.session import Session
 from crowdbot.core.live.zenoh_door import Network, ZenohDoor
 from crowdbot.core.recording import messages as ros
@@ -54,7 +54,7 @@ def _both(**more: Any) -> Iterator[tuple[ZenohDoor, Session, Any]]:
 def test_hashes_are_those_that_are_published() -> None:
     assert hash_in("std_msgs/msg/String", "jazzy") == STRING
     assert hash_in("std_msgs/msg/String", "humble") == "TypeHashNotSupported"
-    topic = Topic("/chatter", "std_msgs/msg/String", STRING)
+    topic = Ros2Topic("/chatter", "std_msgs/msg/String", STRING)
     assert topic.key(2) == f"2/chatter/std_msgs::msg::dds_::String_/{STRING}"
     assert topic.token(2, "abc", 11, "MP", "talker") == (
         f"@ros2_lv/2/abc/0/11/MP/%/%/talker/%chatter/std_msgs::msg::dds_::String_/{STRING}/"
@@ -135,7 +135,7 @@ def test_lockstep_over_zenoh(stamped: bool) -> None:
         door.open([Offer("/clock", "rosgraph_msgs/msg/Clock")])
         types = JAZZY.types
         vector, time = types["geometry_msgs/msg/Vector3"], types["builtin_interfaces/msg/Time"]
-        command = Topic("/cmd_vel", kind, hash_in(kind, "jazzy"))
+        command = Ros2Topic("/cmd_vel", kind, hash_in(kind, "jazzy"))
         publisher = other.declare_publisher(command.key(0))
         token = other.liveliness().declare_token(command.token(0, "me", 11, "MP", "driver"))
         until(lambda: session.driven)
@@ -150,7 +150,7 @@ def test_lockstep_over_zenoh(stamped: bool) -> None:
                 twist = types[kind](head, twist)
             publisher.put(bytes(JAZZY.serialize_cdr(twist, kind)))
 
-        key = Topic(
+        key = Ros2Topic(
             "/clock", "rosgraph_msgs/msg/Clock", hash_in("rosgraph_msgs/msg/Clock", "jazzy")
         )
         subscriber = other.declare_subscriber(key.key(0), on_clock)
@@ -168,7 +168,7 @@ def test_garbage_is_not_a_command() -> None:
     with _both() as (_, session, other):
         session.ask(0)
         for kind in ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"):
-            key = Topic("/cmd_vel", kind, hash_in(kind, "jazzy")).key(0)
+            key = Ros2Topic("/cmd_vel", kind, hash_in(kind, "jazzy")).key(0)
             for data in (b"", b"\0", b"\0\1\0\0" + b"\xff" * 20, b"x" * 1000):
                 other.put(key, data)
         done = threading.Event()
@@ -183,7 +183,7 @@ def test_the_clock_may_come_from_outside() -> None:
         door.open([Offer("/clock", "rosgraph_msgs/msg/Clock")])
         assert not door.wants("/clock")
         kind = "rosgraph_msgs/msg/Clock"
-        other.put(Topic("/clock", kind, hash_in(kind, "jazzy")).key(0), clock(2 * 10**9).data)
+        other.put(Ros2Topic("/clock", kind, hash_in(kind, "jazzy")).key(0), clock(2 * 10**9).data)
         session.wait_for_clock(2.0)
 
 

@@ -91,6 +91,15 @@ def test_the_map_has_the_walls(recording: Path) -> None:
         assert set(np.floor((x[near] - x0) / cell).astype(int)) >= set(range(int((x1 - x0) / cell)))
 
 
+@pytest.mark.parametrize("record", ["none", "used"])
+def test_a_bag_has_map_and_goal_whatever_was_recorded(tmp_path: Path, record: Any) -> None:
+    path = tmp_path / "run.mcap"
+    write_run(path, RUN, record=record)
+    found = _read(_export(path, "rosbag2", "--no-markers"))
+    assert {"/map", "/goal_pose", "/robot/path"} <= set(found)
+    assert len(found["/map"]) == 1
+
+
 def test_own_names_and_no_markers(recording: Path) -> None:
     found = _read(_export(recording, "rosbag2", "--own-names", "--no-markers"))
     assert "/front/scan" in found

@@ -77,7 +77,9 @@ def test_rosbags_opens_the_file(path: Path) -> None:
     assert latched == {
         "/crowdbot/header",
         "/crowdbot/end",
+        "/goal_pose",
         "/goal_zone",
+        "/map",
         "/tf_static",
         "/walls_marker",
     }

@@ -17,7 +17,7 @@ _TWIST = "geometry_msgs/msg/Twist"
 
 
 @dataclass
-class World:
+class RosapiWorld:
     """What clients may ask about.
 
     Attributes:
@@ -41,7 +41,7 @@ class World:
         return {**{n: ros_type(t, self.ros) for n, t in self.taken.items()}, **found}
 
 
-def rosapi(world: World) -> dict[str, Service]:
+def rosapi(world: RosapiWorld) -> dict[str, Service]:
     """The services, by name."""
     found: dict[str, Service] = {}
 
@@ -63,7 +63,7 @@ def rosapi(world: World) -> dict[str, Service]:
 Add = Callable[[str, Fields, Fields, Callable[[Values], Values]], None]
 
 
-def _topics(world: World, add: Add) -> None:
+def _topics(world: RosapiWorld, add: Add) -> None:
     def both(values: Values) -> Values:
         del values
         topics = world.topics()
@@ -92,11 +92,11 @@ def _topics(world: World, add: Add) -> None:
         lambda _: {"interfaces": sorted(set(world.topics().values()))})  # fmt: skip
 
 
-def _published(world: World) -> set[str]:
+def _published(world: RosapiWorld) -> set[str]:
     return {o.topic for o in world.offers}
 
 
-def _services(world: World, add: Add) -> None:
+def _services(world: RosapiWorld, add: Add) -> None:
     def kind(name: str) -> str:
         service = world.services.get(name)
         if service is None:
@@ -124,7 +124,7 @@ def _services(world: World, add: Add) -> None:
     add("action_servers", {}, {"action_servers": "string[]"}, lambda _: {"action_servers": []})
 
 
-def _nodes(world: World, add: Add) -> None:
+def _nodes(world: RosapiWorld, add: Add) -> None:
     def details(values: Values) -> Values:
         mine = _text(values, "node") == NODE
         return {
@@ -147,7 +147,7 @@ def _nodes(world: World, add: Add) -> None:
         lambda _: {"version": world.ros, "distro": distro})  # fmt: skip
 
 
-def _parameters(world: World, add: Add) -> None:
+def _parameters(world: RosapiWorld, add: Add) -> None:
     known, most = world.parameters, 1000
 
     def put(values: Values) -> Values:
@@ -179,7 +179,7 @@ def _parameters(world: World, add: Add) -> None:
     add("get_param_names", {}, {"names": "string[]"}, lambda _: {"names": sorted(known)})
 
 
-def _details(world: World, add: Add) -> None:
+def _details(world: RosapiWorld, add: Add) -> None:
     typedefs = {"typedefs": "rosapi/TypeDef[]"}
 
     def service(part: str) -> Callable[[Values], Values]:

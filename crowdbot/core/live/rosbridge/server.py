@@ -19,7 +19,7 @@ from crowdbot.core.live.plain import Ros
 from crowdbot.core.live.rosbridge.connection import Connection
 from crowdbot.core.live.rosbridge.feed import Wishes
 from crowdbot.core.live.rosbridge.frames import Frame, encoded
-from crowdbot.core.live.rosbridge.rosapi import World, rosapi
+from crowdbot.core.live.rosbridge.rosapi import RosapiWorld, rosapi
 from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import Session
 from crowdbot.errors import InputError
@@ -81,7 +81,7 @@ class RosbridgeServer:
         """
         self.session, self.ros, self.external_clock = session, ros, external_clock
         self._address, self._resend = address, resend
-        self._world = World(ros=ros, services=dict(services))
+        self._world = RosapiWorld(ros=ros, services=dict(services))
         self._world.services |= rosapi(self._world)
         self._world.now = lambda: self._now
         if external_clock:

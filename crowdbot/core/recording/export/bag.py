@@ -130,7 +130,9 @@ def _sorted(messages: Iterable[_Message]) -> list[_Message]:
 def _added(found: Iterable[Extra]) -> Iterator[_Message]:
     for k, extra in enumerate(found):
         kind = extra.message.__msgtype__
-        yield _Message(extra.ns, k, extra.topic, kind, ros.to_cdr(extra.message), extra.latched)
+        yield _Message(
+            extra.ns, k, str(extra.topic), kind, ros.to_cdr(extra.message), extra.latched
+        )
 
 
 def _recorded(path: Path, header: RecordingHeader, options: BagOptions) -> Iterator[_Message]:

@@ -1,0 +1,63 @@
+"""The standard services of simulators: what they answer, and what they do."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import pytest
+
+from crowdbot.core.live.session import Session
+from crowdbot.core.live.simulation_interfaces import simulation_services
+
+
+def _call(session: Session, name: str, values: dict[str, Any] | None = None) -> dict[str, Any]:
+    service = simulation_services(session)[name]
+
+    async def wait() -> dict[str, Any]:
+        return await service.call(values or {})
+
+    answer = asyncio.run(wait())
+    assert set(answer) <= set(service.response)
+    return answer
+
+
+def _code(answer: dict[str, Any]) -> int:
+    return int(answer["result"]["result"])
+
+
+def test_the_state_can_be_set_and_read() -> None:
+    session = Session()
+    assert _code(_call(session, "/set_simulation_state", {"state": {"state": 2}})) == 1
+    assert session.paused
+    assert _call(session, "/get_simulation_state")["state"] == {"state": 2}
+    _call(session, "/set_simulation_state", {"state": {"state": 1}})
+    assert not session.paused
+    assert _call(session, "/get_simulation_state")["state"] == {"state": 1}
+    session.finish("arrived")
+    assert _call(session, "/get_simulation_state")["state"] == {"state": 0}
+
+
+@pytest.mark.parametrize("scope", [0, 255])
+def test_a_reset_is_of_the_whole(scope: int) -> None:
+    session = Session()
+    assert _code(_call(session, "/reset_simulation", {"scope": scope})) == 1
+    assert session.take_request() == "reset"
+
+
+def test_what_is_not_possible_is_told() -> None:
+    session = Session()
+    assert _code(_call(session, "/reset_simulation", {"scope": 2})) == 0
+    assert session.take_request() == ""
+    assert _code(_call(session, "/set_simulation_state", {"state": {"state": 3}})) == 0
+    assert _code(_call(session, "/set_simulation_state", {"state": "x"})) == 4
+    assert _code(_call(session, "/step_simulation", {"steps": 1})) == 3
+    session.pause(True)
+    assert _code(_call(session, "/step_simulation", {"steps": -1})) == 4
+    session.finish("timeout")
+    assert _code(_call(session, "/step_simulation", {"steps": 1})) == 4
+
+
+def test_features_are_listed() -> None:
+    found = _call(Session(), "/get_simulator_features")["features"]
+    assert found["features"] == [20, 24, 25, 26, 31, 32]
