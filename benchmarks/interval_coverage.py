@@ -36,8 +36,8 @@ def noise(rng: np.random.Generator, size: tuple[int, ...], *, skewed: bool) -> F
     """Mean 0, variance 1."""
     if not skewed:
         return rng.normal(size=size)
-    e = np.e
-    return np.asarray((np.exp(rng.normal(size=size)) - e**0.5) / (e * (e - 1)) ** 0.5)
+    euler = np.e
+    return np.asarray((np.exp(rng.normal(size=size)) - euler**0.5) / (euler * (euler - 1)) ** 0.5)
 
 
 def campaign(

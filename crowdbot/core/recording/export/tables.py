@@ -14,12 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.trajectories import csv_tables
 from crowdbot.core.trajectories.trajectories import AgentTracks, Trajectories
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
 Table = dict[str, Any]
+_ROBOT = ("x", "y", "theta", "v", "w")
+_TRIP = ("agent", "t0", "t1", "reached")
+_CONTACT = ("t0", "t1", "agent", "impulse", "peak_force", "relative_speed", "bearing")
 #: Frames a second of TrajNet++, and the number that stands for the robot there.
 TRAJNET_RATE, ROBOT_ID = 2.5, 0
 
@@ -29,20 +31,18 @@ def tables(run: Trajectories) -> dict[str, Table]:
     found: dict[str, Table] = {}
     robot, people = run.robot, run.agents
     if robot is not None:
-        names = csv_tables.ROBOT_COLUMNS[1:]
-        aside = {n: getattr(robot, n) for n in csv_tables.ROBOT_OPTIONAL}
+        aside = {n: getattr(robot, n) for n in ("vx", "vy")}
         found["robot"] = {
             "t": run.t,
-            **{n: getattr(robot, n) for n in names},
+            **{n: getattr(robot, n) for n in _ROBOT},
             **{n: column for n, column in aside.items() if column is not None},
         }
     if people is not None:
         found["people"] = _people(run.t, people)
     if run.trips is not None:
-        found["trips"] = {n: getattr(run.trips, n) for n in csv_tables.TRIP_COLUMNS}
+        found["trips"] = {n: getattr(run.trips, n) for n in _TRIP}
     if run.contacts is not None:
-        every = (*csv_tables.CONTACT_COLUMNS, *csv_tables.CONTACT_OPTIONAL)
-        found["contacts"] = {n: getattr(run.contacts, n) for n in every}
+        found["contacts"] = {n: getattr(run.contacts, n) for n in _CONTACT}
     return found
 
 
