@@ -157,8 +157,10 @@ def test_a_step_without_a_command_has_a_defined_answer(
             if k == 0:
                 _say(client, "publish", "/cmd_vel", msg=TWIST)
 
-    held = served("--budget", "0.02", "--missed", "hold", "--name", "held", act=once)
-    assert held["live"]["missed_steps"] == 15
+    # so long that the one answer comes in time on any machine
+    options = ("--budget", "3", "--missed", "hold", "--name", "held")
+    held = served(*options, act=once, seconds=0.25)
+    assert held["live"]["missed_steps"] == held["live"]["steps"] - 1
     file = tmp_path / "constant.py"
     file.write_text(
         "class Constant:\n"
@@ -166,8 +168,8 @@ def test_a_step_without_a_command_has_a_defined_answer(
         "    def reset(self, task, limits, sensors, seed): pass\n"
         "    def step(self, obs): return (0.4, 0.1)\n"
     )
-    assert held["hashes"] == _inside(tmp_path, capsys, f"{file}:Constant", 1.0)["hashes"]
-    stopped = served("--budget", "0.02", "--name", "stopped", act=once)
+    assert held["hashes"] == _inside(tmp_path, capsys, f"{file}:Constant", 0.25)["hashes"]
+    stopped = served("--budget", "0.02", "--name", "stopped", act=once, seconds=0.25)
     assert stopped["hashes"]["trajectory"] != held["hashes"]["trajectory"]
 
 

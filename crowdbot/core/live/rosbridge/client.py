@@ -93,15 +93,12 @@ class RosbridgeClient:
             self._loop.run_until_complete(self._task)
         self._loop.close()
 
-    def _end(self) -> None:
-        self._loop.create_task(self._say_goodbye())
-
-    async def _say_goodbye(self) -> None:
-        for _ in range(100):
-            if not len(self._outbox) or not self._connected.is_set():
-                break
-            await asyncio.sleep(0.005)
-        self._task.cancel()
+    def _end(self, looks: int = 100) -> None:
+        """Leave when all is sent, but not later than half a second from now."""
+        if looks and len(self._outbox) and self._connected.is_set():
+            self._loop.call_later(0.005, self._end, looks - 1)
+        else:
+            self._task.cancel()
 
     async def _stay(self) -> None:
         from websockets.asyncio.client import connect
