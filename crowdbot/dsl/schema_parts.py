@@ -113,11 +113,12 @@ class Parts:
         """A map of fields as it is written."""
         if "properties" not in raw:
             return raw
-        made = {k: v for k, v in raw.items() if k not in ("required", "short")}
+        made = {k: v for k, v in raw.items() if k not in ("required", "short", "left_out")}
         fields = raw["properties"]
         places = {k: self._place(v, k) for k, v in fields.items()}
         if not self._layered:
-            required = sorted(fields) if self._canonical else raw.get("required", [])
+            always = sorted(set(fields) - set(raw.get("left_out", ())))  # those while as usual
+            required = always if self._canonical else raw.get("required", [])
             return {**made, "properties": places, "required": required}
         kept = "kind" if "const" in fields.get("kind", {}) else None
         places = {k: v if k == kept else _or_null(v) for k, v in places.items()}
