@@ -47,7 +47,7 @@ from crowdbot.dsl.quantities import (
 from crowdbot.dsl.robot_response import HumanResponse, RobotResponseChoice
 from crowdbot.dsl.spawning import Agents, RouteEnd, Spawn
 from crowdbot.dsl.spec import Spec
-from crowdbot.dsl.steering import Steering, unset
+from crowdbot.dsl.steering import SteeringSpec, unset
 
 #: What an agent does at the end of its route.
 AtGoal = Literal["portal", RouteEnd]
@@ -129,7 +129,7 @@ class Crowd(Spec):
     robot_response: RobotResponseChoice = Field(
         default=HumanResponse(), description="How people take the robot."
     )
-    steering: Steering | None = Field(
+    steering: SteeringSpec | None = Field(
         default=None,
         exclude_if=unset,
         description="What people do beside any policy: time gap, personal space, walls, wander.",
