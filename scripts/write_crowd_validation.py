@@ -20,7 +20,7 @@ import numpy as np
 from crowdbot.core.realism.crowds import KNOWN
 from crowdbot.core.realism.measure import SEEDS, Realism, measure
 from crowdbot.core.realism.model import model_of
-from crowdbot.core.realism.reference import FLOORS, Reference, shipped
+from crowdbot.core.realism.reference import FLOORS, RealismReference, shipped
 from crowdbot.core.realism.statistics import PERCENTILES
 from crowdbot.core.realism.tables import real_beside
 from crowdbot.core.registry.registry import Registry, discover
@@ -65,7 +65,7 @@ def row_of(name: str, found: Realism) -> dict[str, Any]:
     }
 
 
-def page(rows: Sequence[dict[str, Any]], reference: Reference) -> str:
+def page(rows: Sequence[dict[str, Any]], reference: RealismReference) -> str:
     """The page in Markdown."""
     ordered = sorted(rows, key=lambda r: -r["score"])
     real = real_beside(reference)
@@ -152,7 +152,7 @@ def _curve(name: str, diagram: Any, lanes: Any, acceleration: float | None) -> l
     ]
 
 
-def _median_acceleration(reference: Reference) -> float:
+def _median_acceleration(reference: RealismReference) -> float:
     from crowdbot.core.realism.bins import EDGES
 
     histogram = reference.whole.histograms["uni", "1.4"]["acceleration"]

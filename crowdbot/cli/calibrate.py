@@ -60,7 +60,7 @@ def calibrate(
     Example: crowdbot calibrate power_law --fit costs.avoid.k=0.2..4 --generations 20 --jobs 2
     """
     from crowdbot.cli._campaign_run import worker_count
-    from crowdbot.core.realism.calibrate import Task
+    from crowdbot.core.realism.calibrate import FitTask
     from crowdbot.core.realism.calibrate import fit as run
     from crowdbot.core.realism.parameters import parameters_of
     from crowdbot.core.scenarios.named_crowds import open_crowd
@@ -68,7 +68,7 @@ def calibrate(
     if out.suffix not in (".yaml", ".yml"):
         raise UsageError(f"--out {out}: the name must end in .yaml")
     registry = installed(plugin, no_plugins)
-    task = Task(
+    task = FitTask(
         crowd=str(Path(crowd).resolve()) if Path(crowd).is_file() else crowd,
         overrides=tuple(overrides or ()),
         plugins=tuple(str(p.resolve()) for p in plugin or ()),

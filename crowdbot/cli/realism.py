@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from crowdbot.core.realism.measure import Realism
-    from crowdbot.core.realism.reference import Reference
+    from crowdbot.core.realism.reference import RealismReference
     from crowdbot.core.registry.registry import Registry
 
 #: More crowds than these are compared at the first draw only.
@@ -75,7 +75,7 @@ def realism(
         typer.echo(f"wrote {out}")
 
 
-def _reference(files: Sequence[Path] | None) -> Reference:
+def _reference(files: Sequence[Path] | None) -> RealismReference:
     from crowdbot.core.realism.reference import read_reference, shipped
 
     return read_reference(files) if files else shipped()
@@ -84,7 +84,7 @@ def _reference(files: Sequence[Path] | None) -> Reference:
 def _simulated(
     text: str,
     registry: Registry,
-    beside: Reference,
+    beside: RealismReference,
     overrides: Sequence[str],
     seeds: Sequence[int],
 ) -> list[Realism]:
@@ -108,7 +108,7 @@ def _simulated(
     ]
 
 
-def _of_runs(path: Path, beside: Reference) -> Realism:
+def _of_runs(path: Path, beside: RealismReference) -> Realism:
     """What people in finished runs did, all runs together."""
     from crowdbot.core.realism.measure import measure_tracks
     from crowdbot.core.realism.reference import read_tracks

@@ -53,7 +53,7 @@ from crowdbot.dsl.robot_response import HumanResponse, RobotResponseChoice
 from crowdbot.dsl.routing import RoutingChoice
 from crowdbot.dsl.spawning import Agents, RouteEnd, Spawn
 from crowdbot.dsl.spec import Spec
-from crowdbot.dsl.steering import Steering, unset
+from crowdbot.dsl.steering import SteeringSpec, unset
 from crowdbot.dsl.stream_kinds import StreamChoice
 from crowdbot.lazy import lazy_names
 
@@ -164,7 +164,7 @@ class Crowd(Spec):
         exclude_if=lambda value: value is None,
         description="How people find their way; without it `straight` to their goals.",
     )
-    steering: Steering | None = Field(
+    steering: SteeringSpec | None = Field(
         default=None,
         exclude_if=unset,
         description="What people do beside any policy: time gap, personal space, walls, wander.",

@@ -25,7 +25,7 @@ def unset(value: Any) -> bool:
     return value is None
 
 
-class TimeGap(Spec):
+class TimeGapSpec(Spec):
     """Nobody walks faster than the room ahead allows: (distance ahead - room) / time."""
 
     time: PositiveDuration = Field(default=1.0, description="Gap kept to who is ahead, s.")
@@ -40,7 +40,7 @@ class TimeGap(Spec):
     )
 
 
-class PersonalSpace(Spec):
+class PersonalSpaceSpec(Spec):
     """A push away from where others are going to be, stronger ahead than behind."""
 
     strength: PositiveAcceleration = Field(
@@ -57,7 +57,7 @@ class PersonalSpace(Spec):
     )
 
 
-class WallPush(Spec):
+class WallPushSpec(Spec):
     """A push away from walls."""
 
     strength: PositiveAcceleration = Field(
@@ -68,7 +68,7 @@ class WallPush(Spec):
     )
 
 
-class Wander(Spec):
+class WanderSpec(Spec):
     """A slow random acceleration of each person, from the stream ``crowd.wander``."""
 
     deviation: PositiveAcceleration = Field(
@@ -79,21 +79,21 @@ class Wander(Spec):
     )
 
 
-class Steering(Spec):
+class SteeringSpec(Spec):
     """Steering parts, each off unless it is named."""
 
-    time_gap: TimeGap | None = Field(
+    time_gap: TimeGapSpec | None = Field(
         default=None, exclude_if=unset, description="Slow down behind others."
     )
-    personal_space: PersonalSpace | None = Field(
+    personal_space: PersonalSpaceSpec | None = Field(
         default=None, exclude_if=unset, description="Keep away from others."
     )
-    wall_push: WallPush | None = Field(
+    wall_push: WallPushSpec | None = Field(
         default=None, exclude_if=unset, description="Keep away from walls."
     )
-    wander: Wander | None = Field(
+    wander: WanderSpec | None = Field(
         default=None, exclude_if=unset, description="Never walk quite straight."
     )
 
 
-__all__ = ["PersonalSpace", "Steering", "TimeGap", "WallPush", "Wander"]
+__all__ = ["PersonalSpaceSpec", "SteeringSpec", "TimeGapSpec", "WallPushSpec", "WanderSpec"]

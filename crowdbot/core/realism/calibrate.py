@@ -26,7 +26,7 @@ from crowdbot.core.realism.compare import beside, score
 from crowdbot.core.realism.corridor import corridors, simulate
 from crowdbot.core.realism.model import model_of
 from crowdbot.core.realism.parameters import Parameter, overrides_of, shares_of
-from crowdbot.core.realism.reference import Reference, read_reference, shipped
+from crowdbot.core.realism.reference import RealismReference, read_reference, shipped
 from crowdbot.core.realism.statistics import Statistics, statistics_of
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.named_crowds import open_crowd
@@ -45,7 +45,7 @@ _DRAWS, HELD_OUT_DRAWS = 7, (101, 102, 103)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Task:
+class FitTask:
     """What a fit is about; plain values, so that workers can have it.
 
     Attributes:
@@ -65,7 +65,7 @@ class Task:
     duration: float = 7.0
 
     @property
-    def reference(self) -> Reference:
+    def reference(self) -> RealismReference:
         """Recorded people: the first half is fitted to, the second held out."""
         return _reference(self.files)
 
@@ -99,7 +99,7 @@ class Generation:
 
 
 def fit(
-    task: Task,
+    task: FitTask,
     parameters: Sequence[Parameter],
     log: Path,
     *,
@@ -144,7 +144,7 @@ def fit(
     return _result(task, parameters, strategy, generations)
 
 
-def loss(task: Task, overrides: Sequence[str], seed: int) -> float:
+def loss(task: FitTask, overrides: Sequence[str], seed: int) -> float:
     """1 - score beside the first half, and what errors of speed, lanes and overlap cost."""
     try:
         own = _walk(task, overrides, (seed,), task.warm_up, task.duration)
@@ -160,7 +160,7 @@ def loss(task: Task, overrides: Sequence[str], seed: int) -> float:
 
 
 def _walk(
-    task: Task, overrides: Sequence[str], seeds: Sequence[int], warm_up: float, duration: float
+    task: FitTask, overrides: Sequence[str], seeds: Sequence[int], warm_up: float, duration: float
 ) -> Statistics:
     registry = _registry(task.plugins, task.allowed)
     crowd = open_crowd(task.crowd, registry, [*task.overrides, *overrides])
@@ -174,7 +174,7 @@ def _walk(
     )
 
 
-def _result(task: Task, parameters: Sequence[Parameter], strategy: CMA, generations: int) -> Fit:
+def _result(task: FitTask, parameters: Sequence[Parameter], strategy: CMA, generations: int) -> Fit:
     """The middle of the last generation: one best draw is luck."""
     mean = np.clip(np.asarray(strategy.mean, np.float64), 0.0, 1.0)
     deviation = strategy._sigma * np.sqrt(np.diag(strategy._C))
@@ -193,7 +193,7 @@ def _result(task: Task, parameters: Sequence[Parameter], strategy: CMA, generati
     )
 
 
-def _head(task: Task, parameters: Sequence[Parameter], seed: int, size: int) -> str:
+def _head(task: FitTask, parameters: Sequence[Parameter], seed: int, size: int) -> str:
     """What a log has to begin with to be of this fit."""
     what = [
         task.crowd, task.overrides, [_digest(Path(f)) for f in task.files], seed, size,
@@ -230,7 +230,7 @@ _Asked = Sequence[tuple[Sequence[str], int]]
 
 
 @contextmanager
-def _losses(task: Task, jobs: int) -> Iterator[Callable[[_Asked], list[float]]]:
+def _losses(task: FitTask, jobs: int) -> Iterator[Callable[[_Asked], list[float]]]:
     """What computes the losses of a generation: here, or in some processes."""
     if jobs <= 1:
         yield lambda asked: [loss(task, overrides, seed) for overrides, seed in asked]
@@ -250,8 +250,8 @@ def _registry(plugins: tuple[str, ...], allowed: tuple[str, ...] | None) -> Regi
 
 
 @cache
-def _reference(files: tuple[str, ...]) -> Reference:
+def _reference(files: tuple[str, ...]) -> RealismReference:
     return read_reference([Path(f) for f in files]) if files else shipped()
 
 
-__all__ = ["Fit", "Generation", "Task", "fit", "loss"]
+__all__ = ["Fit", "FitTask", "Generation", "fit", "loss"]

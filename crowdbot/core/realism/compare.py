@@ -20,7 +20,7 @@ _FEWEST = 30
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Score:
+class RealismScore:
     """One crowd beside another.
 
     Attributes:
@@ -71,7 +71,7 @@ def similarity(p: Array, q: Array) -> float:
     return float(1.0 - np.sqrt(max(0.0, divergence)))
 
 
-def score(crowd: Statistics, reference: Statistics, seed: int = 0) -> Score:
+def score(crowd: Statistics, reference: Statistics, seed: int = 0) -> RealismScore:
     """How near a crowd is to the reference: mean of 1 - sqrt(JSD) over cells and features.
 
     Args:
@@ -90,7 +90,7 @@ def score(crowd: Statistics, reference: Statistics, seed: int = 0) -> Score:
                 else similarity(sample[name], reference.histograms[cell][name])
             )
     cells = compared_cells(reference)
-    return Score(
+    return RealismScore(
         score=float(np.mean(list(found.values()))) if found else float("nan"),
         parts={f: float(np.mean([found[c, f] for c in cells])) for f in FEATURES if cells},
         cells={c: float(np.mean([found[c, f] for f in FEATURES])) for c in cells},

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.realism.bins import FEATURES
-from crowdbot.core.realism.compare import Beside, Score, beside, compared_cells
+from crowdbot.core.realism.compare import Beside, RealismScore, beside, compared_cells
 from crowdbot.core.realism.corridor import corridors, simulate
 from crowdbot.core.realism.model import CrowdModel
-from crowdbot.core.realism.reference import Reference
+from crowdbot.core.realism.reference import RealismReference
 from crowdbot.core.realism.statistics import Statistics, statistics_of
 from crowdbot.core.realism.tracks import Tracks
 
@@ -49,7 +49,7 @@ class Realism:
     cells: Mapping[tuple[str, str], float]
     beside: Beside
     statistics: Statistics
-    reference: Reference
+    reference: RealismReference
 
     @property
     def line(self) -> str:
@@ -103,7 +103,7 @@ class Realism:
 def measure(
     name: str,
     model: CrowdModel,
-    reference: Reference,
+    reference: RealismReference,
     seeds: Sequence[int] = SEEDS,
     walk: Callable[[CrowdModel, Sequence[int]], Sequence[Sequence[Tracks]]] | None = None,
 ) -> Realism:
@@ -128,7 +128,9 @@ def walk_here(model: CrowdModel, seeds: Sequence[int]) -> list[list[Tracks]]:
     return [[simulate(model, c) for c in corridors(seed)] for seed in seeds]
 
 
-def measure_tracks(name: str, draws: Sequence[Sequence[Tracks]], reference: Reference) -> Realism:
+def measure_tracks(
+    name: str, draws: Sequence[Sequence[Tracks]], reference: RealismReference
+) -> Realism:
     """Compare tracks, draw by draw."""
     each = [reference.score(statistics_of(tracks), k) for k, tracks in enumerate(draws)]
     whole = statistics_of([t for tracks in draws for t in tracks])
@@ -151,7 +153,7 @@ def measure_tracks(name: str, draws: Sequence[Sequence[Tracks]], reference: Refe
     )
 
 
-def _parts(scores: Sequence[Score]) -> dict[str, float]:
+def _parts(scores: Sequence[RealismScore]) -> dict[str, float]:
     return {f: float(np.mean([s.parts[f] for s in scores])) for f in FEATURES}
 
 

@@ -10,7 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.realism.compare import Score, compared_cells, score
+from crowdbot.core.realism.compare import RealismScore, compared_cells, score
 from crowdbot.core.realism.corridor import corridors, simulate
 from crowdbot.core.realism.model import CrowdModel, avoid_nobody, ghosts
 from crowdbot.core.realism.statistics import Statistics, statistics_of
@@ -27,7 +27,7 @@ FLOORS: Mapping[str, CrowdModel] = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Reference:
+class RealismReference:
     """Recorded people, in two halves that are compared with each other, too.
 
     Attributes:
@@ -42,18 +42,18 @@ class Reference:
     floors: Mapping[str, Statistics]
     sources: tuple[str, ...]
 
-    def score(self, crowd: Statistics, seed: int = 0) -> Score:
+    def score(self, crowd: Statistics, seed: int = 0) -> RealismScore:
         """Mean of the scores beside both halves."""
         return _mean([score(crowd, half, seed) for half in self.halves])
 
     @property
-    def ceiling(self) -> Score:
+    def ceiling(self) -> RealismScore:
         """One half beside the other: what recorded people reach."""
         a, b = self.halves
         return _mean([score(a, b), score(b, a)])
 
     @property
-    def floor(self) -> Score:
+    def floor(self) -> RealismScore:
         """The better of those who avoid nobody."""
         return max((self.score(f) for f in self.floors.values()), key=lambda s: s.score)
 
@@ -72,7 +72,7 @@ class Reference:
         }
 
     @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Reference:
+    def from_json(cls, data: Mapping[str, Any]) -> RealismReference:
         """What `as_json` wrote."""
         first, second = (Statistics.from_json(half) for half in data["halves"])
         return cls(
@@ -84,17 +84,17 @@ class Reference:
 
 
 @cache
-def shipped() -> Reference:
+def shipped() -> RealismReference:
     """The recorded corridors that come with crowdbot, as derived numbers."""
     text = resources.files(__package__).joinpath(SHIPPED).read_text(encoding="utf-8")
-    return Reference.from_json(json.loads(text))
+    return RealismReference.from_json(json.loads(text))
 
 
 def reference_of(
     tracks: Sequence[Tracks],
     sources: Sequence[str],
     floors: Mapping[str, Statistics] | None = None,
-) -> Reference:
+) -> RealismReference:
     """A reference from tracks: every second one is of the other half.
 
     One recording alone is halved in time.
@@ -105,7 +105,7 @@ def reference_of(
     if not tracks:
         raise InputError("a reference needs one recording at least")
     halves = _halved(tracks[0]) if len(tracks) == 1 else _alternate(tracks)
-    found = Reference(
+    found = RealismReference(
         halves=(statistics_of(halves[0]), statistics_of(halves[1])),
         whole=statistics_of(tracks),
         floors=shipped().floors if floors is None else floors,
@@ -118,7 +118,7 @@ def reference_of(
     return found
 
 
-def read_reference(files: Sequence[Path]) -> Reference:
+def read_reference(files: Sequence[Path]) -> RealismReference:
     """A reference from files of the user: recordings (.mcap) or tables t,id,x,y (.csv).
 
     Raises:
@@ -166,23 +166,29 @@ def _halved(tracks: Tracks) -> tuple[Sequence[Tracks], Sequence[Tracks]]:
     return [replace(tracks, last=middle)], [replace(tracks, first=middle)]
 
 
-def _mean(scores: Sequence[Score]) -> Score:
+def _mean(scores: Sequence[RealismScore]) -> RealismScore:
     some = [s for s in scores if s.parts]
     if not some:
         return scores[0]
     cells = dict.fromkeys(c for s in some for c in s.cells)
-    return Score(
+    return RealismScore(
         score=sum(s.score for s in some) / len(some),
         parts={f: sum(s.parts[f] for s in some) / len(some) for f in some[0].parts},
         cells={c: _of(c, some) for c in cells},
     )
 
 
-def _of(cell: tuple[str, str], scores: Sequence[Score]) -> float:
+def _of(cell: tuple[str, str], scores: Sequence[RealismScore]) -> float:
     known = [s.cells[cell] for s in scores if cell in s.cells]
     return sum(known) / len(known)
 
 
 __all__ = [
-    "FLOORS", "Reference", "floors_of", "read_reference", "read_tracks", "reference_of", "shipped",
-]  # fmt: skip
+    "FLOORS",
+    "RealismReference",
+    "floors_of",
+    "read_reference",
+    "read_tracks",
+    "reference_of",
+    "shipped",
+]

@@ -7,7 +7,7 @@ import numpy as np
 from crowdbot.core.realism.bins import FEATURES
 from crowdbot.core.realism.compare import Beside, beside
 from crowdbot.core.realism.measure import DIAGRAM, LANES, PAIRS, Realism
-from crowdbot.core.realism.reference import Reference
+from crowdbot.core.realism.reference import RealismReference
 
 _NAMES = {
     "time_to_collision": "time to collision",
@@ -40,12 +40,12 @@ def rows(found: Realism) -> list[list[str]]:
     return out
 
 
-def real_beside(reference: Reference) -> Beside:
+def real_beside(reference: RealismReference) -> Beside:
     """Errors of one half of the recordings beside the other."""
     return beside(*reference.halves)
 
 
-def ghosts_beside(reference: Reference) -> Beside:
+def ghosts_beside(reference: RealismReference) -> Beside:
     """Errors of those who avoid nobody."""
     return beside(reference.floors["avoid nobody"], reference.whole)
 

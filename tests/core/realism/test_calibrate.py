@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from crowdbot.core.realism import calibrate
-from crowdbot.core.realism.calibrate import Generation, Task, fit
+from crowdbot.core.realism.calibrate import FitTask, Generation, fit
 from crowdbot.core.realism.parameters import numbers, overrides_of, parameters_of, shares_of
 from crowdbot.core.realism.reference import shipped
 from crowdbot.core.registry.registry import discover
@@ -51,7 +51,7 @@ class Counted:
     def __init__(self) -> None:
         self.asked = 0
 
-    def __call__(self, task: Task, overrides: Sequence[str], seed: int) -> float:
+    def __call__(self, task: FitTask, overrides: Sequence[str], seed: int) -> float:
         del task, seed
         self.asked += 1
         k, tau = (float(text.partition("=")[2]) for text in overrides)
@@ -68,7 +68,7 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> Counted:
 
 def run(log: Path, generations: int, watch: Any = lambda _generation: None) -> Any:
     parameters = parameters_of(CROWD, ["costs.avoid.k=0.5..8", "costs.avoid.tau0=0.5..6"])
-    return fit(Task(crowd="power_law"), parameters, log, generations=generations, watch=watch)
+    return fit(FitTask(crowd="power_law"), parameters, log, generations=generations, watch=watch)
 
 
 def test_a_fit_finds_the_least_loss_and_tells_its_spread(counted: Counted, tmp_path: Path) -> None:
@@ -99,4 +99,4 @@ def test_the_log_of_another_fit_is_refused(counted: Counted, tmp_path: Path) -> 
     run(tmp_path / "a.jsonl", 1)
     parameters = parameters_of(CROWD, ["costs.avoid.k"])
     with pytest.raises(InputError, match="log of another calibration"):
-        fit(Task(crowd="power_law"), parameters, tmp_path / "a.jsonl", generations=2)
+        fit(FitTask(crowd="power_law"), parameters, tmp_path / "a.jsonl", generations=2)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from crowdbot.core.realism.bins import FEATURES
 from crowdbot.core.realism.compare import beside, compared_cells, score, similarity
 from crowdbot.core.realism.features import NEAREST, SPEED, features
-from crowdbot.core.realism.reference import Reference, shipped
+from crowdbot.core.realism.reference import RealismReference, shipped
 from crowdbot.core.realism.statistics import Statistics, statistics_of
 from crowdbot.core.realism.tables import real_beside
 from crowdbot.core.realism.tracks import Tracks, tracks_of
@@ -127,7 +127,7 @@ def test_shipped_reference() -> None:
     assert reference.sources
     near = real_beside(reference)
     assert near.lane_error < 0.1
-    again = Reference.from_json(json.loads(json.dumps(reference.as_json())))
+    again = RealismReference.from_json(json.loads(json.dumps(reference.as_json())))
     assert again.ceiling.score == pytest.approx(reference.ceiling.score, abs=0.002)
 
 

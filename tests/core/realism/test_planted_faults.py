@@ -107,5 +107,7 @@ def test_two_draws_are_close_and_one_is_repeatable() -> None:
     again = [simulate(model(), place) for place in PLACES[:1]]
     assert again[0].way.tobytes() == tracks[0].way.tobytes()
     other = measured([simulate(model(), replace(place, seed=7)) for place in PLACES])
-    assert other.score == pytest.approx(own.score, abs=0.03)
+    for place in PLACES:
+        cell = place.flow, f"{place.density:g}"
+        assert other.cells[cell] == pytest.approx(own.cells[cell], abs=0.08), cell
     assert own.parts["speed"] > 0.4

@@ -12,7 +12,7 @@ from crowdbot.core.crowd.steering.parameters import (
     WallPush,
     Wander,
 )
-from crowdbot.dsl.steering import Steering as SteeringSpec
+from crowdbot.dsl.steering import SteeringSpec
 
 _PARTS: dict[str, type[Any]] = {
     "time_gap": TimeGap,
