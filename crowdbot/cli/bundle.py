@@ -62,9 +62,12 @@ def bundle(
     from crowdbot.core.bundle.pack import Submission, other_seeds, pack
     from crowdbot.core.planning.choice import ANYWHERE
     from crowdbot.core.scenarios.library import open_suite
+    from crowdbot.core.scenarios.lock_check import check_revealed
 
     registry = installed(plugin, no_plugins)
     expansion, lock = open_suite(suite, registry)
+    for scenario in expansion.scenarios:
+        check_revealed(scenario)
     submission = Submission(
         root=root, planner=planner, team=team, contact=contact, partial=partial,
         recordings=recordings,
