@@ -11,6 +11,7 @@ planner is better more often, not about means).
 from __future__ import annotations
 
 import argparse
+import math
 from collections import Counter
 from collections.abc import Iterator
 
@@ -36,7 +37,7 @@ def noise(rng: np.random.Generator, size: tuple[int, ...], *, skewed: bool) -> F
     """Mean 0, variance 1."""
     if not skewed:
         return rng.normal(size=size)
-    euler = np.e
+    euler = math.e
     return np.asarray((np.exp(rng.normal(size=size)) - euler**0.5) / (euler * (euler - 1)) ** 0.5)
 
 
