@@ -213,6 +213,7 @@ def test_the_lock_says_what_it_holds(suite: Path) -> None:
         ("challenge-2020", 162),
         ("challenge-2020-literal", 162),
         ("challenge-2020-robots", 5 * 162),
+        ("challenge-2021", 144),
         ("challenge-2026", 162),
     ],
 )
