@@ -12,7 +12,6 @@ from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
 from pydantic import (
-    ConfigDict,
     Field,
     PrivateAttr,
     SerializeAsAny,
@@ -117,8 +116,6 @@ class Crowd(Spec):
 
     Fields that came after the first locks are outside the hash while they are as usual.
     """
-
-    model_config = ConfigDict(json_schema_extra={"left_out": ["streams", "people", "groups"]})
 
     flow: Flow | None = None
     streams: dict[str, StreamChoice] = Field(

@@ -10,7 +10,6 @@ from typing import Annotated, Any, Literal
 from annotated_types import Ge, Le, Lt, MinLen
 from pydantic import (
     BeforeValidator,
-    ConfigDict,
     Discriminator,
     Field,
     Tag,
@@ -166,8 +165,6 @@ class Spawn(Spec):
 
 class Agent(Spec):
     """One explicit agent; what is left out is as in the crowd."""
-
-    model_config = ConfigDict(json_schema_extra={"left_out": ["pauses", "look", "height"]})
 
     id: Annotated[int, Ge(0), Le(2**31 - 1)] = Field(description="Number of its own.")
     x: Length = Field(description="Start, m.")

@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler, model_validator
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from crowdbot.dsl.quantities import Angle, Length, PositiveLength
 
@@ -22,6 +24,17 @@ class Spec(BaseModel):
         validate_default=True,
         defer_build=True,  # a document uses few of the specs that are installed
     )
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """With the names of fields that are left out while they are as usual."""
+        made = handler(core_schema)
+        left_out = [name for name, f in cls.model_fields.items() if f.exclude_if is not None]
+        if left_out:
+            handler.resolve_ref_schema(made)["left_out"] = left_out
+        return made
 
 
 class ComponentSpec(Spec):

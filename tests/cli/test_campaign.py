@@ -111,7 +111,12 @@ def test_the_index_can_be_lost_damaged_or_in_use(whole: Path) -> None:
         assert database.execute("PRAGMA journal_mode").fetchone() == ("wal",)
 
 
-def test_questions(whole: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_questions(
+    whole: Path,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     def ask(*argv: str) -> Any:
         assert cli.main(["results", *argv]) == 0
         return capsys.readouterr().out
@@ -127,6 +132,7 @@ def test_questions(whole: Path, capsys: pytest.CaptureFixture[str], tmp_path: Pa
     )
     assert len(worst) == 2
     assert worst[0]["value"] <= worst[1]["value"]
+    monkeypatch.setenv("COLUMNS", "160")
     assert "goal_seek" in ask("--out", str(whole))
     ask("atlas", "--out", str(whole), "--md", str(tmp_path / "atlas.md"))
     assert (tmp_path / "atlas.md").read_text(encoding="utf-8").startswith("# Atlas of scores")

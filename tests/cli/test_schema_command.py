@@ -66,7 +66,7 @@ def test_components_of_plugins_are_in_it(tmp_path: Path) -> None:
     done = subprocess.run(argv, cwd=tmp_path, capture_output=True, text=True, check=True)
     words = {w["const"]: w["description"] for w in json.loads(done.stdout)}
     assert words["acme_rooms.room"] == "A room."
-    assert set(words) == {"acme_rooms.room", "corridor", "floor"}
+    assert {"acme_rooms.room", "corridor", "floor"} <= set(words)
 
 
 @pytest.mark.slow

@@ -12,7 +12,7 @@ from typing import Any, cast
 from crowdbot.core.live.commands import twist
 from crowdbot.core.live.message import LiveMessage, Offer
 from crowdbot.core.live.services import Service
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.types.motion import Command
 from crowdbot.errors import InputError
@@ -25,7 +25,7 @@ class FoxgloveDoor:
     """A door for Foxglove; what it publishes on ``/cmd_vel`` drives, as from any client."""
 
     def __init__(
-        self, session: Session, host: str, port: int, services: Mapping[str, Service]
+        self, session: LiveSession, host: str, port: int, services: Mapping[str, Service]
     ) -> None:
         """Start to listen.
 

@@ -12,7 +12,7 @@ from crowdbot.core.live.door import Door
 from crowdbot.core.live.message import LiveMessage, Offer, told
 from crowdbot.core.live.observed import Observed
 from crowdbot.core.live.scene import LiveScene, latched
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.core.planning.planner import NoValidCommand, Observation, Task
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.types.motion import Command
@@ -59,7 +59,7 @@ class LivePlanner:
     """Drives as it is told from outside."""
 
     def __init__(
-        self, session: Session, doors: Sequence[Door], scene: LiveScene, manner: Manner
+        self, session: LiveSession, doors: Sequence[Door], scene: LiveScene, manner: Manner
     ) -> None:
         self._session, self._doors, self._scene, self._manner = session, doors, scene, manner
         self._began = self._told = -math.inf
@@ -176,7 +176,7 @@ class LivePlanner:
             door.publish([message])
 
 
-def status(session: Session, epoch: int) -> LiveMessage:
+def status(session: LiveSession, epoch: int) -> LiveMessage:
     """The state of the run that is going on, or just ended."""
     counts = session.counts
     message = ros.new(

@@ -12,7 +12,7 @@ from typing import Any, cast
 from crowdbot.core.live.door import Door
 from crowdbot.core.live.planner import LivePlanner, Manner, status
 from crowdbot.core.live.scene import LiveScene
-from crowdbot.core.live.session import Session, State
+from crowdbot.core.live.session import LiveSession, State
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import prepare
@@ -35,7 +35,7 @@ class LiveServe:
         on_run: called with each complete run.
     """
 
-    session: Session
+    session: LiveSession
     doors: Sequence[Door]
     manner: Manner
     scenarios: Sequence[Scenario]
@@ -157,7 +157,7 @@ def _scene(request: Request) -> LiveScene:
     )
 
 
-def _remember(run: Run, session: Session, manner: Manner) -> Run:
+def _remember(run: Run, session: LiveSession, manner: Manner) -> Run:
     """Add to run.json what only a live run knows."""
     counts = session.counts
     live: dict[str, Any] = {

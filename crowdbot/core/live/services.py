@@ -8,7 +8,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.errors import InputError
 
 Values = dict[str, Any]
@@ -35,7 +35,7 @@ class Service:
     call: Callable[[Values], Awaitable[Values]]
 
 
-def services(session: Session) -> dict[str, Service]:
+def services(session: LiveSession) -> dict[str, Service]:
     """Those of crowdbot, by name."""
 
     def trigger(act: Callable[[], object]) -> Service:
@@ -70,7 +70,7 @@ def services(session: Session) -> dict[str, Service]:
     }  # fmt: skip
 
 
-async def steps_taken(session: Session, count: int) -> None:
+async def steps_taken(session: LiveSession, count: int) -> None:
     """Take so many planner steps, hold, and return when they were taken or the run is over.
 
     Raises:

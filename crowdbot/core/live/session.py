@@ -50,7 +50,7 @@ class _Asked:
 
 
 @dataclass
-class Session:
+class LiveSession:
     """Shared by the simulation and its connections.
 
     Attributes:

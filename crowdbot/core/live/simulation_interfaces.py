@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable
 
 from crowdbot.core.live.services import Fields, Service, Values, steps_taken, whole
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.errors import InputError
 
 PACKAGE = "simulation_interfaces"
@@ -22,7 +22,7 @@ _STATE: Fields = {"state": f"{PACKAGE}/SimulationState"}
 _RESULT: Fields = {"result": f"{PACKAGE}/Result"}
 
 
-def simulation_services(session: Session) -> dict[str, Service]:
+def simulation_services(session: LiveSession) -> dict[str, Service]:
     """The services, by name."""
 
     async def reset(values: Values) -> Values:
@@ -86,7 +86,7 @@ def _result(code: int, text: str = "") -> Values:
     return {"result": {"result": code, "error_message": text}}
 
 
-def _state(session: Session) -> int:
+def _state(session: LiveSession) -> int:
     if session.paused:
         return PAUSED
     return PLAYING if session.state in ("waiting", "running", "paused") else STOPPED

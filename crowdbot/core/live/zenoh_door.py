@@ -21,7 +21,7 @@ from crowdbot.core.live.ros2_keys import (
     in_distro,
     node_token,
 )
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.types.motion import Command
 from crowdbot.errors import InputError
@@ -72,7 +72,7 @@ class ZenohDoor:
     """A door that speaks what ROS 2 nodes with rmw_zenoh speak."""
 
     def __init__(
-        self, session: Session, network: Network, *, resend: bool = True, external_clock: bool
+        self, session: LiveSession, network: Network, *, resend: bool = True, external_clock: bool
     ) -> None:
         """Connect.
 

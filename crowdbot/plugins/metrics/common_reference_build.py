@@ -21,6 +21,9 @@ from crowdbot.core.interfaces import (
 from crowdbot.core.trajectories.encounters import robot_of
 from crowdbot.core.trajectories.preprocess import present
 
+#: What is smaller came from rounding, m or J.
+_NOTHING = 1e-9
+
 
 def without_task(run: Trajectories) -> str:
     """Why the robot has nothing to arrive at; empty where it has, or did arrive."""
@@ -76,7 +79,7 @@ def rate_and_way(
     if isinstance(way, list):
         return way[0], way[1]
     over = factory.ok("way", max(way, least))
-    if not amount and way < least:
+    if amount < _NOTHING and way < least - _NOTHING:
         return factory.undefined("rate", "zero_denominator"), over
     return factory.ok("rate", amount / max(way, least), {"amount": amount, "way": way}), over
 

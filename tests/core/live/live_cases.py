@@ -14,7 +14,7 @@ from websockets.sync.client import ClientConnection, connect
 from crowdbot.core.live.message import LiveMessage, Offer, told
 from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer
 from crowdbot.core.live.services import services
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
 
 CLOCK = Offer("/clock", "rosgraph_msgs/msg/Clock")
@@ -27,8 +27,8 @@ def clock(ns: int) -> LiveMessage:
 
 
 @contextmanager
-def serving(token: str = "", **more: Any) -> Iterator[tuple[RosbridgeServer, Session]]:
-    session = Session()
+def serving(token: str = "", **more: Any) -> Iterator[tuple[RosbridgeServer, LiveSession]]:
+    session = LiveSession()
     server = RosbridgeServer(session, Address(port=0, token=token), services(session), **more)
     try:
         server.open([CLOCK])

@@ -14,7 +14,7 @@ from websockets.sync.client import ClientConnection, connect
 from crowdbot.core.live.foxglove_door import FoxgloveDoor
 from crowdbot.core.live.message import Offer, told
 from crowdbot.core.live.services import services
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.types.motion import Command
 from crowdbot.errors import InputError
@@ -24,8 +24,8 @@ TWIST = {"linear": {"x": 0.25, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0
 
 
 @contextmanager
-def _both() -> Iterator[tuple[FoxgloveDoor, Session, ClientConnection]]:
-    session = Session()
+def _both() -> Iterator[tuple[FoxgloveDoor, LiveSession, ClientConnection]]:
+    session = LiveSession()
     door = FoxgloveDoor(session, "127.0.0.1", 0, services(session))
     try:
         door.open(

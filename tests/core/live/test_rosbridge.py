@@ -16,7 +16,7 @@ from websockets.sync.client import ClientConnection
 from crowdbot.core.live.message import Offer, told
 from crowdbot.core.live.rosbridge.frames import as_numbers
 from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.sensor import SensorInfo
@@ -316,7 +316,7 @@ def test_level_none_says_nothing() -> None:
 
 
 def test_a_session_outlives_its_server() -> None:
-    session = Session()
+    session = LiveSession()
     server = RosbridgeServer(session, Address(port=0), {})
     server.close()
     server.close()

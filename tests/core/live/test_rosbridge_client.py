@@ -15,7 +15,7 @@ from websockets.sync.server import ServerConnection, serve
 
 from crowdbot.core.live.message import Offer, told
 from crowdbot.core.live.rosbridge.client import RosbridgeClient
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.types.motion import Command
 from crowdbot.errors import InputError
@@ -55,8 +55,8 @@ class Others:
 
 
 @contextmanager
-def _connected(**more: Any) -> Iterator[tuple[RosbridgeClient, Session, Others]]:
-    others, session = Others(), Session()
+def _connected(**more: Any) -> Iterator[tuple[RosbridgeClient, LiveSession, Others]]:
+    others, session = Others(), LiveSession()
     with serve(others, "127.0.0.1", 0, compression=None) as server:
         thread = threading.Thread(target=server.serve_forever)
         thread.start()
@@ -116,7 +116,7 @@ def test_nobody_there_is_told() -> None:
         port = taken.getsockname()[1]
     with pytest.raises(InputError, match="no rosbridge server"):
         RosbridgeClient(
-            Session(), f"ws://127.0.0.1:{port}", ros=2, stamped=False, external_clock=False
+            LiveSession(), f"ws://127.0.0.1:{port}", ros=2, stamped=False, external_clock=False
         )
     with pytest.raises(InputError, match="no rosbridge server"):
-        RosbridgeClient(Session(), "nonsense", ros=2, stamped=False, external_clock=False)
+        RosbridgeClient(LiveSession(), "nonsense", ros=2, stamped=False, external_clock=False)

@@ -7,7 +7,7 @@ import threading
 
 import pytest
 
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.core.types.motion import Command
 
 GO = Command(0.5, 0.1)
@@ -18,7 +18,7 @@ def _nobody() -> None:
 
 
 def test_the_first_command_after_the_question_answers_it() -> None:
-    session = Session()
+    session = LiveSession()
     session.ask(5)
     assert session.command("a", GO) == ""
     assert session.command("a", Command(0.0, 0.0)) == ""
@@ -26,14 +26,14 @@ def test_the_first_command_after_the_question_answers_it() -> None:
 
 
 def test_a_command_before_the_question_does_not_answer_it() -> None:
-    session = Session()
+    session = LiveSession()
     session.command("a", GO)
     session.ask(5)
     assert session.answer(0.01, _nobody) is None
 
 
 def test_a_command_with_an_old_stamp_does_not_answer() -> None:
-    session = Session()
+    session = LiveSession()
     session.ask(2_000_000_000)
     assert "older" in session.command("a", GO, 1_000_000_000)
     assert session.answer(0.01, _nobody) is None
@@ -44,7 +44,7 @@ def test_a_command_with_an_old_stamp_does_not_answer() -> None:
 
 
 def test_a_stamp_of_0_is_none() -> None:
-    session = Session()
+    session = LiveSession()
     session.ask(2_000_000_000)
     session.command("a", GO, 0)
     assert session.answer(1.0, _nobody) == GO
@@ -52,14 +52,14 @@ def test_a_stamp_of_0_is_none() -> None:
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 def test_a_command_must_be_finite(bad: float) -> None:
-    session = Session()
+    session = LiveSession()
     session.ask(0)
     assert "finite" in session.command("a", Command(0.0, bad))
     assert session.answer(0.01, _nobody) is None
 
 
 def test_the_first_who_drives_drives_until_he_leaves() -> None:
-    session = Session()
+    session = LiveSession()
     session.ask(0)
     assert session.drive("a")
     assert not session.drive("b")
@@ -72,7 +72,7 @@ def test_the_first_who_drives_drives_until_he_leaves() -> None:
 
 
 def test_who_begins_to_listen_is_told_while_a_step_waits() -> None:
-    session = Session()
+    session = LiveSession()
     session.ask(0)
     session.listened()
     told: list[int] = []
@@ -86,7 +86,7 @@ def test_who_begins_to_listen_is_told_while_a_step_waits() -> None:
 
 
 def test_the_clock_outside_never_goes_back() -> None:
-    session = Session()
+    session = LiveSession()
     for t in (0.1, 0.1, 0.05, math.nan, 0.2, -1.0):
         session.clock(t)
     session.wait_for_clock(0.2)
@@ -101,7 +101,7 @@ def test_the_clock_outside_never_goes_back() -> None:
 
 
 def test_a_paused_run_takes_as_many_steps_as_it_is_told() -> None:
-    session = Session()
+    session = LiveSession()
     session.pause(True)
     taken: list[int] = []
     stopped = False
@@ -124,7 +124,7 @@ def test_a_paused_run_takes_as_many_steps_as_it_is_told() -> None:
 
 
 def test_a_request_ends_every_wait() -> None:
-    session = Session()
+    session = LiveSession()
     session.ask(0)
     session.ask_for("next", seed=7)
     assert session.answer(1e6, _nobody) is None

@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.core.live.simulation_interfaces import simulation_services
 
 
-def _call(session: Session, name: str, values: dict[str, Any] | None = None) -> dict[str, Any]:
+def _call(session: LiveSession, name: str, values: dict[str, Any] | None = None) -> dict[str, Any]:
     service = simulation_services(session)[name]
 
     async def wait() -> dict[str, Any]:
@@ -27,7 +27,7 @@ def _code(answer: dict[str, Any]) -> int:
 
 
 def test_the_state_can_be_set_and_read() -> None:
-    session = Session()
+    session = LiveSession()
     assert _code(_call(session, "/set_simulation_state", {"state": {"state": 2}})) == 1
     assert session.paused
     assert _call(session, "/get_simulation_state")["state"] == {"state": 2}
@@ -40,13 +40,13 @@ def test_the_state_can_be_set_and_read() -> None:
 
 @pytest.mark.parametrize("scope", [0, 255])
 def test_a_reset_is_of_the_whole(scope: int) -> None:
-    session = Session()
+    session = LiveSession()
     assert _code(_call(session, "/reset_simulation", {"scope": scope})) == 1
     assert session.take_request() == "reset"
 
 
 def test_what_is_not_possible_is_told() -> None:
-    session = Session()
+    session = LiveSession()
     assert _code(_call(session, "/reset_simulation", {"scope": 2})) == 0
     assert session.take_request() == ""
     assert _code(_call(session, "/set_simulation_state", {"state": {"state": 3}})) == 0
@@ -59,5 +59,5 @@ def test_what_is_not_possible_is_told() -> None:
 
 
 def test_features_are_listed() -> None:
-    found = _call(Session(), "/get_simulator_features")["features"]
+    found = _call(LiveSession(), "/get_simulator_features")["features"]
     assert found["features"] == [20, 24, 25, 26, 31, 32]

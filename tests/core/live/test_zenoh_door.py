@@ -15,7 +15,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from crowdbot.core.live.message import Offer, told
 from crowdbot.core.live.ros2_keys import Ros2Topic, attachment, hash_in, in_distro
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.core.live.zenoh_door import Network, ZenohDoor
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.types.motion import Command
@@ -35,9 +35,9 @@ def _endpoint() -> str:
 
 
 @contextmanager
-def _both(**more: Any) -> Iterator[tuple[ZenohDoor, Session, Any]]:
+def _both(**more: Any) -> Iterator[tuple[ZenohDoor, LiveSession, Any]]:
     """A door that is the router, and a plain session of zenoh that connects to it."""
-    session, endpoint = Session(), _endpoint()
+    session, endpoint = LiveSession(), _endpoint()
     network = Network(endpoint=endpoint, router=True)
     door = ZenohDoor(session, network, **{"external_clock": False, **more})
     config = zenoh.Config()
@@ -189,6 +189,6 @@ def test_the_clock_may_come_from_outside() -> None:
 
 def test_an_endpoint_without_a_router_is_told() -> None:
     with pytest.raises(InputError, match="cannot find a router"):
-        ZenohDoor(Session(), Network(endpoint=_endpoint()), external_clock=False)
+        ZenohDoor(LiveSession(), Network(endpoint=_endpoint()), external_clock=False)
     with pytest.raises(InputError, match="cannot be a router"):
-        ZenohDoor(Session(), Network(endpoint="nonsense", router=True), external_clock=False)
+        ZenohDoor(LiveSession(), Network(endpoint="nonsense", router=True), external_clock=False)

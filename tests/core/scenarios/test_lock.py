@@ -139,7 +139,7 @@ def test_tables_are_kept_although_they_would_be_drawn_differently(
     suite: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = suite.with_name("s.agents.csv").read_text()
-    monkeypatch.setattr(locks, "realise", lambda s: realise(s.model_copy(deep=True)))
+    monkeypatch.setattr(locks, "realise", lambda s, parts: realise(s.model_copy(deep=True), parts))
     suite.write_text(SUITE.replace("{crowd.speed.mean: 2}", "{crowd.speed.mean: 3}"))
     assert relock(suite) == 2
     after = suite.with_name("s.agents.csv").read_text()

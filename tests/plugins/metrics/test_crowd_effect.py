@@ -10,6 +10,7 @@ import pytest
 
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.trajectories.trips import Durations
+from crowdbot.errors import InputError
 from tests.plugins.metrics.scenes import (
     Body,
     grid,
@@ -195,8 +196,8 @@ def test_only_meetings_inside_the_trip_count() -> None:
     # the one that met the robot is the longest, and unfinished, above and below
     assert (found["corrected"].status, found["corrected"].lower) == ("censored", None)
     assert found["corrected"].upper is None
-    stranger = scene(t, line(t, (0, 0), (0, 0)), [agent], **trips((7, 0, 10, True)))
-    assert why(scores_of("neighbours_time_to_goal", stranger)) == {("undefined", "no_neighbours")}
+    with pytest.raises(InputError, match="no agent_id has: 7"):
+        scene(t, line(t, (0, 0), (0, 0)), [agent], **trips((7, 0, 10, True)))
 
 
 def test_bounds_of_neighbours() -> None:

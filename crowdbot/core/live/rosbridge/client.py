@@ -14,7 +14,7 @@ from crowdbot.core.live.message import LiveMessage, Offer
 from crowdbot.core.live.plain import Ros, ros_type
 from crowdbot.core.live.rosbridge.frames import BadFrame, encoded, parse
 from crowdbot.core.live.rosbridge.outbox import Outbox
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.errors import InputError
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ class RosbridgeClient:
     """A door that leads to a server of others; a connection that breaks is made again."""
 
     def __init__(
-        self, session: Session, uri: str, *, ros: Ros, stamped: bool, external_clock: bool
+        self, session: LiveSession, uri: str, *, ros: Ros, stamped: bool, external_clock: bool
     ) -> None:
         """Connect.
 

@@ -16,7 +16,7 @@ from crowdbot.core.live.rosbridge.fragments import Joiner, split
 from crowdbot.core.live.rosbridge.frames import BadFrame, Frame, parse
 from crowdbot.core.live.rosbridge.outbox import Outbox
 from crowdbot.core.live.services import Service
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.errors import InputError
 
 COMMAND, CLOCK = "/cmd_vel", "/clock"
@@ -30,7 +30,7 @@ _PER_SECOND, _BURST, _BYTES = 5000.0, 5000.0, 2000.0
 class Hub(Protocol):
     """What a connection needs of the server."""
 
-    session: Session
+    session: LiveSession
     external_clock: bool
 
     @property

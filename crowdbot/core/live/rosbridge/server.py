@@ -21,7 +21,7 @@ from crowdbot.core.live.rosbridge.feed import Wishes
 from crowdbot.core.live.rosbridge.frames import Frame, encoded
 from crowdbot.core.live.rosbridge.rosapi import RosapiWorld, rosapi
 from crowdbot.core.live.services import Service
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.errors import InputError
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ class RosbridgeServer:
 
     def __init__(
         self,
-        session: Session,
+        session: LiveSession,
         address: Address,
         services: Mapping[str, Service],
         *,

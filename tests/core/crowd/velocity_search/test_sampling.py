@@ -151,6 +151,7 @@ def test_the_order_of_agents_does_not_matter(mix: str) -> None:
         agents=replace(
             a, preferred_speed=a.preferred_speed[order], radius=a.radius[order],
             max_speed=a.max_speed[order], max_acceleration=a.max_acceleration[order],
+            avoided_radius=a.avoided_radius[order],
         ),
         position=view.position[order], velocity=view.velocity[order],
         goal=view.goal[order], present=view.present[order],
