@@ -23,7 +23,7 @@ from crowdbot.core.live.message import Offer
 from crowdbot.core.live.observed import Observed
 from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer
 from crowdbot.core.live.services import services
-from crowdbot.core.live.session import Session
+from crowdbot.core.live.session import LiveSession
 from crowdbot.core.planning.planner import Observation
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.types.motion import Pose
@@ -63,7 +63,7 @@ def client(port: int, form: str) -> None:
 
 def measure(form: str, steps: int) -> list[float]:
     """Seconds of each step."""
-    session = Session()
+    session = LiveSession()
     server = RosbridgeServer(session, Address(port=0), services(session))
     observed = Observed({"front": LIDAR}, _model())
     server.open([Offer(o.topic, o.msgtype) for o in observed.offers()])

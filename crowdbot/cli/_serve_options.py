@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from crowdbot.core.live.door import Door
     from crowdbot.core.live.planner import Manner
     from crowdbot.core.live.services import Service
-    from crowdbot.core.live.session import Session
+    from crowdbot.core.live.session import LiveSession
 
 
 class ClockChoice(StrEnum):
@@ -97,7 +97,7 @@ def manner_of(
 
 
 @contextmanager
-def listening(session: Session, manner: Manner, listen: Listen) -> Iterator[list[Door]]:
+def listening(session: LiveSession, manner: Manner, listen: Listen) -> Iterator[list[Door]]:
     """The doors through which programs come in, closed at the end.
 
     Raises:
@@ -117,7 +117,7 @@ def listening(session: Session, manner: Manner, listen: Listen) -> Iterator[list
         yield doors
 
 
-def _connected(session: Session, manner: Manner, listen: Listen) -> Door:
+def _connected(session: LiveSession, manner: Manner, listen: Listen) -> Door:
     from crowdbot.core.live.rosbridge.client import RosbridgeClient
 
     needs("live", "websockets")
@@ -133,7 +133,7 @@ def _connected(session: Session, manner: Manner, listen: Listen) -> Door:
     return door
 
 
-def _foxglove(session: Session, listen: Listen, port: int) -> Door:
+def _foxglove(session: LiveSession, listen: Listen, port: int) -> Door:
     needs("live", "foxglove")
     from crowdbot.core.live.foxglove_door import FoxgloveDoor
 
@@ -150,7 +150,7 @@ def _is_this_machine(host: str) -> bool:
     return is_loopback(host)
 
 
-def _zenoh(session: Session, manner: Manner, endpoint: str, listen: Listen) -> Door:
+def _zenoh(session: LiveSession, manner: Manner, endpoint: str, listen: Listen) -> Door:
     needs("ros2", "zenoh")
     from crowdbot.core.live.zenoh_door import Network, ZenohDoor
 
@@ -170,7 +170,7 @@ def _zenoh(session: Session, manner: Manner, endpoint: str, listen: Listen) -> D
     return door
 
 
-def _rosbridge(session: Session, manner: Manner, listen: Listen) -> Door:
+def _rosbridge(session: LiveSession, manner: Manner, listen: Listen) -> Door:
     from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer, is_loopback
 
     needs("live", "websockets", "cbor2")
@@ -195,7 +195,7 @@ def _rosbridge(session: Session, manner: Manner, listen: Listen) -> Door:
     return server
 
 
-def _services(session: Session) -> dict[str, Service]:
+def _services(session: LiveSession) -> dict[str, Service]:
     """All services that clients may call."""
     from crowdbot.core.live.services import services
     from crowdbot.core.live.simulation_interfaces import simulation_services

@@ -116,7 +116,7 @@ def serve(
         chosen = expansion.scenarios[0] if whole else pick(expansion, scenario)
         _import_simulate()
         from crowdbot.core.live.serve import LiveServe, serve_runs
-        from crowdbot.core.live.session import Session
+        from crowdbot.core.live.session import LiveSession
         from crowdbot.core.runs.request import Request
 
         def request(of: Scenario, choice: PlannerChoice, run_seed: int) -> Request:
@@ -135,7 +135,7 @@ def serve(
             )
 
         with _interruptible() as stop:
-            session = Session(interrupted=stop)
+            session = LiveSession(interrupted=stop)
             listen = Listen(
                 host=host,
                 port=port,

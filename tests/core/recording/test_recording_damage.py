@@ -124,7 +124,7 @@ def test_any_flipped_byte_is_no_traceback(tmp_path: Path) -> None:
             found = read_whole(path)  # a broken last chunk counts as cut off, and is told
             assert not found.complete or bits(found.run) == good
             survived += found.complete
-    assert survived < start // 70  # only bytes that carry nothing
+    assert survived < start // 40  # only bytes that carry nothing: texts of schemas, maps
 
 
 def test_a_killed_process_leaves_all_it_flushed(tmp_path: Path) -> None:
