@@ -56,7 +56,7 @@ def test_set_changes_the_second(capsys: Captured) -> None:
     [
         ("challenge-2020", "no id was given"),
         ("challenge-2020/sideways", "unknown scenario"),
-        ("challenge-2021/in", "challenge-2021/in"),
+        ("challenge-2030/in", "challenge-2030/in"),
         ("nothing.yaml", "error[E001]"),
         (".", "no run directory"),
     ],

@@ -74,7 +74,7 @@ def test_select_keeps_the_order(challenge: Expansion) -> None:
 
 def test_unknown_suite() -> None:
     with pytest.raises(UnknownNameError, match=r"did you mean .*'challenge-2020'"):
-        open_spec("challenge-2021", REGISTRY)
+        open_spec("challenge-2030", REGISTRY)
 
 
 @pytest.mark.parametrize("spec", ["nowhere.yaml", "./nowhere"])

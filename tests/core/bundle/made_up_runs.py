@@ -169,7 +169,7 @@ def rewrite(
     with zipfile.ZipFile(bundle) as file:
         members = {n: file.read(n) for n in file.namelist()}
         kept = {i.filename for i in file.infolist() if i.compress_type == zipfile.ZIP_STORED}
-    kept |= {name for name in more or {} if name.endswith(".mcap")}
+    kept |= {name for name in more or {} if honest and name.endswith(".mcap")}
     for name, function in change.items():
         changed = function(members[name])
         if changed is None:
