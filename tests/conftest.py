@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 
+import pytest
 from hypothesis import settings
 
 # A shell without job control starts what runs in the background with SIGINT ignored; tests that
@@ -17,3 +18,34 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 settings.register_profile("repeat", derandomize=True, max_examples=40)
 settings.register_profile("explore", derandomize=False, max_examples=200)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeat"))
+
+#: The longest tests, 5 minutes of processor time together: `make test-all` runs them too, so that
+#: `make test` ends within 15 minutes on two cores.
+LONG = (
+    "tests/cli/test_audit.py::test_a_suite_without_people_tells_nothing",
+    "tests/cli/test_audit.py::test_floors_are_reused_like_any_other_run",
+    "tests/cli/test_campaign.py::test_ctrl_c_ends_workers_and_keeps_what_is_finished",
+    "tests/cli/test_campaign.py::test_failures_are_on_record_and_stop_nobody",
+    "tests/cli/test_campaign.py::test_references_are_shared_and_replays_left_out",
+    "tests/cli/test_campaign_cluster.py",
+    "tests/cli/test_planner_processes.py::test_a_hostile_planner_stops_no_campaign",
+    "tests/cli/test_planner_processes.py::test_a_worker_is_killed",
+    "tests/cli/test_plugins.py::test_show_every_kind",
+    "tests/cli/test_simulate.py::test_runs_at_once_are_the_same_run",
+    "tests/core/live/test_rosbridge.py::test_two_thousand_come_and_go",
+    "tests/docs/test_example_package.py",
+    "tests/dsl/test_mutations.py::test_refused_or_understood",
+    "tests/dsl/test_safety.py::test_document",
+    "tests/dsl/test_schema.py::test_what_the_schema_refuses_validate_refuses",
+)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave the longest tests out of a run of everything, unless they are asked for."""
+    whole = not config.args or config.args == config.getini("testpaths")
+    if os.environ.get("CROWDBOT_ALL_TESTS") or not whole:
+        return
+    long = [item for item in items if item.nodeid.startswith(LONG)]
+    config.hook.pytest_deselected(items=long)
+    left = set(long)
+    items[:] = [item for item in items if item not in left]
