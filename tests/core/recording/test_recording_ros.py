@@ -14,7 +14,7 @@ from rosbags.highlevel import AnyReader
 from rosbags.interfaces import QosDurability
 
 from crowdbot.core.interfaces import SensorInfo
-from crowdbot.core.recording.messages import DEFINITIONS
+from crowdbot.core.recording.definitions import DEFINITIONS
 from crowdbot.core.recording.topics import sensor_topics
 from tests.core.recording.recording_cases import ANGLES, ODOMETRY, random_run, write_run
 from tests.paths import ROOT
