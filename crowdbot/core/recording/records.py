@@ -20,7 +20,17 @@ from isal.isal_zlib import crc32
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import EndOfFile, InvalidMagic, McapError
 from mcap.opcode import Opcode
-from mcap.records import Attachment, Channel, Chunk, DataEnd, Footer, McapRecord, Message, Schema
+from mcap.records import (
+    Attachment,
+    Channel,
+    Chunk,
+    DataEnd,
+    Footer,
+    McapRecord,
+    Message,
+    Schema,
+    Statistics,
+)
 from mcap.stream_reader import StreamReader
 
 from crowdbot.core.recording import messages as ros
@@ -78,6 +88,7 @@ class Records:
         self._channels: dict[int, Channel] = {}
         self._total = 0
         self._left = MAX_RECORDS
+        self._seen = 0
 
     def __iter__(self) -> Iterator[Record]:
         """Messages in the order they were written.
@@ -106,6 +117,8 @@ class Records:
                 inner = self._unpack(record)
                 broken = inner is None
                 yield from self._messages(inner or [])
+            elif isinstance(record, Statistics) and record.message_count != self._seen:
+                raise InputError(f"{self._path}: damaged: messages are missing")
             elif isinstance(record, Attachment):
                 self._count(1)
                 self.attachments[record.name] = len(record.data)
@@ -155,6 +168,7 @@ class Records:
             elif isinstance(record, Channel):
                 self._channels[record.id] = record
             elif isinstance(record, Message):
+                self._seen += 1
                 yield self._message(record)
 
     def _message(self, message: Message) -> Record:

@@ -12,7 +12,7 @@ from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
 from crowdbot.core.recording.scans import Thinning
 from crowdbot.core.recording.template import Template
 from crowdbot.core.recording.topics import Topic, is_odometry, usual_names
-from crowdbot.core.recording.viewers import ARROWS_TYPE, PEOPLE_RATE, PeopleArrows, Way
+from crowdbot.core.recording.viewers import ARROWS_TYPE, PEOPLE_RATE, PeopleArrows, RobotWay
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command
 
@@ -33,7 +33,7 @@ class ToolTopics:
         self._people = None if agents is None else PeopleMessages(agents)
         self._arrows = None if agents is None else PeopleArrows(agents.id, agents.radius)
         self._arrows_due = Thinning(PEOPLE_RATE)
-        self._way = None if robot is None else Way(robot.radius)
+        self._way = None if robot is None else RobotWay(robot.radius)
         self._clock, self._twist = template.clock(), template.twist()
         self._truth = template.transform("map", scenery.BASE)
         self._believed = template.transform("odom", scenery.BASE)

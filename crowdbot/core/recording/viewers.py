@@ -79,7 +79,7 @@ def _arrows(count: int) -> Template:
     return Template(markers.marker_array([gone, *[arrow] * count]), ANY_STAMP, *of_each * count)
 
 
-class Way:
+class RobotWay:
     """Where a robot has been: a path for viewers, and where it was at any time so far."""
 
     def __init__(self, radius: float) -> None:

@@ -13,9 +13,8 @@ from hypothesis import strategies as st
 
 from crowdbot.core.geometry.footprint import body_side
 from crowdbot.core.interfaces import Pinhole, SensorInfo
-from crowdbot.core.recording import RecordingWriter, read_trajectories, recording_info
+from crowdbot.core.recording import RecordingWriter, read_trajectories, recording_info, typestore
 from crowdbot.core.recording import messages as ros
-from crowdbot.core.recording import typestore
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.trajectories.trajectories import Trajectories

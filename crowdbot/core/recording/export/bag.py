@@ -162,7 +162,9 @@ def _names(
     """Recorded topics -> those of the bag; None: left out, since it would be there twice."""
     names: dict[str, str | None] = {}
     if options.tree == "odometry":
-        names = {Topic.TF: None, Topic.TF_ODOMETRY: Topic.TF}
+        names = {Topic.TF: None, Topic.TF_ODOMETRY: str(Topic.TF)}
+    if not options.markers:
+        names |= {Topic.PEOPLE_MARKERS: None, Topic.CONTACT_MARKERS: None}
     usual = usual_names(header.sensors)
     for sensor, topic in sensor_topics(header.sensors).items():
         if sensor not in usual:

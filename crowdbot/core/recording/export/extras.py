@@ -12,7 +12,7 @@ from crowdbot.core.recording import scenery
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.scans import Thinning
 from crowdbot.core.recording.topics import Topic
-from crowdbot.core.recording.viewers import ARROWS_TYPE, PEOPLE_RATE, PeopleArrows, Way
+from crowdbot.core.recording.viewers import ARROWS_TYPE, PEOPLE_RATE, PeopleArrows, RobotWay
 from crowdbot.core.trajectories.trajectories import RobotTrack, Trajectories
 
 
@@ -56,8 +56,8 @@ def _told(topic: Topic, ns: int, message: Any, *, latched: bool = False) -> Extr
     return Extra(str(topic), ns, message.__msgtype__, ros.to_cdr(message), latched)
 
 
-def _way(run: Trajectories, robot: RobotTrack) -> Way:
-    way = Way(robot.radius)
+def _way(run: Trajectories, robot: RobotTrack) -> RobotWay:
+    way = RobotWay(robot.radius)
     for row in zip(run.t, robot.x, robot.y, robot.theta, strict=True):
         way.add(*map(float, row))
     return way
@@ -74,7 +74,7 @@ def _people(run: Trajectories) -> Iterator[Extra]:
             yield Extra(str(Topic.PEOPLE_MARKERS), ns, ARROWS_TYPE, arrows.message(ns, state))
 
 
-def _contacts(run: Trajectories, way: Way) -> Iterator[Extra]:
+def _contacts(run: Trajectories, way: RobotWay) -> Iterator[Extra]:
     """A ball where each contact began, from its beginning on."""
     events = run.contacts
     if events is None:
