@@ -120,6 +120,7 @@ def _host(setup: RunSetup, built: BuiltRun, watchdog: Watchdog | None) -> Iterat
         host = PlannerHost(
             planner, choice.name, limits,
             budget=setup.step_budget, watchdog=watchdog, origin=choice.origin,
+            copies=not isinstance(planner, ProcessPlanner),
         )  # fmt: skip
         # Halved, so that planners may hand the seed to generators of signed integers.
         host.reset(built.task, sensors, stream_seed(setup.seed, built.name, "planner") >> 1)
