@@ -9,8 +9,9 @@ from typing import Any
 from crowdbot.core.report import provenance, tables
 from crowdbot.core.report.cards import reference
 from crowdbot.core.report.contents import Contents
-from crowdbot.core.report.encode import encode_runs, encode_scores, pack
+from crowdbot.core.report.encode import encode_runs, encode_scores
 from crowdbot.core.report.figures import FIELDS, VERDICTS
+from crowdbot.core.report.packing import pack, pack_document
 from crowdbot.core.report.tables import chance, family
 from crowdbot.core.results.rows import RunRow, processes
 from crowdbot.core.scoring.scores_csv import write_table
@@ -49,6 +50,7 @@ def render(contents: Contents) -> str:
     states, blobs = encode_scores(contents.results, contents.attempts, contents.series)
     figures, runs = contents.figures, contents.results.runs
     blobs |= {name: pack(getattr(figures, name)) for name in ("intervals", "pairs", "effects")}
+    blobs["meta"] = pack_document({**_meta(contents), "states": states})
     return render_page(
         __package__,
         scripts=[f"{name}.js" for name in _SCRIPTS],
@@ -58,9 +60,9 @@ def render(contents: Contents) -> str:
         hashes=provenance.hashes(runs),
         facts=provenance.facts(runs),
         scenarios=provenance.scenarios(runs),
+        scenario_count=len({a.scenario for a in contents.attempts}),
         summary=figures.headline,
         chance=chance(figures.headline),
-        meta={**_meta(contents), "states": states},
         blobs=blobs,
     )
 
