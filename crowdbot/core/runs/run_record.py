@@ -118,7 +118,7 @@ def _worst(run: Trajectories) -> dict[str, Any] | None:
 def _named(patterns: Sequence[str] | None, scores: Scores) -> list[str]:
     """Metrics that the suite names, in its order; none where it leaves that open."""
     known = dict.fromkeys(s.metric for s in scores)
-    chosen = [m for p in patterns or () for m in known if fnmatchcase(m, p)]
+    chosen = [m for p in patterns or () if p != "*" for m in known if fnmatchcase(m, p)]
     return list(dict.fromkeys(chosen))
 
 
