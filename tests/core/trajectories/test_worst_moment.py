@@ -19,7 +19,7 @@ def run_of(people: list[tuple[Any, Any]], speed: float = 0.5, **more: Any) -> Tr
     """A robot along x; people by their x and y over time; bodies of 0.25 m each."""
     x = np.stack([np.broadcast_to(x, T.shape) for x, _ in people], axis=1)
     y = np.stack([np.broadcast_to(y, T.shape) for _, y in people], axis=1)
-    robot = {"robot_x": speed * T, "robot_y": 0 * T, "robot_theta": 0 * T}
+    robot: dict[str, Any] = {"robot_x": speed * T, "robot_y": 0 * T, "robot_theta": 0 * T}
     return Trajectories.from_arrays(
         t=T, **robot, robot_v=speed + 0 * T, robot_w=0 * T, robot_radius=0.25, robot_mass=6.0,
         agent_x=x, agent_y=y, agent_radius=0.25, agent_mass=70.0, **more,
@@ -46,7 +46,8 @@ def test_who_walks_into_a_robot_that_stands_makes_the_least_clearance() -> None:
 def test_without_contact_the_nearest_approach() -> None:
     found = worst_moment(run_of([(2.0, 1.5), (3.0, 1.0)]))
     assert found is not None
-    assert (found.t, found.what) == (pytest.approx(6.0), "least clearance")
+    assert found.what == "least clearance"
+    assert found.t == pytest.approx(6.0)
     assert found.clearance == pytest.approx(0.5)
 
 
@@ -67,7 +68,7 @@ def test_nobody_there() -> None:
 
 
 def test_the_rule_is_that_of_the_metric() -> None:
-    spec = ContactsAtFaultSpec()
+    spec = ContactsAtFaultSpec.model_validate({})
     assert spec.fault_speed == rule.FAULT_SPEED
     assert spec.contact_tol == rule.CONTACT_TOL
     assert spec.release_gap == rule.RELEASE_GAP
