@@ -24,7 +24,8 @@ class Rows:
         self.commands: list[tuple[Any, ...]] = []
         self.times: list[float] = []
 
-    def state(self, *row: Any) -> None:
+    def state(self, *row: Any, goals: Array | None) -> None:
+        assert (goals is None) == (row[2] is None)
         self.states.append(row)
 
     def trip(self, *row: Any) -> None:
