@@ -90,11 +90,16 @@ def record_crowd(setup: RunSetup, duration: float) -> Outcome:
 
 @contextmanager
 def recording(
-    setup: RunSetup, header: RecordingHeader, engine: CrowdEngine | None
+    setup: RunSetup, header: RecordingHeader, engine: CrowdEngine | None, description: str = ""
 ) -> Iterator[tuple[RecordingWriter, list[Outcome]]]:
     """A writer that is closed whatever happens; the body appends how the run ended."""
-    known = choosers(engine)
-    writer = RecordingWriter(setup.recording, header, record=setup.record, choosers=known)
+    writer = RecordingWriter(
+        setup.recording,
+        header,
+        record=setup.record,
+        choosers=choosers(engine),
+        description=description,
+    )
     ending: list[Outcome] = []
     try:
         yield writer, ending

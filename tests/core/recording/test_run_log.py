@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.interfaces import Command, RobotState
+from crowdbot.core.interfaces import Array, Command, RobotState
 from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.run_log import RunLog
 
