@@ -21,7 +21,7 @@ from crowdbot.core.trajectories.encounters import (
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array, Mask
 
-#: Slower relative motion is none, m/s.
+#: Slower relative motion does not count, m/s.
 _STILL = 1e-6
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot.core.trajectories.encounters import encounter, people
 from crowdbot.core.trajectories.preprocess import inf_to_nan
 from crowdbot.core.trajectories.trajectories import Trajectories
-from crowdbot.core.types.arrays import Array, Mask
+from crowdbot.core.types.arrays import Array, Indices, Mask
 
 #: Surfaces this near may have touched between two samples, m.
 SLACK = 0.02
@@ -41,7 +41,7 @@ def touched(run: Trajectories, asked: Mask, jump_speed: float) -> Mask:
     return found & asked
 
 
-def _by_people(run: Trajectories, step: Array, who: Array) -> Mask:
+def _by_people(run: Trajectories, step: Indices, who: Indices) -> Mask:
     """Whether anybody else comes within the slack on the step; (K,)."""
     every = people(run)
     x, y = inf_to_nan(every.x), inf_to_nan(every.y)
@@ -56,7 +56,7 @@ def _by_people(run: Trajectories, step: Array, who: Array) -> Mask:
     return np.asarray((gap < SLACK).any(axis=1))
 
 
-def _by_walls(run: Trajectories, walls: Array, step: Array, who: Array) -> Mask:
+def _by_walls(run: Trajectories, walls: Array, step: Indices, who: Indices) -> Mask:
     """Whether a wall is within the slack at either end of the step; (K,)."""
     every = people(run)
     found = np.zeros(len(step), dtype=bool)
