@@ -22,7 +22,6 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
 from crowdbot.plugins.planners.dwa import DwaSpec
-from crowdbot.plugins.planners.dwa_heading_build import HeadingByWalls, compile_heading
 from crowdbot.plugins.planners.dwa_map_build import AIM, remembered, way_out
 from crowdbot.plugins.planners.dwa_points_build import (
     apart,
@@ -31,6 +30,7 @@ from crowdbot.plugins.planners.dwa_points_build import (
     nearest_per_sector,
 )
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
+from crowdbot.plugins.planners.heading_by_walls_build import HeadingByWalls, compile_heading
 from crowdbot.plugins.planners.people_build import carry, people_in, with_discs
 from crowdbot.plugins.planners.robot_outline_build import disc_radius
 
