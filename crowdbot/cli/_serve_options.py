@@ -162,6 +162,7 @@ def _zenoh(session: LiveSession, manner: Manner, endpoint: str, listen: Listen) 
             domain=listen.domain,
             distro=listen.distro.value,
         ),
+        _services(session),
         resend=manner.lockstep,
         external_clock=manner.external_clock,
     )

@@ -59,6 +59,7 @@ def serve_runs(service: LiveServe) -> Run:
     """
     session, index = service.session, service.first
     session.seed = service.seed
+    session.scenarios = [scenario.id for scenario in service.scenarios]
     last: Run | None = None
     with _quick_switches():
         while True:
@@ -72,6 +73,8 @@ def serve_runs(service: LiveServe) -> Run:
                 return _ended(last)
             if wanted == "next":
                 index = (index + 1) % len(service.scenarios)
+            elif wanted == "load":
+                index = session.scenarios.index(session.wanted)
 
 
 def _ended(last: Run | None) -> Run:
@@ -104,6 +107,7 @@ def _serve_one(service: LiveServe, scenario: Scenario) -> Run | None:
     request = service.request(scenario, choice, session.seed)
     request = replace(request, force=True, stop=lambda: session.must_stop)
     scene.append(_scene(request))
+    session.robot = scene[0].name
     session.begin(scenario.id, session.seed)
     state: State = "ended"
     try:
