@@ -6,6 +6,7 @@ The recording is the run: scores, replay and hashes are all computed from what i
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.recording import RecordingWriter
+from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotState
@@ -22,9 +24,20 @@ class RunLog:
     """Records each event of the crowd once, in the order of agents."""
 
     def __init__(
-        self, writer: RecordingWriter, agent_id: NDArray[np.int64], *, sideways: bool = False
+        self,
+        writer: RecordingWriter,
+        agent_id: NDArray[np.int64],
+        *,
+        sideways: bool = False,
+        watchers: Sequence[Watcher] = (),
     ) -> None:
-        """``sideways``: whether the robot's velocity may point elsewhere than it looks."""
+        """Begin.
+
+        Args:
+            sideways: whether the robot's velocity may point elsewhere than it looks.
+            watchers: see each sample, too.
+        """
+        self._watchers = watchers
         self.writer = writer
         self._sideways = sideways
         self._id = agent_id
@@ -46,7 +59,10 @@ class RunLog:
             agents[:, people[:, s.WAITING] != s.PRESENT] = np.nan
             jump = people[:, s.JUMPS] != self._jumps
             self._jumps = people[:, s.JUMPS].copy()
-        self.writer.state(t, None if robot is None else self._row(robot), agents, jump)
+        row = None if robot is None else self._row(robot)
+        self.writer.state(t, row, agents, jump)
+        for watcher in self._watchers:
+            watcher.sample(t, row, agents)
 
     @property
     def events(self) -> int:
