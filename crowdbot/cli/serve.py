@@ -193,6 +193,7 @@ def _request(
         suite="scenarios" if expansion.single else expansion.suite_id,
         metrics=expansion.metrics,
         axes=expansion.axes.get(scenario.id, {}),
+        words=expansion.words_of(scenario.id),
         position=expansion.scenarios.index(scenario),
         record=how.record.value,
         references=how.references,

@@ -29,18 +29,23 @@ class RunLog:
         agent_id: NDArray[np.int64],
         *,
         sideways: bool = False,
+        aim: int = s.GOAL_X,
         watchers: Sequence[Watcher] = (),
     ) -> None:
-        """Begin.
+        """Start a log.
 
         Args:
+            writer: of the recording.
+            agent_id: (N,) numbers of the people.
             sideways: whether the robot's velocity may point elsewhere than it looks.
+            aim: column of the crowd's state where the point begins to which people walk.
             watchers: see each sample, too.
         """
         self._watchers = watchers
         self.writer = writer
         self._sideways = sideways
         self._id = agent_id
+        self._aim = aim
         self._jumps = np.zeros(len(agent_id))  # at the latest sample
         self._arrivals = np.zeros(len(agent_id))  # what is recorded already
         self._agent_contacts = np.zeros(len(agent_id))
@@ -52,15 +57,16 @@ class RunLog:
 
     def sample(self, t: float, robot: RobotState | None, crowd: Array | None) -> None:
         """One row of the log grid: the robot's state and the flat crowd state, either missing."""
-        agents = jump = None
+        agents = jump = goals = None
         if crowd is not None:
             _, people = s.view(crowd)
             agents = people[:, s.X : s.VY + 1].T.copy()
             agents[:, people[:, s.WAITING] != s.PRESENT] = np.nan
             jump = people[:, s.JUMPS] != self._jumps
             self._jumps = people[:, s.JUMPS].copy()
+            goals = people[:, self._aim : self._aim + 2].T.copy()
         row = None if robot is None else self._row(robot)
-        self.writer.state(t, row, agents, jump)
+        self.writer.state(t, row, agents, jump, goals=goals)
         for watcher in self._watchers:
             watcher.sample(t, row, agents)
 
