@@ -72,6 +72,17 @@ def whole_step(
             present=everybody, robot=robots[:, :5], walls=walls, dt=DT, decides=everybody,
         )  # fmt: skip
         rows[:, s.AX : s.AY + 1] = desired_acceleration(chosen, view)
-        tick(flat, robots, DISC, world.pillars, DT, *people, *place, *scratch)
+        tick(
+            flat,
+            robots,
+            DISC[None],
+            NO_BOOKS,
+            NO_STIFFNESSES,
+            world.pillars,
+            DT,
+            *people,
+            *place,
+            *scratch,
+        )
 
     return step

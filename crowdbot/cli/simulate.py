@@ -22,6 +22,7 @@ from crowdbot.cli._options import (
     PlannerMemory,
     Plugins,
     installed,
+    one_or_several,
     planner_place,
 )
 
@@ -43,8 +44,12 @@ def simulate(
         str | None, typer.Argument(metavar="[ID]", help="Scenario: id, unique prefix or pattern.")
     ] = None,
     planner: Annotated[
-        str, typer.Option(metavar="NAME|FILE|file.py:Class", help="The planner under test.")
-    ] = "dwa",
+        list[str] | None,
+        typer.Option(
+            metavar="[ROBOT=]NAME|FILE|file.py:Class",
+            help="The planner under test, dwa by default; repeatable with the names of robots.",
+        ),
+    ] = None,
     overrides: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Change the scenario; repeatable."),
@@ -77,6 +82,8 @@ def simulate(
     """Simulate one scenario with one planner; record, score and replay it.
 
     Example: crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
+
+    Several robots: crowdbot simulate two.yaml --planner a=dwa --planner b=mine.py:Mine
     """
     from crowdbot.cli._progress import show_progress
     from crowdbot.core.scenarios.library import open_spec, pick
@@ -92,7 +99,7 @@ def simulate(
             run = simulate_it(
                 chosen,
                 registry,
-                planner=planner,
+                planner=one_or_several(planner),
                 planner_settings=planner_set or (),
                 seed=seed,
                 out=out,

@@ -231,8 +231,8 @@ def transforms(items: Iterable[Any]) -> Any:
     return new("tf2_msgs/TFMessage", transforms=list(items))
 
 
-def odometry(ns: int, child: str, values: Array) -> Any:
-    """What the robot believes: x, y, yaw, v, w, and perhaps vy, in the frame ``odom``."""
+def odometry(ns: int, child: str, values: Array, frame: str = "odom") -> Any:
+    """What the robot believes: x, y, yaw, v, w, and perhaps vy, in its frame ``odom``."""
     x, y, yaw, v, w, *aside = values.tolist()
     vy = aside[0] if aside else 0.0
     pose = new("geometry_msgs/PoseWithCovariance", pose=_pose(x, y, yaw), covariance=_NO_COVARIANCE)
@@ -241,7 +241,7 @@ def odometry(ns: int, child: str, values: Array) -> Any:
     )
     return new(
         "nav_msgs/Odometry",
-        header=header(ns, "odom"),
+        header=header(ns, frame),
         child_frame_id=child,
         pose=pose,
         twist=speed,

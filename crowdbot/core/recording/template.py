@@ -108,9 +108,9 @@ def transform(parent: str, child: str) -> Template:
     return Template(message, ANY_STAMP, two(_A, _B), turn(_C))
 
 
-def odometry(child: str) -> Template:
+def odometry(child: str, frame: str = "odom") -> Template:
     """Places: stamp; x and y; turn; v and vy; w."""
-    message = ros.odometry(ANY_TIME, child, np.array([_A, _B, _C, _D, _E, _F]))
+    message = ros.odometry(ANY_TIME, child, np.array([_A, _B, _C, _D, _E, _F]), frame)
     return Template(message, ANY_STAMP, two(_A, _B), turn(_C), two(_D, _F), one(_E))
 
 

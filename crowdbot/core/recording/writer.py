@@ -23,7 +23,8 @@ from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import scenery, template
 from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.container import McapFile
-from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.header import RecordingHeader, with_frames
+from crowdbot.core.recording.namespace import NamespacedFile, in_namespace
 from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
 from crowdbot.core.recording.scans import REPLAY_RATE, Thinning, whole_centimetres
 from crowdbot.core.recording.states import SeriesRows, StateSample, StatesWriter
@@ -74,6 +75,7 @@ class RecordingWriter:
         header: RecordingHeader,
         *,
         record: Literal["all", "used", "none"] = "all",
+        beside: RecordingWriter | None = None,
     ) -> None:
         """Start the file with its header.
 
@@ -83,20 +85,26 @@ class RecordingWriter:
             record: ``none`` leaves out all that scores do not need; ``used`` keeps what the
                 replay page shows, scans and cones as exact and as often as it does; ``all`` has
                 every reading and image, and the messages of ROS tools.
+            beside: what writes to the same file what all robots share; the header then has a
+                namespace.
 
         Raises:
             InputError: the path cannot be written.
         """
-        self._file = McapFile(path)
-        self._header = header
+        self._namespace = header.namespace
+        self._file: McapFile = (
+            McapFile(path) if beside is None else NamespacedFile(beside._file, header.namespace)
+        )
+        header = self._header = with_frames(header)
         self._ros = record == "all"
         self._people = PeopleMessages(header.agents) if header.agents else None
         self.images = record == "all"
         cameras = {n: i for n, i in header.sensors.items() if i.camera is not None}
         self._cameras = {n: CameraMessages(n, i) for n, i in cameras.items()}
-        self._sensors = sensor_topics({n: i for n, i in header.sensors.items() if n not in cameras})
+        ranging = {n: i for n, i in header.sensors.items() if n not in cameras}
+        self._sensors = sensor_topics(ranging, header.namespace)
         self._clock, self._twist = template.clock(), template.twist()
-        self._truth = template.transform("map", scenery.BASE)
+        self._truth = template.transform("map", in_namespace(header.namespace, scenery.BASE))
         self._pose = template.pose_stamped("map")
         seen = {n: i for n, i in header.sensors.items() if is_scan(i) or is_cone(i)}
         self._thinning = {n: Thinning(REPLAY_RATE) for n in (seen if record == "used" else ())}
@@ -217,13 +225,16 @@ class RecordingWriter:
         self._catch_up()
         self._file.flush()
 
-    def close(self, goal_time: float | None, complete: bool, status: str) -> None:
+    def close(
+        self, goal_time: float | None, complete: bool, status: str, until: float | None = None
+    ) -> None:
         """Write the end, index and footer; wait for the disk. A second call does nothing.
 
         Args:
             goal_time: when the robot arrived, s, or None.
             complete: False for a run that was interrupted.
             status: ``arrived``, ``timeout``, ``planner_failed``, …
+            until: when it ended, s; by default at the last sample.
         """
         if self._closed:
             return
@@ -236,7 +247,8 @@ class RecordingWriter:
             arrived=goal_time is not None,
             goal_time=0.0 if goal_time is None else goal_time,
         )
-        self._file.put(Topic.END, self._now, end, latched=True)
+        now = self._now if until is None else ros.nanoseconds(until)
+        self._file.put(Topic.END, now, end, latched=True)
         self._file.close()
 
     def _catch_up(self) -> None:
@@ -266,7 +278,8 @@ class RecordingWriter:
 
     def _ros_state(self, ns: int, robot: Sequence[float] | None, agents: Array | None) -> None:
         stamp = template.stamp(ns)
-        self._put(Topic.CLOCK, ns, self._clock, stamp)
+        if not self._namespace:
+            self._put(Topic.CLOCK, ns, self._clock, stamp)
         if robot is not None:
             x, y, yaw = robot[:3]
             parts = stamp, template.two(x, y), template.turn(yaw)
@@ -283,7 +296,7 @@ class RecordingWriter:
         frames = ros.transforms(scenery.static_frames(self._header))
         self._file.put(Topic.TF_STATIC, 0, frames, latched=True)
         walls, zone = self._header.walls, self._header.goal_zone
-        if walls is not None and len(walls):
+        if walls is not None and len(walls) and not self._namespace:
             self._file.put(Topic.WALLS, 0, scenery.wall_lines(walls), latched=True)
             self._file.put(Topic.MAP, 0, scenery.occupancy_grid(0, walls), latched=True)
         if zone is not None and len(zone):

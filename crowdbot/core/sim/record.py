@@ -44,15 +44,15 @@ def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = No
         built.scenario, setup.agents, built.parts, setup.registry, built.model.skin_stiffness
     )
     check_start(built.parts, built.model, built.task.start, engine, built.name)
-    header = replace(_header(built, engine), hashes=setup.hashes)
+    header = replace(header_of(built, engine), hashes=setup.hashes)
     with (
         recording(setup, header) as (writer, ending),
-        _watchdog(setup) as watchdog,
+        watchdog_of(setup) as watchdog,
         contextlib.ExitStack() as stack,
     ):
         sideways = isinstance(built.model.drive, HolonomicDrive)
         log = RunLog(writer, ids(engine), sideways=sideways)
-        host = host or stack.enter_context(_host(setup, built, watchdog))
+        host = host or stack.enter_context(hosted(setup, built, watchdog))
         if engine is not None:
             engine.advance(engine.initial_state())  # compiles kernels before the clock starts
         blocks = build_diagram(
@@ -65,7 +65,8 @@ def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = No
     return outcome
 
 
-def _header(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
+def header_of(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
+    """The constants of a robot's run."""
     model, task = built.model, built.task
     return RecordingHeader(
         scenario=built.scenario.id,
@@ -85,7 +86,7 @@ def _header(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
 
 
 @contextmanager
-def _watchdog(setup: RunSetup) -> Iterator[Watchdog | None]:
+def watchdog_of(setup: RunSetup) -> Iterator[Watchdog | None]:
     """Over a planner in this process; one in a process of its own is simply ended."""
     if not setup.choice.in_process:
         yield None
@@ -100,7 +101,7 @@ def _watchdog(setup: RunSetup) -> Iterator[Watchdog | None]:
 
 
 @contextmanager
-def _host(setup: RunSetup, built: BuiltRun, watchdog: Watchdog | None) -> Iterator[PlannerHost]:
+def hosted(setup: RunSetup, built: BuiltRun, watchdog: Watchdog | None) -> Iterator[PlannerHost]:
     """The planner, built and reset; one that fails in this fails again in its first step.
 
     A process of its own is ended afterwards; what it does too long, it does within that.
