@@ -1,13 +1,7 @@
-"""Where numba keeps compiled functions: one folder for each state of the sources.
-
-Numba compiles a function again when its own file has changed, but not when a function that it
-calls, in another file, has: after an update it would go on with the old one and say nothing.
-`crowdbot.core.support.compile_cache_locator` does the same for plugins.
-"""
+"""Where numba keeps compiled functions, and what tells it that they are out of date."""
 
 from __future__ import annotations
 
-import hashlib
 import os
 from importlib.resources import files
 from pathlib import Path
@@ -17,7 +11,7 @@ _VARIABLE = "NUMBA_CACHE_DIR"
 _LOCATORS = "NUMBA_CACHE_LOCATOR_CLASSES"
 #: What numba asks, in turn: where the first has no file or no folder, numba's own.
 _CLASSES = ",".join(
-    ("crowdbot.core.support.compile_cache_locator.PackageLocator",
+    ("crowdbot.core.support.compile_cache_locator.CompiledStateLocator",
      "UserWideCacheLocator", "IPythonCacheLocator", "ZipCacheLocator")
 )  # fmt: skip
 
@@ -47,16 +41,8 @@ def _folder() -> Path:
 
 
 def kernel_folder(package: Path = _PACKAGE) -> Path:
-    """The folder for the sources as they are now.
-
-    Inside the package where that can be written, else in the user's cache.
-    """
-    state = hashlib.sha256()
-    for file in sorted(package.rglob("*.py")):
-        about = file.stat()
-        state.update(f"{file.relative_to(package)} {about.st_size} {about.st_mtime_ns}\n".encode())
-    name = f"kernels-{state.hexdigest()[:16]}"
+    """Inside the package where that can be written, else in the user's cache."""
     if os.access(package, os.W_OK):
-        return package / "__pycache__" / name
+        return package / "__pycache__" / "kernels"
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return cache / "crowdbot" / name
+    return cache / "crowdbot" / "kernels"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -15,21 +14,17 @@ from numpy.typing import NDArray
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from crowdbot.core.report import Contents, write_report
+from tests.browser import PROGRAM, Visit, needs_browser
 from tests.core.report.report_cases import AXES, campaign, contents, full
 from tests.core.report.test_page import EVIL, hostile, small
 
-_NAMES = ("chromium", "google-chrome", "chromium-browser", "google-chrome-stable")
-_PROGRAM = next(filter(None, map(shutil.which, _NAMES)), None)
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(_PROGRAM is None, reason=f"no browser: {', '.join(_NAMES)}"),
-]
+pytestmark = [pytest.mark.slow, needs_browser]
 
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=_PROGRAM, args=["--no-sandbox"])
+        browser = playwright.chromium.launch(executable_path=PROGRAM, args=["--no-sandbox"])
         yield browser
         browser.close()
 
@@ -38,32 +33,6 @@ def browser() -> Iterator[Browser]:
 def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("report")
     return write_report(folder / "report.html", full())["html"]
-
-
-class Visit:
-    """A page, and everything that it asked for or complained about."""
-
-    def __init__(self, browser: Browser, path: Path, fragment: str = "", **context: Any) -> None:
-        context.setdefault("viewport", {"width": 1280, "height": 900})
-        self.page: Page = browser.new_page(**context)
-        self.complaints: list[str] = []
-        self.requests: list[str] = []
-        self.page.on("console", lambda m: self.complaints.append(m.text))
-        self.page.on("pageerror", lambda e: self.complaints.append(str(e)))
-        self.page.on("request", lambda r: self.requests.append(r.url))
-        self.page.on("dialog", lambda d: self.complaints.append(d.message))
-        self.page.goto(f"{path.as_uri()}{fragment}")
-        self.page.wait_for_selector("html[data-ready]")
-
-    def __enter__(self) -> Page:
-        return self.page
-
-    def __exit__(self, *error: object) -> None:
-        url = self.page.url
-        self.page.close()
-        if error[0] is None:
-            assert self.complaints == []
-            assert {u.partition("#")[0] for u in self.requests} == {url.partition("#")[0]}
 
 
 def values(report: Contents, metric: str, variant: str, planner: str, **axes: str) -> NDArray[Any]:

@@ -17,10 +17,7 @@ pytestmark = pytest.mark.slow
 
 CALLEE = "from numba import njit\n@njit(cache=True)\ndef inner():\n    return {}\n"
 CALLER = (
-    "import os, sys\n"
-    "from pathlib import Path\n"
-    "from crowdbot.core.support.compile_cache import kernel_folder\n"
-    "os.environ['NUMBA_CACHE_DIR'] = str(kernel_folder(Path(__file__).parent))\n"
+    "import crowdbot.core\n"
     "from numba import njit\n"
     "from callee import inner\n"
     "@njit(cache=True)\ndef outer():\n    return inner()\n"
@@ -30,14 +27,21 @@ CALLER = (
 
 def test_a_changed_callee_in_another_file_is_compiled_again(tmp_path: Path) -> None:
     (tmp_path / "caller.py").write_text(CALLER)
+    environment = _environment(tmp_path / "kernels")
     answers = []
     for number in (1, 22):
         (tmp_path / "callee.py").write_text(CALLEE.format(number))
         done = subprocess.run(
-            [sys.executable, "caller.py"], cwd=tmp_path, capture_output=True, text=True, check=True
-        )
+            [sys.executable, "caller.py"],
+            cwd=tmp_path, capture_output=True, text=True, check=True, env=environment,
+        )  # fmt: skip
         answers.append(int(done.stdout))
     assert answers == [1, 22]
+
+
+def _environment(kernels: Path) -> dict[str, str]:
+    others = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_LOCATOR_CLASSES"}
+    return {**others, "NUMBA_CACHE_DIR": str(kernels)}
 
 
 PLUGIN = """
@@ -63,8 +67,7 @@ def test_a_plugins_changed_callee_is_compiled_again(name: str, tmp_path: Path) -
         f"from numba import njit\nfrom {callee} import inner\n"
         "@njit('int64()', cache=True)\ndef outer():\n    return inner()\n"
     )
-    environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_LOCATOR_CLASSES"}
-    environment["NUMBA_CACHE_DIR"] = str(tmp_path / "kernels")
+    environment = _environment(tmp_path / "kernels")
     answers = []
     for number in (1, 22, None):
         if number is not None:
@@ -75,14 +78,6 @@ def test_a_plugins_changed_callee_is_compiled_again(name: str, tmp_path: Path) -
         )  # fmt: skip
         answers.append(done.stdout.split())
     assert answers == [["1", "0"], ["22", "0"], ["22", "1"]]
-
-
-def test_equal_sources_share_a_folder(tmp_path: Path) -> None:
-    (tmp_path / "a.py").write_text("1")
-    before = kernel_folder(tmp_path)
-    assert kernel_folder(tmp_path) == before
-    (tmp_path / "b.py").write_text("2")
-    assert kernel_folder(tmp_path) != before
 
 
 def test_a_read_only_package_uses_the_users_cache(

@@ -31,7 +31,7 @@ from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.fleet.bodies import outlines_of, rows_of
 from crowdbot.core.sim.fleet.diagram import FleetBlocks, FleetRobot, build_fleet
 from crowdbot.core.sim.outline_overlap import overlap_of_robots
-from crowdbot.core.sim.record import header_of, hosted, watchdog_of
+from crowdbot.core.sim.record import description_of, header_of, hosted, watchdog_of
 from crowdbot.core.sim.record_crowd import RunSetup, agents, ids
 from crowdbot.core.sim.runner import LOOK, has_ended
 from crowdbot.core.sim.start_pose_check import check_start
@@ -93,7 +93,13 @@ def _member(
     """One robot with its part of the recording and its planner."""
     choice = setup.choice.of(built.name)
     header = replace(header_of(built, None), hashes=setup.hashes, namespace=built.name)
-    writer = RecordingWriter(setup.recording, header, record=setup.record, beside=root)
+    writer = RecordingWriter(
+        setup.recording,
+        header,
+        record=setup.record,
+        beside=root,
+        description=description_of(setup, built),
+    )
     # Before the root is closed, which is registered earlier.
     stack.callback(_close_member, writer, fate)
     sideways = isinstance(built.model.drive, HolonomicDrive)

@@ -1,0 +1,161 @@
+"""What compiled code depends on, as a hash: the function, all that it calls, all it reads.
+
+Numba keeps compiled code until the function's own file changes. That is too long: a function that
+it calls, in another file, may have changed. And it is too short: most changes of a file do not
+touch the function. Hashed here are byte code and options of a function, the values of the names
+that it reads, and the same of each function among them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+import types
+from collections.abc import Iterator
+from enum import Enum
+from functools import cache
+from pathlib import Path
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import numba
+import numpy as np
+from numba.core.types import Type
+from numba.core.typing.templates import Signature
+
+_PLAIN = (
+    bool, int, float, complex, str, bytes, type(None), type(Ellipsis), Enum,
+    np.generic, np.dtype, Type, Signature,
+)  # fmt: skip
+#: Packages whose own versions say what they hold.
+_FOREIGN = sys.stdlib_module_names | {"numpy", "numba", "llvmlite"}
+_VERSIONS = f"numba {numba.__version__}, numpy {np.__version__}"
+_STATES: WeakKeyDictionary[types.FunctionType, str] = WeakKeyDictionary()
+
+
+class CompiledState:
+    """Compares and pickles as the hash of a function's state, which is taken when it is needed.
+
+    Numba asks for it when a function is declared: what the function calls may be declared later
+    in the same file.
+    """
+
+    def __init__(self, function: Any) -> None:
+        self._function = function
+
+    def __eq__(self, other: object) -> bool:
+        return str(self) == str(other)
+
+    def __hash__(self) -> int:
+        return hash(str(self))
+
+    def __str__(self) -> str:
+        return state_of(self._function)
+
+    def __reduce__(self) -> tuple[type[str], tuple[str]]:
+        return str, (str(self),)
+
+
+def state_of(function: types.FunctionType) -> str:
+    """Hash of everything that decides what a function is compiled to, but for its arguments."""
+    if function not in _STATES:
+        _STATES[function] = "itself"  # while it is being looked at: it may call itself
+        told = hashlib.sha256(_VERSIONS.encode())
+        for part in _function(function):
+            told.update(part.encode() + b"\0")
+        _STATES[function] = told.hexdigest()
+    return _STATES[function]
+
+
+def _function(function: types.FunctionType) -> Iterator[str]:
+    yield f"def {function.__qualname__} {function.__defaults__} {function.__kwdefaults__}"
+    compiled: Any = function.__globals__.get(function.__name__)
+    if getattr(compiled, "py_func", None) is function:
+        yield repr(compiled.targetoptions)
+    yield from _code(function.__code__, function.__doc__)
+    for name in sorted(_names(function.__code__)):
+        if name in function.__globals__:
+            yield name
+            yield from _value(function.__globals__[name], function)
+    for cell in function.__closure__ or ():
+        yield from _value(cell.cell_contents, function)
+
+
+def _code(code: types.CodeType, doc: str | None = None) -> Iterator[str]:
+    """Byte code and what it names; neither places in the file nor documentation."""
+    yield f"{code.co_code.hex()} {code.co_names} {code.co_varnames} {code.co_freevars}"
+    for constant in code.co_consts:
+        if isinstance(constant, types.CodeType):
+            yield from _code(constant)
+        elif doc is None or constant != doc:
+            yield repr(constant)
+
+
+def _names(code: types.CodeType) -> set[str]:
+    inner = (_names(c) for c in code.co_consts if isinstance(c, types.CodeType))
+    return set(code.co_names).union(*inner)
+
+
+def _value(value: Any, reader: types.FunctionType) -> Iterator[str]:
+    """A value that a function reads."""
+    if isinstance(value, _PLAIN):
+        yield f"{type(value).__qualname__} {value!r}"
+    elif isinstance(value, np.ndarray):
+        yield f"{value.dtype} {value.shape} {value.tobytes().hex()}"
+    elif isinstance(value, tuple | list):
+        for each in value:
+            yield from _value(each, reader)
+    elif isinstance(value, types.ModuleType):
+        yield from _module(value, reader)
+    elif isinstance(value, type | types.BuiltinFunctionType | np.ufunc) or _is_foreign(value):
+        yield _named(value)
+    elif (inner := _inner_function(value)) is not None:
+        yield repr(getattr(value, "targetoptions", None))
+        yield state_of(inner)
+    else:  # Not known to us: anything near may matter.
+        yield package_state(package_of(Path(reader.__code__.co_filename)))
+
+
+def _module(module: types.ModuleType, reader: types.FunctionType) -> Iterator[str]:
+    """A module, with what a function may read of it."""
+    yield module.__name__
+    if module.__name__.partition(".")[0] not in _FOREIGN:
+        for name in sorted(_names(reader.__code__) & vars(module).keys()):
+            yield from _value(vars(module)[name], reader)
+
+
+def _is_foreign(value: Any) -> bool:
+    return str(getattr(value, "__module__", "")).partition(".")[0] in _FOREIGN and hasattr(
+        value, "__name__"
+    )
+
+
+def _inner_function(value: Any) -> types.FunctionType | None:
+    """The Python function in a compiled one, in an intrinsic, or itself."""
+    inner = getattr(value, "py_func", getattr(value, "_defn", value))
+    return inner if isinstance(inner, types.FunctionType) else None
+
+
+def _named(value: Any) -> str:
+    fields = [getattr(value, each, None) for each in ("_fields", "_field_defaults")]
+    return f"{getattr(value, '__module__', '')}.{value.__name__} {fields}"
+
+
+@cache
+def package_of(file: Path) -> Path:
+    """The folder of the outermost package that a module belongs to, or the module's own."""
+    folder = file.parent
+    while (folder.parent / "__init__.py").is_file():
+        folder = folder.parent
+    return folder
+
+
+@cache
+def package_state(folder: Path) -> str:
+    """Hash of names, sizes and times of the sources in a package, or beside a lone module."""
+    whole = (folder / "__init__.py").is_file()
+    state = hashlib.sha256()
+    for file in sorted(folder.rglob("*.py") if whole else folder.glob("*.py")):
+        about = file.stat()
+        state.update(f"{file.relative_to(folder)} {about.st_size} {about.st_mtime_ns}\n".encode())
+    return state.hexdigest()
