@@ -62,22 +62,6 @@ def planner_place(in_process: bool | None, memory: float, *, lenient: bool = Fal
     return PlannerPlace(in_process=in_process, memory=limit, lenient=lenient)
 
 
-def one_or_several(planners: Sequence[str] | None) -> str:
-    """The planner of all robots, or those of each, as `resolve_planner` takes them.
-
-    Raises:
-        UsageError: there are several, and one does not say of which robot it is.
-    """
-    from crowdbot.core.planning.fleet_choice import planners_by_robot
-    from crowdbot.errors import UsageError
-
-    given = list(planners or ("dwa",))
-    for text in given if len(given) > 1 else ():
-        if not planners_by_robot(text):
-            raise UsageError(f"--planner {text}: of which robot? Write ROBOT={text}")
-    return ",".join(given)
-
-
 def installed(
     plugin: Sequence[Path] | None, no_plugins: bool = False, *, strict: bool = True
 ) -> Registry:

@@ -6,7 +6,7 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
@@ -22,7 +22,6 @@ from crowdbot.cli._options import (
     PlannerMemory,
     Plugins,
     installed,
-    one_or_several,
     planner_place,
 )
 
@@ -99,7 +98,7 @@ def simulate(
             run = simulate_it(
                 chosen,
                 registry,
-                planner=one_or_several(planner),
+                planner=_one_or_several(planner),
                 planner_settings=planner_set or (),
                 seed=seed,
                 out=out,
@@ -119,6 +118,22 @@ def simulate(
     _print(run, as_json=as_json)
     if run.status == "planner_failed":
         raise typer.Exit(3)
+
+
+def _one_or_several(planners: Sequence[str] | None) -> str:
+    """The planner of all robots, or those of each, as `resolve_planner` takes them.
+
+    Raises:
+        UsageError: there are several, and one does not say of which robot it is.
+    """
+    from crowdbot.core.planning.fleet_choice import planners_by_robot
+    from crowdbot.errors import UsageError
+
+    given = list(planners or ("dwa",))
+    for text in given if len(given) > 1 else ():
+        if not planners_by_robot(text):
+            raise UsageError(f"--planner {text}: of which robot? Write ROBOT={text}")
+    return ",".join(given)
 
 
 def _import_simulate() -> Callable[..., Run]:

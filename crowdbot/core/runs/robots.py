@@ -40,11 +40,13 @@ class RecordedRun:
     """What a recording of one robot or of several says of itself.
 
     Attributes:
+        runs: of each robot; of one, or of people alone, under an empty name.
         trajectory: hash of everything that was simulated.
         until: s, how far it can be read.
     """
 
     header: RecordingHeader
+    runs: Mapping[str, Trajectories]
     trajectory: str
     complete: bool
     until: float
@@ -120,14 +122,17 @@ def read_recorded(path: Path) -> RecordedRun:
         whole = read_whole(path)
         return RecordedRun(
             header=whole.header,
+            runs={"": whole.run},
             trajectory=provenance.trajectory_hash(whole.run),
             complete=whole.complete,
             until=whole.until,
         )
     found = read_fleet(path)
+    runs = {name: one.run for name, one in found.items()}
     return RecordedRun(
         header=next(iter(found.values())).header,
-        trajectory=trajectory_of({name: one.run for name, one in found.items()}),
+        runs=runs,
+        trajectory=trajectory_of(runs),
         complete=all(one.complete for one in found.values()),
         until=max(one.until for one in found.values()),
     )
