@@ -39,7 +39,7 @@ _FX, _FY, _CONTACTS, _TORQUE = (
 
 
 @dataclass(frozen=True, slots=True)
-class CrowdView:
+class RobotsCrowd:
     """The crowd as one robot takes it: `crowdbot.core.sim.crowd_system.CrowdOutputs`."""
 
     engine: CrowdEngine
@@ -139,10 +139,10 @@ class FleetCrowdSystem(LeafSystem):
         """How many trips have ended."""
         return self.GetOutputPort(ports.EVENTS)
 
-    def view(self, k: int) -> CrowdView:
+    def view(self, k: int) -> RobotsCrowd:
         """The crowd as robot k takes it."""
         names = (ports.of_robot(name, k) for name in (ports.CROWD_STATE, ports.EVENTS))
-        return CrowdView(self.engine, *map(self.GetOutputPort, names))
+        return RobotsCrowd(self.engine, *map(self.GetOutputPort, names))
 
 
 def add_fleet_crowd(
