@@ -30,6 +30,7 @@ from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.fleet.bodies import SEEN, outlines_of, rows_of
+from crowdbot.core.sim.weak_callback import weak_callback
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array
 
@@ -53,6 +54,8 @@ class FleetCrowdSystem(LeafSystem):
     Attributes:
         engine: the people.
     """
+
+    __slots__ = ()
 
     def __init__(
         self,
@@ -78,7 +81,7 @@ class FleetCrowdSystem(LeafSystem):
         self.DeclareStateOutputPort(ports.CROWD_STATE, crowd)
         self._crowd, self._books = DiscreteStateIndex(crowd), DiscreteStateIndex(book)
         known = {"prerequisites_of_calc": {self.all_state_ticket()}}
-        self.DeclareVectorOutputPort(ports.EVENTS, 1, self._trips, **known)
+        self.DeclareVectorOutputPort(ports.EVENTS, 1, weak_callback(self._trips), **known)
         for k, push in enumerate(self._pushes):
             for port, size, calc in (
                 (ports.CROWD_STATE, s.size(len(engine.agents)), self._seen),
@@ -86,7 +89,7 @@ class FleetCrowdSystem(LeafSystem):
                 (ports.ROBOT_FORCE, push.size, self._push),
             ):
                 self.DeclareVectorOutputPort(
-                    ports.of_robot(port, k), size, partial(calc, k), **known
+                    ports.of_robot(port, k), size, partial(weak_callback(calc), k), **known
                 )
         self.DeclarePeriodicUnrestrictedUpdateEvent(TICK, 0.0, self._update)
 

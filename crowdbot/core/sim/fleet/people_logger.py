@@ -19,6 +19,8 @@ class PeopleLogger(LeafSystem):
     To be added after what watches the robots: blocks publish in the order in which they came.
     """
 
+    __slots__ = ()
+
     def __init__(self, log: RunLog, crowd_size: int, rate: float, fates: Sequence[Fate]) -> None:
         super().__init__()
         self._log, self._fates = log, tuple(fates)

@@ -8,17 +8,20 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.fleet.crowd_system import FleetCrowdSystem
 from crowdbot.core.sim.fleet.robot_contacts import FleetContacts
+from crowdbot.core.sim.weak_callback import weak_callback
 
 
 class PushSum(LeafSystem):
     """Inputs: pushes of people and of robots. Output: their sum, as the control mode wants it."""
+
+    __slots__ = ()
 
     def __init__(self, robot: ControlledRobot, *, people: bool) -> None:
         super().__init__()
         self._layout, size = robot.push, robot.push.size
         self._people = self.DeclareVectorInputPort(ports.CROWD_STATE, size) if people else None
         self._robots = self.DeclareVectorInputPort(ports.ROBOT_PUSH, ports.ROBOT_PUSH_SIZE)
-        self.DeclareVectorOutputPort(ports.ROBOT_FORCE, size, self._calc)
+        self.DeclareVectorOutputPort(ports.ROBOT_FORCE, size, weak_callback(self._calc))
 
     def _calc(self, context: Context, output: BasicVector) -> None:
         values = output.get_mutable_value()

@@ -13,6 +13,8 @@ from crowdbot.core.sim.recorder import Recorder
 class FleetRecorder(Recorder):
     """No ports. What robots have to write comes before the chunk of all ends."""
 
+    __slots__ = ()
+
     def __init__(self, robots: Sequence[RecordingWriter], shared: RecordingWriter) -> None:
         super().__init__(shared)
         self._robots = tuple(robots)
