@@ -28,17 +28,22 @@ class RunLog:
         *,
         sideways: bool = False,
         people: bool = True,
+        aim: int = s.GOAL_X,
     ) -> None:
-        """Prepare.
+        """Start a log.
 
         Args:
+            writer: of the recording.
+            agent_id: (N,) numbers of the people.
             sideways: whether the robot's velocity may point elsewhere than it looks.
             people: whether people and their trips are recorded, or only contacts with them: those
                 of a fleet are recorded once for all robots.
+            aim: column of the crowd's state where the point begins to which people walk.
         """
         self.writer = writer
         self._sideways, self._keeps_people = sideways, people
         self._id = agent_id
+        self._aim = aim
         self._jumps = np.zeros(len(agent_id))  # at the latest sample
         self._arrivals = np.zeros(len(agent_id))  # what is recorded already
         self._agent_contacts = np.zeros(len(agent_id))
@@ -50,14 +55,15 @@ class RunLog:
 
     def sample(self, t: float, robot: RobotState | None, crowd: Array | None) -> None:
         """One row of the log grid: the robot's state and the flat crowd state, either missing."""
-        agents = jump = None
+        agents = jump = goals = None
         if crowd is not None and self._keeps_people:
             _, people = s.view(crowd)
             agents = people[:, s.X : s.VY + 1].T.copy()
             agents[:, people[:, s.WAITING] != s.PRESENT] = np.nan
             jump = people[:, s.JUMPS] != self._jumps
             self._jumps = people[:, s.JUMPS].copy()
-        self.writer.state(t, None if robot is None else self._row(robot), agents, jump)
+            goals = people[:, self._aim : self._aim + 2].T.copy()
+        self.writer.state(t, None if robot is None else self._row(robot), agents, jump, goals=goals)
 
     @property
     def events(self) -> int:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +17,7 @@ from crowdbot.core.runs.request import Request
 from crowdbot.core.runs.robots import trajectory_of
 from crowdbot.core.scoring.evaluate import Scores
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.trajectories.worst_moment import worst_moment
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.canonical import dump_scenario_yaml
 from crowdbot.dsl.crowd_likeness import fingerprint
@@ -41,6 +44,7 @@ def run_record(
         "run_id": provenance.digest(identity),
         **identity,
         "axes": dict(request.axes),
+        "axis_words": {axis: list(words) for axis, words in request.words.items()},
         "position": request.position,
         "hashes": hashes,
         "pinned": request.pinned,
@@ -58,6 +62,8 @@ def run_record(
         "conditions": _conditions(scenario, runs),
         "crowd": "" if scenario.crowd is None else fingerprint(scenario.crowd),
         "metrics": _metrics(registry, scores),
+        "suite_metrics": _named(request.metrics, scores),
+        "worst_moment": _worst(runs.values()),
         "machine": provenance.machine(),
     }
 
@@ -120,6 +126,23 @@ def _own_words(response: RobotResponse) -> str:
     given = {n: getattr(response, n) for n, f in fields.items()}
     changed = [f"{n} {value:g}" for n, value in given.items() if value != fields[n].default]
     return ", ".join([response.kind, *changed])
+
+
+def _worst(runs: Iterable[Trajectories]) -> dict[str, Any] | None:
+    """When the run is worst, to the millisecond and millimetre."""
+    moments = [found for found in map(worst_moment, runs) if found is not None]
+    if not moments:
+        return None
+    found = min(moments, key=lambda m: math.inf if m.clearance is None else m.clearance)
+    clearance = None if found.clearance is None else round(found.clearance, 3)
+    return {"t": round(found.t, 3), "what": found.what, "clearance": clearance}
+
+
+def _named(patterns: Sequence[str] | None, scores: Scores) -> list[str]:
+    """Metrics that the suite names, in its order; none where it leaves that open."""
+    known = dict.fromkeys(s.metric for s in scores)
+    chosen = [m for p in patterns or () if p != "*" for m in known if fnmatchcase(m, p)]
+    return list(dict.fromkeys(chosen))
 
 
 def _metrics(registry: Registry, scores: Scores) -> dict[str, Any]:

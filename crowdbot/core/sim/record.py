@@ -21,7 +21,7 @@ from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.diagram import build_diagram
-from crowdbot.core.sim.record_crowd import RunSetup, agents, ids, recording
+from crowdbot.core.sim.record_crowd import RunSetup, agents, aim_of, ids, recording
 from crowdbot.core.sim.runner import run
 from crowdbot.core.sim.start_pose_check import check_start
 from crowdbot.core.types.robot import HolonomicDrive, RobotLimits
@@ -47,12 +47,12 @@ def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = No
     check_start(built.parts, built.model, built.task.start, engine, built.name)
     header = replace(header_of(built, engine), hashes=setup.hashes)
     with (
-        recording(setup, header, description_of(setup, built)) as (writer, ending),
+        recording(setup, header, engine, description_of(setup, built)) as (writer, ending),
         watchdog_of(setup) as watchdog,
         contextlib.ExitStack() as stack,
     ):
         sideways = isinstance(built.model.drive, HolonomicDrive)
-        log = RunLog(writer, ids(engine), sideways=sideways)
+        log = RunLog(writer, ids(engine), sideways=sideways, aim=aim_of(engine))
         host = host or stack.enter_context(hosted(setup, built, watchdog))
         if engine is not None:
             engine.advance(engine.initial_state())  # compiles kernels before the clock starts

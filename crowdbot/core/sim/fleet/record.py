@@ -32,7 +32,7 @@ from crowdbot.core.sim.fleet.bodies import outlines_of, rows_of
 from crowdbot.core.sim.fleet.diagram import FleetBlocks, FleetRobot, build_fleet
 from crowdbot.core.sim.outline_overlap import overlap_of_robots
 from crowdbot.core.sim.record import description_of, header_of, hosted, watchdog_of
-from crowdbot.core.sim.record_crowd import RunSetup, agents, ids
+from crowdbot.core.sim.record_crowd import RunSetup, agents, aim_of, choosers, ids
 from crowdbot.core.sim.runner import LOOK, has_ended
 from crowdbot.core.sim.start_pose_check import check_start
 from crowdbot.core.types.robot import HolonomicDrive
@@ -61,13 +61,15 @@ def record_fleet(setup: RunSetup, builts: Mapping[str, BuiltRun]) -> Outcome:
     )  # fmt: skip
     fates = {n: Fate(leaves=b.robot.task.when_ended == "leave") for n, b in builts.items()}
     with contextlib.ExitStack() as stack:
-        root = RecordingWriter(setup.recording, shared, record=setup.record)
+        root = RecordingWriter(
+            setup.recording, shared, record=setup.record, choosers=choosers(engine)
+        )
         stack.callback(_close, root, fates)
         fleet = [
             _member(setup, built, engine, root, fates[name], stack)
             for name, built in builts.items()
         ]
-        log = RunLog(root, ids(engine))
+        log = RunLog(root, ids(engine), aim=aim_of(engine))
         if engine is not None:
             _compile(engine, builts)
         return _run(setup, fleet, build_fleet(fleet, engine, log, seed=setup.seed))
