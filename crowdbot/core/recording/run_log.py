@@ -6,6 +6,7 @@ The recording is the run: scores, replay and hashes are all computed from what i
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.recording import RecordingWriter
+from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotState
@@ -29,6 +31,7 @@ class RunLog:
         sideways: bool = False,
         people: bool = True,
         aim: int = s.GOAL_X,
+        watchers: Sequence[Watcher] = (),
     ) -> None:
         """Start a log.
 
@@ -39,7 +42,9 @@ class RunLog:
             people: whether people and their trips are recorded, or only contacts with them: those
                 of a fleet are recorded once for all robots.
             aim: column of the crowd's state where the point begins to which people walk.
+            watchers: see each sample, too.
         """
+        self._watchers = watchers
         self.writer = writer
         self._sideways, self._keeps_people = sideways, people
         self._id = agent_id
@@ -63,7 +68,10 @@ class RunLog:
             jump = people[:, s.JUMPS] != self._jumps
             self._jumps = people[:, s.JUMPS].copy()
             goals = people[:, self._aim : self._aim + 2].T.copy()
-        self.writer.state(t, None if robot is None else self._row(robot), agents, jump, goals=goals)
+        row = None if robot is None else self._row(robot)
+        self.writer.state(t, row, agents, jump, goals=goals)
+        for watcher in self._watchers:
+            watcher.sample(t, row, agents)
 
     @property
     def events(self) -> int:

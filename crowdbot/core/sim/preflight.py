@@ -5,6 +5,7 @@ from __future__ import annotations
 from crowdbot.core.planning.fleet_choice import check_robots
 from crowdbot.core.runs.request import Request
 from crowdbot.core.sim.built_run import BuiltRun, build_run
+from crowdbot.errors import InputError
 
 
 def preflight(request: Request) -> dict[str, BuiltRun]:
@@ -18,6 +19,10 @@ def preflight(request: Request) -> dict[str, BuiltRun]:
     """
     robots = tuple(request.scenario.robots)
     check_robots(request.choice, robots)
+    if len(robots) > 1 and request.watchers:
+        raise InputError(
+            f"only a run of one robot can be watched; {request.scenario.id} has {len(robots)}"
+        )
     builts = {
         name: build_run(
             request.scenario, request.registry, request.choice.of(name), request.record, name

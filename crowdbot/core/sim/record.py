@@ -46,13 +46,17 @@ def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = No
     )
     check_start(built.parts, built.model, built.task.start, engine, built.name)
     header = replace(header_of(built, engine), hashes=setup.hashes)
+    for watcher in setup.watchers:
+        watcher.begin(header)
     with (
         recording(setup, header, engine, description_of(setup, built)) as (writer, ending),
         watchdog_of(setup) as watchdog,
         contextlib.ExitStack() as stack,
     ):
         sideways = isinstance(built.model.drive, HolonomicDrive)
-        log = RunLog(writer, ids(engine), sideways=sideways, aim=aim_of(engine))
+        log = RunLog(
+            writer, ids(engine), sideways=sideways, watchers=setup.watchers, aim=aim_of(engine)
+        )
         host = host or stack.enter_context(hosted(setup, built, watchdog))
         if engine is not None:
             engine.advance(engine.initial_state())  # compiles kernels before the clock starts
