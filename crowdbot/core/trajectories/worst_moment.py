@@ -12,7 +12,8 @@ from crowdbot.core.trajectories.preprocess import truncate_at_arrival
 from crowdbot.core.trajectories.proper_response import FaultRule
 from crowdbot.core.trajectories.trajectories import Trajectories
 
-#: As the metric ``contacts_at_fault`` has them by default; m, m, m/s. The slack of its speed: rounding decides nothing.
+#: As the metric ``contacts_at_fault`` has them by default; m, m, m/s. The slack of its speed is for
+#: rounding, which decides nothing.
 CONTACT_TOL, RELEASE_GAP, JUMP_SPEED = 1e-9, 0.05, 10.0
 RULE = FaultRule(speed=0.05 + 1e-9, reaction=0.3, braking=1.0, margin=0.1)
 
