@@ -28,6 +28,8 @@ _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 _ROOT = Path("runs")
 #: Wide enough for every table; a terminal wraps what it cannot hold.
 _WIDTH = 240
+#: Counts of runs without a value.
+_WITHOUT = ("undefined", "censored", "failed")
 #: What is shown of every planner when nobody asks for more.
 _HEADLINES = (
     *(s.metric for s in MAIN_SCORES),
@@ -41,7 +43,8 @@ def show(
     context: typer.Context,
     out: _Out = _ROOT,
     metric: Annotated[
-        str | None, typer.Option(metavar="GLOB", help="Metrics; default: a few headlines.")
+        str | None,
+        typer.Option(metavar="GLOB", help="Default: the suite's, and a few."),
     ] = None,
     variant: Annotated[
         str | None, typer.Option(metavar="NAME", help="Variant; default: rate, or else corrected.")
@@ -67,6 +70,7 @@ def show(
     """
     if context.invoked_subcommand is not None:
         return
+    from crowdbot.core.results.rows import named_metrics
     from crowdbot.core.results.store import load
     from crowdbot.core.results.tables import summarise
     from crowdbot.errors import UsageError
@@ -79,7 +83,8 @@ def show(
         return
     groups = [name.strip() for name in by.split(",") if name.strip()]
     known = {s.metric for s in found.scores}
-    wanted = [metric] if metric is not None else [m for m in _HEADLINES if m in known]
+    first = [*named_metrics(found.runs), *_HEADLINES]
+    wanted = [metric] if metric is not None else [m for m in dict.fromkeys(first) if m in known]
     summaries = [s for m in wanted for s in summarise(found, m, groups, variant)]
     _print([_line(s) for s in summaries], as_csv=as_csv, as_json=as_json)
     if not (as_csv or as_json):
@@ -280,12 +285,35 @@ def _print_table(lines: list[dict[str, Any]]) -> None:
 
     seen = sys.stdout.isatty() or "COLUMNS" in os.environ  # elsewhere nothing need be folded
     console = Console() if seen else Console(width=_WIDTH)
-    table = Table(box=SIMPLE_HEAD, pad_edge=False)
-    for name in lines[0]:
-        table.add_column(name, overflow="fold", no_wrap=not seen)
-    for line in lines:
-        table.add_row(*(Text(_shown(v)) for v in line.values()))
+
+    def table_of(rows: list[dict[str, Any]], padding: int = 1) -> Table:
+        table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, padding))
+        for name in rows[0]:
+            table.add_column(name, overflow="fold", no_wrap=not seen)
+        for row in rows:
+            table.add_row(*(Text(_shown(v)) for v in row.values()))
+        return table
+
+    table = table_of(lines)
+    if "mean" in lines[0] and Console(width=9999).measure(table).maximum > console.width:
+        table = table_of([_narrow(line) for line in lines], padding=0)
     console.print(table)
+
+
+def _narrow(line: dict[str, Any]) -> dict[str, Any]:
+    """A line of `_line` in fewer columns, for terminals that are not wide enough for all."""
+    told = {"metric", "variant", "unit", "mean", "low", "high", "n", *_WITHOUT}
+    variant = "" if line["variant"] == "corrected" else f" {line['variant']}"
+    unit = "" if line["unit"] == "1" else f", {line['unit']}"
+    ends = f" [{_shown(line['low'])}, {_shown(line['high'])}]" if line["low"] is not None else ""
+    missing = [f"{line[name]} {name}" for name in _WITHOUT if line[name]]
+    return {
+        **{name: value for name, value in line.items() if name not in (*told, "median")},
+        "metric": f"{line['metric']}{variant}{unit}",
+        "mean [95 %]": f"{_shown(line['mean'])}{ends}",
+        "median": line["median"],
+        "n": ", ".join([str(line["n"]), *missing]),
+    }
 
 
 def _shown(value: Any) -> str:

@@ -10,12 +10,13 @@ from typing import Any
 
 from crowdbot.dsl import semantics
 from crowdbot.dsl.asset_files import AssetFiles
+from crowdbot.dsl.axis_words import AxisWords, axis_words
 from crowdbot.dsl.diagnostics import MAX_ERRORS, Diagnostic, Mark, Source
 from crowdbot.dsl.finder import Finder, Roots
 from crowdbot.dsl.include import Loader
 from crowdbot.dsl.installed import Installed
 from crowdbot.dsl.matrix import DRAW, combinations
-from crowdbot.dsl.merge import merge, nest, undot
+from crowdbot.dsl.merge import Merged, merge, nest, undot
 from crowdbot.dsl.nodes import Entry, Node, parse, to_data
 from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
@@ -46,6 +47,7 @@ class Expansion:
         commitment: to the suite's seed; empty if there is none. While the seed is hidden, the
             scenarios say so; once it is revealed, it has been checked.
         run_seeds: seeds of the runs that a bundle consists of.
+        words: axis -> label -> what it varies and to which value, in words.
     """
 
     suite_id: str
@@ -56,6 +58,12 @@ class Expansion:
     axes: dict[str, dict[str, str]] = field(default_factory=dict, repr=False)
     commitment: str = ""
     run_seeds: tuple[int, ...] = (0,)
+    words: dict[str, dict[str, AxisWords]] = field(default_factory=dict, repr=False)
+
+    def words_of(self, scenario: str) -> dict[str, AxisWords]:
+        """Axis -> words of the label that a scenario has on it; none of axes without words."""
+        labels = self.axes.get(scenario, {})
+        return {a: self.words[a][x] for a, x in labels.items() if x in self.words.get(a, {})}
 
     @property
     def single(self) -> bool:
@@ -147,6 +155,8 @@ class _Expander:
         self._problems = list(suite.problems)
         self._set = _parse_overrides(overrides, self._problems)
         self._suffix = "+" + _digest(overrides) if overrides else ""
+        self._set_in: dict[int, Node] = {}
+        self._merged: Merged = {}
         self._data: dict[Node, Any] = {}
         self._seeds: dict[str, Node] = {}
         self._parts = ValidParts()
@@ -188,6 +198,7 @@ class _Expander:
             axes,
             suite.commitment,
             suite.run_seeds,
+            axis_words(suite.base, suite.axes, self._set),
         )
 
     def _trees(self) -> Iterator[_Bare]:
@@ -208,10 +219,17 @@ class _Expander:
         """The reference, ``--set`` and the seed laid over a combination, in this order."""
         tree = bare.tree
         if reference is None:
-            tree = merge(tree, self._set)
+            tree = merge(tree, self._set, self._merged)
         else:
-            tree = merge(merge(tree, reference), _unless_removed(self._set, reference))
+            tree = merge(tree, reference, self._merged)
+            tree = merge(tree, self._set_below(reference), self._merged)
         return self._with_seed(tree, bare.key, bare.draw)
+
+    def _set_below(self, reference: Node) -> Node:
+        """What ``--set`` changes of a reference; the same node for the same reference."""
+        if id(reference) not in self._set_in:
+            self._set_in[id(reference)] = _unless_removed(self._set, reference)
+        return self._set_in[id(reference)]
 
     def _with_seed(self, tree: Node, key: str, draw: str) -> Node:
         """Write root and key of the seed into a suite's crowd, under what the document says.

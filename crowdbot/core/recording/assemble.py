@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from crowdbot.core.recording.header import RecordingHeader, RobotHeader
+from crowdbot.core.recording.records import Record, decode
 from crowdbot.core.recording.states import States, StatesReader, series
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.trajectories.trajectories import Trajectories
@@ -25,6 +26,8 @@ class Collected:
     #: Topic -> message types, newest format first.
     TOPICS: ClassVar[Mapping[str, tuple[str, ...]]] = {
         Topic.HEADER: ("crowdbot_msgs/msg/RunHeader",),
+        Topic.CANDIDATES: ("crowdbot_msgs/msg/VelocityCandidates",),
+        Topic.PERSON_GOALS: ("crowdbot_msgs/msg/PersonGoals",),
         Topic.STATE: ("crowdbot_msgs/msg/RunStates", "crowdbot_msgs/msg/RunState"),
         Topic.TRIP: ("crowdbot_msgs/msg/Trip",),
         Topic.CONTACTS: ("crowdbot_msgs/msg/Contact",),
@@ -39,6 +42,31 @@ class Collected:
     def add(self, topic: str, message: Any) -> None:
         """Take one message of one of `TOPICS`."""
         self._by_topic[topic].append(message)
+
+    def add_record(self, path: Path, record: Record) -> None:
+        """Take one message that has not been decoded yet, on one of `TOPICS`.
+
+        Raises:
+            InputError: it is of another type than crowdbot writes there, or damaged.
+        """
+        expected = self.TOPICS[record.topic]
+        if record.msgtype not in expected or record.encoding != "cdr":
+            found = record.msgtype or "a message without schema"
+            raise InputError(
+                f"{path}: {record.topic} holds {found} ({record.encoding or 'no encoding'}), "
+                f"not {expected[0]} (cdr)"
+            )
+        self.add(record.topic, decode(path, record))
+
+    def people(self, path: Path) -> Trajectories | None:
+        """The people of a recording that holds them apart from its robots; None without any.
+
+        Raises:
+            InputError: as `trajectories`.
+        """
+        if not self._by_topic[Topic.HEADER] or self.header(path).agents is None:
+            return None
+        return self.trajectories(path)
 
     @property
     def complete(self) -> bool:
@@ -66,7 +94,9 @@ class Collected:
             raise InputError(f"{path}: the recording holds no sample")
         try:
             people = 0 if header.agents is None else len(header.agents.id)
-            states = StatesReader(people).states(self._by_topic[Topic.STATE])
+            by_topic = self._by_topic
+            reader = StatesReader(people, by_topic[Topic.CANDIDATES], by_topic[Topic.PERSON_GOALS])
+            states = reader.states(by_topic[Topic.STATE])
             return Trajectories.from_arrays(
                 **self._shared(header, states),
                 **self._robot(header, states.robot),

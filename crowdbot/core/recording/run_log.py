@@ -6,6 +6,7 @@ The recording is the run: scores, replay and hashes are all computed from what i
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.recording import RecordingWriter
+from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotState
@@ -22,12 +24,31 @@ class RunLog:
     """Records each event of the crowd once, in the order of agents."""
 
     def __init__(
-        self, writer: RecordingWriter, agent_id: NDArray[np.int64], *, sideways: bool = False
+        self,
+        writer: RecordingWriter,
+        agent_id: NDArray[np.int64],
+        *,
+        sideways: bool = False,
+        people: bool = True,
+        aim: int = s.GOAL_X,
+        watchers: Sequence[Watcher] = (),
     ) -> None:
-        """``sideways``: whether the robot's velocity may point elsewhere than it looks."""
+        """Start a log.
+
+        Args:
+            writer: of the recording.
+            agent_id: (N,) numbers of the people.
+            sideways: whether the robot's velocity may point elsewhere than it looks.
+            people: whether people and their trips are recorded, or only contacts with them: those
+                of a fleet are recorded once for all robots.
+            aim: column of the crowd's state where the point begins to which people walk.
+            watchers: see each sample, too.
+        """
+        self._watchers = watchers
         self.writer = writer
-        self._sideways = sideways
+        self._sideways, self._keeps_people = sideways, people
         self._id = agent_id
+        self._aim = aim
         self._jumps = np.zeros(len(agent_id))  # at the latest sample
         self._arrivals = np.zeros(len(agent_id))  # what is recorded already
         self._agent_contacts = np.zeros(len(agent_id))
@@ -39,14 +60,18 @@ class RunLog:
 
     def sample(self, t: float, robot: RobotState | None, crowd: Array | None) -> None:
         """One row of the log grid: the robot's state and the flat crowd state, either missing."""
-        agents = jump = None
-        if crowd is not None:
+        agents = jump = goals = None
+        if crowd is not None and self._keeps_people:
             _, people = s.view(crowd)
             agents = people[:, s.X : s.VY + 1].T.copy()
             agents[:, people[:, s.WAITING] != s.PRESENT] = np.nan
             jump = people[:, s.JUMPS] != self._jumps
             self._jumps = people[:, s.JUMPS].copy()
-        self.writer.state(t, None if robot is None else self._row(robot), agents, jump)
+            goals = people[:, self._aim : self._aim + 2].T.copy()
+        row = None if robot is None else self._row(robot)
+        self.writer.state(t, row, agents, jump, goals=goals)
+        for watcher in self._watchers:
+            watcher.sample(t, row, agents)
 
     @property
     def events(self) -> int:
@@ -56,7 +81,7 @@ class RunLog:
     def record_events(self, crowd: Array) -> None:
         """Record trips and contacts that ended since the last call; to be called every tick."""
         header, people = s.view(crowd)
-        if int(header[s.TRIPS]) != self.trips:
+        if self._keeps_people and int(header[s.TRIPS]) != self.trips:
             self._record_trips(people)
             self.trips = int(header[s.TRIPS])
         if int(header[s.CONTACTS]) != self.contacts:
@@ -85,7 +110,9 @@ class RunLog:
             return
         self.record_events(crowd)
         _, people = s.view(crowd)
-        active = (people[:, s.ON_TRIP] != 0.0) & (people[:, s.WAITING] == s.PRESENT)
+        active = (
+            self._keeps_people & (people[:, s.ON_TRIP] != 0.0) & (people[:, s.WAITING] == s.PRESENT)
+        )
         for i in np.flatnonzero(active):
             self.writer.trip(int(self._id[i]), float(people[i, s.TRIP_START]), t, False)
         for i in np.flatnonzero(people[:, s.TOUCHING] != 0.0):

@@ -21,8 +21,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.camera import CameraMessages
+from crowdbot.core.recording.candidates import Choosers
 from crowdbot.core.recording.container import McapFile
-from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.header import RecordingHeader, with_frames
+from crowdbot.core.recording.namespace import NamespacedFile
 from crowdbot.core.recording.scans import REPLAY_RATE, Thinning, whole_centimetres
 from crowdbot.core.recording.states import SeriesRows, StateSample, StatesWriter
 from crowdbot.core.recording.tools import ToolTopics
@@ -71,7 +73,9 @@ class RecordingWriter:
         header: RecordingHeader,
         *,
         record: Literal["all", "used", "none"] = "all",
+        choosers: Sequence[Choosers] = (),
         description: str = "",
+        beside: RecordingWriter | None = None,
     ) -> None:
         """Start the file with its header.
 
@@ -81,20 +85,29 @@ class RecordingWriter:
             record: ``none`` leaves out all that scores do not need; ``used`` keeps what the
                 replay page shows, scans and cones as exact and as often as it does; ``all`` has
                 every reading and image, and the messages of ROS tools.
+            choosers: people whose choices are among known candidates, which makes the file
+                smaller; nobody is in two groups.
             description: the robot's URDF, which ``all`` says.
+            beside: what writes to the same file what all robots share; the header then has a
+                namespace.
 
         Raises:
             InputError: the path cannot be written.
         """
-        self._file = McapFile(path)
-        self._header = header
+        self._file: McapFile = (
+            McapFile(path) if beside is None else NamespacedFile(beside._file, header.namespace)
+        )
+        header = with_frames(header)
         self.images = record == "all"
         cameras = {n: i for n, i in header.sensors.items() if i.camera is not None}
         self._cameras = {n: CameraMessages(n, i) for n, i in cameras.items()}
-        self._sensors = sensor_topics({n: i for n, i in header.sensors.items() if n not in cameras})
+        ranging = {n: i for n, i in header.sensors.items() if n not in cameras}
+        self._sensors = sensor_topics(ranging, header.namespace)
         seen = {n: i for n, i in header.sensors.items() if is_scan(i) or is_cone(i)}
         self._thinning = {n: Thinning(REPLAY_RATE) for n in (seen if record == "used" else ())}
-        self._states = StatesWriter(0 if header.agents is None else len(header.agents.id))
+        known = [group for group in choosers if group.fits]
+        people = 0 if header.agents is None else len(header.agents.id)
+        self._states = StatesWriter(people, known)
         self._samples: list[StateSample] = []
         self._series = {topic: SeriesRows() for topic in (Topic.SIGNAL, Topic.PLANNER_TIME)}
         self._waiting: list[Callable[[], None]] = []
@@ -102,6 +115,8 @@ class RecordingWriter:
         self._now = 0
         self._closed = False
         self._file.put(Topic.HEADER, 0, header.to_message(), latched=True)
+        for group in known:
+            self._file.put(Topic.CANDIDATES, 0, group.to_message(), latched=True)
         self._tools = ToolTopics(self._file, header, description) if record == "all" else None
 
     def state(
@@ -111,6 +126,7 @@ class RecordingWriter:
         agents: Array | None,
         jump: NDArray[np.bool_] | None = None,
         signals: Mapping[str, float] | None = None,
+        goals: Array | None = None,
     ) -> None:
         """One sample of the log.
 
@@ -121,8 +137,9 @@ class RecordingWriter:
             agents: (4, M) x, y, vx, vy; NaN where somebody is absent.
             jump: (M,) who was teleported since the previous sample.
             signals: name -> value at this time.
+            goals: (2, M) x, y to which people went in the step before; None: not known.
         """
-        self._samples.append(StateSample(t, robot, agents, jump))
+        self._samples.append(StateSample(t, robot, agents, jump, goals))
         for name, value in (signals or {}).items():
             self.signal(t, name, value)
         if self._tools is not None:
@@ -210,13 +227,16 @@ class RecordingWriter:
         self._say_path()
         self._file.flush()
 
-    def close(self, goal_time: float | None, complete: bool, status: str) -> None:
+    def close(
+        self, goal_time: float | None, complete: bool, status: str, until: float | None = None
+    ) -> None:
         """Write the end, index and footer; wait for the disk. A second call does nothing.
 
         Args:
             goal_time: when the robot arrived, s, or None.
             complete: False for a run that was interrupted.
             status: ``arrived``, ``timeout``, ``planner_failed``, …
+            until: when it ended, s; by default at the last sample.
         """
         if self._closed:
             return
@@ -230,7 +250,8 @@ class RecordingWriter:
             arrived=goal_time is not None,
             goal_time=0.0 if goal_time is None else goal_time,
         )
-        self._file.put(Topic.END, self._now, end, latched=True)
+        now = self._now if until is None else ros.nanoseconds(until)
+        self._file.put(Topic.END, now, end, latched=True)
         self._file.close()
 
     def _catch_up(self) -> None:
@@ -238,7 +259,10 @@ class RecordingWriter:
         if self._samples:
             samples, self._samples = self._samples, []
             self._now = ros.nanoseconds(samples[-1].t)
-            self._file.put(Topic.STATE, self._now, self._states.message(samples))
+            changes, states = self._states.messages(samples)
+            if changes is not None:
+                self._file.put(Topic.PERSON_GOALS, self._now, changes)
+            self._file.put(Topic.STATE, self._now, states)
         for topic, rows in self._series.items():
             for t, message in rows.messages():
                 self._file.put(topic, ros.nanoseconds(t), message)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from annotated_types import Ge, Le
+from annotated_types import Ge, Le, Len
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 Hash = Annotated[str, Field(min_length=1, max_length=200)]
@@ -47,6 +47,27 @@ class MetricPart(_Part):
     spec_version: Annotated[int, Ge(0)]
 
 
+class RobotPart(_Part):
+    """One of several robots."""
+
+    planner: PlannerPart
+    status: Literal["arrived", "timeout", "planner_failed"]
+    reason: str
+    goal_time: Seconds | None
+    sim_time: Seconds
+    trajectory: Hash
+    clamped_commands: Count = 0
+    planner_step_time: dict[str, float] = {}
+
+
+class MomentPart(_Part):
+    """When a run is worst."""
+
+    t: Seconds
+    what: Annotated[str, Field(max_length=100)]
+    clearance: Annotated[float, Field(allow_inf_nan=False)] | None = None
+
+
 class RecordModel(_Part):
     """The record of one complete run; keys that are not here are nobody's business."""
 
@@ -72,6 +93,9 @@ class RecordModel(_Part):
     recorded: Literal["all", "used", "none"] = "all"
     agents: Literal["locked", "drawn", "none"] = "none"
     axes: dict[str, str] = {}
+    axis_words: dict[str, Annotated[list[str], Len(2, 2)]] = {}
+    suite_metrics: list[str] = []
+    worst_moment: MomentPart | None = None
     conditions: dict[str, str] = {}
     reference_hashes: dict[str, Hash] = {}
     allowed_plugins: list[str] | None = None
@@ -82,6 +106,7 @@ class RecordModel(_Part):
     real_time_factor: float = 0.0
     clamped_commands: Count = 0
     planner_step_time: dict[str, float] = {}
+    robots: dict[str, RobotPart] = {}
 
 
 def record_problems(record: Mapping[str, Any]) -> list[str]:

@@ -10,15 +10,16 @@ from pathlib import Path
 from typing import Any, Literal
 
 from crowdbot.core.planning.resolve import PlannerChoice
-from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording import read_fleet, read_trajectories
+from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.scoring.evaluate import Scores
 from crowdbot.core.scoring.metric import References
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.dsl.axis_words import AxisWords
 from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
@@ -91,8 +92,18 @@ class Run:
 
     @cached_property
     def trajectories(self) -> Trajectories:
-        """The run itself, read from its recording."""
+        """The run itself, read from its recording.
+
+        Raises:
+            InputError: it has several robots; `robots` has the run of each.
+        """
         return read_trajectories(self.directory / files.RECORDING)
+
+    @cached_property
+    def robots(self) -> Mapping[str, Trajectories]:
+        """The run of each of several robots, by name; empty of a run of one."""
+        found = read_fleet(self.directory / files.RECORDING) if "robots" in self.record else {}
+        return {name: one.run for name, one in found.items()}
 
     @cached_property
     def references(self) -> References:
@@ -126,6 +137,7 @@ class Request:
         force: whether a complete run is made again.
         metrics: patterns of the metrics to score; None is all.
         axes: axis of the suite -> label, in the suite's order.
+        words: axis -> what it varies and the value here, in words.
         position: of the scenario in its suite.
         replay: whether to write the replay page.
         references_finished: whoever asks has seen to the references; those in which the planner
@@ -134,6 +146,7 @@ class Request:
         stop: asked several times a simulated second; True ends the run as interrupted.
         on_hang: called when a planner cannot be interrupted; should end the process.
         step_budget: seconds of wall time that a planner step may take; None sets no limit.
+        watchers: show the run, not its references, while it goes on.
     """
 
     scenario: Scenario
@@ -147,6 +160,7 @@ class Request:
     force: bool = False
     metrics: Sequence[str] | None = None
     axes: Mapping[str, str] = field(default_factory=dict)
+    words: Mapping[str, AxisWords] = field(default_factory=dict)
     position: int = 0
     replay: bool = True
     references_finished: bool = False
@@ -154,6 +168,7 @@ class Request:
     stop: Callable[[], bool] = lambda: False
     on_hang: Callable[[], object] | None = None
     step_budget: float | None = None
+    watchers: Sequence[Watcher] = ()
 
     @property
     def pinned(self) -> bool:
@@ -182,11 +197,6 @@ def read_references(paths: Mapping[str, Path]) -> References:
     return References(**runs)
 
 
-def reference_hashes(paths: Mapping[str, Path]) -> dict[str, str]:
-    """Hashes of the calibration runs' trajectories, by name; kept as long as the files stay."""
-    return {name: _kept_hash(*_state_of(path)) for name, path in paths.items()}
-
-
 def _read_kept(path: Path) -> Trajectories:
     try:
         state = _state_of(path)
@@ -204,8 +214,3 @@ def _state_of(path: Path) -> tuple[Path, int, int, int]:
 def _kept(path: Path, *state: int) -> Trajectories:
     del state  # another one is another recording
     return read_trajectories(path)
-
-
-@lru_cache(maxsize=64)
-def _kept_hash(path: Path, *state: int) -> str:
-    return provenance.trajectory_hash(_kept(path, *state))

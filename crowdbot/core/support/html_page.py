@@ -17,7 +17,12 @@ from markupsafe import Markup
 
 
 def render_page(
-    package: str, *, scripts: Sequence[str] = (), more_style: str = "", **values: Any
+    package: str,
+    *,
+    scripts: Sequence[str] = (),
+    more_style: str = "",
+    images: str = "",
+    **values: Any,
 ) -> str:
     """Fill in the page of a package; equal input gives equal text.
 
@@ -25,6 +30,7 @@ def render_page(
         package: whose folder holds the parts.
         scripts: names of its files, in the order in which they run.
         more_style: rules to add to ``page.css``.
+        images: sources of images that the page makes itself, such as ``blob:``.
         values: what the template names, beside ``policy``, ``style`` and ``script``. Text is
             escaped.
     """
@@ -34,14 +40,15 @@ def render_page(
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     ).from_string(_part(package, "page.html.j2"))
     return template.render(
-        policy=_policy(style, script), style=Markup(style), script=Markup(script), **values
+        policy=_policy(style, script, images), style=Markup(style), script=Markup(script), **values
     )
 
 
-def _policy(style: str, script: str) -> str:
+def _policy(style: str, script: str, images: str) -> str:
     scripts = f"script-src {_hash(script)}; " if script else ""
+    pictures = f"img-src {images}; " if images else ""
     return (
-        f"default-src 'none'; {scripts}style-src {_hash(style)}; "
+        f"default-src 'none'; {scripts}style-src {_hash(style)}; {pictures}"
         "base-uri 'none'; form-action 'none'"
     )
 

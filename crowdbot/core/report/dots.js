@@ -1,0 +1,48 @@
+// Runs in pictures: each says what it is, and opens its replay at its worst moment.
+
+/** Address of a run's replay at the moment to look at first; null without a replay. */
+function replayAt(run) {
+  const [page, moment] = [report.runs.replay[run], report.runs.moment[run]];
+  return page && moment ? `${page}#t=${moment[0]}` : page;
+}
+
+/** A mark of a run; a link where it has a replay. Tables list the same links for the keyboard. */
+function dotOf(run, mark) {
+  mark.classList.add("dot");
+  mark.dataset.run = run;
+  const address = replayAt(run);
+  return address ? svg("a", { href: address, tabindex: -1, "aria-label": runText(run) }, mark) : mark;
+}
+
+function runText(run) {
+  const { scenario, planner, seed, status } = attemptOf(run);
+  return `${scenario}, ${report.planners[planner].label}, seed ${seed}: ${words(status)}`;
+}
+
+/** Shows what a dot is while the pointer is over it. */
+function buildDots() {
+  const tip = byId("tip");
+  const close = () => { tip.hidden = true; };
+  document.addEventListener("pointerover", (event) => {
+    const dot = event.target.closest?.(".dot");
+    if (!dot) return close();
+    tip.replaceChildren(...tipOf(Number(dot.dataset.run)));
+    tip.hidden = false;
+    return placeCard(tip, dot);
+  });
+  document.addEventListener("scroll", close, { passive: true });
+}
+
+function tipOf(run) {
+  const { scenario, planner, seed, status, time } = attemptOf(run);
+  const moment = report.runs.moment[run];
+  const score = scoreOf(state.series, run);
+  const value = score.status === "ok" ? digits(score.value) : valueText(score, 3);
+  return [
+    el("b", { text: scenario }),
+    el("div", {}, planned(planner), ` · seed ${seed} · ${words(status)}`, time === null ? "" : ` after ${format(time, 1)} s`),
+    el("div", { text: `${measureOf(report.series[state.series])}: ${value}` }),
+    el("div", { class: "muted", text: !report.runs.replay[run] ? "no replay"
+      : moment ? `opens at ${format(moment[0], 1)} s: ${moment[1]}` : "opens its replay" }),
+  ];
+}
