@@ -23,13 +23,13 @@ class TorchPlanner:
             self.policy.weight[0] = torch.cat([-torch.exp(-4.0 * side**2), torch.zeros(1)])
             self.policy.weight[1] = torch.cat([-0.5 * torch.sign(side), torch.ones(1)])
 
-    @torch.inference_mode()
     def step(self, obs: Any) -> tuple[float, float]:
-        ranges = obs.readings["front_lidar"].values
-        near = torch.tensor(ranges, dtype=torch.float64).clamp(max=8.0)
-        near = near.reshape(SECTORS, -1).amin(dim=1)
-        x, y = obs.goal[0] - obs.pose.x, obs.goal[1] - obs.pose.y
-        ahead = torch.atan2(torch.tensor(y), torch.tensor(x)) - obs.pose.yaw
-        seen = torch.cat([torch.exp(-2.0 * near), torch.sin(ahead).double().reshape(1)])
-        slow, turn = self.policy(seen).tolist()
-        return self.v_max * max(0.0, 1.0 + slow), self.w_max * max(-1.0, min(1.0, turn))
+        with torch.inference_mode():
+            ranges = obs.readings["front_lidar"].values
+            near = torch.tensor(ranges, dtype=torch.float64).clamp(max=8.0)
+            near = near.reshape(SECTORS, -1).amin(dim=1)
+            x, y = obs.goal[0] - obs.pose.x, obs.goal[1] - obs.pose.y
+            ahead = torch.atan2(torch.tensor(y), torch.tensor(x)) - obs.pose.yaw
+            seen = torch.cat([torch.exp(-2.0 * near), torch.sin(ahead).double().reshape(1)])
+            slow, turn = self.policy(seen).tolist()
+            return self.v_max * max(0.0, 1.0 + slow), self.w_max * max(-1.0, min(1.0, turn))
