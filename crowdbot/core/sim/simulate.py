@@ -13,7 +13,7 @@ from crowdbot.core.planning.watchdog import STEP_LIMIT
 from crowdbot.core.recording import read_run
 from crowdbot.core.recording.scans import REPLAY_RATE, ReplayScan
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.replay import write_replay
+from crowdbot.core.replay import ShownRun, write_replay
 from crowdbot.core.robots.look import seen_from_above
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
@@ -26,6 +26,7 @@ from crowdbot.core.runs.identity import (
     run_identity,
 )
 from crowdbot.core.runs.outcome import Progress
+from crowdbot.core.runs.replayed import read_replay_images, replay_facts, scenery
 from crowdbot.core.runs.request import (
     Recorded,
     Request,
@@ -208,7 +209,7 @@ def _write_files(
     write_scenario(folder, scenario, request.registry)
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
     if request.replay:
-        _write_replay(request, built, folder / files.REPLAY, run, scans, scores, record)
+        _write_replay(request, built, folder, run, scans, scores, record)
     whole = {**record, "files": files.sizes(folder)}
     files.write_json(folder / files.RECORD, whole)
     return whole
@@ -217,30 +218,27 @@ def _write_files(
 def _write_replay(
     request: Request,
     built: BuiltRun,
-    file: Path,
+    folder: Path,
     run: Trajectories,
     scans: Sequence[ReplayScan],
     scores: Scores,
     record: Mapping[str, Any],
 ) -> None:
-    scenario, arrival = request.scenario, record["goal_time"]
+    seen = request.record == "all" and any(info.camera for info in built.infos.values())
+    images = read_replay_images(folder / files.RECORDING) if seen else []
     write_replay(
-        file,
-        run,
-        scans,
-        scores,
-        title=f"{scenario.id} · {request.choice.label}",
-        facts={
-            "Suite": request.suite,
-            "Scenario": scenario.id,
-            "Planner": request.choice.label,
-            **provenance.remarks(record),
-            "Seed": str(request.seed),
-            "Status": record["status"],
-            "Arrived at": "—" if arrival is None else f"{arrival:.2f} s",
-            "Spec": record["hashes"]["spec"][:24],
-        },
-        look=[(part.outline, part.colour) for part in seen_from_above(built.model)],
+        folder / files.REPLAY,
+        ShownRun(
+            run=run,
+            title=f"{request.scenario.id} · {request.choice.label}",
+            label=request.choice.label,
+            facts=replay_facts(record),
+            scans=scans,
+            images=images,
+            scores=scores,
+            look=[(part.outline, part.colour) for part in seen_from_above(built.model)],
+            scenery=scenery(built.parts, built.model.height),
+        ),
     )
 
 

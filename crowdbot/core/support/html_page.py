@@ -9,6 +9,7 @@ from __future__ import annotations
 import base64
 import hashlib
 from collections.abc import Sequence
+from functools import cache
 from importlib import resources
 from typing import Any
 
@@ -17,7 +18,12 @@ from markupsafe import Markup
 
 
 def render_page(
-    package: str, *, scripts: Sequence[str] = (), more_style: str = "", **values: Any
+    package: str,
+    *,
+    scripts: Sequence[str] = (),
+    more_style: str = "",
+    frames: bool = False,
+    **values: Any,
 ) -> str:
     """Fill in the page of a package; equal input gives equal text.
 
@@ -25,23 +31,33 @@ def render_page(
         package: whose folder holds the parts.
         scripts: names of its files, in the order in which they run.
         more_style: rules to add to ``page.css``.
+        frames: whether the page may open others from its own site or folder within itself.
         values: what the template names, beside ``policy``, ``style`` and ``script``. Text is
             escaped.
     """
     style = "\n".join(filter(None, [_part(package, "page.css"), more_style]))
     script = "\n".join(_part(package, name) for name in scripts)
-    template = jinja2.Environment(
-        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    ).from_string(_part(package, "page.html.j2"))
-    return template.render(
-        policy=_policy(style, script), style=Markup(style), script=Markup(script), **values
+    return _template(package).render(
+        policy=_policy(style, script, frames=frames),
+        style=Markup(style),
+        script=Markup(script),
+        **values,
     )
 
 
-def _policy(style: str, script: str) -> str:
+@cache
+def _template(package: str) -> jinja2.Template:
+    return jinja2.Environment(
+        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    ).from_string(_part(package, "page.html.j2"))
+
+
+@cache
+def _policy(style: str, script: str, *, frames: bool) -> str:
     scripts = f"script-src {_hash(script)}; " if script else ""
+    opened = "frame-src 'self'; " if frames else ""
     return (
-        f"default-src 'none'; {scripts}style-src {_hash(style)}; "
+        f"default-src 'none'; {scripts}style-src {_hash(style)}; {opened}"
         "base-uri 'none'; form-action 'none'"
     )
 
@@ -51,5 +67,6 @@ def _hash(text: str) -> str:
     return f"'sha256-{digest}'"
 
 
+@cache
 def _part(package: str, name: str) -> str:
     return resources.files(package).joinpath(name).read_text(encoding="utf-8")

@@ -1,0 +1,139 @@
+"""What the replay page shows of a run: while it is made, and later from its directory."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.recording import read_run
+from crowdbot.core.recording.images import ReplayImages, read_images
+from crowdbot.core.recording.scans import REPLAY_RATE
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.replay import Scenery, ShownRun
+from crowdbot.core.robots import build_robot
+from crowdbot.core.robots.look import seen_from_above
+from crowdbot.core.runs import provenance
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.scenarios.library import open_spec, pick
+from crowdbot.core.scoring.scores_csv import read_scores_csv
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.dsl.scenario import Scenario
+from crowdbot.errors import InputError, UsageError
+
+_IMAGE_RATE, _IMAGE_WIDTH = 2.0, 96
+
+
+def replay_facts(record: Mapping[str, Any]) -> dict[str, str]:
+    """What the page tells of a run, name -> text.
+
+    Args:
+        record: ``run.json``, or what will be.
+    """
+    arrival = record["goal_time"]
+    return {
+        "Suite": record["suite"],
+        "Scenario": record["scenario"],
+        "Planner": _label(record),
+        **provenance.remarks(record),
+        "Seed": str(record["seed"]),
+        "Status": record["status"],
+        "Arrived at": "—" if arrival is None else f"{arrival:.2f} s",
+        "Spec": record["hashes"]["spec"][:24],
+    }
+
+
+def scenery(parts: EnvironmentParts, height: float) -> Scenery:
+    """What stands in the way of a robot of some height, m, and of people."""
+    low = parts.wall_heights[:, 0] < height
+    return Scenery(
+        walls=parts.walls[low],
+        stops_robot=parts.stops_robot[low],
+        stops_crowd=parts.stops_crowd[low],
+        pillars=parts.pillars[parts.pillar_heights[:, 0] < height],
+    )
+
+
+def read_replay_images(recording: Path) -> list[ReplayImages]:
+    """What the page shows of cameras.
+
+    Raises:
+        InputError: no recording of crowdbot, or damaged.
+    """
+    return read_images(recording, _IMAGE_RATE, _IMAGE_WIDTH)
+
+
+def replayed_runs(folders: Sequence[Path], registry: Registry) -> list[ShownRun]:
+    """Runs of one scenario, from their directories.
+
+    Args:
+        folders: run directories.
+        registry: the installed components; those of the scenario have to be among them.
+
+    Raises:
+        InputError: one of them is not a complete run, or its scenario cannot be built.
+        UsageError: they are runs of different scenarios.
+    """
+    records = [_record(folder) for folder in folders]
+    first = records[0]
+    for folder, record in zip(folders, records, strict=True):
+        if record["scenario"] != first["scenario"]:
+            raise UsageError(
+                f"{folder} is a run of {record['scenario']}, {folders[0]} of {first['scenario']}: "
+                "only runs of one scenario can be shown beside each other"
+            )
+    labels = _labels(records)
+    return [
+        _replayed(folder, record, label, registry)
+        for folder, record, label in zip(folders, records, labels, strict=True)
+    ]
+
+
+def _record(folder: Path) -> dict[str, Any]:
+    record = files.read_record(folder)
+    if record is None:
+        raise InputError(f"{folder}: no run directory, there is no readable {files.RECORD} in it")
+    missing = {"scenario", "suite", "planner", "seed", "status", "goal_time", "hashes"} - set(
+        record
+    )
+    damaged = f"{files.RECORD} lacks {', '.join(sorted(missing))}" if missing else ""
+    damaged = damaged or files.damage(folder, record)
+    if damaged:
+        raise InputError(f"{folder}: {damaged}")
+    return record
+
+
+def _label(record: Mapping[str, Any]) -> str:
+    planner = record["planner"]
+    return str(planner.get("label") or planner.get("name") or planner.get("kind"))
+
+
+def _labels(records: Sequence[Mapping[str, Any]]) -> list[str]:
+    """By planner; runs of the same planner by seed, too."""
+    planners = [_label(record) for record in records]
+    return [
+        planner if planners.count(planner) == 1 else f"{planner}, seed {record['seed']}"
+        for planner, record in zip(planners, records, strict=True)
+    ]
+
+
+def _replayed(folder: Path, record: Mapping[str, Any], label: str, registry: Registry) -> ShownRun:
+    run, scans = read_run(folder / files.RECORDING, REPLAY_RATE)
+    scenario = _scenario(folder, registry)
+    model = build_robot(registry, next(iter(scenario.robots.values())))
+    return ShownRun(
+        run=run,
+        title=f"{scenario.id} · {label}",
+        label=label,
+        facts=replay_facts(record),
+        scans=scans,
+        images=read_replay_images(folder / files.RECORDING),
+        scores=[row.score for row in read_scores_csv(folder / files.SCORES)],
+        look=[(part.outline, part.colour) for part in seen_from_above(model)],
+        scenery=scenery(build_environment(registry, scenario.environment), model.height),
+    )
+
+
+def _scenario(folder: Path, registry: Registry) -> Scenario:
+    return pick(open_spec(str(folder / files.SCENARIO), registry), None)
