@@ -52,6 +52,7 @@ def _about(path: Path, found: RecordingContents) -> dict[str, Any]:
         "complete": found.complete,
         "status": found.status,
         "messages": sum(t.count for t in found.topics),
+        "attachments": dict(found.attachments),
     }
     if any(t.name == "/crowdbot/header" for t in found.topics):
         header = recording_info(path).header
@@ -90,3 +91,5 @@ def _show(about: dict[str, Any], found: RecordingContents) -> None:
         rate = "" if topic.rate is None else f"{topic.rate:.1f}"
         table.add_row(topic.name, topic.msgtype, str(topic.count), rate, str(topic.size))
     console.print(table)
+    for name, size in found.attachments.items():
+        console.print(f"attached: {name}, {size} bytes", markup=False)

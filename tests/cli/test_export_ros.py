@@ -9,7 +9,8 @@ import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from crowdbot import cli
-from crowdbot.core.recording.messages import DEFINITIONS, LIVE_DEFINITIONS, type_hash
+from crowdbot.core.recording.definitions import DEFINITIONS, LIVE_DEFINITIONS
+from crowdbot.core.recording.messages import type_hash
 
 
 def test_the_package_has_the_types_of_the_recordings(tmp_path: Path) -> None:

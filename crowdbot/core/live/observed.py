@@ -52,7 +52,7 @@ class Observed:
         """The topics, the clock last."""
         found = [Offer(n, t.msgtype) for s, t in self._topics.items() for n in self._names[s]]
         for name, info in self._sensors.items():
-            kinds = () if info.camera is None else ("depth", "colour")[: 1 + info.camera.colour]
+            kinds = () if info.camera is None else ("depth", "color")[: 1 + info.camera.colour]
             for kind in kinds:
                 found.append(Offer(f"/{name}/{kind}/image_raw", "sensor_msgs/msg/Image"))
                 found.append(Offer(f"/{name}/{kind}/camera_info", "sensor_msgs/msg/CameraInfo"))
@@ -117,7 +117,7 @@ class Observed:
         self, name: str, reading: Reading, ns: int, wanted: Callable[[str], bool]
     ) -> Iterator[LiveMessage]:
         leaves = ("image_raw", "camera_info")
-        kinds = ("depth", "colour") if reading.colour is not None else ("depth",)
+        kinds = ("depth", "color") if reading.colour is not None else ("depth",)
         if not any(wanted(f"/{name}/{kind}/{leaf}") for kind in kinds for leaf in leaves):
             return
         frame = CameraFrame(ns / 1e9, depth_mm(reading.values), reading.colour)
@@ -129,9 +129,11 @@ class Observed:
         """For a robot without odometry, which knows where it started and nothing else."""
         x, y, yaw = obs.pose
         speed, turn = template.two(obs.twist[0], obs.vy), template.one(obs.twist[1])
+        pose_known, twist_known = template.NO_COVARIANCE
         return self._odom.fill(
-            template.stamp(ns), template.two(x, y), template.turn(yaw), speed, turn
-        )
+            template.stamp(ns), template.two(x, y), template.turn(yaw), pose_known,
+            speed, turn, twist_known,
+        )  # fmt: skip
 
 
 def _names(name: str, topic: SensorTopic, topics: Mapping[str, SensorTopic]) -> tuple[str, ...]:

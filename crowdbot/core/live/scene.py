@@ -9,7 +9,7 @@ import numpy as np
 
 from crowdbot.core.live.message import LiveMessage, told
 from crowdbot.core.planning.planner import Task
-from crowdbot.core.recording import RecordingHeader, RobotHeader, scenery
+from crowdbot.core.recording import RecordingHeader, RobotHeader, markers, scenery
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.header import limit_numbers, sensor_message
 from crowdbot.core.recording.topics import Topic
@@ -42,7 +42,7 @@ def latched(scene: LiveScene, task: Task, seed: int, ns: int) -> list[LiveMessag
     header = _header(scene, task)
     found = [
         (Topic.TF_STATIC, ros.transforms(scenery.static_frames(header))),
-        (Topic.GOAL, ros.polygon(ns, task.goal_zone)),
+        (Topic.GOAL, markers.polygon(ns, task.goal_zone)),
         (Topic.GOAL_POSE, scenery.goal_pose(ns, header)),
         ("/robot_description", ros.new("std_msgs/String", data=_description(scene))),
         ("/crowdbot/task", _task(scene, task, scene.model.limits, seed)),

@@ -168,5 +168,7 @@ def _remember(run: Run, session: LiveSession, manner: Manner) -> Run:
     if manner.rate is not None:
         live["largest_lag"] = round(counts.most_lag, 4)
     record = {**run.record, "live": live}
+    files.attach_files(run.directory, record)
+    record["files"] = files.sizes(run.directory)
     files.write_json(run.directory / files.RECORD, record)
     return replace(run, record=record)

@@ -47,7 +47,7 @@ class CameraMessages:
         stamp = template.stamp(ros.nanoseconds(frame.stamp))
         yield from self._pair("depth", "16UC1", stamp, frame.depth_mm)
         if frame.colour is not None:
-            yield from self._pair("colour", "rgb8", stamp, frame.colour)
+            yield from self._pair("color", "rgb8", stamp, frame.colour)
 
     def _pair(
         self, kind: str, encoding: str, stamp: bytes, pixels: NDArray[Any]

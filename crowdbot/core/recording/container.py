@@ -8,28 +8,15 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
-from struct import pack
 from typing import Any
 
-from isal.isal_zlib import crc32
-from mcap.opcode import Opcode
-from mcap.records import (
-    Channel,
-    ChunkIndex,
-    DataEnd,
-    Footer,
-    Header,
-    McapRecord,
-    Schema,
-    Statistics,
-    SummaryOffset,
-)
+from mcap.records import Channel, ChunkIndex, Header, Schema, Statistics
 from mcap.writer import MCAP0_MAGIC
 
 from crowdbot.core.recording.chunk import OpenChunk, Piece, serialised
+from crowdbot.core.recording.ending import FileIndex, ending
 from crowdbot.core.recording.messages import definition, to_cdr
 from crowdbot.errors import InputError
 
@@ -125,8 +112,7 @@ class McapFile:
     def close(self) -> None:
         """Write index and footer; when this returns the disk has it all, if it is one."""
         self._finish_chunk()
-        self._stream.write(serialised([DataEnd(data_section_crc=0)]))
-        self._stream.write(self._summary(self._stream.tell()) + MCAP0_MAGIC)
+        self._stream.write(ending(self._index(), self._stream.tell()))
         self._stream.flush()
         if not stat.S_ISCHR(os.fstat(self._stream.fileno()).st_mode):  # /dev/null keeps nothing
             os.fsync(self._stream.fileno())
@@ -160,24 +146,13 @@ class McapFile:
             self._stream.write(packed.data)
             self._chunks.append(packed.entry)
 
-    def _summary(self, at: int) -> bytes:
-        """Everything after the data but the closing magic; ``at``: where it begins."""
-        groups: dict[Opcode, Iterable[McapRecord]] = {
-            Opcode.SCHEMA: self._schemas.values(),
-            Opcode.CHANNEL: [t.channel for t in self._topics.values()],
-            Opcode.STATISTICS: [self._statistics()],
-            Opcode.CHUNK_INDEX: self._chunks,
-        }
-        data, offsets = b"", []
-        for opcode, records in groups.items():
-            group = serialised(records)
-            offsets.append(SummaryOffset(opcode, at + len(data), len(group)))
-            data += group
-        footer = Footer(summary_start=at, summary_offset_start=at + len(data), summary_crc=0)
-        data += serialised(offsets)
-        # The checksum is that of the summary and of the footer up to the checksum itself.
-        begun = serialised([footer])[:-4]
-        return data + begun + pack("<I", crc32(data + begun))
+    def _index(self) -> FileIndex:
+        return FileIndex(
+            schemas=list(self._schemas.values()),
+            channels=[t.channel for t in self._topics.values()],
+            statistics=self._statistics(),
+            chunks=self._chunks,
+        )
 
     def _statistics(self) -> Statistics:
         counts = {t.channel.id: t.messages for t in self._topics.values()}

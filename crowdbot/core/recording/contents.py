@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -47,6 +48,7 @@ class RecordingContents:
         is_run: whether crowdbot recorded it.
         end: of the last message, s.
         size: of the file, bytes.
+        attachments: name -> bytes of the files inside.
     """
 
     topics: tuple[TopicContents, ...]
@@ -56,6 +58,7 @@ class RecordingContents:
     is_run: bool
     end: float
     size: int
+    attachments: Mapping[str, int]
 
 
 def contents(path: Path) -> RecordingContents:
@@ -83,6 +86,7 @@ def contents(path: Path) -> RecordingContents:
         is_run=is_run,
         end=last,
         size=path.stat().st_size,
+        attachments=records.attachments,
     )
 
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.recording import markers, template
 from crowdbot.core.recording import messages as ros
-from crowdbot.core.recording import template
 from crowdbot.core.recording.header import AgentsHeader
 from crowdbot.core.types.arrays import Array
 
@@ -59,7 +59,7 @@ class PeopleMessages:
 
     def _spheres(self, points: Array, ns: int = 0) -> Any:
         size = 2.0 * self._height
-        return ros.marker(ns, "people", "SPHERE_LIST", (size, size, size), _COLOUR, points)
+        return markers.marker(ns, "people", "SPHERE_LIST", (size, size, size), _COLOUR, points)
 
 
 def _present(state: Array) -> NDArray[np.bool_]:

@@ -20,7 +20,17 @@ from isal.isal_zlib import crc32
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import EndOfFile, InvalidMagic, McapError
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, DataEnd, Footer, McapRecord, Message, Schema
+from mcap.records import (
+    Attachment,
+    Channel,
+    Chunk,
+    DataEnd,
+    Footer,
+    McapRecord,
+    Message,
+    Schema,
+    Statistics,
+)
 from mcap.stream_reader import StreamReader
 
 from crowdbot.core.recording import messages as ros
@@ -63,15 +73,22 @@ class Record(NamedTuple):
 
 
 class Records:
-    """Iterates over the messages of a file, once; then tells whether it had its footer."""
+    """Iterates over the messages of a file, once; then tells what else was in it.
+
+    Attributes:
+        finished: whether it had its footer.
+        attachments: name -> bytes of the files that are attached.
+    """
 
     def __init__(self, path: Path) -> None:
         self.finished = False
+        self.attachments: dict[str, int] = {}
         self._path = path
         self._schemas: dict[int, Schema] = {}
         self._channels: dict[int, Channel] = {}
         self._total = 0
         self._left = MAX_RECORDS
+        self._seen = 0
 
     def __iter__(self) -> Iterator[Record]:
         """Messages in the order they were written.
@@ -100,6 +117,11 @@ class Records:
                 inner = self._unpack(record)
                 broken = inner is None
                 yield from self._messages(inner or [])
+            elif isinstance(record, Statistics) and record.message_count != self._seen:
+                raise InputError(f"{self._path}: damaged: messages are missing")
+            elif isinstance(record, Attachment):
+                self._count(1)
+                self.attachments[record.name] = len(record.data)
             elif isinstance(record, Schema | Channel | Message):
                 self._count(1)
                 yield from self._messages([record])
@@ -146,6 +168,7 @@ class Records:
             elif isinstance(record, Channel):
                 self._channels[record.id] = record
             elif isinstance(record, Message):
+                self._seen += 1
                 yield self._message(record)
 
     def _message(self, message: Message) -> Record:

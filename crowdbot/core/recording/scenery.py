@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.geometry.optical_frame import OPTICAL_QUATERNION, optical
+from crowdbot.core.recording import markers
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.types.arrays import Array
@@ -45,7 +46,7 @@ def wall_lines(walls: Array) -> Any:
     """Walls (S, 4), m, as one list of lines."""
     ends = np.zeros((2 * len(walls), 3))
     ends[:, :2] = np.asarray(walls).reshape(-1, 2)
-    return ros.marker(0, "walls", "LINE_LIST", (0.1, 0.0, 0.0), _WALL_COLOUR, ends)
+    return markers.marker(0, "walls", "LINE_LIST", (0.1, 0.0, 0.0), _WALL_COLOUR, ends)
 
 
 def goal_pose(ns: int, header: RecordingHeader) -> Any | None:

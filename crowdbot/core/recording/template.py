@@ -7,6 +7,7 @@ places are written.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from struct import Struct
 from typing import Any
 
@@ -27,8 +28,8 @@ one, two = _ONE.pack, _TWO.pack
 
 
 def stamp(ns: int) -> bytes:
-    """A ROS time."""
-    return _STAMP.pack(ns // 10**9, ns % 10**9)
+    """A ROS time; 0, which tf2 takes for "the latest", becomes a nanosecond."""
+    return _STAMP.pack(ns // 10**9, ns % 10**9 if ns else 1)
 
 
 def turn(yaw: float) -> bytes:
@@ -36,6 +37,8 @@ def turn(yaw: float) -> bytes:
     return two(*ros.half_turn(yaw))
 
 
+#: Covariances of pose and twist that are not known.
+NO_COVARIANCE = bytes(288), bytes(288)
 #: `ANY_TIME` as it is serialised.
 ANY_STAMP = stamp(ANY_TIME)
 
@@ -109,9 +112,11 @@ def transform(parent: str, child: str) -> Template:
 
 
 def odometry(child: str) -> Template:
-    """Places: stamp; x and y; turn; v and vy; w."""
-    message = ros.odometry(ANY_TIME, child, np.array([_A, _B, _C, _D, _E, _F]))
-    return Template(message, ANY_STAMP, two(_A, _B), turn(_C), two(_D, _F), one(_E))
+    """Places: stamp; x and y; turn; covariance of the pose; v and vy; w; that of the twist."""
+    pose, speed = np.full(36, _A), np.full(36, _B)
+    message = ros.odometry(ANY_TIME, child, np.array([_A, _B, _C, _D, _E, _F]), (pose, speed))
+    marks = two(_A, _B), turn(_C), pose.tobytes(), two(_D, _F), one(_E), speed.tobytes()
+    return Template(message, ANY_STAMP, *marks)
 
 
 def laser_scan(info: SensorInfo, angles: Array) -> Template:
@@ -132,11 +137,11 @@ def point_cloud(info: SensorInfo) -> Template:
     return Template(ros.point_cloud(ANY_TIME, info, points), ANY_STAMP, points.tobytes())
 
 
-def imu(frame: str) -> Template:
+def imu(frame: str, deviations: Sequence[float] = (0.0, 0.0)) -> Template:
     """Places: stamp; angular rate; specific force; three float64 each."""
     values = np.array([_A, _B, _C, _C, _D, _E])
     marks = values[:3].tobytes(), values[3:].tobytes()
-    return Template(ros.imu(ANY_TIME, frame, values), ANY_STAMP, *marks)
+    return Template(ros.imu(ANY_TIME, frame, values, deviations), ANY_STAMP, *marks)
 
 
 def wrench(frame: str) -> Template:

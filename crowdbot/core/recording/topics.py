@@ -9,8 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from crowdbot.core.recording import template
+from crowdbot.core.recording.covariance import OdometryCovariance
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import SensorInfo
+
+#: Numbers in `SensorInfo.deviations` of an odometry.
+_DEVIATIONS = 3
 
 
 class Topic(StrEnum):
@@ -34,6 +38,11 @@ class Topic(StrEnum):
     GOAL = "/goal_zone"
     GOAL_POSE = "/goal_pose"
     MAP = "/map"
+    DESCRIPTION = "/robot_description"
+    PATH = "/robot/path"
+    TF_ODOMETRY = "/tf_odometry"
+    PEOPLE_MARKERS = "/people_markers"
+    CONTACT_MARKERS = "/contact_markers"
 
 
 class SensorTopic(NamedTuple):
@@ -51,20 +60,28 @@ def sensor_topics(sensors: Mapping[str, SensorInfo]) -> dict[str, SensorTopic]:
     for name, info in sensors.items():
         if name in odometry:
             topic = "/odom" if name == odometry[0] else f"/{name}/odom"
-            topics[name] = _odometry(topic)
+            topics[name] = _odometry(topic, info)
         elif is_scan(info):
             topics[name] = _scan(scan_topic(name), info)
         elif info.ros_type == "sensor_msgs/msg/Range" and info.shape == (1,):
             topics[name] = _range(range_topic(name), info)
         elif is_cloud(info):
             topics[name] = _cloud(f"/{name}/points", info)
-        elif info.ros_type == "sensor_msgs/msg/Imu" and info.shape == (6,):
+        elif is_imu(info):
             topics[name] = _imu(f"/{name}/imu", info)
         elif info.ros_type == "geometry_msgs/msg/WrenchStamped" and info.shape == (3,):
             topics[name] = _wrench(f"/{name}/wrench", info)
         else:
             topics[name] = _numbers(f"/{name}", info)
     return topics
+
+
+def usual_names(sensors: Mapping[str, SensorInfo]) -> dict[str, str]:
+    """Sensor -> the topic that users of ROS expect: the first lidar's, the first IMU's."""
+    lidar = next((n for n, s in sensors.items() if is_scan(s)), None)
+    imu = next((n for n, s in sensors.items() if is_imu(s)), None)
+    names = {lidar: "/scan", imu: "/imu/data"}
+    return {n: topic for n, topic in names.items() if n is not None}
 
 
 def scan_topic(sensor: str) -> str:
@@ -92,6 +109,11 @@ def is_scan(info: SensorInfo) -> bool:
     return bool(angles.ndim == 1 and np.ptp(steps) < 1e-6) if steps.size else True
 
 
+def is_imu(info: SensorInfo) -> bool:
+    """Whether readings are angular rate and specific force."""
+    return info.ros_type == "sensor_msgs/msg/Imu" and info.shape == (6,)
+
+
 def is_odometry(info: SensorInfo) -> bool:
     """Whether readings are x, y, yaw, v, w, and perhaps vy."""
     return info.category == "odometry" and info.shape in ((5,), (6,))
@@ -103,14 +125,20 @@ def is_cloud(info: SensorInfo) -> bool:
     return known and len(info.shape) == 2 and info.ros_type == "sensor_msgs/msg/PointCloud2"
 
 
-def _odometry(topic: str) -> SensorTopic:
+def _odometry(topic: str, info: SensorInfo) -> SensorTopic:
     blank = template.odometry("base_footprint")
+    known = len(info.deviations) == _DEVIATIONS
+    covariance = OdometryCovariance(info.deviations) if known else None
 
     def message(ns: int, values: Array) -> bytes:
-        x, y, yaw, v, w, *aside = values.tolist()
-        turn, two = template.turn(yaw), template.two
-        speed = two(v, aside[0] if aside else 0.0)
-        return blank.fill(template.stamp(ns), two(x, y), turn, speed, template.one(w))
+        numbers = values.tolist()
+        x, y, yaw, v, w, *aside = numbers
+        pose, speed = template.NO_COVARIANCE if covariance is None else covariance(ns, numbers)
+        two, one = template.two, template.one
+        return blank.fill(
+            template.stamp(ns), two(x, y), template.turn(yaw), pose,
+            two(v, aside[0] if aside else 0.0), one(w), speed,
+        )  # fmt: skip
 
     return SensorTopic(topic, blank.msgtype, message)
 
@@ -149,7 +177,7 @@ def _cloud(topic: str, info: SensorInfo) -> SensorTopic:
 
 
 def _imu(topic: str, info: SensorInfo) -> SensorTopic:
-    blank = template.imu(info.frame)
+    blank = template.imu(info.frame, info.deviations[:2] if len(info.deviations) > 1 else (0, 0))
 
     def message(ns: int, values: Array) -> bytes:
         data = np.asarray(values, np.float64)

@@ -20,16 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.recording import messages as ros
-from crowdbot.core.recording import scenery, template
 from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.header import RecordingHeader
-from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
 from crowdbot.core.recording.scans import REPLAY_RATE, Thinning, whole_centimetres
 from crowdbot.core.recording.states import SeriesRows, StateSample, StatesWriter
-from crowdbot.core.recording.template import Template
+from crowdbot.core.recording.tools import ToolTopics
 from crowdbot.core.recording.topics import (
-    SensorTopic,
     Topic,
     is_cone,
     is_scan,
@@ -74,6 +71,7 @@ class RecordingWriter:
         header: RecordingHeader,
         *,
         record: Literal["all", "used", "none"] = "all",
+        description: str = "",
     ) -> None:
         """Start the file with its header.
 
@@ -83,21 +81,17 @@ class RecordingWriter:
             record: ``none`` leaves out all that scores do not need; ``used`` keeps what the
                 replay page shows, scans and cones as exact and as often as it does; ``all`` has
                 every reading and image, and the messages of ROS tools.
+            description: the robot's URDF, which ``all`` says.
 
         Raises:
             InputError: the path cannot be written.
         """
         self._file = McapFile(path)
         self._header = header
-        self._ros = record == "all"
-        self._people = PeopleMessages(header.agents) if header.agents else None
         self.images = record == "all"
         cameras = {n: i for n, i in header.sensors.items() if i.camera is not None}
         self._cameras = {n: CameraMessages(n, i) for n, i in cameras.items()}
         self._sensors = sensor_topics({n: i for n, i in header.sensors.items() if n not in cameras})
-        self._clock, self._twist = template.clock(), template.twist()
-        self._truth = template.transform("map", scenery.BASE)
-        self._pose = template.pose_stamped("map")
         seen = {n: i for n, i in header.sensors.items() if is_scan(i) or is_cone(i)}
         self._thinning = {n: Thinning(REPLAY_RATE) for n in (seen if record == "used" else ())}
         self._states = StatesWriter(0 if header.agents is None else len(header.agents.id))
@@ -108,8 +102,7 @@ class RecordingWriter:
         self._now = 0
         self._closed = False
         self._file.put(Topic.HEADER, 0, header.to_message(), latched=True)
-        if self._ros:
-            self._scenery()
+        self._tools = ToolTopics(self._file, header, description) if record == "all" else None
 
     def state(
         self,
@@ -132,23 +125,21 @@ class RecordingWriter:
         self._samples.append(StateSample(t, robot, agents, jump))
         for name, value in (signals or {}).items():
             self.signal(t, name, value)
-        if self._ros:
-            ns = ros.nanoseconds(t)
-            self._waiting.append(partial(self._ros_state, ns, robot, agents))
+        if self._tools is not None:
+            self._waiting.append(partial(self._tools.state, ros.nanoseconds(t), robot, agents))
         if len(self._samples) >= _MOST_WAITING:
             self._catch_up()
 
     def reading(self, sensor: str, reading: Reading) -> None:
         """One reading of a sensor that the header lists and that is not a camera."""
         thinning = self._thinning.get(sensor)
-        if self._ros:
+        if self._tools is not None:
             values = reading.values.copy()
         elif thinning is not None and thinning.keeps(ros.nanoseconds(reading.stamp)):
             values = whole_centimetres(reading.values)
         else:
             return
-        topic = self._sensors[sensor]
-        self._waiting.append(partial(self._measured, topic, reading.stamp, values))
+        self._waiting.append(partial(self._measured, sensor, reading.stamp, values))
 
     def frame(self, camera: str, frame: CameraFrame) -> None:
         """One image of a camera that the header lists."""
@@ -163,9 +154,8 @@ class RecordingWriter:
     @_later
     def command(self, t: float, command: Command) -> None:
         """What the planner wants the robot to do."""
-        if self._ros:
-            parts = template.two(command.v, command.vy), template.one(command.w)
-            self._put(Topic.COMMAND, ros.nanoseconds(t), self._twist, *parts)
+        if self._tools is not None:
+            self._tools.command(ros.nanoseconds(t), command)
 
     def planner_time(self, t: float, seconds: float) -> None:
         """Wall time of one planner step; the only number here that two equal runs disagree on."""
@@ -208,6 +198,8 @@ class RecordingWriter:
             bearing=bearing,
         )
         self._file.put(Topic.CONTACTS, ros.nanoseconds(t1), message)
+        if self._tools is not None:
+            self._tools.contact(t0, ros.nanoseconds(t1), agent, bearing)
 
     def flush(self) -> None:
         """Finish the open chunk, so that all so far is readable should the process be killed.
@@ -215,6 +207,7 @@ class RecordingWriter:
         Chunks end where this is called: to keep files comparable, call it by simulated time.
         """
         self._catch_up()
+        self._say_path()
         self._file.flush()
 
     def close(self, goal_time: float | None, complete: bool, status: str) -> None:
@@ -229,6 +222,7 @@ class RecordingWriter:
             return
         self._closed = True
         self._catch_up()
+        self._say_path()
         end = ros.new(
             "crowdbot_msgs/RunEnd",
             complete=complete,
@@ -252,42 +246,19 @@ class RecordingWriter:
         for write in waiting:
             write()
 
-    def _measured(self, topic: SensorTopic, stamp: float, values: Array) -> None:
-        ns = ros.nanoseconds(stamp)
-        self._file.put_bytes(topic.name, ns, topic.msgtype, topic.message(ns, values))
+    def _measured(self, sensor: str, stamp: float, values: Array) -> None:
+        topic, ns = self._sensors[sensor], ros.nanoseconds(stamp)
+        data = topic.message(ns, values)
+        self._file.put_bytes(topic.name, ns, topic.msgtype, data)
+        if self._tools is not None:
+            self._tools.measured(sensor, ns, topic.msgtype, data, values)
+
+    def _say_path(self) -> None:
+        """Once in a simulated second, and at the end."""
+        if self._tools is not None:
+            self._tools.path(self._now)
 
     def _frame_messages(self, camera: CameraMessages, frame: CameraFrame) -> None:
         ns = ros.nanoseconds(frame.stamp)
         for image in camera(frame):
             self._file.put_bytes(image.topic, ns, image.msgtype, *image.pieces)
-
-    def _put(self, topic: Topic, ns: int, blank: Template, *parts: bytes) -> None:
-        self._file.put_bytes(topic, ns, blank.msgtype, blank.fill(*parts))
-
-    def _ros_state(self, ns: int, robot: Sequence[float] | None, agents: Array | None) -> None:
-        stamp = template.stamp(ns)
-        self._put(Topic.CLOCK, ns, self._clock, stamp)
-        if robot is not None:
-            x, y, yaw = robot[:3]
-            parts = stamp, template.two(x, y), template.turn(yaw)
-            self._put(Topic.TF, ns, self._truth, *parts)
-            self._put(Topic.POSE, ns, self._pose, *parts)
-        if self._people is not None and agents is not None:
-            people = self._people.pedestrians(ns, agents)
-            self._file.put_bytes(Topic.PEOPLE, ns, PEOPLE, people)
-            data = self._people.marker(ns, agents)
-            self._file.put_bytes(Topic.PEOPLE_MARKER, ns, MARKER, data)
-
-    def _scenery(self) -> None:
-        """What never moves: frames on the robot, walls, goal."""
-        frames = ros.transforms(scenery.static_frames(self._header))
-        self._file.put(Topic.TF_STATIC, 0, frames, latched=True)
-        walls, zone = self._header.walls, self._header.goal_zone
-        if walls is not None and len(walls):
-            self._file.put(Topic.WALLS, 0, scenery.wall_lines(walls), latched=True)
-            self._file.put(Topic.MAP, 0, scenery.occupancy_grid(0, walls), latched=True)
-        if zone is not None and len(zone):
-            self._file.put(Topic.GOAL, 0, ros.polygon(0, zone), latched=True)
-        goal = scenery.goal_pose(0, self._header)
-        if goal is not None:
-            self._file.put(Topic.GOAL_POSE, 0, goal, latched=True)

@@ -37,6 +37,21 @@ def is_complete(directory: Path, run_id: str) -> bool:
     return record is not None and record.get("run_id") == run_id and not damage(directory, record)
 
 
+def attach_files(folder: Path, record: Mapping[str, Any]) -> None:
+    """Put scenario, scores and ``run.json`` into the recording, which then says it all alone.
+
+    Args:
+        folder: of a run, with its recording.
+        record: as it will be written, but for the sizes of files.
+    """
+    from crowdbot.core.recording.attachments import attach  # numpy, which listing does without
+
+    plain = {k: v for k, v in record.items() if k != "files"}
+    document = (json.dumps(plain, indent=2, ensure_ascii=False) + "\n").encode()
+    found = {n: (folder / n).read_bytes() for n in (SCENARIO, SCORES) if (folder / n).is_file()}
+    attach(folder / RECORDING, {**found, RECORD: document})
+
+
 def sizes(folder: Path) -> dict[str, int]:
     """Name -> bytes of the files that a run cannot do without, for its record."""
     return {name: (folder / name).stat().st_size for name in _NEEDED if (folder / name).is_file()}

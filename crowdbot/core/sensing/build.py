@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from numbers import Integral
 from typing import Any, cast
 
@@ -144,6 +145,12 @@ def _check(info: object) -> None:
         refuse("angles are not finite")
     if math.isnan(info.range_min) or not info.range_min < info.range_max:
         refuse(f"range is from {info.range_min} to {info.range_max} m")
+    if not all(isinstance(d, int | float) and 0.0 <= d < math.inf for d in info.deviations):
+        refuse(f"deviations are {info.deviations!r}; numbers from 0 on are wanted")
+    _check_camera(info, refuse)
+
+
+def _check_camera(info: SensorInfo, refuse: Callable[[str], None]) -> None:
     if info.camera is not None and (
         info.memory or info.shape != (info.camera.height, info.camera.width)
     ):

@@ -16,6 +16,7 @@ from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.planning.watchdog import Watchdog
 from crowdbot.core.recording import RecordingHeader, RobotHeader
 from crowdbot.core.recording.run_log import RunLog
+from crowdbot.core.robots.urdf_export import to_urdf
 from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.built_run import BuiltRun
@@ -46,7 +47,7 @@ def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = No
     check_start(built.parts, built.model, built.task.start, engine, built.name)
     header = replace(_header(built, engine), hashes=setup.hashes)
     with (
-        recording(setup, header) as (writer, ending),
+        recording(setup, header, _description(setup, built)) as (writer, ending),
         _watchdog(setup) as watchdog,
         contextlib.ExitStack() as stack,
     ):
@@ -82,6 +83,11 @@ def _header(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
         walls=built.parts.walls[built.parts.wall_heights[:, 0] < model.height],
         goal_zone=task.goal_zone,
     )
+
+
+def _description(setup: RunSetup, built: BuiltRun) -> str:
+    """The robot's URDF, where it is recorded."""
+    return to_urdf(built.model, built.infos, built.name) if setup.record == "all" else ""
 
 
 @contextmanager

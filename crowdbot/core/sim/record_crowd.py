@@ -88,10 +88,10 @@ def record_crowd(setup: RunSetup, duration: float) -> Outcome:
 
 @contextmanager
 def recording(
-    setup: RunSetup, header: RecordingHeader
+    setup: RunSetup, header: RecordingHeader, description: str = ""
 ) -> Iterator[tuple[RecordingWriter, list[Outcome]]]:
     """A writer that is closed whatever happens; the body appends how the run ended."""
-    writer = RecordingWriter(setup.recording, header, record=setup.record)
+    writer = RecordingWriter(setup.recording, header, record=setup.record, description=description)
     ending: list[Outcome] = []
     try:
         yield writer, ending

@@ -210,6 +210,7 @@ def _write_files(
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
     if request.replay:
         _write_replay(request, built, folder, run, scans, scores, record)
+    files.attach_files(folder, record)
     whole = {**record, "files": files.sizes(folder)}
     files.write_json(folder / files.RECORD, whole)
     return whole

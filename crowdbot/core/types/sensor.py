@@ -50,6 +50,10 @@ class SensorInfo:
         camera: of a sensor whose readings are images. They are a pure function of what is seen
             at their instant and are kept out of the simulation's state; such a sensor has no
             memory.
+        deviations: standard deviations of what it measures, for the covariances of its messages;
+            none where they are not known. Of an IMU: of angular rates (rad/s) and of specific
+            force (m/s^2). Of odometry: of the distance between two readings as a part of it, of
+            the turn on each metre (rad/m), of the turn in a second (rad/sqrt(s)).
         privileged: whether readings tell what no sensor of a real robot could; only planners
             that say that they are privileged may read them.
     """
@@ -68,6 +72,7 @@ class SensorInfo:
     sees: bool = True
     feels: bool = False
     camera: Pinhole | None = None
+    deviations: tuple[float, ...] = ()
     privileged: bool = False
 
 

@@ -48,6 +48,10 @@ class Imu:
             ros_type="sensor_msgs/msg/Imu",
             memory=READING + _SIZE,
             random=bool(np.any(self._noise)),
+            deviations=(
+                math.hypot(spec.gyro_noise * root, spec.gyro_bias),
+                math.hypot(spec.force_noise * root, spec.force_bias),
+            ),
             sees=False,
         )
 

@@ -52,6 +52,11 @@ class WheelOdometry:
             ros_type="nav_msgs/msg/Odometry",
             memory=_SIZE,
             random=spec.noise > 0.0 or (self._gyro and spec.gyro_noise > 0.0),
+            deviations=(
+                spec.noise / math.sqrt(2.0),
+                0.0 if self._gyro else spec.noise * math.sqrt(2.0) / track,
+                spec.gyro_noise if self._gyro else 0.0,
+            ),
             sees=False,
         )
 

@@ -118,6 +118,10 @@ def write_robot(writer: RecordingWriter, t: float, robot: Array) -> None:
     writer.signal(t, "doubt", -0.0)
 
 
+#: What a recording is told of the robot.
+URDF = '<robot name="one"><link name="base_link"/></robot>'
+
+
 def write_run(
     path: Path,
     run: Run,
@@ -126,7 +130,7 @@ def write_run(
     goal_time: float | None = 2.25,
 ) -> None:
     """A whole recording with a trip and two contacts."""
-    writer = RecordingWriter(path, header_of(run), record=record)
+    writer = RecordingWriter(path, header_of(run), record=record, description=URDF)
     write_samples(writer, run)
     if run.agents is not None and run.agents.shape[2]:
         writer.trip(100, 0.0, 1.1, True)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core.geometry.footprint import body_side
 from crowdbot.core.interfaces import Pinhole, SensorInfo
-from crowdbot.core.recording import RecordingWriter, read_trajectories, recording_info
+from crowdbot.core.recording import RecordingWriter, read_trajectories, recording_info, typestore
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.topics import Topic
@@ -51,7 +51,7 @@ def _write(path: Path, version: int) -> None:
         "header": ros.header(0, "map"), "t0": 0.25, "t1": 0.5, "agent": 100, "impulse": 1.5,
         "peak_force": 20.0, "relative_speed": 0.7, "bearing": -2.5,
     }  # fmt: skip
-    store = ros._store(oldest=version == 1)
+    store = typestore._store(oldest=version == 1)
     if version == 1:
         del contact["bearing"]
         fields = ("version", "scenario", "hash_names", "hashes", "robot", "agents", "sensors")

@@ -63,8 +63,8 @@ def test_a_bag_has_all_that_was_recorded_and_what_users_of_ros_expect(recording:
     assert {"/odom", "/tf", "/tf_static", "/clock", "/cmd_vel", "/pedestrians"} <= set(found)
     ((_, goal),) = found["/goal_pose"]
     assert (goal.pose.position.x, goal.pose.position.y) == (46.5, 0.0)
-    ((_, path),) = found["/robot/path"]
-    assert path.poses[0].pose.position.x == RUN.robot[0, 0]  # type: ignore[index]
+    _, path = found["/robot/path"][-1]
+    assert path.poses[0].pose.position.x == pytest.approx(RUN.robot[0, 0], abs=5e-4)  # type: ignore[index]
 
 
 def test_people_have_heading_id_and_speed(recording: Path) -> None:
@@ -74,9 +74,9 @@ def test_people_have_heading_id_and_speed(recording: Path) -> None:
     assert RUN.agents is not None
     vx, vy = RUN.agents[0, 2:, 0]
     assert first.id == 100
-    assert first.scale.x == pytest.approx(np.hypot(vx, vy))
+    assert first.scale.x == pytest.approx(np.hypot(vx, vy), abs=5e-4)
     turn = first.pose.orientation
-    assert 2.0 * np.arctan2(turn.z, turn.w) == pytest.approx(np.arctan2(vy, vx))
+    assert 2.0 * np.arctan2(turn.z, turn.w) == pytest.approx(np.arctan2(vy, vx), abs=1e-3)
 
 
 def test_the_map_has_the_walls(recording: Path) -> None:
@@ -103,7 +103,7 @@ def test_a_bag_has_map_and_goal_whatever_was_recorded(tmp_path: Path, record: An
 def test_own_names_and_no_markers(recording: Path) -> None:
     found = _read(_export(recording, "rosbag2", "--own-names", "--no-markers"))
     assert "/front/scan" in found
-    assert "/people_markers" not in found
+    assert not {"/scan", "/people_markers", "/contact_markers"} & set(found)
 
 
 @pytest.mark.parametrize("to", ["rosbag1", "rosbag2"])

@@ -84,11 +84,11 @@ def test_depth_in_millimetres(tmp_path: Path) -> None:
     assert (about.width, about.height, about.header) == (8, 6, image.header)
     assert about.k[0] == about.k[4] == pytest.approx(4.0 / math.tan(math.pi / 6))
     assert (about.k[2], about.k[5]) == (3.5, 2.5)
-    assert "/camera/colour/image_raw" not in messages
+    assert "/camera/color/image_raw" not in messages
 
 
 def test_colour_beside_depth(tmp_path: Path) -> None:
-    (image,) = _recorded(tmp_path, "all", colour=True)["/camera/colour/image_raw"]
+    (image,) = _recorded(tmp_path, "all", colour=True)["/camera/color/image_raw"]
     assert (image.encoding, image.step) == ("rgb8", 24)
     assert image.data.tolist() == list(range(144))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import shutil
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -25,13 +25,14 @@ from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.reader import read_trajectories, recording_info
 from crowdbot.core.recording.records import Records
 from crowdbot.core.recording.scenery import BASE
-from crowdbot.core.recording.topics import Topic, is_scan, scan_topic
+from crowdbot.core.recording.topics import Topic, sensor_topics, usual_names
 
 Tree = Literal["truth", "odometry"]
 _FOREVER = QosTime(2147483647, 4294967295)
 _TF, _ODOMETRY = "tf2_msgs/msg/TFMessage", "nav_msgs/msg/Odometry"
 _LATCHED = (
     Topic.HEADER, Topic.END, Topic.TF_STATIC, Topic.WALLS, Topic.GOAL, Topic.GOAL_POSE, Topic.MAP,
+    Topic.DESCRIPTION,
 )  # fmt: skip
 
 
@@ -118,7 +119,7 @@ def _merged(path: Path, options: BagOptions) -> Iterator[_Message]:
     header, run = info.header, read_trajectories(path)
     every = extras(header, run, options.description, markers=options.markers)
     added = [extra for extra in every if extra.topic not in info.topics]
-    recorded = _recorded(path, header, options)
+    recorded = _recorded(path, set(info.topics), _names(header, options, info.topics), options)
     yield from heapq.merge(_sorted(recorded), _sorted(_added(added)))
 
 
@@ -129,20 +130,19 @@ def _sorted(messages: Iterable[_Message]) -> list[_Message]:
 
 def _added(found: Iterable[Extra]) -> Iterator[_Message]:
     for k, extra in enumerate(found):
-        kind = extra.message.__msgtype__
-        yield _Message(
-            extra.ns, k, str(extra.topic), kind, ros.to_cdr(extra.message), extra.latched
-        )
+        yield _Message(extra.ns, k, extra.topic, extra.msgtype, extra.data, extra.latched)
 
 
-def _recorded(path: Path, header: RecordingHeader, options: BagOptions) -> Iterator[_Message]:
-    names = _names(header) if options.ros_names else {}
+def _recorded(
+    path: Path, topics: Container[str], names: Mapping[str, str | None], options: BagOptions
+) -> Iterator[_Message]:
+    """The recording's own messages; ``names``: other names of topics, None leaves one out."""
+    derived = options.tree == "odometry" and Topic.TF_ODOMETRY not in topics
     for k, record in enumerate(Records(path)):
-        if record.topic == Topic.TF and options.tree == "odometry":
-            continue
         topic, latched = names.get(record.topic, record.topic), record.topic in _LATCHED
-        yield _Message(record.ns, k, topic, record.msgtype, record.data, latched)
-        if record.msgtype == _ODOMETRY and options.tree == "odometry" and record.topic == "/odom":
+        if topic is not None:
+            yield _Message(record.ns, k, topic, record.msgtype, record.data, latched)
+        if derived and record.msgtype == _ODOMETRY and record.topic == "/odom":
             data = _believed(record.data)
             yield _Message(record.ns, k, str(Topic.TF), _TF, data, False)
 
@@ -156,18 +156,27 @@ def _believed(data: bytes) -> bytes:
     return ros.to_cdr(ros.transforms([stamped]))
 
 
-def _names(header: RecordingHeader) -> dict[str, str]:
-    """Our topics -> those of other robots: ``/scan``, ``/imu/data``, ``/NAME/color/...``."""
-    names: dict[str, str] = {}
-    lidars = [n for n, i in header.sensors.items() if is_scan(i)]
-    imus = [n for n, i in header.sensors.items() if i.ros_type == "sensor_msgs/msg/Imu"]
-    if lidars:
-        names[scan_topic(lidars[0])] = "/scan"
-    if imus:
-        names[f"/{imus[0]}/imu"] = "/imu/data"
-    for name in header.sensors:
+def _names(
+    header: RecordingHeader, options: BagOptions, topics: Container[str]
+) -> dict[str, str | None]:
+    """Recorded topics -> those of the bag; None: left out, since it would be there twice."""
+    names: dict[str, str | None] = {}
+    if options.tree == "odometry":
+        names = {Topic.TF: None, Topic.TF_ODOMETRY: str(Topic.TF)}
+    if not options.markers:
+        names |= {Topic.PEOPLE_MARKERS: None, Topic.CONTACT_MARKERS: None}
+    usual = usual_names(header.sensors)
+    for sensor, topic in sensor_topics(header.sensors).items():
+        if sensor not in usual:
+            continue
+        twice, there = topic.name, usual[sensor]
+        if not options.ros_names:
+            names[there] = None
+        elif twice != there:
+            names[twice] = None if there in topics else there
+    for name in header.sensors if options.ros_names else ():
         for leaf in ("image_raw", "camera_info"):
-            names[f"/{name}/colour/{leaf}"] = f"/{name}/color/{leaf}"
+            names[f"/{name}/colour/{leaf}"] = f"/{name}/color/{leaf}"  # of older recordings
     return names
 
 

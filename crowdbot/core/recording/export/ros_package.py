@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.recording.messages import DEFINITIONS, LIVE_DEFINITIONS
+from crowdbot.core.recording.definitions import DEFINITIONS, LIVE_DEFINITIONS
 
 NAME = "crowdbot_msgs"
 SERVICES = {

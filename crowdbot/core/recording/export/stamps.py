@@ -18,14 +18,20 @@ def moved(data: bytes, msgtype: str, by: int) -> bytes:
     if msgtype in (_TF, _MARKERS):
         message = ros.from_cdr(data, msgtype)
         for item in message.transforms if msgtype == _TF else message.markers:
-            total = item.header.stamp.sec * 10**9 + item.header.stamp.nanosec + by
-            item.header.stamp.sec, item.header.stamp.nanosec = divmod(total, 10**9)
+            now = _begun(item.header.stamp.sec, item.header.stamp.nanosec)
+            item.header.stamp.sec, item.header.stamp.nanosec = divmod(now + by, 10**9)
         return ros.to_cdr(message)
     if not _begins_with_time(msgtype):
         return data
     sec = int.from_bytes(data[_HEAD : _HEAD + 4], "little", signed=True)
     rest = int.from_bytes(data[_HEAD + 4 : _HEAD + 8], "little")
-    return data[:_HEAD] + stamp(sec * 10**9 + rest + by) + data[_HEAD + 8 :]
+    return data[:_HEAD] + stamp(_begun(sec, rest) + by) + data[_HEAD + 8 :]
+
+
+def _begun(sec: int, rest: int) -> int:
+    """A time in ns; one nanosecond stands for 0 in recordings."""
+    ns = sec * 10**9 + rest
+    return 0 if ns == 1 else ns
 
 
 @cache

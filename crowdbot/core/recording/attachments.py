@@ -1,0 +1,67 @@
+"""Files inside a recording: what was simulated, and what came of it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from mcap.exceptions import McapError
+from mcap.reader import SeekingReader
+from mcap.records import Attachment, AttachmentIndex
+
+from crowdbot.core.recording.chunk import serialised
+from crowdbot.core.recording.ending import END_OF_DATA_SIZE, FileIndex, ending
+from crowdbot.errors import InputError
+
+_TYPES = {".json": "application/json", ".yaml": "application/yaml", ".csv": "text/csv"}
+
+
+def attach(path: Path, files: Mapping[str, bytes]) -> None:
+    """Put files into a complete recording, instead of those that it has.
+
+    Args:
+        path: the recording; a process that is killed meanwhile leaves one that can be recovered.
+        files: name -> content.
+
+    Raises:
+        InputError: it has no index, as one that was cut off.
+    """
+    index, end = _index(path)
+    data, found = b"", []
+    for name, content in files.items():
+        kind = _TYPES.get(Path(name).suffix, "application/octet-stream")
+        record = serialised([Attachment(0, 0, name, kind, content)])
+        found.append(AttachmentIndex(end + len(data), len(record), 0, 0, len(content), name, kind))
+        data += record
+    statistics = replace(index.statistics, attachment_count=len(found))
+    index = replace(index, statistics=statistics, attachments=found)
+    with path.open("r+b") as file:
+        file.seek(end)
+        file.truncate()
+        file.write(data + ending(index, end + len(data)))
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _index(path: Path) -> tuple[FileIndex, int]:
+    """What the file says of itself, and where attachments, or else the end of its data, begin."""
+    problem = InputError(f"{path}: not a complete recording: it has no index")
+    try:
+        with path.open("rb") as file:
+            summary = SeekingReader(file).get_summary()
+            file.seek(-37, os.SEEK_END)
+            begin = int.from_bytes(file.read(37)[9:17], "little")
+    except (McapError, OSError, ValueError) as error:
+        raise problem from error
+    if summary is None or summary.statistics is None:
+        raise problem
+    known = FileIndex(
+        schemas=list(summary.schemas.values()),
+        channels=list(summary.channels.values()),
+        statistics=summary.statistics,
+        chunks=summary.chunk_indexes,
+    )
+    first = [a.offset for a in summary.attachment_indexes]
+    return known, min([*first, begin - END_OF_DATA_SIZE])

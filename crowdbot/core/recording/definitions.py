@@ -1,0 +1,67 @@
+"""Definitions of crowdbot's own messages, in the language of ROS."""
+
+from __future__ import annotations
+
+#: Definitions of the messages that no ROS distribution has. Arrays of tables are row by row.
+DEFINITIONS = {
+    "Table": "uint32[] shape\nfloat64[] data",
+    "Sensor": (
+        "string name\nstring category\nstring frame\nfloat64[4] mount\nfloat64 rate\n"
+        "uint32[] shape\nstring ros_type\ncrowdbot_msgs/Table angles\n"
+        "float64 range_min\nfloat64 range_max"
+    ),
+    "RobotInfo": (
+        "float64 radius\nfloat64 mass\ncrowdbot_msgs/Table goal\nfloat64 goal_radius\n"
+        "float64 base_height\ncrowdbot_msgs/Table limits\ncrowdbot_msgs/Table footprint"
+    ),
+    "AgentsInfo": "int64[] id\nfloat64[] radius\nfloat64[] mass",
+    "RunHeader": (
+        "uint32 version\nstring scenario\nstring[] hash_names\nstring[] hashes\n"
+        "crowdbot_msgs/RobotInfo[] robot\ncrowdbot_msgs/AgentsInfo[] agents\n"
+        "crowdbot_msgs/Sensor[] sensors\ncrowdbot_msgs/Table walls\n"
+        "crowdbot_msgs/Table goal_zone\ncrowdbot_msgs/Camera[] cameras\nstring[] privileged"
+    ),
+    "Camera": "string sensor\nuint32 width\nuint32 height\nfloat64 focal\nbool colour",
+    "RunStates": (
+        "uint32 first\nfloat64[] t\nfloat64[] robot\nbool[] has_jump\nuint8[] jump\n"
+        "float64 gain\nuint8[] agents"
+    ),
+    "RunEnd": "bool complete\nstring status\nbool arrived\nfloat64 goal_time",
+    "Trip": "int64 agent\nfloat64 t0\nfloat64 t1\nbool reached",
+    "Series": "string name\nfloat64[] t\nfloat64[] value",
+    "Contact": (
+        "std_msgs/Header header\nfloat64 t0\nfloat64 t1\nint64 agent\nfloat64 impulse\n"
+        "float64 peak_force\nfloat64 relative_speed\nfloat64 bearing"
+    ),
+    "Pedestrians": (
+        "std_msgs/Header header\nint64[] id\nfloat32[] x\nfloat32[] y\nfloat32[] vx\n"
+        "float32[] vy\nfloat32[] heading\nfloat32[] radius"
+    ),
+}
+#: Messages of live connections, which no recording holds.
+LIVE_DEFINITIONS = {
+    "Reading": "string sensor\nfloat64 stamp\ncrowdbot_msgs/Table values",
+    "Observation": (
+        "std_msgs/Header header\nfloat64 t\nfloat64[3] pose\nfloat64[3] twist\n"
+        "crowdbot_msgs/Reading[] readings"
+    ),
+    "Task": (
+        "string scenario\nint64 seed\nfloat64[3] start\nfloat64[2] goal\n"
+        "crowdbot_msgs/Table goal_zone\nfloat64 time_limit\ncrowdbot_msgs/Table limits\n"
+        "crowdbot_msgs/Sensor[] sensors"
+    ),
+    "LiveStatus": (
+        "string scenario\nuint32 run\nint64 seed\nstring state\nfloat64 t\nfloat64 lag\n"
+        "uint32 steps\nuint32 missed"
+    ),
+}
+#: Messages of formats 1 and 2, which are read and not written any more.
+OLD_DEFINITIONS = {
+    "RunState": "float64 t\nfloat64[] robot\nfloat64[] agents\nbool has_jump\nbool[] jump",
+    "Signal": "float64 t\nstring name\nfloat64 value",
+}
+#: Fields that messages of format 1 end before.
+SINCE_2 = {
+    "RunHeader": "\ncrowdbot_msgs/Camera[] cameras\nstring[] privileged",
+    "Contact": "\nfloat64 bearing",
+}

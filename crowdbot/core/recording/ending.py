@@ -1,0 +1,62 @@
+"""What follows the data of an MCAP file: end of data, index, footer. Layout: https://mcap.dev/spec."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from struct import pack
+
+from isal.isal_zlib import crc32
+from mcap.opcode import Opcode
+from mcap.records import (
+    AttachmentIndex,
+    Channel,
+    ChunkIndex,
+    DataEnd,
+    Footer,
+    McapRecord,
+    Schema,
+    Statistics,
+    SummaryOffset,
+)
+from mcap.writer import MCAP0_MAGIC
+
+from crowdbot.core.recording.chunk import serialised
+
+_END_OF_DATA = serialised([DataEnd(data_section_crc=0)])
+#: Bytes between the data and the summary.
+END_OF_DATA_SIZE = len(_END_OF_DATA)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FileIndex:
+    """What a summary says of a file."""
+
+    schemas: Sequence[Schema]
+    channels: Sequence[Channel]
+    statistics: Statistics
+    chunks: Sequence[ChunkIndex]
+    attachments: Sequence[AttachmentIndex] = field(default=())
+
+
+def ending(index: FileIndex, at: int) -> bytes:
+    """All bytes from the end of the data on, which is ``at``, to the closing magic."""
+    begin = at + END_OF_DATA_SIZE
+    groups: dict[Opcode, Iterable[McapRecord]] = {
+        Opcode.SCHEMA: index.schemas,
+        Opcode.CHANNEL: index.channels,
+        Opcode.STATISTICS: [index.statistics],
+        Opcode.CHUNK_INDEX: index.chunks,
+    }
+    if index.attachments:
+        groups[Opcode.ATTACHMENT_INDEX] = index.attachments
+    data, offsets = b"", []
+    for opcode, records in groups.items():
+        group = serialised(records)
+        offsets.append(SummaryOffset(opcode, begin + len(data), len(group)))
+        data += group
+    footer = Footer(summary_start=begin, summary_offset_start=begin + len(data), summary_crc=0)
+    data += serialised(offsets)
+    # The checksum is that of the summary and of the footer up to the checksum itself.
+    begun = serialised([footer])[:-4]
+    return _END_OF_DATA + data + begun + pack("<I", crc32(data + begun)) + MCAP0_MAGIC

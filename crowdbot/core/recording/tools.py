@@ -1,0 +1,108 @@
+"""What a recording says for tools of ROS and for 3-D viewers; scores need none of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from crowdbot.core.recording import markers, scenery, template
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording.container import McapFile
+from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
+from crowdbot.core.recording.scans import Thinning
+from crowdbot.core.recording.template import Template
+from crowdbot.core.recording.topics import Topic, is_odometry, usual_names
+from crowdbot.core.recording.viewers import ARROWS_TYPE, PEOPLE_RATE, PeopleArrows, RobotWay
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Command
+
+
+class ToolTopics:
+    """Writes clock, frames, map, robot, commands, people, path and contacts into a file."""
+
+    def __init__(self, file: McapFile, header: RecordingHeader, description: str) -> None:
+        """Write what never moves.
+
+        Args:
+            file: that of the recording.
+            header: constants of the run.
+            description: the robot's URDF; empty where there is none.
+        """
+        self._file = file
+        agents, robot = header.agents, header.robot
+        self._people = None if agents is None else PeopleMessages(agents)
+        self._arrows = None if agents is None else PeopleArrows(agents.id, agents.radius)
+        self._arrows_due = Thinning(PEOPLE_RATE)
+        self._way = None if robot is None else RobotWay(robot.radius)
+        self._clock, self._twist = template.clock(), template.twist()
+        self._truth = template.transform("map", scenery.BASE)
+        self._believed = template.transform("odom", scenery.BASE)
+        self._pose = template.pose_stamped("map")
+        self._usual = usual_names(header.sensors)
+        self._odometry = next((n for n, s in header.sensors.items() if is_odometry(s)), None)
+        self._scenery(header, description)
+
+    def state(self, ns: int, robot: Sequence[float] | None, agents: Array | None) -> None:
+        """One sample of the log: x, y, yaw of the robot; people (4, M); either may be missing."""
+        stamp = template.stamp(ns)
+        self._put(Topic.CLOCK, ns, self._clock, stamp)
+        if robot is not None:
+            x, y, yaw = robot[:3]
+            parts = stamp, template.two(x, y), template.turn(yaw)
+            self._put(Topic.TF, ns, self._truth, *parts)
+            self._put(Topic.POSE, ns, self._pose, *parts)
+            if self._way is not None:
+                self._way.add(ns / 1e9, x, y, yaw)
+        if self._people is not None and self._arrows is not None and agents is not None:
+            people = self._people.pedestrians(ns, agents)
+            self._file.put_bytes(Topic.PEOPLE, ns, PEOPLE, people)
+            data = self._people.marker(ns, agents)
+            self._file.put_bytes(Topic.PEOPLE_MARKER, ns, MARKER, data)
+            if self._arrows_due.keeps(ns):
+                data = self._arrows.message(ns, agents)
+                self._file.put_bytes(Topic.PEOPLE_MARKERS, ns, ARROWS_TYPE, data)
+
+    def measured(self, sensor: str, ns: int, msgtype: str, data: bytes, values: Array) -> None:
+        """A reading once more, under the name that users of ROS expect; the frame of odometry."""
+        usual = self._usual.get(sensor)
+        if usual is not None:
+            self._file.put_bytes(usual, ns, msgtype, data)
+        if sensor == self._odometry:
+            x, y, yaw = values[:3].tolist()
+            parts = template.stamp(ns), template.two(x, y), template.turn(yaw)
+            self._put(Topic.TF_ODOMETRY, ns, self._believed, *parts)
+
+    def command(self, ns: int, command: Command) -> None:
+        """What the planner wants the robot to do."""
+        parts = template.two(command.v, command.vy), template.one(command.w)
+        self._put(Topic.COMMAND, ns, self._twist, *parts)
+
+    def contact(self, t0: float, ns: int, agent: int, bearing: float) -> None:
+        """A contact that began at ``t0`` (s) and ended at ``ns``."""
+        if self._way is not None:
+            touch = self._way.touch(t0, agent, bearing)
+            self._file.put(Topic.CONTACT_MARKERS, ns, touch)
+
+    def path(self, ns: int) -> None:
+        """The way so far."""
+        if self._way is not None and self._way.known:
+            self._file.put(Topic.PATH, ns, self._way.path(ns))
+
+    def _scenery(self, header: RecordingHeader, description: str) -> None:
+        frames = ros.transforms(scenery.static_frames(header))
+        self._file.put(Topic.TF_STATIC, 0, frames, latched=True)
+        if description:
+            text = ros.new("std_msgs/String", data=description)
+            self._file.put(Topic.DESCRIPTION, 0, text, latched=True)
+        walls, zone = header.walls, header.goal_zone
+        if walls is not None and len(walls):
+            self._file.put(Topic.WALLS, 0, scenery.wall_lines(walls), latched=True)
+            self._file.put(Topic.MAP, 0, scenery.occupancy_grid(0, walls), latched=True)
+        if zone is not None and len(zone):
+            self._file.put(Topic.GOAL, 0, markers.polygon(0, zone), latched=True)
+        goal = scenery.goal_pose(0, header)
+        if goal is not None:
+            self._file.put(Topic.GOAL_POSE, 0, goal, latched=True)
+
+    def _put(self, topic: Topic, ns: int, blank: Template, *parts: bytes) -> None:
+        self._file.put_bytes(topic, ns, blank.msgtype, blank.fill(*parts))

@@ -1,0 +1,125 @@
+"""The types of a recording's messages: rosbags' for ROS 2 Humble, and crowdbot's own.
+
+Serialisation is rosbags'. Messages are plain objects of its type store; `new` makes one by name.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+from crowdbot.core.recording.definitions import (
+    DEFINITIONS,
+    LIVE_DEFINITIONS,
+    OLD_DEFINITIONS,
+    SINCE_2,
+)
+
+
+@cache
+def _store(*, oldest: bool = False) -> Any:
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    types: dict[str, Any] = {}
+    for name, text in {**DEFINITIONS, **LIVE_DEFINITIONS, **OLD_DEFINITIONS}.items():
+        since = SINCE_2.get(name, "") if oldest else ""
+        types.update(get_types_from_msg(text.removesuffix(since), f"crowdbot_msgs/msg/{name}"))
+    store.register(types)
+    return store
+
+
+def ros2_store() -> Any:
+    """The types of a recording, for rosbags."""
+    return _store()
+
+
+@cache
+def ros1_store() -> Any:
+    """The types of ROS 1 noetic, and crowdbot's."""
+    store = get_typestore(Stores.ROS1_NOETIC)
+    types: dict[str, Any] = {}
+    for name, text in {**DEFINITIONS, **OLD_DEFINITIONS}.items():
+        types.update(get_types_from_msg(text, f"crowdbot_msgs/msg/{name}"))
+    store.register(types)
+    return store
+
+
+def new(kind: str, **fields: Any) -> Any:
+    """A message of type ``package/Name``."""
+    return message_class(kind)(**fields)
+
+
+@cache
+def message_class(kind: str) -> Any:
+    """The class of messages of type ``package/Name``."""
+    package, _, name = kind.partition("/")
+    return _store().types[f"{package}/msg/{name}"]
+
+
+def definition(msgtype: str) -> bytes:
+    """The text of a type and of all it consists of, as MCAP's ``ros2msg`` encoding wants it."""
+    return str(_store().generate_msgdef(msgtype, ros_version=2)[0]).encode()
+
+
+def message_type(msgtype: str) -> Any:
+    """The class of a type; both ``package/Name`` and ``package/msg/Name`` are understood.
+
+    Raises:
+        KeyError: there is no such type.
+    """
+    package, _, name = msgtype.replace("/msg/", "/").partition("/")
+    return _store().types[f"{package}/msg/{name}"]
+
+
+def field_types(msgtype: str) -> dict[str, str] | None:
+    """Field -> type (``float32[]``, ``float64[36]``, ``std_msgs/Header``); None: no such type."""
+    package, _, name = msgtype.replace("/msg/", "/").partition("/")
+    found = _store().fielddefs.get(f"{package}/msg/{name}")
+    if found is None:
+        return None
+    return {field: _field_type(*kind) for field, kind in found[1]}
+
+
+def _field_type(node: Any, what: Any) -> str:
+    if node.name == "NAME":
+        return str(what).replace("/msg/", "/")
+    if node.name == "BASE":
+        return str(what[0])
+    (inner, size) = what
+    return f"{_field_type(*inner)}[{size if node.name == 'ARRAY' else ''}]"
+
+
+def definition_text(msgtype: str, ros_version: int) -> str:
+    """The text of a type and of all it consists of; of ROS 1 or ROS 2."""
+    package, _, name = msgtype.replace("/msg/", "/").partition("/")
+    full = f"{package}/msg/{name}"
+    return str(_store().generate_msgdef(full, ros_version=ros_version)[0])
+
+
+def type_hash(msgtype: str) -> str:
+    """The hash by which ROS 2 tells versions of a type apart: ``RIHS01_`` and 64 hex digits."""
+    return f"RIHS01_{_store().hash_rihs01(msgtype).removeprefix('RIHS01_')}"
+
+
+def to_cdr(message: Any) -> bytes:
+    """Serialise (little-endian CDR with its four byte head)."""
+    return bytes(_store().serialize_cdr(message, message.__msgtype__))
+
+
+def to_ros1(data: bytes, msgtype: str) -> bytes:
+    """CDR as ROS 1 has the same message; ``crowdbot_msgs`` too."""
+    return bytes(_store().cdr_to_ros1(data, msgtype))
+
+
+def from_cdr(data: bytes, msgtype: str) -> Any:
+    """Deserialise; raises whatever the decoder stumbles over.
+
+    A message of format 1 lacks the attributes that came later.
+    """
+    try:
+        return _store().deserialize_cdr(data, msgtype)
+    except Exception:  # the decoder is generated code; anything may surface
+        if msgtype.removeprefix("crowdbot_msgs/msg/") not in SINCE_2:
+            raise
+    return _store(oldest=True).deserialize_cdr(data, msgtype)

@@ -1,0 +1,142 @@
+"""What 3-D viewers show of people, way and contacts: markers one by one, and a path."""
+
+from __future__ import annotations
+
+import math
+from struct import Struct
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.recording import markers, template
+from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording.template import ANY_STAMP, ANY_TIME, Template
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Pose
+
+PATH_TYPE, ARROWS_TYPE = "nav_msgs/msg/Path", "visualization_msgs/msg/MarkerArray"
+#: People one by one are large, and a path is written anew again and again, Hz.
+PEOPLE_RATE, PATH_RATE = 4.0, 2.0
+#: Slower people keep the heading they had, m/s.
+HEADING_MIN_SPEED = 0.1
+_PERSON, _TOUCH = (0.36, 0.55, 0.78, 1.0), (0.85, 0.2, 0.15, 0.9)
+_TOUCH_SIZE, _ARROW_HEIGHT, _SHORTEST = 0.25, 0.1, 0.1
+#: Positions and lengths lie on a grid of 1/1024 m, numbers of quaternions on one of 1/16384: short
+#: mantissas compress to a third.
+_GRID, _FINE = 1024.0, 16384.0
+_ID = Struct("<i")
+_ANY_ID, _A, _B, _C, _D, _E = 0x11223344, 1.0625, 2.125, 3.1875, 4.25, 5.3125
+
+
+class PeopleArrows:
+    """An arrow for each person: its id, where it looks, as long as it is fast, as wide as it is."""
+
+    def __init__(self, ids: NDArray[np.int64], radius: Array) -> None:
+        """``ids`` (M,) of the people, ``radius`` (M,) m."""
+        self._id = np.asarray(ids, np.int64)
+        self._width = np.rint(2.0 * np.asarray(radius, np.float64) * _GRID) / _GRID
+        self._heading = np.zeros(len(self._id))
+        self._blank: dict[int, Template] = {}  # by how many are there
+
+    def message(self, ns: int, state: Array) -> bytes:
+        """``visualization_msgs/MarkerArray`` of those who are there; ``state`` is (4, M)."""
+        speed = np.hypot(state[2], state[3])
+        with np.errstate(invalid="ignore"):
+            moving = speed > HEADING_MIN_SPEED
+        np.copyto(self._heading, np.arctan2(state[3], state[2]), where=moving)
+        there = np.flatnonzero(np.isfinite(state[0]))
+        blank = self._blank.get(len(there))
+        if blank is None:
+            blank = self._blank[len(there)] = _arrows(len(there))
+        half, stamp = 0.5 * self._heading[there], template.stamp(ns)
+        rows = np.column_stack((
+            np.rint(state[0, there] * _GRID) / _GRID,
+            np.rint(state[1, there] * _GRID) / _GRID,
+            np.rint(np.sin(half) * _FINE) / _FINE,
+            np.rint(np.cos(half) * _FINE) / _FINE,
+            np.maximum(np.rint(speed[there] * _GRID) / _GRID, _SHORTEST),
+            self._width[there],
+        ))  # fmt: skip
+        raw, parts = rows.tobytes(), [stamp]
+        for k, number in enumerate(self._id[there].tolist()):
+            row = raw[48 * k : 48 * (k + 1)]
+            parts += (stamp, _ID.pack(number), row[:16], row[16:32], row[32:])
+        return blank.fill(*parts)
+
+
+def _arrows(count: int) -> Template:
+    """Places: stamp of what takes away those before; of each: stamp, id, x and y, turn, size."""
+    gone = markers.delete_all_markers(ANY_TIME)
+    arrow = markers.marker(
+        ANY_TIME, "people", "ARROW", (_D, _E, _ARROW_HEIGHT), _PERSON, np.zeros((0, 3))
+    )
+    arrow.id, arrow.pose = _ANY_ID, ros.plane_pose(Pose(_A, _B, _C))
+    of_each = (
+        ANY_STAMP, _ID.pack(_ANY_ID), template.two(_A, _B), template.turn(_C),
+        template.two(_D, _E),
+    )  # fmt: skip
+    return Template(markers.marker_array([gone, *[arrow] * count]), ANY_STAMP, *of_each * count)
+
+
+class RobotWay:
+    """Where a robot has been: a path for viewers, and where it was at any time so far."""
+
+    def __init__(self, radius: float) -> None:
+        """``radius`` of the robot's footprint, m."""
+        self._radius = radius
+        self._rows: list[tuple[float, float, float, float]] = []
+        self._path: list[tuple[float, float, float, float]] = []
+        self._contacts = 0
+
+    def add(self, t: float, x: float, y: float, yaw: float) -> None:
+        """Go on; s, m, rad."""
+        self._rows.append((t, x, y, yaw))
+        if not self._path or t >= self._path[-1][0] + 1.0 / PATH_RATE - 1e-9:
+            self._path.append(self._rows[-1])
+
+    @property
+    def known(self) -> bool:
+        """Whether it has begun."""
+        return bool(self._rows)
+
+    def path(self, ns: int) -> Any:
+        """``nav_msgs/Path`` of the way so far."""
+        poses = [_coarse(*row) for row in self._path]
+        return ros.new("nav_msgs/Path", header=ros.header(ns, "map"), poses=poses)
+
+    def touch(self, t: float, agent: int, bearing: float) -> Any:
+        """A ball where a contact began: ``visualization_msgs/MarkerArray`` with one marker.
+
+        Args:
+            t: of the beginning, s.
+            agent: id of the person; -1 is a wall.
+            bearing: of the point touched first, in the robot's frame, rad; NaN: not known.
+        """
+        x, y, yaw = self._at(t)
+        if math.isfinite(bearing):
+            x += self._radius * math.cos(yaw + bearing)
+            y += self._radius * math.sin(yaw + bearing)
+        size = (_TOUCH_SIZE,) * 3
+        stamp = ros.nanoseconds(t)
+        ball = markers.marker(stamp, "contacts", "SPHERE", size, _TOUCH, np.zeros((0, 3)))
+        ball.id, ball.pose = self._contacts, ros.plane_pose(Pose(x, y, 0.0))
+        ball.text = f"person {agent}" if agent >= 0 else "wall"
+        self._contacts += 1
+        return markers.marker_array([ball])
+
+    def _at(self, t: float) -> tuple[float, float, float]:
+        if not self._rows:
+            return 0.0, 0.0, 0.0
+        at, *columns = np.array(self._rows).T
+        x, y, yaw = (float(np.interp(t, at, column)) for column in columns)
+        return x, y, yaw
+
+
+def _coarse(t: float, x: float, y: float, yaw: float) -> Any:
+    """A pose of a path."""
+    short = Pose(round(x * _GRID) / _GRID, round(y * _GRID) / _GRID, yaw)
+    pose = ros.pose_stamped(ros.nanoseconds(t), "map", short)
+    turn = pose.pose.orientation
+    turn.z, turn.w = round(turn.z * _FINE) / _FINE, round(turn.w * _FINE) / _FINE
+    return pose

@@ -1,0 +1,73 @@
+"""Files inside a recording: others find them, and nothing else changes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from mcap.reader import make_reader
+
+from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording.attachments import attach
+from crowdbot.core.recording.contents import contents
+from crowdbot.core.recording.records import Records
+from crowdbot.errors import InputError
+from tests.core.recording.recording_cases import bits, random_run, write_run
+
+RUN = random_run()
+FILES = {"scores.csv": b"metric,value\n", "scenario.yaml": b"id: x\n", "run.json": b"{}"}
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    path = tmp_path / "run.mcap"
+    write_run(path, RUN)
+    return path
+
+
+def _attached(path: Path) -> dict[str, tuple[str, bytes]]:
+    with path.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True)
+        return {a.name: (a.media_type, a.data) for a in reader.iter_attachments()}
+
+
+def test_others_find_them_and_all_messages(path: Path) -> None:
+    before = list(Records(path))
+    attach(path, FILES)
+    assert {n: d for n, (_, d) in _attached(path).items()} == FILES
+    assert _attached(path)["scores.csv"][0] == "text/csv"
+    with path.open("rb") as file:
+        summary = make_reader(file, validate_crcs=True).get_summary()
+    assert summary is not None
+    assert summary.statistics is not None
+    assert summary.statistics.attachment_count == 3
+    assert summary.statistics.message_count == len(before)
+    assert list(Records(path)) == before
+
+
+def test_new_ones_replace_the_old(path: Path) -> None:
+    plain = bits(read_trajectories(path))
+    attach(path, FILES)
+    size = path.stat().st_size
+    attach(path, FILES)
+    assert path.stat().st_size == size
+    attach(path, {"one": b"1"})
+    assert contents(path).attachments == {"one": 1}
+    assert bits(read_trajectories(path)) == plain
+    assert contents(path).complete
+
+
+def test_a_file_that_was_cut_off_is_refused(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:-50])
+    with pytest.raises(InputError, match="no index"):
+        attach(path, FILES)
+
+
+@pytest.mark.parametrize("cut", [5, 40, 200])
+def test_cut_inside_it_is_as_good_as_one_cut_off(path: Path, cut: int) -> None:
+    plain = bits(read_trajectories(path))
+    attach(path, {"a": bytes(1000)})
+    whole = path.read_bytes()
+    path.write_bytes(whole[: whole.index(bytes(1000)) + cut])
+    assert not contents(path).finished
+    assert bits(read_trajectories(path)) == plain
