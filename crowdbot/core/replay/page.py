@@ -52,9 +52,7 @@ def _render(shown: Sequence[ShownRun], title: str) -> str:
         groups=compared([one.scores for one in shown]),
         meta={"runs": [meta for meta, _ in packed]},
         blobs={
-            f"{i}-{n}": text
-            for i, (_, blobs) in enumerate(packed)
-            for n, text in blobs.items()
+            f"{i}-{n}": text for i, (_, blobs) in enumerate(packed) for n, text in blobs.items()
         },
     )
 
