@@ -7,7 +7,7 @@ import os
 import shlex
 import sys
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from datetime import UTC, datetime
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -195,6 +195,7 @@ def _tell(
         told = [
             *(f"crowd: {line}" for line in contents.crowds),
             contents.suspicion,
+            contents.sample.text if contents.sample else "",
             *(check.text for check in contents.floors),
             *(verdict.text for verdict in ranks),
         ]
@@ -213,6 +214,7 @@ def _tell(
             for c in contents.floors
         ],
         "suspicion": contents.suspicion,
+        "sample": None if contents.sample is None else asdict(contents.sample),
         "crowds": contents.crowds,
         "ranks_by_crowd": None if contents.ranks is None else contents.ranks.as_json(),
     }

@@ -41,7 +41,8 @@ def show(
     context: typer.Context,
     out: _Out = _ROOT,
     metric: Annotated[
-        str | None, typer.Option(metavar="GLOB", help="Metrics; default: a few headlines.")
+        str | None,
+        typer.Option(metavar="GLOB", help="Default: the suite's, and a few."),
     ] = None,
     variant: Annotated[
         str | None, typer.Option(metavar="NAME", help="Variant; default: rate, or else corrected.")
@@ -67,6 +68,7 @@ def show(
     """
     if context.invoked_subcommand is not None:
         return
+    from crowdbot.core.results.rows import named_metrics
     from crowdbot.core.results.store import load
     from crowdbot.core.results.tables import summarise
     from crowdbot.errors import UsageError
@@ -79,7 +81,8 @@ def show(
         return
     groups = [name.strip() for name in by.split(",") if name.strip()]
     known = {s.metric for s in found.scores}
-    wanted = [metric] if metric is not None else [m for m in _HEADLINES if m in known]
+    first = [*named_metrics(found.runs), *_HEADLINES]
+    wanted = [metric] if metric is not None else [m for m in dict.fromkeys(first) if m in known]
     summaries = [s for m in wanted for s in summarise(found, m, groups, variant)]
     _print([_line(s) for s in summaries], as_csv=as_csv, as_json=as_json)
     if not (as_csv or as_json):

@@ -129,6 +129,7 @@ def serve(
                 suite="scenarios" if expansion.single else expansion.suite_id,
                 metrics=expansion.metrics,
                 axes=expansion.axes.get(of.id, {}),
+                words=expansion.words_of(of.id),
                 position=expansion.scenarios.index(of),
                 record=record.value,
                 references=references,

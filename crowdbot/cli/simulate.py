@@ -99,6 +99,7 @@ def simulate(
                 suite="scenarios" if expansion.single else expansion.suite_id,
                 metrics=expansion.metrics,
                 axes=expansion.axes.get(chosen.id, {}),
+                words=expansion.words_of(chosen.id),
                 position=expansion.scenarios.index(chosen),
                 record=record.value,
                 references=references,

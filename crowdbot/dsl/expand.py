@@ -10,6 +10,7 @@ from typing import Any
 
 from crowdbot.dsl import semantics
 from crowdbot.dsl.asset_files import AssetFiles
+from crowdbot.dsl.axis_words import AxisWords, axis_words
 from crowdbot.dsl.diagnostics import MAX_ERRORS, Diagnostic, Mark, Source
 from crowdbot.dsl.finder import Finder, Roots
 from crowdbot.dsl.include import Loader
@@ -46,6 +47,7 @@ class Expansion:
         commitment: to the suite's seed; empty if there is none. While the seed is hidden, the
             scenarios say so; once it is revealed, it has been checked.
         run_seeds: seeds of the runs that a bundle consists of.
+        words: axis -> label -> what it varies and to which value, in words.
     """
 
     suite_id: str
@@ -56,6 +58,12 @@ class Expansion:
     axes: dict[str, dict[str, str]] = field(default_factory=dict, repr=False)
     commitment: str = ""
     run_seeds: tuple[int, ...] = (0,)
+    words: dict[str, dict[str, AxisWords]] = field(default_factory=dict, repr=False)
+
+    def words_of(self, scenario: str) -> dict[str, AxisWords]:
+        """Axis -> words of the label that a scenario has on it; none of axes without words."""
+        labels = self.axes.get(scenario, {})
+        return {a: self.words[a][x] for a, x in labels.items() if x in self.words.get(a, {})}
 
     @property
     def single(self) -> bool:
@@ -188,6 +196,7 @@ class _Expander:
             axes,
             suite.commitment,
             suite.run_seeds,
+            axis_words(suite.base, suite.axes, self._set),
         )
 
     def _trees(self) -> Iterator[_Bare]:

@@ -99,6 +99,7 @@ def _request(job: Job) -> Request:
         references_finished=True,
         metrics=expansion.metrics,
         axes=expansion.axes.get(scenario.id, {}),
+        words=expansion.words_of(scenario.id),
         position=job.index,
         force=job.force,
     )

@@ -169,6 +169,7 @@ class _PlanBuilder:
                     record=self._campaign.record,
                     replay=self._campaign.replay,
                     axes=suite.expansion.axes.get(scenario.id, {}),
+                    words=suite.expansion.words_of(scenario.id),
                     position=position,
                 )
                 yield entry, request

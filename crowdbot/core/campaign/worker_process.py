@@ -19,8 +19,8 @@ from crowdbot.core.planning.watchdog import Watchdog
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.errors import PlannerHungError, SimulationError
 
-#: Jobs after which a process is replaced: diagrams with parts in Python leak a little.
-RECYCLE = 50
+#: Jobs after which a process is replaced: libraries and plugins may leak.
+RECYCLE = 200
 #: How often a job is tried when its process dies.
 TRIES = 3
 #: Beyond the watchdog's own limits, for a machine that is busy, s.

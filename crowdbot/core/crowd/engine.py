@@ -62,6 +62,11 @@ class CrowdEngine:
         policies: how they decide: a policy, a function that makes one for the agents, or a list
             of these to which `Agents.policy` refers.
 
+    Attributes:
+        policies: how they decide, as `Agents.policy` numbers them.
+        aim: column of the state where the point begins that policies see as the goal: the goal,
+            or the corner on the way to it.
+
     Raises:
         ValueError: an agent refers to a policy or a portal that does not exist.
     """
@@ -83,6 +88,7 @@ class CrowdEngine:
             "walls": immutable(world.walls),
             "pillars": immutable(world.pillars),
         }
+        self.policies: Sequence[CrowdPolicy] = tuple(made)
         self._groups = _groups(made, agents, _who_plans(agents, world))
         self._groups_alone = _groups(made, agents, np.zeros(len(agents), np.bool_))
         strength = [getattr(p, "contact_stiffness", CONTACT_STIFFNESS) for p in made]
@@ -98,7 +104,7 @@ class CrowdEngine:
             if world.routing is None
             else Router(agents, world.walls, world.pillars, world.routing)
         )
-        self._aim = s.GOAL_X if self._router is None else s.AIM_X  # what policies see as the goal
+        self.aim = s.GOAL_X if self._router is None else s.AIM_X
         self._members, self._ends = groups_of(agents)
         self._cohesion = None if world.cohesion is None else world.cohesion.row
         n = len(agents)
@@ -124,7 +130,7 @@ class CrowdEngine:
             else:
                 enter(rows, i, a.x[i], a.y[i], a.preferred_speed[i], 0.0)
         rows[:, s.ON_TRIP] = (a.at_goal == PORTAL) | (np.diff(a.first) > 0)
-        to_goal = rows[:, self._aim : self._aim + 2] - rows[:, s.X : s.Y + 1]
+        to_goal = rows[:, self.aim : self.aim + 2] - rows[:, s.X : s.Y + 1]
         distance = np.hypot(to_goal[:, :1], to_goal[:, 1:])
         facing = np.divide(to_goal, distance, out=np.zeros_like(to_goal), where=distance > 0.0)
         arrived = distance[:, 0] == 0.0
@@ -264,7 +270,7 @@ class CrowdEngine:
             agents=self.agents,
             position=np.ascontiguousarray(rows[:, s.X : s.Y + 1]),
             velocity=np.ascontiguousarray(rows[:, s.VX : s.VY + 1]),
-            goal=np.ascontiguousarray(rows[:, self._aim : self._aim + 2]),
+            goal=np.ascontiguousarray(rows[:, self.aim : self.aim + 2]),
             present=present,
             robot=robots,
             walls=self.world.walls,

@@ -83,7 +83,9 @@ class AcceleratingPolicy(Protocol):
     A policy of either kind may have an attribute ``contact_stiffness``: the push between
     overlapping people, walls and pillars, 1/s^2; without it, `CONTACT_STIFFNESS`. One that chooses
     velocities and approaches them says in an attribute ``relaxation_time`` (s) how fast, for the
-    steering parts that limit speeds; without it, the time between decisions.
+    steering parts that limit speeds; without it, the time between decisions. One that chooses
+    among fixed velocities may list them in an attribute ``velocity_candidates``
+    (`crowdbot.core.types.candidates`), which makes recordings smaller and changes nothing else.
     """
 
     def accelerations(self, view: CrowdView) -> Array:

@@ -25,6 +25,8 @@ class Collected:
     #: Topic -> message types, newest format first.
     TOPICS: ClassVar[Mapping[str, tuple[str, ...]]] = {
         Topic.HEADER: ("crowdbot_msgs/msg/RunHeader",),
+        Topic.CANDIDATES: ("crowdbot_msgs/msg/VelocityCandidates",),
+        Topic.PERSON_GOALS: ("crowdbot_msgs/msg/PersonGoals",),
         Topic.STATE: ("crowdbot_msgs/msg/RunStates", "crowdbot_msgs/msg/RunState"),
         Topic.TRIP: ("crowdbot_msgs/msg/Trip",),
         Topic.CONTACTS: ("crowdbot_msgs/msg/Contact",),
@@ -66,7 +68,9 @@ class Collected:
             raise InputError(f"{path}: the recording holds no sample")
         try:
             people = 0 if header.agents is None else len(header.agents.id)
-            states = StatesReader(people).states(self._by_topic[Topic.STATE])
+            by_topic = self._by_topic
+            reader = StatesReader(people, by_topic[Topic.CANDIDATES], by_topic[Topic.PERSON_GOALS])
+            states = reader.states(by_topic[Topic.STATE])
             return Trajectories.from_arrays(
                 **self._shared(header, states),
                 **self._robot(header, states.robot),

@@ -26,6 +26,11 @@ DEFINITIONS = {
         "uint32 first\nfloat64[] t\nfloat64[] robot\nbool[] has_jump\nuint8[] jump\n"
         "float64 gain\nuint8[] agents"
     ),
+    "VelocityCandidates": (
+        "crowdbot_msgs/Table unit\nfloat64 relaxation_time\nuint32[] person\n"
+        "float64[] preferred_speed\nfloat64[] radius\nfloat64[] max_acceleration"
+    ),
+    "PersonGoals": "uint32[] sample\nuint32[] person\nfloat64[] x\nfloat64[] y",
     "RunEnd": "bool complete\nstring status\nbool arrived\nfloat64 goal_time",
     "Trip": "int64 agent\nfloat64 t0\nfloat64 t1\nbool reached",
     "Series": "string name\nfloat64[] t\nfloat64[] value",

@@ -16,8 +16,8 @@ from crowdbot.core.types.sensor import Pinhole, SensorInfo
 from crowdbot.errors import InputError
 
 #: Raised when the meaning of a ``/crowdbot/...`` message changes.
-VERSION = 3
-_READABLE = (1, 2, 3)
+VERSION = 4
+_READABLE = (1, 2, 3, 4)
 _LIMITS = ("v_min", "v_max", "w_max", "a_max", "alpha_max", "vy_max")
 
 

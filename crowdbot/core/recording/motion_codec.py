@@ -1,30 +1,47 @@
 """Packs the motion of people without losing a bit: differences from a prediction.
 
-People are predicted from their two samples before. Somebody who goes on wanting the same velocity
-u comes closer to it by the same share in each step, ``v + (u - v) / gain``; and who turns mostly
-keeps the speed that is wanted, so that of two components of u the larger one follows from the
-smaller one. Positions follow from velocities tick by tick, as the simulation adds them up. What is
-stored is the difference between the bits of a number and those of its prediction: 0 for nine
-positions of ten, two or three bits for every other velocity.
+Where it is known among which velocities people choose, and where their goals are, the choice says
+it all, unless somebody is pushed. Else they are predicted from their two samples before. Somebody
+who goes on wanting the same velocity u comes closer to it by the same share in each step,
+``v + (u - v) / gain``; and who turns mostly keeps the speed that is wanted, so that of two
+components of u the larger one follows from the smaller one. Positions follow from velocities tick
+by tick, as the simulation adds them up. What is stored is the difference between the bits of a
+number and those of its prediction: 0 for nine numbers of ten where choices are known.
 
-Only additions, multiplications and square roots of float64 are used, which every machine rounds
-alike. docs/reference/recording.md says it in formulas.
+docs/reference/recording.md says it in formulas.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.recording.candidates import (
+    CandidateTable,
+    Choosers,
+    candidate_table,
+)
+from crowdbot.core.recording.motion_prediction import (
+    SPEEDS,
+    accelerated,
+    acceleration,
+    ahead,
+    best_speed,
+    chosen_candidate,
+    known,
+    moved,
+    predicted,
+    towards,
+    wanted,
+)
 from crowdbot.core.support.compile import kernel
-from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND
+from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array
 
-#: Speeds remembered of each person.
-SPEEDS = 3
 #: Steps in which somebody would reach the velocity that is wanted, one of which is chosen.
 GAINS = (8.0, 4.0, 2.0, 16.0, 1.0)
 _SAMPLES_FOR_GAIN = 4
@@ -32,7 +49,11 @@ _SAMPLES_FOR_GAIN = 4
 _LONGEST = TICKS_PER_SECOND
 _POSITIVE = 2**63 - 1
 #: Entries of the numbers (4, M) of one sample.
-_X, _Y, _VX, _VY = range(4)
+_VX, _VY = 2, 3
+#: Predictions from here on follow a candidate: how far it is from the one before, in their order.
+_CHOICE = SPEEDS + 1
+#: Added to the number of a prediction of which no difference is stored, since all four are 0.
+_EXACT = np.uint8(128)
 
 
 class Packed(NamedTuple):
@@ -40,8 +61,9 @@ class Packed(NamedTuple):
 
     Attributes:
         gain: which was chosen.
-        data: byte by byte: which speed was taken, a byte for each number of a person and a sample;
-            then of x, y, vx, vy each the eight bytes of all differences, lowest bytes first.
+        data: byte by byte: which prediction was taken, a byte for each person and sample; then of
+            x, y, vx, vy each the eight bytes of all differences, lowest bytes first, without those
+            of a person and sample where all four are 0.
     """
 
     gain: float
@@ -49,30 +71,39 @@ class Packed(NamedTuple):
 
 
 class MotionCodec:
-    """Packs or unpacks the samples of one recording, in the order in which they were taken."""
+    """Packs or unpacks the samples of one recording, in the order in which they were taken.
 
-    def __init__(self, people: int) -> None:
+    Args:
+        people: how many there are.
+        choosers: those whose candidates are known; nobody is in two groups.
+    """
+
+    def __init__(self, people: int, choosers: Sequence[Choosers] = ()) -> None:
         self._people = people
+        self._candidates = candidate_table(people, choosers)
+        self._choice = np.zeros(people, np.int64)  # the candidate that was taken last
         self._last_t = math.nan
         self._last = np.full((2, 4, people), np.nan)  # the sample before, and the one before that
         self._speeds = np.zeros((people, SPEEDS))
         self._oldest = np.zeros(people, np.int64)
 
-    def pack(self, t: Array, motion: Array) -> Packed:
+    def pack(self, t: Array, motion: Array, goals: Array | None = None) -> Packed:
         """Pack samples.
 
         Args:
             t: (K,) times, s.
             motion: (K, 4, M) x, y, vx, vy; NaN where somebody is absent.
+            goals: (K, 2, M) to which people went in the step before each sample; None: not known.
         """
         values = np.array(motion, np.float64)
         gain, taken, difference = self._best_gain(values), *self._space(len(t))
-        self._code(t, values, gain, taken, difference, packs=True)
-        planes = difference.view(np.uint8).reshape(4, -1, 8).transpose(0, 2, 1)
+        self._code(t, values, goals, gain, taken, difference, packs=True)
+        rest = np.ascontiguousarray(difference[:, ~_mark_exact(taken, difference)])
+        planes = rest.view(np.uint8).reshape(4, -1, 8).transpose(0, 2, 1)
         return Packed(gain, taken.tobytes() + planes.tobytes())
 
-    def unpack(self, t: Array, packed: Packed) -> Array:
-        """The samples (K, 4, M) again, bit by bit.
+    def unpack(self, t: Array, packed: Packed, goals: Array | None = None) -> Array:
+        """The samples (K, 4, M) again, bit by bit; ``goals`` as they were packed.
 
         Raises:
             ValueError: the data are not those of so many samples and people.
@@ -80,18 +111,21 @@ class MotionCodec:
         values = np.zeros((len(t), 4, self._people))
         taken, difference = self._space(len(t))
         data = np.frombuffer(packed.data, np.uint8)
-        if data.size != taken.size + difference.nbytes:
+        told = data[: taken.size]
+        rest = (told & _EXACT) == 0
+        if len(told) != taken.size or data.size != taken.size + 32 * np.count_nonzero(rest):
             raise ValueError(f"{data.size} bytes of {len(t)} samples of {self._people} people")
-        taken.reshape(-1)[:] = data[: taken.size]
-        planes = data[taken.size :].reshape(4, 8, -1).transpose(0, 2, 1)
-        difference.view(np.uint8).reshape(4, -1, 8)[:] = planes
-        self._code(t, values, packed.gain, taken, difference, packs=False)
+        taken.reshape(-1)[:] = told & ~_EXACT
+        planes = np.ascontiguousarray(data[taken.size :].reshape(4, 8, -1).transpose(0, 2, 1))
+        difference.reshape(4, -1)[:, rest] = planes.view("<i8").reshape(4, -1)
+        self._code(t, values, goals, packed.gain, taken, difference, packs=False)
         return values
 
     def _code(
         self,
         t: Array,
         values: Array,
+        goals: Array | None,
         gain: float,
         taken: NDArray[np.uint8],
         difference: NDArray[np.int64],
@@ -99,9 +133,11 @@ class MotionCodec:
         packs: bool,
     ) -> None:
         scratch = np.zeros(1)
+        given = np.full((len(t), 2, self._people), np.nan) if goals is None else goals
         _code(
             packs, values, values.view(np.int64), self._steps(t), gain, self._last, self._speeds,
-            self._oldest, scratch, scratch.view(np.int64), taken, difference,
+            self._oldest, self._candidates, given, self._choice, scratch, scratch.view(np.int64),
+            taken, difference,
         )  # fmt: skip
 
     def _space(self, samples: int) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
@@ -128,6 +164,13 @@ class MotionCodec:
         return GAINS[int(np.argmin(cost))]
 
 
+def _mark_exact(taken: NDArray[np.uint8], difference: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """(K, M) whose four predictions are right to the bit; marks them in ``taken``."""
+    exact: NDArray[np.bool_] = ~np.any(difference, axis=0)
+    taken[exact] |= _EXACT
+    return exact
+
+
 @kernel
 def _code(
     packs: bool,
@@ -138,6 +181,9 @@ def _code(
     last: Array,
     speeds: Array,
     oldest: NDArray[np.int64],
+    candidates: CandidateTable,
+    goals: Array,
+    choice: NDArray[np.int64],
     scratch: Array,
     scratch_bits: NDArray[np.int64],
     taken: NDArray[np.uint8],
@@ -151,37 +197,103 @@ def _code(
         packs: whether to pack.
         values, bits: (K, 4, M), the same memory.
         steps: (K,) ticks since the sample before.
-        last, speeds, oldest: what was before, brought up to date.
+        last, speeds, oldest, choice: what was before, brought up to date.
+        goals: (K, 2, M).
         scratch, scratch_bits: (1,), the same memory.
     """
     for k in range(values.shape[0]):
         for i in range(values.shape[2]):
-            ux = _wanted(last[1, _VX, i], last[0, _VX, i], gain)
-            uy = _wanted(last[1, _VY, i], last[0, _VY, i], gain)
-            # The component that is the smaller one: the other follows better from it.
-            p, q, up, uq = (_VX, _VY, ux, uy) if abs(ux) <= abs(uy) else (_VY, _VX, uy, ux)
-            scratch[0] = _known(_towards(last[0, p, i], up, gain, steps[k]))
-            _transfer(packs, k, p, i, bits, scratch_bits[0], difference)
-            up = _wanted(last[0, p, i], values[k, p, i], gain)
+            ax, ay, follows = 0.0, 0.0, False
+            count = candidates.choices[i]
             if packs:
-                taken[k, i] = _best_speed(
-                    bits[k, q, i], last[0, q, i], up, uq, gain, steps[k], speeds[i],
-                    scratch, scratch_bits,
+                c = chosen_candidate(
+                    candidates, i, last[0], values[k], goals[k], steps[k], choice[i]
+                )
+                if c >= 0:
+                    taken[k, i] = _CHOICE + (c - choice[i]) % count
+            if taken[k, i] >= _CHOICE and count > 0:
+                choice[i] = (choice[i] + taken[k, i] - _CHOICE) % count
+                ex, ey = ahead(candidates, i, last[0], goals[k])
+                ax, ay = acceleration(candidates, i, choice[i], ex, ey, last[0])
+                follows = _follow(
+                    packs, k, i, steps[k], ax, ay, last, bits, scratch, scratch_bits, difference
+                )
+            else:
+                _extrapolate(
+                    packs, k, i, steps[k], gain, values, bits, last, speeds, oldest, scratch,
+                    scratch_bits, taken, difference,
                 )  # fmt: skip
-            scratch[0] = _predicted(taken[k, i], last[0, q, i], up, uq, gain, steps[k], speeds[i])
-            _transfer(packs, k, q, i, bits, scratch_bits[0], difference)
-            uq = _wanted(last[0, q, i], values[k, q, i], gain)
-            speed = math.sqrt(up * up + uq * uq)
-            if taken[k, i] == 0 and math.isfinite(speed):
-                speeds[i, oldest[i]] = speed
-                oldest[i] = (oldest[i] + 1) % SPEEDS
             for c in range(2):
                 before, now = last[0, c + 2, i], values[k, c + 2, i]
-                scratch[0] = _known(_moved(last[0, c, i], before, now, steps[k]))
+                scratch[0] = known(moved(last[0, c, i], before, now, steps[k]))
+                if follows:
+                    scratch[0], _ = accelerated(
+                        last[0, c, i], before, ax if c == 0 else ay, steps[k]
+                    )
                 _transfer(packs, k, c, i, bits, scratch_bits[0], difference)
             for c in range(4):
                 last[1, c, i] = last[0, c, i]
                 last[0, c, i] = values[k, c, i]
+
+
+@kernel
+def _follow(
+    packs: bool,
+    k: int,
+    i: int,
+    ticks: int,
+    ax: float,
+    ay: float,
+    last: Array,
+    bits: NDArray[np.int64],
+    scratch: Array,
+    scratch_bits: NDArray[np.int64],
+    difference: NDArray[np.int64],
+) -> bool:
+    """Velocities from an acceleration; returns whether that is how they really are."""
+    _, scratch[0] = accelerated(0.0, last[0, _VX, i], ax, ticks)
+    _transfer(packs, k, _VX, i, bits, scratch_bits[0], difference)
+    _, scratch[0] = accelerated(0.0, last[0, _VY, i], ay, ticks)
+    _transfer(packs, k, _VY, i, bits, scratch_bits[0], difference)
+    return bool(difference[_VX, k, i] == 0 and difference[_VY, k, i] == 0)
+
+
+@kernel
+def _extrapolate(
+    packs: bool,
+    k: int,
+    i: int,
+    ticks: int,
+    gain: float,
+    values: Array,
+    bits: NDArray[np.int64],
+    last: Array,
+    speeds: Array,
+    oldest: NDArray[np.int64],
+    scratch: Array,
+    scratch_bits: NDArray[np.int64],
+    taken: NDArray[np.uint8],
+    difference: NDArray[np.int64],
+) -> None:
+    """Velocities from those of the two samples before."""
+    ux = wanted(last[1, _VX, i], last[0, _VX, i], gain)
+    uy = wanted(last[1, _VY, i], last[0, _VY, i], gain)
+    # The component that is the smaller one: the other follows better from it.
+    p, q, up, uq = (_VX, _VY, ux, uy) if abs(ux) <= abs(uy) else (_VY, _VX, uy, ux)
+    scratch[0] = known(towards(last[0, p, i], up, gain, ticks))
+    _transfer(packs, k, p, i, bits, scratch_bits[0], difference)
+    up = wanted(last[0, p, i], values[k, p, i], gain)
+    if packs:
+        taken[k, i] = best_speed(
+            bits[k, q, i], last[0, q, i], up, uq, gain, ticks, speeds[i], scratch, scratch_bits
+        )
+    scratch[0] = predicted(taken[k, i], last[0, q, i], up, uq, gain, ticks, speeds[i])
+    _transfer(packs, k, q, i, bits, scratch_bits[0], difference)
+    uq = wanted(last[0, q, i], values[k, q, i], gain)
+    speed = math.sqrt(up * up + uq * uq)
+    if taken[k, i] == 0 and math.isfinite(speed):
+        speeds[i, oldest[i]] = speed
+        oldest[i] = (oldest[i] + 1) % SPEEDS
 
 
 @kernel
@@ -204,75 +316,3 @@ def _transfer(
     else:
         off = difference[c, k, i]
         bits[k, c, i] = predicted + (((off >> 1) & _POSITIVE) ^ -(off & 1))
-
-
-@kernel
-def _best_speed(
-    bits: int,
-    v: float,
-    up: float,
-    uq: float,
-    gain: float,
-    ticks: int,
-    speeds: Array,
-    scratch: Array,
-    scratch_bits: NDArray[np.int64],
-) -> int:
-    """Which speed, from 1, predicts the larger component best; 0: none, but constant wishes."""
-    best, least = 0, _POSITIVE
-    for s in range(SPEEDS + 1):
-        scratch[0] = _predicted(s, v, up, uq, gain, ticks, speeds)
-        off = abs(bits - scratch_bits[0])
-        if 0 <= off < least:
-            best, least = s, off
-    return best
-
-
-@kernel
-def _predicted(
-    taken: int, v: float, up: float, uq: float, gain: float, ticks: int, speeds: Array
-) -> float:
-    """The larger component of the velocity.
-
-    Args:
-        taken: which speed is wanted, from 1; 0: what was wanted before, ``uq``.
-        v: the component before.
-        up: what is wanted of the smaller component.
-    """
-    if 1 <= taken <= SPEEDS:
-        speed = speeds[taken - 1]
-        rest = math.sqrt(max(speed * speed - up * up, 0.0))
-        uq = -rest if uq < 0.0 else rest
-    return _known(_towards(v, uq, gain, ticks))
-
-
-@kernel
-def _wanted(before: float, now: float, gain: float) -> float:
-    """The velocity that was aimed at in a step; what there is where the step is unknown."""
-    wanted = before + gain * (now - before)
-    return wanted if math.isfinite(wanted) else now
-
-
-@kernel
-def _towards(v: float, wanted: float, gain: float, ticks: int) -> float:
-    """Velocity one step later, added up tick by tick."""
-    change = (wanted - v) / (gain * ticks)
-    for _ in range(ticks):
-        v += change
-    return v
-
-
-@kernel
-def _moved(x: float, before: float, now: float, ticks: int) -> float:
-    """Position one step later, while the velocity changes evenly, added up tick by tick."""
-    change, v = (now - before) / ticks, before
-    for _ in range(ticks):
-        v += change
-        x += v * TICK
-    return x
-
-
-@kernel
-def _known(value: float) -> float:
-    """0 for what is not finite: NaN has several spellings."""
-    return value if math.isfinite(value) else 0.0

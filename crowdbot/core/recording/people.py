@@ -16,7 +16,7 @@ PEOPLE = "crowdbot_msgs/msg/Pedestrians"
 MARKER = "visualization_msgs/msg/Marker"
 #: Slower people keep the heading they had, m/s.
 HEADING_MIN_SPEED = 0.1
-#: Spheres lie on a grid of 1/1024 m: short mantissas compress to a third.
+#: Numbers for ROS tools are multiples of 1/1024 m, m/s, rad: short mantissas compress to a third.
 _GRID = 1024.0
 _COLOUR = (0.36, 0.55, 0.78, 1.0)
 
@@ -42,15 +42,15 @@ class PeopleMessages:
         blank = self._people.get(len(ids))
         if blank is None:
             blank = self._people[len(ids)] = template.pedestrians(len(ids))
-        columns = state[:, there].astype(np.float32)
-        heading = self._heading[there].astype(np.float32)
+        columns = _rounded(state[:, there]).astype(np.float32)
+        heading = _rounded(self._heading[there]).astype(np.float32)
         everything = (ids, *columns, heading, self._radius[there])
         return blank.fill(template.stamp(ns), *[column.tobytes() for column in everything])
 
     def marker(self, ns: int, state: Array) -> bytes:
         """The serialised sphere list of those who are there; ``state`` is (4, M)."""
         there = _present(state)
-        xy = np.rint(state[:2, there] * _GRID) / _GRID
+        xy = _rounded(state[:2, there])
         points = np.full((xy.shape[1], 3), self._height)
         points[:, :2] = xy.T
         if len(points) == 0:
@@ -60,6 +60,10 @@ class PeopleMessages:
     def _spheres(self, points: Array, ns: int = 0) -> Any:
         size = 2.0 * self._height
         return markers.marker(ns, "people", "SPHERE_LIST", (size, size, size), _COLOUR, points)
+
+
+def _rounded(values: Array) -> Array:
+    return np.asarray(np.rint(values * _GRID) / _GRID)
 
 
 def _present(state: Array) -> NDArray[np.bool_]:

@@ -22,12 +22,25 @@ class RunLog:
     """Records each event of the crowd once, in the order of agents."""
 
     def __init__(
-        self, writer: RecordingWriter, agent_id: NDArray[np.int64], *, sideways: bool = False
+        self,
+        writer: RecordingWriter,
+        agent_id: NDArray[np.int64],
+        *,
+        sideways: bool = False,
+        aim: int = s.GOAL_X,
     ) -> None:
-        """``sideways``: whether the robot's velocity may point elsewhere than it looks."""
+        """Start a log.
+
+        Args:
+            writer: of the recording.
+            agent_id: (N,) numbers of the people.
+            sideways: whether the robot's velocity may point elsewhere than it looks.
+            aim: column of the crowd's state where the point begins to which people walk.
+        """
         self.writer = writer
         self._sideways = sideways
         self._id = agent_id
+        self._aim = aim
         self._jumps = np.zeros(len(agent_id))  # at the latest sample
         self._arrivals = np.zeros(len(agent_id))  # what is recorded already
         self._agent_contacts = np.zeros(len(agent_id))
@@ -39,14 +52,15 @@ class RunLog:
 
     def sample(self, t: float, robot: RobotState | None, crowd: Array | None) -> None:
         """One row of the log grid: the robot's state and the flat crowd state, either missing."""
-        agents = jump = None
+        agents = jump = goals = None
         if crowd is not None:
             _, people = s.view(crowd)
             agents = people[:, s.X : s.VY + 1].T.copy()
             agents[:, people[:, s.WAITING] != s.PRESENT] = np.nan
             jump = people[:, s.JUMPS] != self._jumps
             self._jumps = people[:, s.JUMPS].copy()
-        self.writer.state(t, None if robot is None else self._row(robot), agents, jump)
+            goals = people[:, self._aim : self._aim + 2].T.copy()
+        self.writer.state(t, None if robot is None else self._row(robot), agents, jump, goals=goals)
 
     @property
     def events(self) -> int:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording.candidates import Choosers, GoalChanges, GoalsReader
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
@@ -18,12 +19,16 @@ if TYPE_CHECKING:
 
 
 class StateSample(NamedTuple):
-    """One sample: time (s), the robot's row, (4, M) x, y, vx, vy, (M,) who was teleported."""
+    """One sample: time (s), the robot's row, (4, M) x, y, vx, vy, (M,) who was teleported.
+
+    ``goals``: (2, M) to which people went in the step before; None: not known.
+    """
 
     t: float
     robot: Sequence[float] | None
     agents: Array | None
     jump: NDArray[np.bool_] | None
+    goals: Array | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,22 +43,37 @@ class States:
 
 
 class StatesWriter:
-    """Makes ``crowdbot_msgs/RunStates`` of the samples of one run."""
+    """Makes ``crowdbot_msgs/RunStates`` of the samples of one run.
 
-    def __init__(self, people: int) -> None:
+    Args:
+        people: how many there are.
+        choosers: those whose choices are among known candidates.
+    """
+
+    def __init__(self, people: int, choosers: Sequence[Choosers] = ()) -> None:
         self._people, self._written = people, 0
-        self._codec = _codec(people)
+        self._codec = _codec(people, choosers)
+        self._changes = GoalChanges(people) if choosers else None
 
-    def message(self, samples: Sequence[StateSample]) -> Any:
-        """The next samples, at least one, as a message."""
+    def messages(self, samples: Sequence[StateSample]) -> tuple[Any | None, Any]:
+        """``crowdbot_msgs/PersonGoals`` if any changed, and ``RunStates``, of the next samples.
+
+        Args:
+            samples: at least one.
+        """
         t = np.array([s.t for s in samples], np.float64)
         absent, unknown = np.full((4, self._people), np.nan), np.zeros(self._people, np.bool_)
         agents = [absent if s.agents is None else s.agents for s in samples]
         jump = [unknown if s.jump is None else s.jump for s in samples]
         told = np.array([s.jump is not None for s in samples], np.bool_)
-        packed = self._codec.pack(t, np.array(agents, np.float64))
         first, self._written = self._written, self._written + len(t)
-        return ros.new(
+        goals, changes = None, None
+        if self._changes is not None:
+            nowhere = np.zeros((2, self._people))
+            goals = np.array([nowhere if s.goals is None else s.goals for s in samples])
+            changes = self._changes.message(first, goals)
+        packed = self._codec.pack(t, np.array(agents, np.float64), goals)
+        return changes, ros.new(
             "crowdbot_msgs/RunStates",
             first=first,
             t=t,
@@ -68,9 +88,22 @@ class StatesWriter:
 class StatesReader:
     """Puts the samples of one run together again, of whatever format they are."""
 
-    def __init__(self, people: int) -> None:
+    def __init__(
+        self, people: int, candidates: Iterable[Any] = (), goals: Iterable[Any] = ()
+    ) -> None:
+        """Be ready for the samples of one run.
+
+        Args:
+            people: how many there are.
+            candidates, goals: all ``crowdbot_msgs/VelocityCandidates`` and ``.../PersonGoals``.
+
+        Raises:
+            InputError, ValueError: they do not fit each other, or so many people.
+        """
         self._people, self._read = people, 0
-        self._codec = _codec(people)
+        choosers = [Choosers.from_message(message, people) for message in candidates]
+        self._codec = _codec(people, choosers)
+        self._goals = GoalsReader(people, goals) if choosers else None
 
     def states(self, messages: Iterable[Any]) -> States:
         """All samples of a run.
@@ -94,6 +127,7 @@ class StatesReader:
         if message.first != self._read:
             raise InputError(f"sample {self._read} is missing")
         count = len(message.t)
+        goals = None if self._goals is None else self._goals.goals(self._read, count)
         self._read += count
         told = np.array(message.has_jump, np.bool_)
         bits = np.unpackbits(message.jump, count=count * self._people) if told.any() else None
@@ -103,7 +137,7 @@ class StatesReader:
         return States(
             message.t,
             message.robot.reshape(count, -1),
-            self._codec.unpack(message.t, Packed(message.gain, message.agents.tobytes())),
+            self._codec.unpack(message.t, Packed(message.gain, message.agents.tobytes()), goals),
             told,
             zero if bits is None else bits.reshape(zero.shape).astype(np.bool_),
         )
@@ -157,8 +191,8 @@ def series(messages: Iterable[Any]) -> dict[str, Array]:
     }
 
 
-def _codec(people: int) -> MotionCodec:
+def _codec(people: int, choosers: Sequence[Choosers]) -> MotionCodec:
     """The codec; its module imports numba, which who only looks for runs does without."""
     from crowdbot.core.recording.motion_codec import MotionCodec
 
-    return MotionCodec(people)
+    return MotionCodec(people, choosers)

@@ -21,6 +21,8 @@ class Topic(StrEnum):
     """The topics that do not depend on the robot's sensors."""
 
     HEADER = "/crowdbot/header"
+    CANDIDATES = "/crowdbot/candidates"
+    PERSON_GOALS = "/crowdbot/person_goals"
     STATE = "/crowdbot/state"
     TRIP = "/crowdbot/trip"
     SIGNAL = "/crowdbot/signal"

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.camera import CameraMessages
+from crowdbot.core.recording.candidates import Choosers
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.scans import REPLAY_RATE, Thinning, whole_centimetres
@@ -71,6 +72,7 @@ class RecordingWriter:
         header: RecordingHeader,
         *,
         record: Literal["all", "used", "none"] = "all",
+        choosers: Sequence[Choosers] = (),
         description: str = "",
     ) -> None:
         """Start the file with its header.
@@ -81,6 +83,8 @@ class RecordingWriter:
             record: ``none`` leaves out all that scores do not need; ``used`` keeps what the
                 replay page shows, scans and cones as exact and as often as it does; ``all`` has
                 every reading and image, and the messages of ROS tools.
+            choosers: people whose choices are among known candidates, which makes the file
+                smaller; nobody is in two groups.
             description: the robot's URDF, which ``all`` says.
 
         Raises:
@@ -94,7 +98,9 @@ class RecordingWriter:
         self._sensors = sensor_topics({n: i for n, i in header.sensors.items() if n not in cameras})
         seen = {n: i for n, i in header.sensors.items() if is_scan(i) or is_cone(i)}
         self._thinning = {n: Thinning(REPLAY_RATE) for n in (seen if record == "used" else ())}
-        self._states = StatesWriter(0 if header.agents is None else len(header.agents.id))
+        known = [group for group in choosers if group.fits]
+        people = 0 if header.agents is None else len(header.agents.id)
+        self._states = StatesWriter(people, known)
         self._samples: list[StateSample] = []
         self._series = {topic: SeriesRows() for topic in (Topic.SIGNAL, Topic.PLANNER_TIME)}
         self._waiting: list[Callable[[], None]] = []
@@ -102,6 +108,8 @@ class RecordingWriter:
         self._now = 0
         self._closed = False
         self._file.put(Topic.HEADER, 0, header.to_message(), latched=True)
+        for group in known:
+            self._file.put(Topic.CANDIDATES, 0, group.to_message(), latched=True)
         self._tools = ToolTopics(self._file, header, description) if record == "all" else None
 
     def state(
@@ -111,6 +119,7 @@ class RecordingWriter:
         agents: Array | None,
         jump: NDArray[np.bool_] | None = None,
         signals: Mapping[str, float] | None = None,
+        goals: Array | None = None,
     ) -> None:
         """One sample of the log.
 
@@ -121,8 +130,9 @@ class RecordingWriter:
             agents: (4, M) x, y, vx, vy; NaN where somebody is absent.
             jump: (M,) who was teleported since the previous sample.
             signals: name -> value at this time.
+            goals: (2, M) x, y to which people went in the step before; None: not known.
         """
-        self._samples.append(StateSample(t, robot, agents, jump))
+        self._samples.append(StateSample(t, robot, agents, jump, goals))
         for name, value in (signals or {}).items():
             self.signal(t, name, value)
         if self._tools is not None:
@@ -238,7 +248,10 @@ class RecordingWriter:
         if self._samples:
             samples, self._samples = self._samples, []
             self._now = ros.nanoseconds(samples[-1].t)
-            self._file.put(Topic.STATE, self._now, self._states.message(samples))
+            changes, states = self._states.messages(samples)
+            if changes is not None:
+                self._file.put(Topic.PERSON_GOALS, self._now, changes)
+            self._file.put(Topic.STATE, self._now, states)
         for topic, rows in self._series.items():
             for t, message in rows.messages():
                 self._file.put(topic, ros.nanoseconds(t), message)

@@ -3,16 +3,23 @@
 function start() {
   buildFilters(changed);
   buildCards();
+  buildDots();
   readAddress();
   buildScorePick();
   for (const name of ["strip", "ecdf"]) {
     byId(`chart-${name}`).onclick = () => update({ chart: name });
   }
   byId("order").onchange = (event) => update({ order: event.target.value });
+  byId("planner-order").onchange = (event) => update({ sort: event.target.value });
   byId("worst-more").onclick = () => {
     worstShown *= 2;
     drawExplorer();
   };
+  byId("differences-more").onclick = () => {
+    differencesShown *= 2;
+    drawDifferences();
+  };
+  byId("methods-copy").onclick = (event) => copyText(byId("methods").textContent, event.target);
   byId("theme").onclick = switchTheme;
   for (const name of document.querySelectorAll("[data-planner]")) {
     name.prepend(badge(Number(name.dataset.planner)));
@@ -29,7 +36,10 @@ function start() {
   });
   let width = innerWidth;
   addEventListener("resize", () => {
-    if (innerWidth !== width) drawChosen();
+    if (innerWidth !== width) {
+      drawChosen();
+      reachWideTables();
+    }
     width = innerWidth;
   });
   addEventListener("beforeprint", () => openDetails(true));
@@ -40,6 +50,7 @@ function start() {
 
 function changed() {
   worstShown = WORST;
+  differencesShown = DIFFERENCES;
   draw();
 }
 
@@ -52,10 +63,24 @@ function draw() {
   applyTheme();
   showFilters();
   byId("order").value = state.order;
+  byId("planner-order").value = state.sort;
   byId("score-pick").value = state.series;
   drawScores(chooseScore);
   drawChosen();
+  reachWideTables();
   writeAddress();
+}
+
+/** Who has no pointer scrolls with the keys what is wider than the page. */
+function reachWideTables() {
+  for (const box of document.querySelectorAll(".wide")) {
+    const wide = box.scrollWidth > box.clientWidth + 1;
+    const about = { tabindex: "0", role: "region", "aria-label": box.querySelector("caption")?.textContent ?? "table" };
+    for (const [name, value] of Object.entries(about)) {
+      if (wide) box.setAttribute(name, value);
+      else box.removeAttribute(name);
+    }
+  }
 }
 
 function drawChosen() {

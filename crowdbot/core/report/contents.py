@@ -13,9 +13,16 @@ from crowdbot.core.report.cards import cards
 from crowdbot.core.report.encode import Attempt, attempts, axes_of, status_of
 from crowdbot.core.report.figures import Figures, figures
 from crowdbot.core.report.series import Series, all_series
-from crowdbot.core.results.rows import Results, RunRow
+from crowdbot.core.results.rows import Results, RunRow, named_metrics
 from crowdbot.core.scoring.score_scale import score_scales
-from crowdbot.core.statistics import FloorCheck, Table, check_floors, headline_names
+from crowdbot.core.statistics import (
+    FloorCheck,
+    SampleSize,
+    Table,
+    check_floors,
+    headline_names,
+    sample_size,
+)
 from crowdbot.core.statistics.audit import Audit, suspicion
 from crowdbot.core.statistics.crowds import AXIS, CrowdRanks, crowd_ranks
 from crowdbot.errors import InputError
@@ -57,6 +64,7 @@ class Contents:
         replays: run id -> address of its replay page, relative to the report.
         floors: what each planner is told first: whether it beats the floors.
         suspicion: why nothing here may mean anything; empty without a reason to think so.
+        sample: whether it is large enough for a verdict; None where nothing is compared.
         crowds: how human the people of the runs are, a line for each different crowd.
         ranks: what the order of planners owes to the crowd; None for runs of one crowd.
     """
@@ -72,6 +80,7 @@ class Contents:
     floors: tuple[FloorCheck, ...]
     suspicion: str
     crowds: tuple[str, ...] = ()
+    sample: SampleSize | None = None
     ranks: CrowdRanks | None = None
 
     @property
@@ -134,18 +143,22 @@ def gather(
     axes = axes_of(results)
     found = cards(registry, dict.fromkeys(s.metric for s in results.scores))
     ranges = {metric: dict(card["head"]).get("range", "") for metric, card in found.items()}
-    series = all_series(results.scores, headline_names(Table(results)), ranges)
+    series = all_series(
+        results.scores, headline_names(Table(results)), ranges, named_metrics(results.runs)
+    )
+    worked_out = figures(results, series, axes)
     return Contents(
         heading=heading,
         results=results,
         attempts=attempts(results),
         axes=axes,
         series=series,
-        figures=figures(results, series, axes),
+        figures=worked_out,
         cards=found,
         replays=replays,
         floors=check_floors(results),
         suspicion=suspicion(heading.audit, results.runs),
         crowds=tuple(crowd_lines(results.runs)),
+        sample=sample_size(worked_out.headline),
         ranks=crowd_ranks(results),
     )

@@ -15,11 +15,21 @@ async function inflate(name) {
   return new Response(plain).arrayBuffer();
 }
 
+/** Doubles whose four highest bytes are given: all first bytes, then all second ones, and so on. */
+function numbersOf(bytes) {
+  const count = bytes.length / 4;
+  const words = new DataView(new ArrayBuffer(8 * count));
+  for (let i = 0; i < count; i++) {
+    for (let k = 0; k < 4; k++) words.setUint8(8 * i + k, bytes[k * count + i]);
+  }
+  return Float64Array.from({ length: count }, (_, i) => words.getFloat64(8 * i));
+}
+
 async function decode() {
-  report = JSON.parse(byId("meta").textContent);
+  report = JSON.parse(new TextDecoder().decode(await inflate("meta")));
   const names = ["values", "lower", "upper", "intervals", "pairs", "effects"];
   const blobs = await Promise.all(names.map(inflate));
-  names.forEach((name, i) => { report[name] = new Float64Array(blobs[i]); });
+  names.forEach((name, i) => { report[name] = numbersOf(new Uint8Array(blobs[i])); });
   report.codes = new Uint16Array(await inflate("codes"));
   const count = report.runs.count;
   report.byPlanner = report.planners.map((_, p) =>

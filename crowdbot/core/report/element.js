@@ -60,25 +60,36 @@ function decimalsFor(numbers) {
   const largest = Math.max(0, ...known.map(Math.abs));
   const spread = known.length ? Math.max(...known) - Math.min(...known) : 0;
   const seen = spread > 1e-6 * largest ? places(spread, 2) : 0;
-  return Math.min(6, Math.max(0, places(largest, 3), seen));
+  return Math.min(9, Math.max(0, places(largest, 3), seen));
 }
 
+/** With so many decimals; what they would hide, the very large and the very small, as a power of ten. */
 function format(number, decimals) {
   if (!Number.isFinite(number)) return "–";
-  if (number !== 0 && Math.abs(number) >= 1e6) return number.toExponential(2).replace("-", "−");
-  const text = number.toFixed(decimals);
-  return (Number(text) === 0 ? text.replace("-", "") : text).replace("-", "−");
+  const text = number.toFixed(Math.min(decimals, 12));
+  const hidden = number !== 0 && (Number(text) === 0 || Math.abs(number) >= 1e6 || decimals > 6);
+  return (hidden ? number.toExponential(2) : Number(text) === 0 ? text.replace("-", "") : text).replaceAll("-", "−");
 }
 
 /** Four significant digits. */
 function digits(number) {
   if (!Number.isFinite(number)) return "–";
   if (Number.isInteger(number) && Math.abs(number) < 1e6) return String(number).replace("-", "−");
-  return String(Number(number.toPrecision(4))).replace("-", "−");
+  return String(Number(number.toPrecision(4))).replaceAll("-", "−");
 }
 
 const interval = (low, high, decimals) =>
   Number.isFinite(low) ? `[${format(low, decimals)}, ${format(high, decimals)}]` : "";
+
+/** Copies a text; without the permission it is shown, to be copied by hand. */
+async function copyText(text, button) {
+  try {
+    await navigator.clipboard.writeText(text);
+    button.textContent = "copied";
+  } catch {
+    button.replaceWith(el("code", { text }));
+  }
+}
 
 const words = (name) => name.replaceAll("_", " ");
 const plural = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;

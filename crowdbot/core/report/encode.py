@@ -1,19 +1,14 @@
-"""Packs results for the page: names as numbers, and columns of numbers as zlib and base64.
-
-`data.js` undoes it.
-"""
+"""Columns of the page: names as numbers, scores as arrays. `data.js` reads them."""
 
 from __future__ import annotations
 
-import base64
 import math
-import zlib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crowdbot.core.report.packing import deflate, pack
 from crowdbot.core.report.series import Series
 from crowdbot.core.results.rows import PLANNER_FAILED, WITHOUT_RUN, FailureRow, Results, RunRow
 
@@ -53,13 +48,33 @@ def attempts(results: Results) -> list[Attempt]:
 
 
 def axes_of(results: Results) -> list[dict[str, Any]]:
-    """Axes of the suite with their labels, in the suite's order."""
-    found: dict[str, dict[str, None]] = {}
+    """Axes of the suite in its order: ``name``, ``labels``, and the words for both.
+
+    ``title`` says what the axis varies, ``words`` to which values. Runs that do not say it, and
+    those that do not agree, leave the names of the suite.
+    """
+    found: dict[str, dict[str, set[tuple[str, str]]]] = {}
     tried: list[Attempt] = [*results.runs, *results.failures]
     for one in tried:
+        told = one.record.get("axis_words") if isinstance(one, RunRow) else None
         for name, label in one.axes.items():
-            found.setdefault(name, {})[label] = None
-    return [{"name": name, "labels": list(labels)} for name, labels in found.items()]
+            said = found.setdefault(name, {}).setdefault(label, set())
+            words = told.get(name) if isinstance(told, Mapping) else None
+            if isinstance(words, list) and len(words) == 2:
+                said.add((str(words[0]), str(words[1])))
+    return [_axis(name, labels) for name, labels in found.items()]
+
+
+def _axis(name: str, labels: Mapping[str, set[tuple[str, str]]]) -> dict[str, Any]:
+    titles = {title for said in labels.values() for title, _ in said}
+    words = [next(iter(said))[1] if len(said) == 1 else x for x, said in labels.items()]
+    agreed = len(titles) == 1 and len(set(words)) == len(words)
+    return {
+        "name": name,
+        "labels": list(labels),
+        "title": titles.pop() if agreed else name.replace("_", " "),
+        "words": words if agreed else list(labels),
+    }
 
 
 def status_of(attempt: Attempt) -> str:
@@ -91,12 +106,23 @@ def encode_runs(
         "time": [None if r is None else round(r.sim_time, 3) for r in runs],
         "density": [None if r is None else r.density for r in runs],
         "replay": [None if r is None else replays.get(r.run_id) for r in runs],
+        "moment": [None if r is None else _moment(r) for r in runs],
         "traceback": {
             i: _excerpt(a.traceback) for i, a in enumerate(tried) if isinstance(a, FailureRow)
         },
     }
     names = {"scenarios": scenarios.texts, "statuses": statuses.texts, "reasons": reasons.texts}
     return {"runs": columns, **names}
+
+
+def _moment(run: RunRow) -> list[Any] | None:
+    """Seconds, and what happens then: where to look at a run first."""
+    found = run.record.get("worst_moment")
+    if not isinstance(found, Mapping) or not isinstance(found.get("t"), int | float):
+        return None
+    clearance = found.get("clearance")
+    known = f", {clearance:.2f} m" if isinstance(clearance, int | float) else ""
+    return [round(float(found["t"]), 2), f"{found.get('what')}{known}"]
 
 
 def _excerpt(traceback: str) -> str:
@@ -151,13 +177,3 @@ def encode_scores(
 
 def _number(value: float | None) -> float:
     return math.nan if value is None else value
-
-
-def pack(numbers: NDArray[np.float64]) -> str:
-    """Numbers as they are in memory, NaN for none."""
-    return deflate(np.ascontiguousarray(numbers, "<f8").tobytes())
-
-
-def deflate(data: bytes) -> str:
-    """Bytes as zlib and base64."""
-    return base64.b64encode(zlib.compress(data, 9)).decode("ascii")

@@ -48,10 +48,13 @@ function drawFailedRow(row) {
     el("td", { class: "why" }, why), el("td", {}, replayLink(row)));
 }
 
-function replayLink({ scenario, planner, seed, replay }) {
+/** Opens a run where it is worth looking first. */
+function replayLink({ run, scenario, planner, seed, replay }) {
   if (!replay) return el("small", { text: "–" });
-  const name = `Replay of ${scenario}, ${report.planners[planner].label}, seed ${seed}`;
-  return el("a", { href: replay, "aria-label": name, text: "replay" });
+  const moment = report.runs.moment[run];
+  const when = moment ? ` at ${format(moment[0], 1)} s` : "";
+  const name = `replay${when} of ${scenario}, ${report.planners[planner].label}, seed ${seed}`;
+  return el("a", { href: replayAt(run), title: moment?.[1], "aria-label": name, text: `replay${when}` });
 }
 
 /** How bad a score is: larger is worse; a bound counts as the value, on the side that it leaves open. */

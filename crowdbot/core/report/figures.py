@@ -23,6 +23,7 @@ from crowdbot.core.statistics import (
     Name,
     Summary,
     Table,
+    draws_needed,
     headline_names,
     summarise,
 )
@@ -33,7 +34,7 @@ from crowdbot.core.statistics.clusters import bootstrap, mean, trimmed_mean
 FIELDS = (
     "difference", "low", "high", "effect", "effect_low", "effect_high", "improvement",
     "improvement_low", "improvement_high", "detectable", "p_holm", "pairs", "draws", "undecided",
-    "verdict", "why",
+    "verdict", "why", "needed",
 )  # fmt: skip
 VERDICTS = ("better", "worse", "not distinguishable", "not ranked")
 
@@ -160,21 +161,26 @@ def _pairs(
     place = {s.name: i for i, s in enumerate(series)}
     pairs = list(combinations(planners, 2))
     found = np.full((len(series), len(pairs), len(FIELDS)), np.nan)
+    needed = {
+        id(c): draws_needed(c, max(1, summary.tests), summary.alpha, summary.level)
+        for summary in summaries
+        for c in summary.comparisons
+    }
     for comparison in (c for summary in summaries for c in summary.comparisons):
         row = (
             place[comparison.metric, comparison.variant],
             pairs.index((comparison.a, comparison.b)),
         )
-        found[row] = _fields(comparison, whys)
+        found[row] = _fields(comparison, whys, needed[id(comparison)])
     return found
 
 
-def _fields(found: Comparison, whys: Sequence[str]) -> list[float]:
+def _fields(found: Comparison, whys: Sequence[str], needed: int | None) -> list[float]:
     estimates = (found.difference, found.standardised, found.improvement)
     numbers = [x for estimate in estimates for x in _numbers(estimate)]
     return [
         *numbers, _number(found.detectable), _number(found.p_holm), found.pairs, found.draws,
-        found.undecided, VERDICTS.index(found.verdict), whys.index(found.reason),
+        found.undecided, VERDICTS.index(found.verdict), whys.index(found.reason), _number(needed),
     ]  # fmt: skip
 
 

@@ -2,7 +2,7 @@
 
 const state = {
   axes: {}, seed: "", category: "", variant: "headline", hidden: new Set(),
-  series: 0, chart: "strip", pair: 0, theme: "", order: "category",
+  series: 0, chart: "strip", pair: 0, theme: "", order: "category", sort: "name",
 };
 const HEADLINE = "headline";
 
@@ -10,8 +10,8 @@ const HEADLINE = "headline";
 function buildFilters(onchange) {
   const box = byId("filters");
   for (const axis of report.axes) {
-    const options = [["", "all"], ...axis.labels.map((l) => [l, l])];
-    box.append(choice(`axis-${axis.name}`, axis.name, options, (v) => {
+    const options = [["", "all"], ...axis.labels.map((label, l) => [label, wordAndLabel(axis, l)])];
+    box.append(choice(`axis-${axis.name}`, axis.title, options, (v) => {
       state.axes[axis.name] = v;
       onchange();
     }));
@@ -37,7 +37,7 @@ function buildFilters(onchange) {
 function choice(id, name, options, onpick) {
   const select = el("select", { id, onchange: (event) => onpick(event.target.value) },
     options.map(([value, text]) => el("option", { value, text })));
-  return el("label", { class: "field" }, el("span", { text: words(name) }), select);
+  return el("label", { class: "field" }, el("span", { text: name }), select);
 }
 
 function plannerChips(onchange) {
@@ -69,7 +69,7 @@ function showFilters() {
 
 function filterText() {
   const parts = report.axes.filter((a) => state.axes[a.name])
-    .map((a) => `${words(a.name)} = ${state.axes[a.name]}`);
+    .map((a) => `${a.title} = ${wordOf(a, state.axes[a.name])}`);
   if (state.seed) parts.push(`seed = ${state.seed}`);
   if (state.category) parts.push(`category ${state.category}`);
   if (state.variant !== HEADLINE) parts.push(`variants: ${state.variant}`);
@@ -79,7 +79,16 @@ function filterText() {
   return parts.join("; ");
 }
 
-const shownPlanners = () => report.planners.map((_, p) => p).filter((p) => !state.hidden.has(p));
+/** Planners that are not hidden, by name or the best in the chosen score first. */
+function shownPlanners() {
+  const shown = report.planners.map((_, p) => p).filter((p) => !state.hidden.has(p));
+  if (state.sort !== "value" || !report.series.length) return shown;
+  const bad = new Map(shown.map((p) => {
+    const about = describe(state.series, selectedRuns(p));
+    return [p, about.ok ? badness(state.series, { status: "ok", value: about.centre }) : Infinity];
+  }));
+  return shown.sort((a, b) => (bad.get(a) === bad.get(b) ? a - b : bad.get(a) - bad.get(b)));
+}
 
 function matches(run, but = "") {
   return report.axes.every((axis, a) => {
@@ -115,7 +124,8 @@ function writeAddress() {
   if (state.variant !== HEADLINE) query.set("variant", state.variant);
   if (state.chart !== "strip") query.set("chart", state.chart);
   if (state.order !== "category") query.set("order", state.order);
-  if (state.hidden.size) query.set("planners", shownPlanners().map((p) => p).join("."));
+  if (state.sort !== "name") query.set("sort", state.sort);
+  if (state.hidden.size) query.set("planners", shownPlanners().sort((a, b) => a - b).join("."));
   const series = report.series[state.series];
   if (series && state.series !== report.first) query.set("score", `${series.metric}.${series.variant}`);
   if (state.pair) query.set("pair", state.pair);
@@ -140,6 +150,7 @@ function readAddress() {
   }
   state.chart = query.get("chart") === "ecdf" ? "ecdf" : "strip";
   state.order = ["metric", "evidence"].includes(query.get("order")) ? query.get("order") : "category";
+  state.sort = query.get("sort") === "value" ? "value" : "name";
   state.theme = ["light", "dark"].includes(query.get("theme")) ? query.get("theme") : "";
   const shown = query.get("planners")?.split(".").map(Number);
   const hidden = report.planners.map((_, p) => p).filter((p) => shown && !shown.includes(p));

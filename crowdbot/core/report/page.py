@@ -9,17 +9,20 @@ from typing import Any
 from crowdbot.core.report import provenance, tables
 from crowdbot.core.report.cards import reference
 from crowdbot.core.report.contents import Contents
-from crowdbot.core.report.encode import encode_runs, encode_scores, pack
+from crowdbot.core.report.encode import encode_runs, encode_scores
 from crowdbot.core.report.figures import FIELDS, VERDICTS
-from crowdbot.core.report.tables import chance, family
+from crowdbot.core.report.markdown import alike, chance, family, markdown
+from crowdbot.core.report.methods import methods
+from crowdbot.core.report.packing import pack, pack_document
 from crowdbot.core.results.rows import RunRow, processes
 from crowdbot.core.scoring.scores_csv import write_table
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import render_page
 
 _SCRIPTS = (
-    "element", "data", "filters", "scale", "table", "cards", "distribution", "scores",
-    "parameters", "pairs", "explorer", "app",
+    "element", "words", "data", "filters", "scale", "table", "cards", "dots", "save",
+    "distribution", "strips", "curves", "scores", "parameters", "pairs", "differences",
+    "explorer", "app",
 )  # fmt: skip
 
 
@@ -39,7 +42,7 @@ def write_report(path: Path, contents: Contents) -> dict[str, Path]:
     paths = {"html": path, "csv": path.with_suffix(".csv"), "md": path.with_suffix(".md")}
     page = render(contents)
     write_table(paths["csv"], tables.csv_rows(contents))
-    atomic_write(paths["md"], tables.markdown(contents))
+    atomic_write(paths["md"], markdown(contents))
     atomic_write(path, page)
     return paths
 
@@ -49,18 +52,22 @@ def render(contents: Contents) -> str:
     states, blobs = encode_scores(contents.results, contents.attempts, contents.series)
     figures, runs = contents.figures, contents.results.runs
     blobs |= {name: pack(getattr(figures, name)) for name in ("intervals", "pairs", "effects")}
+    blobs["meta"] = pack_document({**_meta(contents), "states": states})
     return render_page(
         __package__,
         scripts=[f"{name}.js" for name in _SCRIPTS],
+        images="blob:",  # a picture that is saved as PNG is drawn once more
         heading=contents.heading,
         contents=contents,
         planners=[_planner(contents, p) for p in contents.planners],
         hashes=provenance.hashes(runs),
         facts=provenance.facts(runs),
         scenarios=provenance.scenarios(runs),
+        scenario_count=len({a.scenario for a in contents.attempts}),
+        methods=methods(contents),
         summary=figures.headline,
         chance=chance(figures.headline),
-        meta={**_meta(contents), "states": states},
+        alike=alike,
         blobs=blobs,
     )
 
@@ -85,6 +92,7 @@ def _meta(contents: Contents) -> dict[str, Any]:
     marks = {metric: reference(card) for metric, card in contents.cards.items()}
     series = [{**s._asdict(), "reference": marks.get(s.metric)} for s in contents.series]
     return {
+        "suite": contents.heading.suite,
         "planners": [{"label": planner} for planner in contents.planners],
         "seeds": contents.seeds,
         "axes": contents.axes,

@@ -41,12 +41,18 @@ function drawPairs(choosePair) {
     numberCell(format(v.difference, decimals), interval(v.low, v.high, decimals)),
     numberCell(format(v.effect, 2), interval(v.effect_low, v.effect_high, 2)),
     numberCell(format(v.improvement, 2), interval(v.improvement_low, v.improvement_high, 2)),
-    numberCell(probability(v.p_holm)), numberCell(format(v.detectable, decimals)),
+    numberCell(probability(v.p_holm)), numberCell(format(v.detectable, decimals), neededText(v)),
     numberCell(format(v.pairs, 0), v.undecided ? `${v.undecided} undecided` : ""),
     el("td", { class: isClear(v) ? "verdict clear" : "verdict" }, sentence(v), el("small", { text: v.why }))));
   byId("pairs-table").hidden = !rows.length;
   byId("pairs-note").textContent = pairsNote(rows);
   drawForest(planners, choosePair);
+}
+
+/** Crowd draws that would find this difference, and how many there are. */
+function neededText({ needed, draws, verdict }) {
+  if (isClear({ verdict }) || !Number.isFinite(needed)) return "";
+  return `${plural(needed, "draw")}, now ${draws}`;
 }
 
 function sentence({ a, b, verdict }) {
@@ -68,7 +74,8 @@ function pairsNote(rows) {
   return `Mean of the differences over pairs of the same scenario and seed; effect size: the same in standard deviations; in brackets ${level} % intervals. ` +
     "Undefined, censored and failed runs take part in the probability and the test as far as they are known. " +
     `p: signed ranks, signs flipped for whole crowd draws, corrected for the ${tests} tests of ${report.stats.family}; there is a verdict where it is at most ${alpha}. ` +
-    "All other scores are detail, and corrected among themselves. Detectable: the mean difference that so many draws would find in four cases of five.";
+    "All other scores are detail, and corrected among themselves. Detectable: the mean difference that so many draws would find in four cases of five. " +
+    "Below it: how many crowd draws would find the difference that was seen, if it is real; where every scenario has a crowd of its own, that many scenarios.";
 }
 
 /** All scores of one pair: probability that the first is better, with its interval. */
@@ -78,39 +85,61 @@ function drawForest(planners, choosePair) {
     el("option", { value: i, text: `${report.planners[a].label} against ${report.planners[b].label}` })));
   select.value = state.pair;
   select.onchange = () => choosePair(Number(select.value));
+  drawDifferences();
   const box = byId("forest");
   const pair = report.stats.pairs[state.pair];
   const rows = pair ? shownSeries().map((s) => ({ series: s, ...comparisonOf(s, state.pair) }))
     .filter((row) => Number.isFinite(row.improvement)) : [];
   byId("forest-part").hidden = !rows.length;
   if (!rows.length) return;
-  const [width, left, top, step] = [900, 290, 30, 20];
+  const frame = forestFrame(box.clientWidth || 900);
+  const { width, left, right, top, step } = frame;
   const bottom = top + step * rows.length;
-  const x = scale([0, 1], [left, width - 150], 5);
-  const picture = canvas(width, bottom + 20, bottomAxis(x, top - 6, bottom, { value: 0.5 }));
-  picture.append(ahead(pair[1], left + 2, "start"), ahead(pair[0], width - 152, "end"));
-  rows.forEach((row, i) => picture.append(forestRow(row, pair, x, top + step * i + 10, width)));
+  const x = scale([0, 1], [left, right], 5);
+  const better = report.planners[pair[0]].label;
+  const picture = canvas(width, bottom + 42, bottomAxis(x, top - 6, bottom, { value: 0.5 }),
+    axisTitle(x, bottom + 36, frame.narrow ? "probability of improvement" : `probability that ${better} does better`));
+  picture.append(ahead(pair[1], left + 2, "start", 14), ahead(pair[0], right - 2, "end", frame.narrow ? 30 : 14));
+  rows.forEach((row, i) => picture.append(forestRow(row, pair, x, top + step * i, frame)));
+  offer(byId("forest-save"), `${report.planners[pair[0]].label}-against-${report.planners[pair[1]].label}`, picture, () => forestRows(rows, pair));
   picture.setAttribute("aria-label", `Probability that ${report.planners[pair[0]].label} does better than ${report.planners[pair[1]].label}, score by score`);
   box.replaceChildren(picture);
 }
 
 /** Which side of the picture speaks for whom. */
-function ahead(planner, x, anchor) {
-  const name = report.planners[planner].label;
-  return label(anchor === "end" ? `${name} better →` : `← ${name} better`, x, 14, "tick", anchor);
+function ahead(planner, x, anchor, y) {
+  const name = shortened(planner);
+  return label(anchor === "end" ? `${name} better →` : `← ${name} better`, x, y, "tick", anchor);
 }
 
-function forestRow(row, pair, x, y, width) {
+/** On a phone the names of scores stand above their lines. */
+function forestFrame(room) {
+  const narrow = room < 700;
+  const width = narrow ? Math.max(280, room) : 900;
+  return narrow ? { narrow, width, left: 12, right: width - 12, top: 48, step: 38 }
+    : { narrow, width, left: 290, right: width - 150, top: 30, step: 20 };
+}
+
+function forestRows(rows, pair) {
+  const head = ["metric", "variant", "a", "b", "probability_a_better", "low", "high", "verdict"];
+  return [head, ...rows.map((row) => [report.series[row.series].metric, report.series[row.series].variant,
+    ...pair.map((p) => report.planners[p].label), row.improvement, row.improvement_low, row.improvement_high, row.verdict])];
+}
+
+function forestRow(row, pair, x, top, { width, narrow }) {
   const series = report.series[row.series];
   const clear = isClear(row);
   const winner = row.verdict === "worse" ? pair[1] : pair[0];
   const name = `${words(series.metric)}${series.variant === "corrected" ? "" : `, ${words(series.variant)}`}`;
   const place = round(x.place(row.improvement));
-  const group = svg("g", { class: clear ? `p${winner % SHAPES.length}` : "unclear" }, label(name, 280, y + 4, "label", "end"));
+  const y = top + (narrow ? 26 : 10);
+  const group = svg("g", { class: clear ? `p${winner % SHAPES.length}` : "unclear" },
+    narrow ? label(linesOf(name, 34, 1)[0], 12, y - 10) : label(name, 280, y + 4, "label", "end"));
   if (Number.isFinite(row.improvement_low)) {
     group.append(svg("line", { class: "whisker", x1: round(x.place(row.improvement_low)), x2: round(x.place(row.improvement_high)), y1: y, y2: y }));
   }
   group.append(clear ? marker(winner, place, y, 4.5, "ringed") : svg("circle", { class: "open", cx: place, cy: y, r: 4 }));
-  group.append(label(clear ? sentence({ a: pair[0], b: pair[1], verdict: row.verdict }) : row.verdict, width - 140, y + 4, clear ? "label" : "tick"));
+  const said = clear ? sentence({ a: pair[0], b: pair[1], verdict: row.verdict }) : row.verdict;
+  group.append(narrow ? label(clear ? said : "", width - 8, y - 10, "label", "end") : label(said, width - 140, y + 4, clear ? "label" : "tick"));
   return group;
 }

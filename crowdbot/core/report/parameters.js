@@ -1,6 +1,6 @@
 // One score by the parameters of the suite: a picture for each, and the numbers in a table.
 
-const PANEL = { height: 190, left: 42, right: 6, top: 10, bottom: 30, least: 212, gap: 18 };
+const PANEL = { height: 226, left: 46, right: 6, top: 24, bottom: 50, least: 212, gap: 18 };
 
 function drawParameters() {
   byId("parameters").hidden = !report.axes.length;
@@ -20,13 +20,14 @@ function drawParameters() {
 /** For each label of an axis what each planner does there; the axis's own filter is set aside. */
 function panelRows(axis, a, planners) {
   return axis.labels.map((text, l) => {
+    const word = axis.words[l];
     const inside = (run) => report.runs.axes[a][run] === l && matches(run, axis.name);
     const chosen = { ...state.axes, [axis.name]: text };
     const cells = planners.map((planner) => {
       const runs = report.byPlanner[planner].filter(inside);
       return { about: describe(state.series, runs), known: intervalOf(selectionName(chosen), state.series, planner), runs };
     });
-    return { axis, text, cells, density: densityOf(cells.flatMap((c) => c.runs)) };
+    return { axis, text, word, l, cells, density: densityOf(cells.flatMap((c) => c.runs)) };
   });
 }
 
@@ -56,15 +57,22 @@ function drawPanel(axis, a, rows, { y, width }, planners) {
   if (reference && reference.value >= y.low && reference.value <= y.high) {
     picture.append(svg("line", { class: "reference", x1: left, x2: width - right, y1: round(y.place(reference.value)), y2: round(y.place(reference.value)) }));
   }
-  rows.forEach((row, l) => picture.append(label(row.text, x(l), height - bottom + 18, "label", "middle")));
+  picture.append(label(linesOf(measureOf(report.series[state.series]), 34, 1)[0], 2, 12, "axis"));
+  const letters = Math.max(5, Math.floor((width - left - right) / rows.length / 6.2));
+  rows.forEach((row, l) => linesOf(row.word, letters, 2).forEach((text, n) =>
+    picture.append(label(text, x(l), height - bottom + 16 + 13 * n, "label", "middle"))));
+  picture.append(label(axis.title, left + (width - left - right) / 2, height - 6, "axis", "middle"));
   planners.forEach((planner, i) => {
     const place = (l) => x(l) + (i - (planners.length - 1) / 2) * spread;
     picture.append(trend(planner, rows.map((row) => row.cells[i]), place, y));
   });
-  picture.setAttribute("aria-label", `${words(axis.name)}: the numbers are in the table below`);
+  picture.setAttribute("aria-label", `${axis.title}: the numbers are in the table below`);
   const effects = axisEffectText(a, planners);
+  const save = el("span", { class: "saves" });
+  const series = report.series[state.series];
+  offer(save, `${series.metric}-${series.variant}-by-${axis.name}`, picture, () => parameterRows(rows, planners));
   return el("figure", { class: state.axes[axis.name] ? "panel filtered" : "panel" },
-    el("figcaption", {}, el("b", { text: words(axis.name) }), el("span", { class: "effects" }, effects)), picture);
+    el("figcaption", {}, el("b", { text: axis.title }), el("span", { class: "effects" }, effects)), picture, save);
 }
 
 function trend(planner, cells, place, y) {
@@ -83,6 +91,13 @@ function trend(planner, cells, place, y) {
   return group;
 }
 
+/** The numbers of one picture. */
+function parameterRows(rows, planners) {
+  const head = ["parameter", "label", "value", "planner", "centre", "low", "high", "q1", "q3", "runs", "with_value"];
+  return [head, ...rows.flatMap((row) => row.cells.map(({ about, known }, i) => [row.axis.title, row.text, row.word,
+    report.planners[planners[i]].label, about.centre, known?.low, known?.high, about.q1, about.q3, String(about.runs), String(about.ok)]))];
+}
+
 /** How much each parameter matters for each planner, from all runs. */
 function axisEffectText(a, planners) {
   return planners.map((planner) => [planner, effectOf(a, state.series, planner)])
@@ -93,13 +108,13 @@ function axisEffectText(a, planners) {
 function drawParameterTable(rows, planners) {
   const decimals = decimalsFor(rows.flatMap((row) => row.cells.map((c) => c.about.centre)));
   const columns = [
-    { text: "parameter", key: (row) => row.axis.name },
-    { text: "value", key: (row) => row.text },
+    { text: "parameter", key: (row) => row.axis.title },
+    { text: "value", key: (row) => row.word },
     { text: "people per m², realised", numeric: true, key: (row) => row.density?.mean },
     ...planners.map((p, i) => ({ node: planned(p), numeric: true, key: (row) => row.cells[i].about.centre })),
   ];
   sortable(byId("parameters-table"), columns, rows, (row) => el("tr", {},
-    el("th", { scope: "row", text: words(row.axis.name) }), el("td", { text: row.text }),
+    el("th", { scope: "row", text: row.axis.title }), el("td", { text: wordAndLabel(row.axis, row.l) }),
     row.density ? numberCell(format(row.density.mean, 3), interval(row.density.low, row.density.high, 3)) : numberCell("–"),
     row.cells.map(({ about, known }) => el("td", { class: "number" }, el("b", { text: format(about.centre, decimals) }),
       el("small", { text: known ? interval(known.low, known.high, decimals) : quartileText(about, report.series[state.series], decimals), class: known ? null : "quartile" }),

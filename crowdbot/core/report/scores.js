@@ -27,6 +27,17 @@ function drawScores(choose) {
   const silent = all.filter((row) => !rows.includes(row));
   byId("scores-silent").replaceChildren(...silentText(silent));
   byId("scores-note").textContent = scoresNote();
+  offer(byId("scores-save"), "scores", null, () => scoreRows(rows, planners));
+}
+
+/** The table as it is shown, planner below planner. */
+function scoreRows(rows, planners) {
+  const head = ["metric", "variant", "unit", "better", "planner", "centre", "low", "high", "q1", "median", "q3", "runs", "with_value"];
+  return [head, ...rows.flatMap((row) => row.abouts.map((about, i) => {
+    const series = report.series[row.series];
+    return [series.metric, series.variant, series.unit, series.better, report.planners[planners[i]].label, about.centre,
+      row.known[i]?.low, row.known[i]?.high, about.q1, about.median, about.q3, String(about.runs), String(about.ok)];
+  }))];
 }
 
 function scoreRow(series, planners, runs) {

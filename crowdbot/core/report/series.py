@@ -22,6 +22,9 @@ _FIRST = (
 #: Categories that no simulated run has data for.
 _LAST = ("shared control", "questionnaire")
 
+#: Category of the metrics that the suite names.
+NAMED = "named by the suite"
+
 Centre = Literal["share", "mean", "interquartile mean"]
 
 
@@ -52,16 +55,19 @@ def all_series(
     scores: Sequence[ScoreRow],
     headlines: Collection[tuple[str, str]],
     ranges: Mapping[str, str],
+    named: Sequence[str] = (),
 ) -> list[Series]:
     """Every variant of every metric in some scores; those of the seed first in their category.
 
-    The four scores are a category of their own, and come before all others.
+    The four scores are a category of their own, and come before all others; before them come the
+    metrics that the suite names, with the variants that stand for them.
 
     Args:
         scores: of all runs.
         headlines: (metric, variant) that stand for their metrics; a metric without one is
             represented by its plain variants.
         ranges: metric -> its range, as its card says.
+        named: metrics of the suite, in its order.
     """
     labels = {(s.metric, s.variant): s for s in reversed(scores)}
     represented = {metric for metric, _ in headlines}
@@ -86,7 +92,15 @@ def all_series(
             )
         )
     found.sort(key=lambda s: (*_rank(s.category), s.metric not in seeds, *_place(s)))
-    return main_first(found, lambda s: s.name)
+    return _named_first(main_first(found, lambda s: s.name), named)
+
+
+def _named_first(found: list[Series], named: Sequence[str]) -> list[Series]:
+    places = {metric: i for i, metric in enumerate(named)}
+    first = [s._replace(category=NAMED) for s in found if s.headline and s.metric in places]
+    first.sort(key=lambda s: places[s.metric])
+    taken = {s.name for s in first}
+    return [*first, *(s for s in found if s.name not in taken)]
 
 
 def _centre(range_: str, values: Sequence[float]) -> Centre:

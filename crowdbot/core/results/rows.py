@@ -103,6 +103,15 @@ def process_of(record: Mapping[str, Any]) -> str:
     return "own" if record.get("planner_process") == "own" else "in_process"
 
 
+def named_metrics(runs: Iterable[RunRow]) -> list[str]:
+    """Metrics that the suites of some runs name, in their order; each once."""
+    found: dict[str, None] = {}
+    for run in runs:
+        named = run.record.get("suite_metrics")
+        found.update(dict.fromkeys(map(str, named)) if isinstance(named, list) else {})
+    return list(found)
+
+
 def processes(records: Iterable[Mapping[str, Any]]) -> str:
     """Where the planner of some runs ran, in words."""
     return " or ".join(sorted({_PLACES[process_of(record)] for record in records}))

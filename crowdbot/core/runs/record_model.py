@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from annotated_types import Ge, Le
+from annotated_types import Ge, Le, Len
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 Hash = Annotated[str, Field(min_length=1, max_length=200)]
@@ -47,6 +47,14 @@ class MetricPart(_Part):
     spec_version: Annotated[int, Ge(0)]
 
 
+class MomentPart(_Part):
+    """When a run is worst."""
+
+    t: Seconds
+    what: Annotated[str, Field(max_length=100)]
+    clearance: Annotated[float, Field(allow_inf_nan=False)] | None = None
+
+
 class RecordModel(_Part):
     """The record of one complete run; keys that are not here are nobody's business."""
 
@@ -72,6 +80,9 @@ class RecordModel(_Part):
     recorded: Literal["all", "used", "none"] = "all"
     agents: Literal["locked", "drawn", "none"] = "none"
     axes: dict[str, str] = {}
+    axis_words: dict[str, Annotated[list[str], Len(2, 2)]] = {}
+    suite_metrics: list[str] = []
+    worst_moment: MomentPart | None = None
     conditions: dict[str, str] = {}
     reference_hashes: dict[str, Hash] = {}
     allowed_plugins: list[str] | None = None

@@ -19,6 +19,7 @@ from crowdbot.core.scoring.evaluate import Scores
 from crowdbot.core.scoring.metric import References
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.dsl.axis_words import AxisWords
 from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
@@ -126,6 +127,7 @@ class Request:
         force: whether a complete run is made again.
         metrics: patterns of the metrics to score; None is all.
         axes: axis of the suite -> label, in the suite's order.
+        words: axis -> what it varies and the value here, in words.
         position: of the scenario in its suite.
         replay: whether to write the replay page.
         references_finished: whoever asks has seen to the references; those in which the planner
@@ -147,6 +149,7 @@ class Request:
     force: bool = False
     metrics: Sequence[str] | None = None
     axes: Mapping[str, str] = field(default_factory=dict)
+    words: Mapping[str, AxisWords] = field(default_factory=dict)
     position: int = 0
     replay: bool = True
     references_finished: bool = False

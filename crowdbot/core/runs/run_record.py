@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from crowdbot.core.runs.realised_density import mean_density
 from crowdbot.core.runs.request import Request
 from crowdbot.core.scoring.evaluate import Scores
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.trajectories.worst_moment import worst_moment
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.canonical import dump_scenario_yaml
 from crowdbot.dsl.crowd_likeness import fingerprint
@@ -39,6 +41,7 @@ def run_record(
         "run_id": provenance.digest(identity),
         **identity,
         "axes": dict(request.axes),
+        "axis_words": {axis: list(words) for axis, words in request.words.items()},
         "position": request.position,
         "hashes": hashes,
         "pinned": request.pinned,
@@ -55,6 +58,8 @@ def run_record(
         "conditions": _conditions(scenario, run),
         "crowd": "" if scenario.crowd is None else fingerprint(scenario.crowd),
         "metrics": _metrics(registry, scores),
+        "suite_metrics": _named(request.metrics, scores),
+        "worst_moment": _worst(run),
         "machine": provenance.machine(),
     }
 
@@ -99,6 +104,22 @@ def _own_words(response: RobotResponse) -> str:
     given = {n: getattr(response, n) for n, f in fields.items()}
     changed = [f"{n} {value:g}" for n, value in given.items() if value != fields[n].default]
     return ", ".join([response.kind, *changed])
+
+
+def _worst(run: Trajectories) -> dict[str, Any] | None:
+    """When the run is worst, to the millisecond and millimetre."""
+    found = worst_moment(run)
+    if found is None:
+        return None
+    clearance = None if found.clearance is None else round(found.clearance, 3)
+    return {"t": round(found.t, 3), "what": found.what, "clearance": clearance}
+
+
+def _named(patterns: Sequence[str] | None, scores: Scores) -> list[str]:
+    """Metrics that the suite names, in its order; none where it leaves that open."""
+    known = dict.fromkeys(s.metric for s in scores)
+    chosen = [m for p in patterns or () if p != "*" for m in known if fnmatchcase(m, p)]
+    return list(dict.fromkeys(chosen))
 
 
 def _metrics(registry: Registry, scores: Scores) -> dict[str, Any]:

@@ -41,6 +41,8 @@ class CrowdSystem(LeafSystem):
         engine: the people.
     """
 
+    __slots__ = ()
+
     def __init__(
         self,
         engine: CrowdEngine,

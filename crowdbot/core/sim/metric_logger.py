@@ -35,6 +35,8 @@ class MetricLogger(LeafSystem):
         goal_time: when the robot arrived, s, or None.
     """
 
+    __slots__ = ()
+
     def __init__(
         self,
         log: RunLog,

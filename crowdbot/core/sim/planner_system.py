@@ -72,6 +72,8 @@ class PlannerSystem(LeafSystem):
     The command is the planner's; the desired state is what the control mode makes of it.
     """
 
+    __slots__ = ()
+
     def __init__(
         self,
         host: PlannerHost,

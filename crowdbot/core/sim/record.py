@@ -47,12 +47,13 @@ def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = No
     check_start(built.parts, built.model, built.task.start, engine, built.name)
     header = replace(_header(built, engine), hashes=setup.hashes)
     with (
-        recording(setup, header, _description(setup, built)) as (writer, ending),
+        recording(setup, header, engine, _description(setup, built)) as (writer, ending),
         _watchdog(setup) as watchdog,
         contextlib.ExitStack() as stack,
     ):
         sideways = isinstance(built.model.drive, HolonomicDrive)
-        log = RunLog(writer, ids(engine), sideways=sideways)
+        aim = {} if engine is None else {"aim": engine.aim}
+        log = RunLog(writer, ids(engine), sideways=sideways, **aim)
         host = host or stack.enter_context(_host(setup, built, watchdog))
         if engine is not None:
             engine.advance(engine.initial_state())  # compiles kernels before the clock starts

@@ -17,11 +17,13 @@ from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter
+from crowdbot.core.recording.candidates import Choosers
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.outcome import INTERRUPTED, TIMEOUT, Outcome, Progress
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.crowd_only import run_crowd
+from crowdbot.core.types.candidates import VelocityCandidates
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
 
@@ -69,8 +71,8 @@ def record_crowd(setup: RunSetup, duration: float) -> Outcome:
             factor = t / max(time.perf_counter() - begin, 1e-9)
             setup.progress(Progress(setup.stage, t, duration, factor, None))
 
-    with recording(setup, header) as (writer, ending):
-        log = RunLog(writer, ids(engine))
+    with recording(setup, header, engine) as (writer, ending):
+        log = RunLog(writer, ids(engine), aim=engine.aim)
         whole = run_crowd(
             engine, log, duration, scenario.rates.log, on_sample=report, stop=setup.stop
         )
@@ -88,10 +90,16 @@ def record_crowd(setup: RunSetup, duration: float) -> Outcome:
 
 @contextmanager
 def recording(
-    setup: RunSetup, header: RecordingHeader, description: str = ""
+    setup: RunSetup, header: RecordingHeader, engine: CrowdEngine | None, description: str = ""
 ) -> Iterator[tuple[RecordingWriter, list[Outcome]]]:
     """A writer that is closed whatever happens; the body appends how the run ended."""
-    writer = RecordingWriter(setup.recording, header, record=setup.record, description=description)
+    writer = RecordingWriter(
+        setup.recording,
+        header,
+        record=setup.record,
+        choosers=choosers(engine),
+        description=description,
+    )
     ending: list[Outcome] = []
     try:
         yield writer, ending
@@ -113,3 +121,24 @@ def agents(engine: CrowdEngine | None) -> AgentsHeader | None:
         return None
     a = engine.agents
     return AgentsHeader(id=a.id, radius=a.radius, mass=a.mass)
+
+
+def choosers(engine: CrowdEngine | None) -> list[Choosers]:
+    """Those whose policy says among which velocities they choose; none without an engine."""
+    if engine is None:
+        return []
+    a, found = engine.agents, list[Choosers]()
+    for number, policy in enumerate(engine.policies):
+        candidates = getattr(policy, "velocity_candidates", None)
+        rows = np.flatnonzero(a.policy == number)
+        if isinstance(candidates, VelocityCandidates) and len(rows):
+            found.append(
+                Choosers(
+                    candidates=candidates,
+                    rows=rows,
+                    preferred_speed=a.preferred_speed[rows],
+                    radius=a.radius[rows],
+                    max_acceleration=a.max_acceleration[rows],
+                )
+            )
+    return found

@@ -15,6 +15,8 @@ _PERIOD = 1.0  # s
 class Recorder(LeafSystem):
     """No ports. Chunks end by simulated time, so that equal runs give equal files."""
 
+    __slots__ = ()
+
     def __init__(self, writer: RecordingWriter) -> None:
         super().__init__()
         self._writer = writer

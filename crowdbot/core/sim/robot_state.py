@@ -17,6 +17,7 @@ from pydrake.systems.framework import (
 
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.plant import RobotPlant
+from crowdbot.core.sim.weak_callback import weak_callback
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
@@ -25,6 +26,8 @@ from crowdbot.core.types.robot import HolonomicDrive, RobotState
 
 class RobotStateSystem(LeafSystem):
     """Input: the robot's positions and velocities. Output: `ports.ROBOT_STATE`."""
+
+    __slots__ = ()
 
     def __init__(self, rig: RobotPlant) -> None:
         super().__init__()
@@ -38,7 +41,7 @@ class RobotStateSystem(LeafSystem):
         self.DeclareVectorOutputPort(
             ports.ROBOT_STATE,
             ports.ROBOT_STATE_SIZE,
-            self._calc,
+            weak_callback(self._calc),
             prerequisites_of_calc={self._port.ticket(), *self._kept()},
         )
 
@@ -81,6 +84,8 @@ class MeasuredRobotState(RobotStateSystem):
 
     State: pose at the last tick, and the three angles then.
     """
+
+    __slots__ = ()
 
     def __init__(self, rig: RobotPlant) -> None:
         drive = rig.robot.drive

@@ -114,6 +114,8 @@ class SensorBank(LeafSystem):
     Entry 0 of the output is the next tick at which a sensor may be due.
     """
 
+    __slots__ = ()
+
     def __init__(
         self,
         sensors: Mapping[str, Sensor | SensorWithMemory],

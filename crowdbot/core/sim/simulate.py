@@ -44,6 +44,7 @@ from crowdbot.core.sim.record import record_robot
 from crowdbot.core.sim.record_crowd import RunSetup
 from crowdbot.core.sim.references import check_interrupted, make_references, partial
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.dsl.axis_words import AxisWords
 from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
@@ -63,6 +64,7 @@ def simulate(
     force: bool = False,
     metrics: Sequence[str] | None = None,
     axes: Mapping[str, str] | None = None,
+    words: Mapping[str, AxisWords] | None = None,
     position: int = 0,
     replay: bool = True,
     progress: Callable[[Progress], None] | None = None,
@@ -81,7 +83,8 @@ def simulate(
         seed: run seed: sensor noise and planner.
         out: root of the run directories; None uses a temporary one that lives as long as the
             result.
-        suite, record, references, force, metrics, axes, position, replay: as in `Request`.
+        suite, record, references, force, metrics, axes, words, position, replay: as in
+            `Request`.
         progress, stop, on_hang, step_budget: as in `Request`.
         place: where the planner runs: by default in a process of its own, but for crowdbot's.
 
@@ -113,6 +116,7 @@ def simulate(
         force=force or not choice.repeatable,
         metrics=metrics,
         axes=axes or {},
+        words=words or {},
         position=position,
         replay=replay,
         progress=progress,

@@ -11,6 +11,7 @@ from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, Level
 from crowdbot.core.statistics.comparison import Comparison, Verdict
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts, Estimate, Outcome
 from crowdbot.core.statistics.floors import PRIMARY, FloorCheck, Lead, check_floors
+from crowdbot.core.statistics.sample_size import SampleSize, draws_needed, sample_size
 from crowdbot.core.statistics.summary import PlannerScore, Summary, headline_names, summarise
 from crowdbot.core.statistics.table import Name, Table
 from crowdbot.core.statistics.variance import VarianceParts
@@ -30,12 +31,15 @@ __all__ = [
     "Name",
     "Outcome",
     "PlannerScore",
+    "SampleSize",
     "Summary",
     "Table",
     "VarianceParts",
     "Verdict",
     "atlas",
     "check_floors",
+    "draws_needed",
     "headline_names",
+    "sample_size",
     "summarise",
 ]

@@ -223,7 +223,7 @@ def _with_rates(
         found,
         difference=difference,
         bounds=(None, None) if None in found.bounds else ends,
-        detectable=None if not error else error * _reach(groups.freedom, level),
+        detectable=None if not error else error * reach(groups.freedom, level),
     )
 
 
@@ -247,7 +247,7 @@ def _differences(
         difference=c.mean(sign * gains, some, level, bounds),
         bounds=open_ends,
         standardised=_standardised(gains, some, level),
-        detectable=None if not error else error * _reach(some.freedom, level),
+        detectable=None if not error else error * reach(some.freedom, level),
     )
 
 
@@ -266,7 +266,7 @@ def _finite(number: float) -> float | None:
     return number if math.isfinite(number) else None
 
 
-def _reach(freedom: int, level: float) -> float:
+def reach(freedom: int, level: float) -> float:
     """Standard errors that a difference must have to be found with probability `_POWER`."""
     return c.quantile_t(0.5 + level / 2, freedom) + c.quantile_t(_POWER, freedom)
 

@@ -59,6 +59,8 @@ class CrowdVerdict:
     @property
     def text(self) -> str:
         """One sentence."""
+        if not self.before and not self.against:
+            return f"{self.first} and {self.second} are equal in all {self.crowds} crowds"
         said = (
             f"{self.first} before {self.second} in {len(self.before)} of {self.crowds} crowds, "
             f"{100 * self.weighted:.0f} % weighted by realism"

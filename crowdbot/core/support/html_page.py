@@ -22,6 +22,7 @@ def render_page(
     *,
     scripts: Sequence[str] = (),
     more_style: str = "",
+    images: str = "",
     frames: bool = False,
     **values: Any,
 ) -> str:
@@ -31,6 +32,7 @@ def render_page(
         package: whose folder holds the parts.
         scripts: names of its files, in the order in which they run.
         more_style: rules to add to ``page.css``.
+        images: sources of images that the page makes itself, such as ``blob:``.
         frames: whether the page may open others from its own site or folder within itself.
         values: what the template names, beside ``policy``, ``style`` and ``script``. Text is
             escaped.
@@ -38,7 +40,7 @@ def render_page(
     style = "\n".join(filter(None, [_part(package, "page.css"), more_style]))
     script = "\n".join(_part(package, name) for name in scripts)
     return _template(package).render(
-        policy=_policy(style, script, frames=frames),
+        policy=_policy(style, script, images, frames=frames),
         style=Markup(style),
         script=Markup(script),
         **values,
@@ -53,11 +55,12 @@ def _template(package: str) -> jinja2.Template:
 
 
 @cache
-def _policy(style: str, script: str, *, frames: bool) -> str:
+def _policy(style: str, script: str, images: str, *, frames: bool) -> str:
     scripts = f"script-src {_hash(script)}; " if script else ""
+    pictures = f"img-src {images}; " if images else ""
     opened = "frame-src 'self'; " if frames else ""
     return (
-        f"default-src 'none'; {scripts}style-src {_hash(style)}; {opened}"
+        f"default-src 'none'; {scripts}style-src {_hash(style)}; {pictures}{opened}"
         "base-uri 'none'; form-action 'none'"
     )
 

@@ -92,8 +92,8 @@ def test_both_formats_are_read(tmp_path: Path, version: int) -> None:
 
 def test_another_format_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
-    _write(path, 4)
-    with pytest.raises(InputError, match="format 4; this crowdbot reads formats 1, 2 and 3"):
+    _write(path, 5)
+    with pytest.raises(InputError, match="format 5; this crowdbot reads formats 1, 2, 3 and 4"):
         read_trajectories(path)
 
 

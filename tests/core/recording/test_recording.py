@@ -40,6 +40,7 @@ from tests.core.recording.recording_cases import (
 )
 from tests.paths import ROOT
 
+FORMAT_3_HASH = "cb1-sha256:631329dff0e4aa992272ebf4401e8db39c110dcde3377500d4bf29a5c41e5705"
 FORMAT_2_HASH = "cb1-sha256:fdad7d9275d5b1435d125dce1f4c7f3931e50a39a99ef49e165e5bd1574c430a"
 
 
@@ -216,6 +217,13 @@ def test_recordings_of_format_2_are_read() -> None:
     path = ROOT / "tests" / "data" / "recordings" / "format_2.mcap"
     assert trajectory_hash(read_trajectories(path)) == FORMAT_2_HASH
     assert {scan.sensor for scan in read_scans(path)} == {"front_lidar", "rear_lidar"}
+    assert recording_info(path).complete
+
+
+def test_recordings_of_format_3_are_read() -> None:
+    """Written by the release before choices of people were recorded; people alone, packed."""
+    path = ROOT / "tests" / "data" / "recordings" / "format_3.mcap"
+    assert trajectory_hash(read_trajectories(path)) == FORMAT_3_HASH
     assert recording_info(path).complete
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.interfaces import Command, RobotState
+from crowdbot.core.interfaces import Array, Command, RobotState
 from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.run_log import RunLog
 
@@ -24,7 +24,8 @@ class Rows:
         self.commands: list[tuple[Any, ...]] = []
         self.times: list[float] = []
 
-    def state(self, *row: Any) -> None:
+    def state(self, *row: Any, goals: Array | None) -> None:
+        assert (goals is None) == (row[2] is None)
         self.states.append(row)
 
     def trip(self, *row: Any) -> None:

@@ -136,8 +136,21 @@ def _run(suite: str, named: dict[str, str], planner: str, seed: int, skill: floa
         density=_PEOPLE.get(named.get("density", ""), 0.2) * float(rng.normal(1.0, 0.02)),
         directory=f"{suite}/{scenario}/{planner}/seed-{seed}",
         conditions=conditions(),
-        record=record(planner),
+        record={**record(planner), "axis_words": words(named), "worst_moment": moment(rng)},
     )
+
+
+def words(named: Mapping[str, str]) -> dict[str, list[str]]:
+    """Of the axis ``coeff`` only: the others have no words."""
+    label = named.get("coeff", "")
+    return {"coeff": ["ttca_dca weight", str(int(label[1:]))]} if label else {}
+
+
+def moment(rng: np.random.Generator) -> dict[str, Any]:
+    """When a run is worst."""
+    clearance = round(float(rng.normal(0.2, 0.1)), 3)
+    what = "least clearance" if clearance > 0 else "contact at fault"
+    return {"t": round(float(rng.uniform(1, 60)), 3), "what": what, "clearance": clearance}
 
 
 def conditions(**changed: str) -> dict[str, str]:

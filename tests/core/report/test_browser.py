@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import re
 from collections.abc import Iterator
 from dataclasses import replace
@@ -14,7 +16,7 @@ from numpy.typing import NDArray
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from crowdbot.core.report import Contents, write_report
-from tests.browser import PROGRAM, Visit, needs_browser
+from tests.browser import PROGRAM, Visit, axe_findings, needs_axe, needs_browser
 from tests.core.report.report_cases import AXES, campaign, contents, full
 from tests.core.report.test_page import EVIL, hostile, small
 
@@ -208,7 +210,8 @@ def test_failures_are_found_with_their_replays(browser: Browser, path: Path) -> 
         assert run.scenario in worst.inner_text()
         link = worst.query_selector("a")
         assert link is not None
-        assert link.get_attribute("href") == f"runs/{run.directory}/replay.html"
+        moment = run.record["worst_moment"]["t"]
+        assert link.get_attribute("href") == f"runs/{run.directory}/replay.html#t={moment:.4g}"
 
 
 def test_keys_are_enough(browser: Browser, path: Path) -> None:
@@ -319,7 +322,7 @@ def test_print_has_the_filters_and_whole_tables(browser: Browser, path: Path) ->
 def test_hostile_names_are_shown_as_they_are(browser: Browser, tmp_path: Path) -> None:
     report = contents(hostile(), accepted=(EVIL,))
     with Visit(browser, write_report(tmp_path / "x.html", report)["html"]) as page:
-        assert "<script>alert(1)</script>" in page.inner_text(".notice")
+        assert "<script>alert(1)</script>" in page.inner_text(".lead")
         assert "<script>alert(1)</script>" in page.inner_text("#scores-table thead")
         page.select_option(f"[id='axis-{re.sub('[^a-z]', '', 'density')}']", "d0500")
         page.focus("#scores-table .metric >> nth=0")
@@ -361,3 +364,104 @@ def test_numbers_that_differ_by_rounding_alone_are_drawn(
     with Visit(browser, path, "#score=risk.corrected") as page:
         assert page.query_selector("#distribution circle")
         assert len(page.query_selector_all("#distribution .tick")) < 40
+
+
+def test_a_dot_says_which_run_it_is_and_opens_it_at_its_worst_moment(
+    browser: Browser, path: Path
+) -> None:
+    runs = {r.directory: r for r in full().results.runs}
+    with Visit(browser, path, "#score=risk.corrected") as page:
+        links = page.query_selector_all("#distribution a")
+        assert len(links) == len(runs)
+        found = re.fullmatch(
+            r"runs/(.*)/replay.html#t=([\d.]+)", links[0].get_attribute("href") or ""
+        )
+        assert found is not None
+        run = runs[found[1]]
+        assert float(found[2]) == pytest.approx(run.record["worst_moment"]["t"], abs=0.006)
+        page.hover("#distribution a >> nth=0 >> circle", force=True)
+        tip = page.inner_text("#tip")
+        assert run.scenario in tip
+        assert run.record["worst_moment"]["what"] in tip
+
+
+def test_pictures_are_saved_as_svg_png_and_csv(browser: Browser, path: Path) -> None:
+    score = "#score=risk.corrected"
+    with Visit(browser, path, score) as page:
+        saved = {}
+        for box in ("#distribution-save", "#forest-save", "#panels figure:nth-child(4) .saves"):
+            for kind in ("SVG", "PNG", "CSV"):
+                with page.expect_download() as download:
+                    page.click(f"{box} button:text-is('{kind}')")
+                saved[box, kind] = download.value.path().read_bytes()
+        for (_, kind), data in saved.items():
+            assert data.startswith({"SVG": b"<svg", "PNG": b"\x89PNG", "CSV": b""}[kind])
+        rows = list(csv.DictReader(io.StringIO(saved["#distribution-save", "CSV"].decode())))
+        value = {
+            (r.scenario, r.planner): s.value
+            for s in full().results.scores if (s.metric, s.variant) == ("risk", "corrected")
+            for r in full().results.runs if r.run_id == s.run_id
+        }  # fmt: skip
+        told = [r for r in rows if r["value"]]
+        assert len(told) > 450
+        for row in told:
+            seen = value[row["scenario"], row["planner"]]
+            assert float(row["value"]) == pytest.approx(seen, rel=1e-4)
+        picture = saved["#distribution-save", "SVG"].decode()
+        assert "risk" in picture  # the title of the axis
+        assert "var(" not in picture
+        words = saved["#panels figure:nth-child(4) .saves", "CSV"].decode()
+        assert "ttca_dca weight,c20,20,dwa," in words
+
+
+def test_axes_are_told_in_words_and_planners_sorted_by_value(browser: Browser, path: Path) -> None:
+    with Visit(browser, path, "#score=safe_efficiency.corrected") as page:
+        assert "20 (c20)" in page.inner_text("#axis-coeff")
+        page.select_option("#axis-coeff", "c20")
+        assert page.inner_text("#filter-text") == "Only ttca_dca weight = 20."
+        page.click("#clear")
+        before = page.inner_text("#scores-table thead").split()
+        page.select_option("#planner-order", "value")
+        after = page.inner_text("#scores-table thead").split()
+        assert [w for w in after if w in full().planners][-1] == "straight_on"
+        assert sorted(before) == sorted(after)
+        assert "sort=value" in page.url
+
+
+def test_where_planners_differ_most_says_how_to_see_both(browser: Browser, path: Path) -> None:
+    with Visit(browser, path, "#score=risk.corrected") as page:
+        button = page.query_selector("#differences-table tbody button")
+        assert button is not None
+        command = button.get_attribute("title") or ""
+        assert re.fullmatch(
+            r"crowdbot view runs/\S+/dwa/seed-0 runs/\S+/orca_lookahead/seed-0 --out compare.html",
+            command,
+        )
+        numbers = page.eval_on_selector_all(
+            "#differences-table tbody tr", "rows => rows.map(r => r.cells[4].innerText)"
+        )
+        sizes = [abs(float(n.replace("\u2212", "-"))) for n in numbers]
+        assert sizes == sorted(sizes, reverse=True)
+
+
+def test_small_numbers_are_not_shown_as_zero(browser: Browser, path: Path) -> None:
+    with Visit(browser, path) as page:
+        shown_as = page.evaluate(
+            "[[0, 3], [2.5e-7, 2], [-4e-12, 9], [1e-3, 3]].map(([x, d]) => format(x, d))"
+        )
+        assert shown_as == ["0.000", "2.50e\u22127", "\u22124.00e\u221212", "0.001"]
+
+
+@needs_axe
+@pytest.mark.parametrize(("width", "scheme"), [(360, "dark"), (1920, "light")])
+def test_axe_finds_nothing(width: int, scheme: str, browser: Browser, tmp_path: Path) -> None:
+    report = contents(small(), accepted=("rates: 16 Hz, 20 Hz",), warnings=("processor: x",))
+    path = write_report(tmp_path / "x.html", report)["html"]
+    with Visit(
+        browser, path, viewport={"width": width, "height": 900}, color_scheme=scheme
+    ) as page:
+        page.evaluate("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+        assert axe_findings(page) == []
+        page.click("#chart-ecdf")
+        assert axe_findings(page) == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= width

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
+from crowdbot.core.report.markdown import markdown
 from crowdbot.core.report.page import render
-from crowdbot.core.report.tables import markdown
 from crowdbot.core.results.rows import Results
 from crowdbot.core.statistics.audit import Audit, audit
 from tests.core.report.report_cases import AXES, DRAWN, campaign, contents

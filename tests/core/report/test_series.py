@@ -83,3 +83,19 @@ def test_the_four_scores_are_a_category_of_their_own_and_come_first() -> None:
         ("relative_jerk", "literal", "task"),
         ("push_work", "total", "burden"),
     ]
+
+
+def test_what_the_suite_names_comes_before_the_four_scores_in_its_order() -> None:
+    scores = [
+        *rows("safe_efficiency", "corrected", 1.0, category="task"),
+        *rows("delay", "corrected", 1.0, category="task"),
+        *rows("risk", "literal", 1.0, category="collision"),
+        *rows("risk", "corrected", 1.0, category="collision"),
+    ]
+    found = all_series(scores, [], {}, named=["risk", "not_scored", "delay"])
+    assert [(s.metric, s.variant, s.category) for s in found] == [
+        ("risk", "corrected", "named by the suite"),
+        ("delay", "corrected", "named by the suite"),
+        ("safe_efficiency", "corrected", "the four scores"),
+        ("risk", "literal", "collision"),
+    ]

@@ -16,6 +16,7 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.control.controlled import ControlledRobot, push_on
 from crowdbot.core.sim.plant import RobotPlant, add_plant, motor_of, place_robot
 from crowdbot.core.sim.robot_state import MeasuredRobotState, add_robot_state
+from crowdbot.core.sim.weak_callback import weak_callback
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive, RobotModel
@@ -26,6 +27,8 @@ class ForceDrive(LeafSystem):
 
     The output follows the state directly: one tick late, a gain of one would oscillate.
     """
+
+    __slots__ = ()
 
     def __init__(self, rig: RobotPlant) -> None:
         super().__init__()
@@ -42,7 +45,7 @@ class ForceDrive(LeafSystem):
         self.DeclareVectorOutputPort(
             "force",
             size,
-            self._calc,
+            weak_callback(self._calc),
             prerequisites_of_calc={p.ticket() for p in (self._robot, self._desired, self._push)},
         )
 

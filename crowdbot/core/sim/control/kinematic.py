@@ -37,6 +37,8 @@ _ROUNDING = 1e-13  # m; must not hold a robot that drives along a wall
 class KinematicBase(LeafSystem):
     """Input: v, w, vy. Output: `ports.ROBOT_STATE`, which is the whole state."""
 
+    __slots__ = ()
+
     def __init__(self, parts: EnvironmentParts, robot: RobotModel, tick: float) -> None:
         super().__init__()
         self._tick = tick

@@ -6,12 +6,18 @@ import math
 from collections.abc import Sequence
 
 from crowdbot.core.crowd.contact.geometry import is_clearly_longer, is_clearly_shorter
-from crowdbot.core.crowd.velocity_search.candidates import Sampling
+from crowdbot.core.crowd.velocity_search.candidates import (
+    ALONG_PREFERRED,
+    PREFERRED_SPEED,
+    ZERO,
+    Sampling,
+)
 from crowdbot.core.crowd.velocity_search.gradient import Descent
 from crowdbot.core.crowd.velocity_search.optimum import Optimum
 from crowdbot.core.crowd.velocity_search.sampling import Sampler
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
 from crowdbot.core.interfaces import Agents, Array, CompiledCost, CrowdView, NumpyCost, kernel
+from crowdbot.core.types.candidates import VelocityCandidates
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
 
 _BASES = ("zero", "current_velocity")
@@ -33,6 +39,15 @@ def sampling_of(spec: VelocitySpaceSpec) -> Sampling:
     )
 
 
+def candidates_of(spec: VelocitySpaceSpec) -> VelocityCandidates | None:
+    """Where these are the same at each decision, as seen along the way to the goal."""
+    s = sampling_of(spec)
+    fixed = spec.method == "sampling" and not s.random and spec.relaxation_time > 0.0
+    if not fixed or (s.base, s.direction, s.radius) != (ZERO, ALONG_PREFERRED, PREFERRED_SPEED):
+        return None
+    return VelocityCandidates(s.fan(), spec.relaxation_time)
+
+
 class VelocitySpace:
     """Weighted cost functions for one set of agents.
 
@@ -51,6 +66,7 @@ class VelocitySpace:
     ) -> None:
         self.contact_stiffness = spec.contact_stiffness
         self.relaxation_time = spec.relaxation_time
+        self.velocity_candidates = None if parity else candidates_of(spec)
         self.costs = WeightedCosts(
             costs, agents, relaxation_time=spec.relaxation_time, parity=parity, weight=weight
         )

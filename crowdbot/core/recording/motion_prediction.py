@@ -1,0 +1,167 @@
+"""How the motion of people is predicted from their two samples before: compiled parts of the codec.
+
+Only additions, multiplications, divisions and square roots of float64 are used, which every
+machine rounds alike.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.recording.candidates import CandidateTable
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.ticks import TICK
+from crowdbot.core.types.arrays import Array
+
+#: Speeds remembered of each person.
+SPEEDS = 3
+_MOST = 2**63 - 1
+#: Whoever accelerates so much otherwise than towards a candidate is pushed, m^2/s^4.
+_NEAR = 1e-12
+
+
+@kernel
+def best_speed(
+    bits: int,
+    v: float,
+    up: float,
+    uq: float,
+    gain: float,
+    ticks: int,
+    speeds: Array,
+    scratch: Array,
+    scratch_bits: NDArray[np.int64],
+) -> int:
+    """Which speed, from 1, predicts the larger component best; 0: none, but constant wishes."""
+    best, least = 0, _MOST
+    for s in range(SPEEDS + 1):
+        scratch[0] = predicted(s, v, up, uq, gain, ticks, speeds)
+        off = abs(bits - scratch_bits[0])
+        if 0 <= off < least:
+            best, least = s, off
+    return best
+
+
+@kernel
+def predicted(
+    taken: int, v: float, up: float, uq: float, gain: float, ticks: int, speeds: Array
+) -> float:
+    """The larger component of the velocity.
+
+    Args:
+        taken: which speed is wanted, from 1; 0: what was wanted before, ``uq``.
+        v: the component before.
+        up: what is wanted of the smaller component.
+    """
+    if 1 <= taken <= SPEEDS:
+        speed = speeds[taken - 1]
+        rest = math.sqrt(max(speed * speed - up * up, 0.0))
+        uq = -rest if uq < 0.0 else rest
+    return known(towards(v, uq, gain, ticks))
+
+
+@kernel
+def wanted(before: float, now: float, gain: float) -> float:
+    """The velocity that was aimed at in a step; what there is where the step is unknown."""
+    wanted = before + gain * (now - before)
+    return wanted if math.isfinite(wanted) else now
+
+
+@kernel
+def towards(v: float, wanted: float, gain: float, ticks: int) -> float:
+    """Velocity one step later, added up tick by tick."""
+    change = (wanted - v) / (gain * ticks)
+    for _ in range(ticks):
+        v += change
+    return v
+
+
+@kernel
+def moved(x: float, before: float, now: float, ticks: int) -> float:
+    """Position one step later, while the velocity changes evenly, added up tick by tick."""
+    change, v = (now - before) / ticks, before
+    for _ in range(ticks):
+        v += change
+        x += v * TICK
+    return x
+
+
+@kernel
+def known(value: float) -> float:
+    """0 for what is not finite: NaN has several spellings."""
+    return value if math.isfinite(value) else 0.0
+
+
+@kernel
+def chosen_candidate(
+    table: CandidateTable, i: int, before: Array, now: Array, goal: Array, ticks: int, last: int
+) -> int:
+    """Which candidate person i took between two samples, from 0; -1 if none.
+
+    Args:
+        before, now: (4, M) samples; x, y, vx, vy.
+        goal: (2, M) goals.
+        ticks: between the samples.
+        last: the candidate of the step before, which is the likeliest.
+    """
+    count = table.choices[i]
+    if count == 0 or not math.isfinite(before[0, i] + before[1, i] + before[2, i] + before[3, i]):
+        return -1
+    rate = 1.0 / (ticks * TICK)
+    ax, ay = rate * (now[2, i] - before[2, i]), rate * (now[3, i] - before[3, i])
+    ex, ey = ahead(table, i, before, goal)
+    best, least = -1, _NEAR
+    for c in range(-1, count):
+        candidate = last if c < 0 else c
+        bx, by = acceleration(table, i, candidate, ex, ey, before)
+        off = (bx - ax) * (bx - ax) + (by - ay) * (by - ay)
+        if off < least:
+            if c < 0:
+                return last
+            best, least = c, off
+    return best
+
+
+@kernel
+def ahead(table: CandidateTable, i: int, before: Array, goal: Array) -> tuple[float, float]:
+    """The velocity that person i prefers, m/s; arguments as `chosen_candidate`.
+
+    Its direction is that of the product of direction and speed, as the crowd computes it.
+    """
+    gx, gy = goal[0, i] - before[0, i], goal[1, i] - before[1, i]
+    away = math.sqrt(gx * gx + gy * gy)
+    if not away > table.radius[i]:
+        return 0.0, 0.0
+    pace, speed = table.speed[i] / away, table.speed[i]
+    gx, gy = pace * gx, pace * gy
+    length = math.sqrt(gx * gx + gy * gy)
+    return (speed * (gx / length), speed * (gy / length)) if length > 0.0 else (0.0, 0.0)
+
+
+@kernel
+def acceleration(
+    table: CandidateTable, i: int, candidate: int, ex: float, ey: float, before: Array
+) -> tuple[float, float]:
+    """Acceleration of person i towards a candidate, m/s^2; (ex, ey) is from `ahead`."""
+    c = table.first[i] + candidate
+    cx, cy = table.unit[c, 0], table.unit[c, 1]
+    relaxation, limit = table.relaxation[i], table.limit[i]
+    ax = (cx * ex - cy * ey - before[2, i]) / relaxation
+    ay = (cx * ey + cy * ex - before[3, i]) / relaxation
+    square = ax * ax + ay * ay
+    if square <= limit * limit:
+        return ax, ay
+    share = limit / math.sqrt(square)
+    return ax * share, ay * share
+
+
+@kernel
+def accelerated(x: float, v: float, a: float, ticks: int) -> tuple[float, float]:
+    """Position and velocity after so many ticks of one acceleration, as the crowd adds them up."""
+    for _ in range(ticks):
+        v += a * TICK
+        x += v * TICK
+    return known(x), known(v)

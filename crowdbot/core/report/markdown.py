@@ -1,0 +1,188 @@
+"""The page as Markdown: the headline scores of all runs, and what is better for certain."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from crowdbot.core.report.contents import Contents
+from crowdbot.core.report.methods import methods
+from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main
+from crowdbot.core.statistics import Comparison, Estimate, PlannerScore, Summary
+from crowdbot.core.statistics.crowds import CrowdRanks
+
+
+def markdown(contents: Contents) -> str:
+    """The headline scores of all runs, and what is better for certain."""
+    summary, heading = contents.figures.headline, contents.heading
+    lines = [f"# {_plain(heading.suite)}", ""]
+    lines += [f"Made {_plain(heading.made)}.", ""] if heading.made else []
+    lines += [text for line in contents.crowds for text in (f"Crowd: {_plain(line)}.", "")]
+    lines += [f"**{_plain(contents.suspicion)}.**", ""] if contents.suspicion else []
+    if contents.sample and contents.sample.too_small:
+        lines += [f"**{_plain(contents.sample.text)}.**", ""]
+    for check in contents.floors:
+        mark = "**" if check.leads and not check.beats_all else ""
+        lines += [f"{mark}{_plain(check.text)}.{mark}", ""]
+    for text in heading.accepted:
+        lines += [f"**Accepted: {_plain(text)}**", ""]
+    for text in heading.warnings:
+        lines += [f"Warning: {_plain(text)}", ""]
+    lines += [*_table(*_endings(contents)), "", "## Scores", "", _meaning(summary), ""]
+    lines += [*_table(*_scores(contents)), ""]
+    lines += _by_crowd(contents.ranks) if contents.ranks else []
+    if any(not v.reason for v in summary.variances):
+        lines += ["## What varies with which", "", *_table(*_variances(summary)), ""]
+    if summary.comparisons:
+        lines += ["## Planner against planner", "", _family(summary), ""]
+        lines += [*_table(*_comparisons(summary)), ""]
+    lines += ["## Methods", "", _plain(methods(contents)), ""]
+    return "\n".join(lines)
+
+
+def _by_crowd(ranks: CrowdRanks) -> list[str]:
+    """Order per crowd, how alike the orders are, and who is first in how many."""
+    orders = [
+        (
+            _plain(o.crowd),
+            "not measured" if o.realism is None else f"{o.realism:.2f}",
+            ", ".join(f"{_plain(p)} {v:.4g}" for p, v in o.means.items()),
+            str(o.pairs),
+        )
+        for o in ranks.orders
+    ]
+    taus = [(_plain(a), _plain(b), alike(tau)) for (a, b), tau in ranks.taus.items()]
+    return [
+        "## Crowd by crowd", "", f"By {_plain(ranks.metric)}, the best first.", "",
+        *_table(("crowd", "realism, index", "order", "pairs"), orders), "",
+        *_table(("crowd", "crowd", "Kendall's tau"), taus), "",
+        *(f"- {_plain(v.text)}" for v in ranks.verdicts), "",
+    ]  # fmt: skip
+
+
+def alike(tau: float) -> str:
+    """Kendall's tau as text."""
+    return "– (an order without differences)" if math.isnan(tau) else f"{tau:+.2f}"
+
+
+def _meaning(summary: Summary) -> str:
+    return (
+        "Interquartile mean over all runs with a value (of counts and rare events the mean, of "
+        f"yes or no the share), and its {100 * summary.level:g} % interval; whole crowd draws "
+        f"were resampled. {chance(summary)} Runs without a value are counted, not dropped."
+    )
+
+
+def chance(summary: Summary) -> str:
+    """What intervals leave to chance."""
+    if summary.conditions_fixed:
+        return "Intervals tell what other people would change; conditions are those of the suite."
+    return (
+        "Intervals take people and conditions for chance: with one crowd draw a condition they "
+        "cannot be told apart."
+    )
+
+
+def _variances(summary: Summary) -> tuple[Sequence[str], list[Sequence[str]]]:
+    """Shares of the variance of the main scores; of all scores where there are none."""
+    known = [v for v in summary.variances if not v.reason]
+    main = [v for v in known if is_main(v.metric, v.variant)] or known
+    rows: list[Sequence[str]] = [
+        (v.metric, _plain(v.planner), *(f"{100.0 * share:.0f} %" for share in v.shares[:2]),
+         "" if v.seed is None else f"{100.0 * v.shares[2]:.0f} %")
+        for v in main
+    ]  # fmt: skip
+    return ("metric", "planner", "condition", "crowd draw", "seed"), rows
+
+
+def _family(summary: Summary) -> str:
+    return (
+        f"Pairs of the same scenario and seed. {summary.tests} tests of {family(summary)} share "
+        f"the chance {summary.alpha:g} of any false verdict (Holm); all other scores are detail, "
+        "and share it among themselves."
+    )
+
+
+def family(summary: Summary) -> str:
+    """What the scores that share the chance of a false verdict are called."""
+    main = any(is_main(s.metric, s.variant) for s in summary.scores)
+    return FOUR_SCORES if main else "the headline scores"
+
+
+def _endings(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
+    counts = {p: contents.counts(contents.of(p)) for p in contents.planners}
+    head = ("planner", *(next(iter(counts.values()))))
+    return head, [(_plain(p), *map(str, found.values())) for p, found in counts.items()]
+
+
+def _scores(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
+    summary = contents.figures.headline
+    places = {s.name: i for i, s in enumerate(contents.series)}
+    names = dict.fromkeys((s.metric, s.variant) for s in summary.scores)
+    scores = {(s.metric, s.variant, s.planner): s for s in summary.scores}
+    rows: list[Sequence[str]] = []
+    for metric, variant in names:
+        here = [scores[metric, variant, planner] for planner in summary.planners]
+        unit = "" if here[0].unit == "1" else here[0].unit
+        intervals = contents.figures.intervals[0, places[metric, variant]].tolist()
+        cells = [_score_cell(s, found) for s, found in zip(here, intervals, strict=True)]
+        head = map(_plain, (f"{metric} {variant}".removesuffix(" corrected"), here[0].symbol, unit))
+        rows.append((*head, here[0].better, *cells))
+    return ("score", "symbol", "unit", "better", *map(_plain, summary.planners)), rows
+
+
+def _score_cell(score: PlannerScore, centre: Sequence[float]) -> str:
+    counts = score.counts
+    missing = [
+        f"{count} {name}"
+        for name, count in (
+            ("censored", counts.censored),
+            ("undefined", counts.undefined),
+            ("failed", counts.failed),
+        )
+        if count
+    ]
+    return "; ".join([_numbers(*centre), *missing, *_whole(score)])
+
+
+def _whole(score: PlannerScore) -> list[str]:
+    """Between which bounds the mean of all runs lies, where that of some says too little."""
+    if not score.counts.censored:
+        return []
+    low, high = ("?" if x is None else f"{x:.4g}" for x in score.bounds)
+    return [f"mean of all in [{low}, {high}]"]
+
+
+def _estimate(found: Estimate) -> str:
+    return _numbers(*(math.nan if x is None else x for x in (found.value, found.low, found.high)))
+
+
+def _numbers(value: float, low: float, high: float) -> str:
+    if math.isnan(value):
+        return "–"
+    interval = f" [{low:.4g}, {high:.4g}]" if math.isfinite(low) and math.isfinite(high) else ""
+    return f"{value:.4g}{interval}"
+
+
+def _comparisons(summary: Summary) -> tuple[Sequence[str], list[Sequence[str]]]:
+    head = ("score", "a", "b", "a − b", "probability that a is better", "p (Holm)", "verdict")
+    return head, [_comparison(c) for c in summary.comparisons]
+
+
+def _comparison(found: Comparison) -> Sequence[str]:
+    verdict = f"a is {found.verdict}" if found.verdict in ("better", "worse") else found.verdict
+    score = f"{found.metric} {found.variant}".removesuffix(" corrected")
+    p_holm = "–" if found.p_holm is None else f"{found.p_holm:.3g}"
+    estimates = (_estimate(found.difference), _estimate(found.improvement))
+    return (*map(_plain, (score, found.a, found.b)), *estimates, p_holm, verdict)
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    lines = [head, ["---"] * len(head), *rows]
+    return [f"| {' | '.join(line)} |" for line in lines]
+
+
+def _plain(text: str) -> str:
+    """Text that Markdown shows as it is: names are user input."""
+    escaped = "".join(f"\\{c}" if c in "\\|*`<>[]#&" else c for c in text)
+    return " ".join(escaped.split())

@@ -1,0 +1,119 @@
+"""The methods of a report as a paragraph that fits into a paper."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from crowdbot.core.report import provenance
+from crowdbot.core.report.contents import Contents
+from crowdbot.core.results.rows import RunRow
+from crowdbot.core.scoring.four_scores import is_main
+
+_SOFTWARE = ("crowdbot", "drake", "numpy", "python")
+
+
+def methods(contents: Contents) -> str:
+    """What was run, how scores are summed up and compared, and with which software.
+
+    Every number is that of the report; nothing is said about what it found.
+    """
+    parts = [_ran(contents), _ended(contents), _summed_up(contents), *_compared(contents)]
+    parts += [f"We accepted that the runs differ in this: {text}." for text in _accepted(contents)]
+    return " ".join([*parts, _software(contents)])
+
+
+def _ran(contents: Contents) -> str:
+    runs = contents.results.runs
+    planners = _and([_named(contents, p) for p in contents.planners])
+    scenarios = len({a.scenario for a in contents.attempts})
+    draws = len({run.realisation_hash for run in runs})
+    return (
+        f"We simulated {planners} in {_plural(scenarios, 'scenario')} of the suite "
+        f"{contents.heading.suite}, with {_plural(draws, 'independent crowd draw')} and the "
+        f"{_seeds(contents.seeds)}: {_plural(len(contents.attempts), 'run')} in all."
+    )
+
+
+def _named(contents: Contents, planner: str) -> str:
+    """A planner with what readers have to know of it."""
+    marks = [
+        contents.role(planner) if contents.role(planner) != "candidate" else "",
+        "privileged" if contents.is_privileged(planner) else "",
+        "reference scores" if planner in contents.heading.references else "",
+    ]
+    said = ", ".join(filter(None, marks))
+    return f"{planner} ({said})" if said else planner
+
+
+def _seeds(seeds: Sequence[int]) -> str:
+    if len(seeds) > 2 and seeds == list(range(seeds[0], seeds[-1] + 1)):
+        return f"seeds {seeds[0]} to {seeds[-1]}"
+    return f"seed{'s' if len(seeds) > 1 else ''} {_and(list(map(str, seeds)))}"
+
+
+def _ended(contents: Contents) -> str:
+    counts = contents.counts()
+    words = {
+        "timeout": "ran out of time", "planner_failed": "ended because the planner failed",
+        "failed": "could not be made",
+    }  # fmt: skip
+    rest = [f"{counts[name]} {text}" for name, text in words.items() if counts[name]]
+    return f"The robot arrived in {counts['arrived']} of them" + (
+        f"; {_and(rest)}." if rest else "."
+    )
+
+
+def _summed_up(contents: Contents) -> str:
+    summary = contents.figures.headline
+    return (
+        "We report the interquartile mean of each score over the runs in which it is defined, "
+        "the mean of counts and of scores that are zero in most runs, and the share of yes-or-no "
+        f"scores, with {100 * summary.level:g} % confidence intervals by a bias-corrected and "
+        "accelerated bootstrap (of means by Student's t) over whole crowd draws, because runs in "
+        "one crowd are not independent."
+    )
+
+
+def _compared(contents: Contents) -> list[str]:
+    summary = contents.figures.headline
+    if not summary.comparisons:
+        return []
+    main = any(is_main(s.metric, s.variant) for s in summary.scores)
+    family = "the four scores" if main else "the scores"
+    said = [
+        "Planners were compared in pairs of the same scenario and seed by Wilcoxon signed-rank "
+        "tests in which the signs of whole crowd draws are exchanged; Holm's correction over the "
+        f"{_plural(summary.tests, 'test')} of {family} keeps the chance of any false verdict "
+        f"among them at {100 * summary.alpha:g} %. A run in which the planner failed counts as "
+        "worse than any other."
+    ]
+    sample = contents.sample
+    if sample is not None and sample.too_small:
+        said.append(
+            f"With {_plural(sample.draws, 'crowd draw')} no verdict was possible; at least "
+            f"{sample.least} would be needed."
+        )
+    return said
+
+
+def _accepted(contents: Contents) -> list[str]:
+    return [text.rstrip(".") for text in contents.heading.accepted]
+
+
+def _software(contents: Contents) -> str:
+    runs = [a for a in contents.attempts if isinstance(a, RunRow)]
+    versions = provenance.facts(runs).get("software", {})
+    named = [f"{name} {versions[name]}" for name in _SOFTWARE if name in versions]
+    digest = provenance.hashes(runs)["sha256 of all run ids and trajectory hashes"]
+    with_ = f"Simulated with {_and(named)}. " if named else ""
+    return f"{with_}The data are identified by sha256 {digest[:16]}."
+
+
+def _plural(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def _and(parts: Sequence[str]) -> str:
+    if len(parts) < 2:
+        return "".join(parts)
+    return f"{', '.join(parts[:-1])} and {parts[-1]}"

@@ -1,0 +1,59 @@
+"""The moment of a run that is worth looking at first."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from crowdbot.core.trajectories.encounters import encounter
+from crowdbot.core.trajectories.person_contacts import person_contacts
+from crowdbot.core.trajectories.preprocess import truncate_at_arrival
+from crowdbot.core.trajectories.trajectories import Trajectories
+
+#: As the metric ``contacts_at_fault`` has them by default; m/s, m, m, m/s.
+FAULT_SPEED, CONTACT_TOL, RELEASE_GAP, JUMP_SPEED = 0.05, 1e-9, 0.05, 10.0
+#: Slack of the rule whose fault a contact is, m/s: rounding decides nothing.
+_TOLERANCE = 1e-9
+
+What = Literal["contact at fault", "least clearance"]
+
+
+class WorstMoment(NamedTuple):
+    """When, what happened then, and how far the nearest person was away.
+
+    ``t``: s, on the clock of the run. ``clearance``: between the surfaces, m; 0 or less in a
+    contact, None where nothing tells it.
+    """
+
+    t: float
+    what: What
+    clearance: float | None
+
+
+def worst_moment(run: Trajectories) -> WorstMoment | None:
+    """The first contact that the robot drove into, until it arrived; else the least clearance.
+
+    A contact at fault is what a planner has to answer for, and the first one is where its trouble
+    begins: later ones often follow from it. Without one, the nearest approach is where a little
+    more would have been a contact; if somebody walked into the robot, that is such a moment.
+
+    Returns:
+        None of a run without robot or people.
+    """
+    if run.robot is None or run.agents is None:
+        return None
+    run = truncate_at_arrival(run)
+    contacts = person_contacts(run, JUMP_SPEED, CONTACT_TOL, RELEASE_GAP)
+    gaps = encounter(run, JUMP_SPEED).gap
+    fault = contacts.at_fault(FAULT_SPEED + _TOLERANCE)
+    if fault.any():
+        first = int(np.argmin(np.where(fault, contacts.time, np.inf)))
+        sample, who = int(contacts.sample[first]), int(contacts.agent[first])
+        gap = float(gaps[sample, who]) if who >= 0 else np.nan
+        clearance = min(gap, 0.0) if np.isfinite(gap) else None
+        return WorstMoment(float(contacts.time[first]), "contact at fault", clearance)
+    if not np.isfinite(gaps).any():
+        return None
+    sample = int(np.nanargmin(gaps) // gaps.shape[1])
+    return WorstMoment(float(run.t[sample]), "least clearance", float(np.nanmin(gaps)))

@@ -1,0 +1,64 @@
+"""A run that is over leaves nothing in memory: a campaign makes hundreds in one process."""
+
+from __future__ import annotations
+
+import gc
+import importlib
+import pkgutil
+from pathlib import Path
+
+import pytest
+from pydrake.systems.framework import Diagram, DiagramBuilder, LeafSystem
+
+import crowdbot.core.sim
+from crowdbot.core.sim.simulate import simulate
+from crowdbot.core.sim.weak_callback import weak_callback
+from crowdbot.testing.tiny import tiny_scenario
+from tests.core.sim.sim_worlds import registry
+
+_MODES = ("differential_drive", "force", "kinematic")
+_HELD = (Diagram, DiagramBuilder, LeafSystem)
+
+
+def _systems() -> list[type]:
+    """Our blocks, wherever they are written."""
+    package = crowdbot.core.sim
+    for module in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
+        importlib.import_module(module.name)
+    found, todo = [], [LeafSystem]
+    while todo:
+        todo += (below := todo.pop().__subclasses__())
+        found += [kind for kind in below if kind.__module__.startswith(package.__name__)]
+    return found
+
+
+def test_no_system_has_a_second_dictionary() -> None:
+    kinds = _systems()
+    assert len(kinds) > 6
+    assert [kind.__name__ for kind in kinds if "__slots__" not in vars(kind)] == []
+
+
+def test_a_weak_callback_calls_and_lets_go() -> None:
+    class Thing:
+        def double(self, x: int) -> int:
+            return 2 * x
+
+    thing = Thing()
+    call = weak_callback(thing.double)
+    assert call(3) == 6
+    del thing
+    with pytest.raises(AssertionError):
+        call(3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("mode", _MODES)
+def test_a_finished_run_is_thrown_away(mode: str, tmp_path: Path) -> None:
+    before = _alive()
+    world = tiny_scenario(registry(), control=mode, time_limit=0.125)
+    simulate(world, registry(), planner="goal_seek", out=tmp_path, references=False, replay=False)
+    assert _alive() - before == set()
+
+
+def _alive() -> set[int]:
+    return {id(one) for one in gc.get_objects() if isinstance(one, _HELD)}
