@@ -63,7 +63,7 @@ def main() -> int:
         run = Path(folder) / planners[0] / "replay.html"
         compared = (Path(folder) / "compare.html").as_uri()
         pages = {"replay": f"{run.as_uri()}#t={MOMENT}&paused",
-                 "compare": f"{compared}#t={MOMENT}&paused&plot=clearance,speed",
+                 "compare": f"{compared}#t={MOMENT}&paused",
                  "report": (Path(folder) / "report.html").as_uri()}  # fmt: skip
         missing = [
             name for name, url in pages.items() if not photograph(url, IMAGES / f"{name}.png")

@@ -16,6 +16,7 @@ from crowdbot.core.trajectories.encounters import (
     robot_velocities,
 )
 from crowdbot.core.trajectories.preprocess import truncate_to_shorter
+from crowdbot.core.trajectories.touched import touched
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array, Mask
 
@@ -48,6 +49,14 @@ class Evasion:
         """People (M,) who are near on some step."""
         return np.asarray(self.near.any(axis=0))
 
+    def push(self, share: Array | float = 1.0) -> Array:
+        """What the robot's advance does against each person's acceleration, per mass (M,), J/kg.
+
+        Args:
+            share: (N-1, M) of each step that counts.
+        """
+        return np.asarray(self.dt @ (self.away * self.approach * share))
+
     def work(self, mass: Array, share: Array | float = 1.0) -> float:
         """Work that the robot's advance does against people who accelerate away from it, J.
 
@@ -55,8 +64,7 @@ class Evasion:
             mass: (M,) of people, kg.
             share: (N-1, M) of each step that counts.
         """
-        power = self.away * self.approach * mass * share
-        return float(self.dt @ power.sum(axis=1))
+        return float(self.push(share) @ mass)
 
     def rms(self) -> float:
         """Root mean square of the acceleration over people and time near the robot, m/s²."""
@@ -89,6 +97,16 @@ def _evasion(run: Trajectories, reach: float, jump_speed: float) -> Evasion:
         away=np.where(there, np.maximum(ax * nx + ay * ny, 0.0), 0.0),
         approach=np.where(there, np.maximum(rx * nx + ry * ny, 0.0), 0.0),
     )
+
+
+def own_legs(run: Trajectories, reach: float, jump_speed: float) -> Mask:
+    """Steps (N-1, M) near the robot on which nothing touches a person: he moves by himself.
+
+    Who is pushed by others, by a wall or by the robot does not evade; contacts are counted apart.
+    """
+    near = evasion(run, reach, jump_speed).near
+    key = "own_legs", reach, jump_speed
+    return run.cached(key, lambda: near & ~touched(run, near, jump_speed))
 
 
 def ghost_run(run: Trajectories, alone: Trajectories) -> tuple[Trajectories, Trajectories] | None:

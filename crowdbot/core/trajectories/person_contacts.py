@@ -20,6 +20,7 @@ from crowdbot.core.trajectories.encounters import (
     robot_velocities,
 )
 from crowdbot.core.trajectories.preprocess import TIME_TOLERANCE, inf_to_nan
+from crowdbot.core.trajectories.proper_response import FaultRule, braked_in_time
 from crowdbot.core.trajectories.trajectories import ContactEvents, Trajectories
 from crowdbot.core.types.arrays import Array, Mask
 
@@ -48,12 +49,20 @@ class PersonContacts:
         """How many."""
         return len(self.time)
 
-    def at_fault(self, fault_speed: float) -> Mask:
-        """Contacts (K,) into which the robot moved faster than ``fault_speed``, m/s.
 
-        Where nothing is known of the direction the robot is at fault.
-        """
-        return ~(self.closing <= fault_speed)
+def at_fault(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float) -> Mask:
+    """Contacts (K,) into which the robot moved though it could have braked in time.
+
+    Where nothing is known of the direction, or of the person, a robot that moves is at fault.
+
+    Args:
+        run: the one that ``found`` is of.
+        found: from `person_contacts`.
+        rule: see there.
+        jump_speed: tells teleports where none were recorded, m/s.
+    """
+    braked = braked_in_time(run, rule, found.time, found.sample, found.agent, jump_speed)
+    return ~(found.closing <= rule.speed) & ~braked
 
 
 def person_contacts(

@@ -48,11 +48,13 @@ class EvasiveAccelerationSpec(MetricSpec):
 EVASIVE_ACCELERATION = declare(
     EvasiveAccelerationSpec,
     symbol="a_ev",
+    spec_version=2,
     unit="m/s²",
     better="lower",
     minimum=0.0,
     variants={
         "corrected": {},
+        "all": {},
         "peak": {"more_people": "up"},
         "rms": {},
         "excess": {"self_value": 0.0},

@@ -15,7 +15,7 @@ from crowdbot.core.interfaces import (
     truncate_at_arrival,
 )
 from crowdbot.core.trajectories.encounters import people
-from crowdbot.core.trajectories.evasion import Evasion, evasion, ghost_run
+from crowdbot.core.trajectories.evasion import Evasion, evasion, ghost_run, own_legs
 from crowdbot.core.trajectories.headway import share_below
 from crowdbot.plugins.metrics.burden import (
     EVASIVE_ACCELERATION,
@@ -76,20 +76,29 @@ class EvasiveAcceleration:
     spec: EvasiveAccelerationSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """95th percentile of people's peaks, largest peak, root mean square, its excess."""
+        """95th percentile of people's peaks, by own legs and all; largest, mean square, excess."""
         factory = ScoreFactory(EVASIVE_ACCELERATION)
         found = _near(factory, run, self.spec)
         if isinstance(found, list):
             return found
         peaks = found.size.max(axis=0)[found.met]
         return [
-            factory.ok(
-                "corrected", np.quantile(peaks, PERCENTILE), {"people_met": float(len(peaks))}
-            ),
+            self._by_own_legs(factory, run, found),
+            factory.ok("all", np.quantile(peaks, PERCENTILE), {"people_met": float(len(peaks))}),
             factory.ok("peak", peaks.max()),
             factory.ok("rms", found.rms()),
             _excess(factory, run, refs, self.spec, self._difference),
         ]
+
+    def _by_own_legs(self, factory: ScoreFactory, run: Trajectories, found: Evasion) -> Score:
+        """Of those who are met while nothing touches them."""
+        run = truncate_at_arrival(run)
+        own = own_legs(run, self.spec.evasion_reach, self.spec.jump_speed)
+        if not own.any():
+            return factory.undefined("corrected", "no_neighbours")
+        peaks = np.where(own, found.size, 0.0).max(axis=0)[own.any(axis=0)]
+        extras = {"people_met": float(len(peaks))}
+        return factory.ok("corrected", np.quantile(peaks, PERCENTILE), extras)
 
     def _difference(self, run: Trajectories, ghost: Trajectories) -> float:
         own, other = (

@@ -8,6 +8,9 @@ from typing import Literal
 from crowdbot.dsl import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import (
     ContactTol,
+    FaultBraking,
+    FaultMargin,
+    FaultReaction,
     FaultSpeed,
     JumpSpeed,
     LeastWay,
@@ -22,6 +25,9 @@ class ContactsAtFaultSpec(MetricSpec):
 
     kind: Literal["contacts_at_fault"] = "contacts_at_fault"
     fault_speed: FaultSpeed
+    fault_reaction: FaultReaction
+    fault_braking: FaultBraking
+    fault_margin: FaultMargin
     contact_tol: ContactTol
     release_gap: ReleaseGap
     jump_speed: JumpSpeed
@@ -30,6 +36,7 @@ class ContactsAtFaultSpec(MetricSpec):
 CONTACTS_AT_FAULT = declare(
     ContactsAtFaultSpec,
     symbol="C_af",
+    spec_version=2,
     unit="1",
     better="lower",
     minimum=0.0,
@@ -46,6 +53,9 @@ class ContactsPerKmSpec(MetricSpec):
     kind: Literal["contacts_per_km"] = "contacts_per_km"
     least_way: LeastWay
     fault_speed: FaultSpeed
+    fault_reaction: FaultReaction
+    fault_braking: FaultBraking
+    fault_margin: FaultMargin
     contact_tol: ContactTol
     release_gap: ReleaseGap
     jump_speed: JumpSpeed
@@ -54,7 +64,7 @@ class ContactsPerKmSpec(MetricSpec):
 CONTACTS_PER_KM = declare(
     ContactsPerKmSpec,
     symbol="C_km",
-    spec_version=2,
+    spec_version=3,
     unit="1/km",
     better="lower",
     minimum=0.0,

@@ -14,7 +14,8 @@ from crowdbot.core.interfaces import (
     truncate_at_arrival,
 )
 from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.person_contacts import person_contacts
+from crowdbot.core.trajectories.person_contacts import at_fault, person_contacts
+from crowdbot.core.trajectories.proper_response import FaultRule
 from crowdbot.plugins.metrics.common_reference_build import way_made_good
 from crowdbot.plugins.metrics.fault import (
     CONTACTS_AT_FAULT,
@@ -22,10 +23,21 @@ from crowdbot.plugins.metrics.fault import (
     ContactsAtFaultSpec,
     ContactsPerKmSpec,
 )
+from crowdbot.plugins.metrics.safe_efficiency import SafeEfficiencySpec
 
 #: Slack of the rule whose fault a contact is, m/s: rounding decides nothing.
 TOLERANCE = 1e-9
 KILOMETRE = 1000.0
+
+
+def fault_rule(spec: ContactsAtFaultSpec | ContactsPerKmSpec | SafeEfficiencySpec) -> FaultRule:
+    """Whose fault a contact is, as the fields of a metric say."""
+    return FaultRule(
+        speed=spec.fault_speed + TOLERANCE,
+        reaction=spec.fault_reaction,
+        braking=spec.fault_braking,
+        margin=spec.fault_margin,
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,14 +47,14 @@ class ContactsAtFault:
     spec: ContactsAtFaultSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """The robot's fault: it moves towards whom it touches; else the person's."""
+        """The robot's fault: it moves towards whom it touches, and did not brake in time."""
         del refs
         factory, spec = ScoreFactory(CONTACTS_AT_FAULT), self.spec
         if run.robot is None:
             return factory.all_undefined("invalid_no_robot")
         run = truncate_at_arrival(run)
         found = person_contacts(run, spec.jump_speed, spec.contact_tol, spec.release_gap)
-        robot = int(found.at_fault(spec.fault_speed + TOLERANCE).sum())
+        robot = int(at_fault(run, found, fault_rule(spec), spec.jump_speed).sum())
         return [factory.ok("corrected", robot), factory.ok("person", len(found) - robot)]
 
 
@@ -60,7 +72,7 @@ class ContactsPerKm:
             return factory.all_undefined("invalid_no_robot")
         run = truncate_at_arrival(run)
         found = person_contacts(run, spec.jump_speed, spec.contact_tol, spec.release_gap)
-        fault = int(found.at_fault(spec.fault_speed + TOLERANCE).sum())
+        fault = int(at_fault(run, found, fault_rule(spec), spec.jump_speed).sum())
         driven = path_length(run.t, robot_of(run), spec.jump_speed)
         of_path = self._rate("driven", len(found), driven), self._way("driven_way", driven)
         good = way_made_good(factory, run, ("corrected", "at_fault", "way"))

@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-from annotated_types import Ge
+from annotated_types import Ge, Le
 from pydantic import Field
 
 from crowdbot.dsl import (
     NonNegativeDuration,
     NonNegativeLength,
     NonNegativeSpeed,
+    PositiveAcceleration,
     PositiveAngle,
     PositiveDuration,
     PositiveLength,
@@ -129,6 +130,28 @@ AwaySpeed = Annotated[
 FaultSpeed = Annotated[
     NonNegativeSpeed,
     Field(default=0.05, description="A robot that comes nearer more slowly is not at fault, m/s."),
+]
+FaultReaction = Annotated[
+    NonNegativeDuration,
+    Field(default=0.3, description="A robot may go on so long when a contact is foreseeable, s."),
+]
+FaultBraking = Annotated[
+    PositiveAcceleration,
+    Field(default=1.0, description="So hard it must brake then, m/s²."),
+]
+FaultMargin = Annotated[
+    NonNegativeLength,
+    Field(default=0.1, description="Who is going to pass closer may be touched, m."),
+]
+ForcedPush = Annotated[
+    _Number,
+    Field(default=0.25, description="Who is pushed more, per mass, is driven aside, J/kg."),
+]
+ForcedFactor = Annotated[
+    float,
+    Ge(0),
+    Le(1),
+    Field(default=0.5, description="Each person driven aside multiplies the score by this."),
 ]
 ForcedHeadway = Annotated[
     PositiveDuration,

@@ -8,7 +8,14 @@ from typing import Literal
 from crowdbot.dsl import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import (
     ContactTol,
+    EvasionReach,
+    FaultBraking,
+    FaultMargin,
+    FaultReaction,
     FaultSpeed,
+    ForcedFactor,
+    ForcedHeadway,
+    ForcedPush,
     JumpSpeed,
     ReleaseGap,
     ZeroTol,
@@ -18,10 +25,17 @@ declare = partial(declare_metric, category="task")
 
 
 class SafeEfficiencySpec(MetricSpec):
-    """Arrival without a contact at fault, weighted by the shortest over the taken time."""
+    """Arrival without a contact at fault, soon, and without driving anybody aside."""
 
     kind: Literal["safe_efficiency"] = "safe_efficiency"
     fault_speed: FaultSpeed
+    fault_reaction: FaultReaction
+    fault_braking: FaultBraking
+    fault_margin: FaultMargin
+    forced_push: ForcedPush
+    forced_factor: ForcedFactor
+    forced_headway: ForcedHeadway
+    evasion_reach: EvasionReach
     contact_tol: ContactTol
     release_gap: ReleaseGap
     jump_speed: JumpSpeed
@@ -31,6 +45,7 @@ class SafeEfficiencySpec(MetricSpec):
 SAFE_EFFICIENCY = declare(
     SafeEfficiencySpec,
     symbol="E_s",
+    spec_version=2,
     unit="1",
     better="higher",
     minimum=0.0,

@@ -14,9 +14,11 @@ from crowdbot.core.interfaces import (
     truncate_at_arrival,
 )
 from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.person_contacts import person_contacts
+from crowdbot.core.trajectories.evasion import evasion, own_legs
+from crowdbot.core.trajectories.headway import share_below
+from crowdbot.core.trajectories.person_contacts import at_fault, person_contacts
 from crowdbot.plugins.metrics.common_reference_build import shortest_time
-from crowdbot.plugins.metrics.fault_build import TOLERANCE
+from crowdbot.plugins.metrics.fault_build import fault_rule
 from crowdbot.plugins.metrics.safe_efficiency import SAFE_EFFICIENCY, SafeEfficiencySpec
 
 
@@ -27,7 +29,10 @@ class SafeEfficiency:
     spec: SafeEfficiencySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """0 without arrival, or with a contact at fault; else the shortest over the taken time."""
+        """0 without arrival or with a contact at fault; else the shortest over the taken time.
+
+        Each person driven aside takes off a share.
+        """
         del refs
         factory, spec = ScoreFactory(SAFE_EFFICIENCY), self.spec
         shortest = shortest_time(factory, run)
@@ -35,11 +40,24 @@ class SafeEfficiency:
             return shortest
         run = truncate_at_arrival(run)
         found = person_contacts(run, spec.jump_speed, spec.contact_tol, spec.release_gap)
-        faults = int(found.at_fault(spec.fault_speed + TOLERANCE).sum())
+        faults = int(at_fault(run, found, fault_rule(spec), spec.jump_speed).sum())
         taken = travel_time(run, robot_of(run))
-        extras = {"contacts_at_fault": float(faults), "shortest_time": shortest, "time": taken}
+        aside = self._driven_aside(run)
+        extras = {
+            "contacts_at_fault": float(faults), "driven_aside": float(aside),
+            "shortest_time": shortest, "time": taken,
+        }  # fmt: skip
         if shortest <= spec.zero_tol:
             return factory.all_undefined("zero_denominator")
         if faults or robot_of(run).goal_time is None:
             return [factory.ok("corrected", 0.0, extras)]
-        return [factory.ok("corrected", shortest / max(taken, shortest), extras)]
+        share = spec.forced_factor**aside
+        return [factory.ok("corrected", share * shortest / max(taken, shortest), extras)]
+
+    def _driven_aside(self, run: Trajectories) -> int:
+        """How many people the robot pushed much, who would have been touched at once."""
+        spec = self.spec
+        found = evasion(run, spec.evasion_reach, spec.jump_speed)
+        own = own_legs(run, spec.evasion_reach, spec.jump_speed)
+        share = share_below(run, spec.forced_headway, spec.jump_speed)
+        return int((found.push(share * own) > spec.forced_push).sum())

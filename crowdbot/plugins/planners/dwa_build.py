@@ -22,14 +22,15 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
 from crowdbot.plugins.planners.dwa import DwaSpec
-from crowdbot.plugins.planners.dwa_heading_build import HeadingByWalls, compile_heading
 from crowdbot.plugins.planners.dwa_map_build import AIM, remembered, way_out
 from crowdbot.plugins.planners.dwa_points_build import (
+    apart,
     apparent_velocity,
     choose_direction,
     nearest_per_sector,
 )
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
+from crowdbot.plugins.planners.heading_by_walls_build import HeadingByWalls, compile_heading
 from crowdbot.plugins.planners.people_build import carry, people_in, with_discs
 from crowdbot.plugins.planners.robot_outline_build import disc_radius
 
@@ -99,6 +100,7 @@ class Dwa:
     def _warm_up(self, task: Task, sensors: Mapping[str, SensorInfo]) -> None:
         """Two steps in a made-up world, so that no step of the run waits for a compiler."""
         way_out(np.ones((1, 2)), 0.0, 0.0, 9.0, 0.0, self._radius)
+        apart(np.ones((1, 2)), np.ones((1, 2)), _LEGS)
         compile_heading()
         for t in (0.0, self._spec.look_back):
             readings = {n: Reading(t, np.full(s.shape, 1.0 + t)) for n, s in sensors.items()}
@@ -187,8 +189,7 @@ class Dwa:
         self._walking = self._flow > _MOST
         if self._walking:
             walk = speed > 0.0
-            apart = np.hypot(*(rest[:, None] - people[walk]).T).T.min(axis=1, initial=math.inf)
-            self._around = rest[apart > _LEGS], people[~walk]
+            self._around = rest[apart(rest, people[walk], _LEGS)], people[~walk]
 
     def _choose(
         self,

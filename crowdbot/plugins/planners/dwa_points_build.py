@@ -7,7 +7,7 @@ import math
 import numba
 import numpy as np
 
-from crowdbot.core.interfaces import Array
+from crowdbot.core.interfaces import Array, Mask
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -101,6 +101,30 @@ def apparent_velocity(
             while square[nearest] != best:
                 nearest += 1
             out[i] = (now[i] - before[nearest]) / dt
+    return out
+
+
+@numba.njit(cache=True, error_model="numpy")
+def apart(points: Array, others: Array, distance: float) -> Mask:
+    """Which points are farther than a distance from all others.
+
+    Args:
+        points: (K, 2); one that is not a number is not apart.
+        others: (L, 2), same frame.
+        distance: m.
+
+    Returns:
+        (K,).
+    """
+    out = np.ones(points.shape[0], np.bool_)
+    clearly = (1.0 + 1e-12) * distance * distance
+    for i in range(points.shape[0]):
+        for j in range(others.shape[0]):
+            dx, dy = points[i, 0] - others[j, 0], points[i, 1] - others[j, 1]
+            # Cheaper than the length, and the same but for what rounding may decide.
+            if not dx * dx + dy * dy > clearly and not math.hypot(dx, dy) > distance:
+                out[i] = False
+                break
     return out
 
 

@@ -1,13 +1,17 @@
 """Stop and go: goal seek with a speed limit that the stop box sets.
 
-The box is as long as the robot's stopping distance, which shrinks while the robot brakes. The
-limit below is that rule at every speed at once: the largest speed whose box is still empty.
+The box is as long as the robot's stopping distance, and what somebody who comes towards it walks
+until it stands; it shrinks while the robot brakes. The limit below is that rule at every speed at
+once: the largest speed whose box is still empty.
+
+People who bump into the robot turn it, which its wheels do not notice: it heads by the walls.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,13 +20,16 @@ from crowdbot.core.interfaces import (
     Command,
     LidarPoints,
     Observation,
+    Pose,
     RobotLimits,
     SensorInfo,
     Task,
 )
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import GoalSeek
-from crowdbot.plugins.planners.people_build import people_in, with_discs
+from crowdbot.plugins.planners.heading_by_walls_build import HeadingByWalls, compile_heading
+from crowdbot.plugins.planners.people_build import carry, people_in, with_discs
+from crowdbot.plugins.planners.people_motion_build import PeopleMotion
 from crowdbot.plugins.planners.robot_outline_build import half_width_and_front
 from crowdbot.plugins.planners.stop_and_go import StopAndGoSpec
 
@@ -44,6 +51,8 @@ class StopAndGo:
         )
         self._points = LidarPoints({})
         self._limits: RobotLimits | None = None
+        self._heading_by_walls = HeadingByWalls()
+        self._motion = PeopleMotion(spec.look_back)
         self._half_width, self._front = half_width_and_front(spec.robot_radius, None)
 
     def reset(
@@ -54,38 +63,63 @@ class StopAndGo:
         self._limits = limits
         self._points = LidarPoints(sensors)
         self._half_width, self._front = half_width_and_front(self._spec.robot_radius, task.robot)
-        self._room_ahead(np.ones((1, 2)))  # so that no step of the run waits for the compiler
+        self._heading_by_walls = HeadingByWalls()
+        compile_heading()
+        self._motion = PeopleMotion(self._spec.look_back)
+        for t in (0.0, self._spec.look_back):  # so that no step of the run waits for the compiler
+            self._safe_speed(t, Pose(0.0, 0.0, 0.0), np.full((1, 2), 2.0 + t))
+        self._motion = PeopleMotion(self._spec.look_back)
 
     def step(self, obs: Observation) -> Command:
         """Goal seek's command, slowed down or stopped."""
-        assert self._limits is not None
-        v, w, _ = self._seek.step(obs)
         points = self._points(obs.readings, obs.t, obs.twist)
-        room = self._room_ahead(points)
+        pose = self._heading_by_walls.pose(obs.pose, points)
+        v, w, _ = self._seek.step(replace(obs, pose=pose))
+        most, room = self._safe_speed(obs.t, pose, points)
         obs.log("stop_and_go/room", min(room, 100.0))
-        return Command(min(v, safe_speed(room, self._limits.a_max, self._spec.reaction_time)), w)
+        return Command(min(v, most), w)
 
-    def _room_ahead(self, points: Array) -> float:
-        """How far the robot may go before something is ``front_margin`` before it, m.
+    def _safe_speed(self, t: float, pose: Pose, points: Array) -> tuple[float, float]:
+        """The largest speed whose box is empty (m/s), and the room ahead (m).
+
+        That is how far the robot may go before something is ``front_margin`` before it; before
+        people who walk towards it it has to stand, no more.
 
         Args:
+            t: now, s.
+            pose: of the robot.
             points: (P, 2) what the lidars hit, base frame, m; legs stand for whole people.
         """
+        assert self._limits is not None
         spec = self._spec
         people, rest = people_in(points, _REACH if spec.person_radius else 0.0)
+        going = self._motion.velocities(t, pose, people)
         points = with_discs(rest, people, spec.person_radius)
-        beside = np.abs(points[:, 1]) <= self._half_width + spec.side_margin
-        ahead = points[beside & (points[:, 0] > 0.0), 0]
-        nearest = float(ahead.min()) if len(ahead) else math.inf
-        return nearest - self._front - spec.front_margin
+        velocities = np.zeros_like(points)
+        carry(points, velocities, people, going, spec.person_radius)
+        inside = (np.abs(points[:, 1]) <= self._half_width + spec.side_margin) & (points[:, 0] > 0)
+        approach = np.maximum(0.0, -velocities[inside, 0])
+        margin = np.where(approach > 0.0, 0.0, spec.front_margin)
+        room = points[inside, 0] - self._front - margin
+        speeds = safe_speed(room, approach, self._limits.a_max, spec.reaction_time)
+        return float(speeds.min(initial=math.inf)), float(room.min(initial=math.inf))
 
 
-def safe_speed(room: float, deceleration: float, reaction_time: float) -> float:
-    """The largest v with v * reaction_time + v^2 / (2 * deceleration) <= room; 0 without room."""
-    if room <= 0.0:
-        return 0.0
-    lag = deceleration * reaction_time
-    return math.sqrt(lag * lag + 2.0 * deceleration * room) - lag
+def safe_speed(room: Array, approach: Array, deceleration: float, reaction_time: float) -> Array:
+    """The largest v at which the robot comes to rest before things that approach; 0 without room.
+
+    With the time T = reaction_time + v / deceleration until it stands, that is the v with
+    v * reaction_time + v^2 / (2 * deceleration) + approach * T <= room.
+
+    Args:
+        room: (K,) m.
+        approach: (K,) speeds towards the robot, m/s.
+        deceleration: m/s^2.
+        reaction_time: s.
+    """
+    lag = deceleration * reaction_time + approach
+    left = np.maximum(0.0, room - approach * reaction_time)
+    return np.asarray(np.sqrt(lag * lag + 2.0 * deceleration * left) - lag)
 
 
 def build(spec: StopAndGoSpec) -> StopAndGo:

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.arrays import Array
 from tests.plugins.metrics.scenes import (
+    REACH,
     Body,
     grid,
     line,
@@ -190,3 +192,93 @@ def test_slowness_never_helps(seed: int, slower: float) -> None:
     again = dataclasses.replace(run, t=run.t * slower, robot=stretched, agents=None)
     first = dataclasses.replace(run, agents=None)
     assert efficiency(again) <= efficiency(first) + 1e-12
+
+
+# ------------------------------------------------- who braked when it was foreseeable
+def moving(speed: Array) -> Body:
+    """Along x from the origin with the speeds (N,), m/s."""
+    x = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 32)])
+    return Body(x, 0 * T, speed, 0 * T)
+
+
+def beside(turns: float, sideways: float) -> Body:
+    """Walks 0.5 m/s, 0.3 m beside the robot, and from a time on into its front left as well."""
+    vy = np.where(turns <= T, -sideways, 0.0)
+    y = REACH * 0.6 + 0.5 + np.concatenate([[0.0], np.cumsum((vy[1:] + vy[:-1]) / 32)])
+    return Body(REACH * 0.8 + 0.5 * T, np.maximum(y, 0.0), 0 * T + 0.5, vy)
+
+
+def meet(robot: Body, person: Body) -> tuple[float, float]:
+    return faults(scene(T, robot, [person], **GOAL))
+
+
+def test_who_is_shoved_into_the_robot_at_once_is_not_its_fault() -> None:
+    """0.5 m at 2.5 m/s is a fifth of a second: less than anybody needs to react."""
+    straight_on = line(T, (0, 0), (0.5, 0))
+    assert meet(straight_on, beside(4.0, 2.5)) == (0, 1)
+    assert meet(straight_on, beside(4.0, 0.5)) == (1, 0)  # a second is time enough
+
+
+def test_who_brakes_when_it_is_foreseeable_is_not_at_fault() -> None:
+    """Somebody comes straight on at 1.3 m/s; the robot, at 0.5 m/s, needs 0.8 s and 0.275 m."""
+    comes = line(T, (9.0, 0.0), (-1.3, 0.0))
+    contact = (9.0 - REACH) / 1.8
+    for before, fault in ((0.9, (0, 1)), (0.5, (0, 1)), (0.2, (1, 0)), (-1.0, (1, 0))):
+        speed = np.clip(0.5 - (T - contact + before), 0.0, 0.5)
+        assert meet(moving(speed), comes) == fault, before
+
+
+def test_half_braking_is_not_the_proper_response() -> None:
+    comes = line(T, (9.0, 0.0), (-1.3, 0.0))
+    contact = (9.0 - REACH) / 1.8
+    speed = np.clip(0.5 - 0.3 * (T - contact + 0.8), 0.0, 0.5)
+    assert meet(moving(speed), comes) == (1, 0)
+
+
+@given(speed=st.floats(0.2, 1.5), walks=st.floats(0.0, 2.0), aside=st.floats(-0.3, 0.3))
+@settings(max_examples=60, deadline=None)
+def test_the_blind_are_always_at_fault_for_who_comes_straight(
+    speed: float, walks: float, aside: float
+) -> None:
+    comes = line(T, (3.0, aside), (-walks, 0))
+    assume((speed + walks) * T[-1] > 3.0)
+    assert meet(line(T, (0, 0), (speed, 0)), comes) == (1, 0)
+
+
+# --------------------------------------------------------- who is driven aside
+def escaping(push: float, headway: float) -> Trajectories:
+    """Somebody ahead of the robot speeds up from 1 m/s, and is pushed so much per mass; J/kg."""
+    t = grid(10.0, 1 / 16)
+    gain = push / 10.0  # the robot advances at 1 m/s for 10 s
+    person = Body(REACH + headway + t + gain * t**2 / 2, 0 * t, 1.0 + gain * t, 0 * t)
+    return scene(t, line(t, (0, 0), (1, 0)), [person], goal_time=10.0, **GOAL)
+
+
+def test_whoever_is_driven_aside_halves_the_score() -> None:
+    """Nobody is touched: the contact is one that only the person prevented."""
+    run = escaping(0.3, 0.1)
+    run = dataclasses.replace(run, robot=run.robot)
+    found = scores_of("safe_efficiency", run, forced_headway="5 s")["corrected"]
+    assert found.extras["driven_aside"] == 1
+    assert found.value == pytest.approx(0.5)
+    assert found.extras["contacts_at_fault"] == 0
+
+
+def test_who_steps_aside_in_time_or_a_little_is_not_driven() -> None:
+    assert efficiency(escaping(0.2, 0.1)) == pytest.approx(1.0)
+    assert efficiency(escaping(0.3, 1.0)) == pytest.approx(1.0)
+
+
+def test_each_person_counts_once_and_others_shove_is_not_the_robots() -> None:
+    run = escaping(0.3, 0.1)
+    fields = {"forced_headway": "5 s"}
+    assert run.agents is not None
+    two = dataclasses.replace(
+        run.agents,
+        id=np.array([0, 1]), radius=np.repeat(run.agents.radius, 2),
+        mass=np.repeat(run.agents.mass, 2), jump=None,
+        **{k: np.repeat(getattr(run.agents, k), 2, axis=1) for k in ("x", "y", "vx", "vy")},
+    )  # fmt: skip
+    overlapping = dataclasses.replace(run, agents=two)
+    found = scores_of("safe_efficiency", overlapping, **fields)["corrected"]
+    assert found.extras["driven_aside"] == 0  # they touch each other all the time

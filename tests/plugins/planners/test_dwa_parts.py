@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
 from crowdbot.plugins.planners.dwa_map_build import remembered, way_out
 from crowdbot.plugins.planners.dwa_points_build import (
+    apart,
     apparent_velocity,
     choose_direction,
     free_time,
@@ -50,6 +51,16 @@ def test_apparent_velocity() -> None:
     got = apparent_velocity(now, before, 0.25, 0.3, 2.5)
     np.testing.assert_allclose(got, [[-1.6, 0.0], [0.0, 0.0], [0.0, 0.0]])
     assert not apparent_velocity(now, NOTHING, 0.25, 0.3, 2.5).any()
+
+
+@settings(deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_apart_from_all_others(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    cloud, others = (rng.integers(-6, 7, (int(n), 2)) / 5.0 for n in rng.integers(0, 30, 2))
+    gap = np.hypot(*(cloud[:, None] - others).T).T.min(axis=1, initial=np.inf)
+    np.testing.assert_array_equal(apart(cloud, others, 0.4), gap > 0.4)
+    assert not apart(points((np.nan, 0.0)), points((0.0, 0.0)), 0.4).any()
 
 
 def test_free_time_of_still_and_moving_points() -> None:

@@ -8,7 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core.interfaces import Array, LidarPoints, Pose
-from crowdbot.plugins.planners.dwa_heading_build import BINS, HeadingByWalls, directions
+from crowdbot.plugins.planners.heading_by_walls_build import BINS, HeadingByWalls, directions
 from tests.plugins.planners.world import World, crowd
 
 LIDARS = LidarPoints({n: s.info() for n, s in World().sensors.items()})

@@ -1,0 +1,103 @@
+"""Whether a robot did what it could when a contact became foreseeable: it braked.
+
+After the responsibility of RSS (Shalev-Shwartz, Shammah, Shashua 2017, arXiv:1708.06374): nobody
+can prevent every contact, but whoever sees one coming can give the proper response, in time to
+react, and is not to blame if that does not help.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.trajectories.encounters import (
+    encounter,
+    relative_velocity,
+    robot_velocities,
+    time_to_contact,
+)
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.arrays import Array, Mask
+
+#: Slower relative motion does not count, m/s.
+_STILL = 1e-6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FaultRule:
+    """Whose fault a contact is.
+
+    Attributes:
+        speed: a robot that moves towards whom it touches more slowly is not at fault, m/s.
+        reaction: time that it has before it must brake, s.
+        braking: how hard it must brake then, m/s².
+        margin: people who are going to pass closer than this count as going to be touched, m.
+    """
+
+    speed: float
+    reaction: float
+    braking: float
+    margin: float
+
+
+def braked_in_time(
+    run: Trajectories,
+    rule: FaultRule,
+    onset: Array,
+    sample: NDArray[np.int64],
+    agent: NDArray[np.int64],
+    jump_speed: float,
+) -> Mask:
+    """(K,) contacts before which the robot was as slow as braking in time would have made it.
+
+    A contact is foreseeable from the first sample on at which both, keeping their velocities,
+    would come within the margin before the robot could react and come to rest. The robot may go
+    on for the time to react, then it has to slow down; at the contact it may be ``rule.speed``
+    faster than that gives. One that was not foreseeable before the time to react is not its fault.
+
+    Args:
+        run: has a robot.
+        rule: see there.
+        onset: (K,) times of the contacts, s.
+        sample: (K,) the last sample before each contact.
+        agent: (K,) column of the person; -1, unknown: never braked in time.
+        jump_speed: tells teleports where none were recorded, m/s.
+    """
+    found = np.zeros(len(sample), dtype=bool)
+    if not (agent >= 0).any():
+        return found
+    speed = np.hypot(*robot_velocities(run, jump_speed))
+    gap, after = encounter(run, jump_speed).gap, np.minimum(sample + 1, len(run.t) - 1)
+    shown = np.fmin(gap[sample, agent], gap[after, agent]) <= rule.margin
+    ahead = run.cached(
+        ("foreseen", rule.margin, jump_speed), lambda: _foreseen(run, rule.margin, jump_speed)
+    )
+    for k in np.flatnonzero((agent >= 0) & shown):
+        found[k] = _braked(run.t, speed, ahead[:, agent[k]], onset[k], int(sample[k]), rule)
+    return found
+
+
+def _foreseen(run: Trajectories, margin: float, jump_speed: float) -> Array:
+    """Time (N, M) until both come within the margin if they keep their velocities, s."""
+    velocity = relative_velocity(run, jump_speed)
+    pair = encounter(run, jump_speed)
+    return time_to_contact(pair, velocity, contact_tol=margin, rel_speed_tol=_STILL)
+
+
+def _braked(t: Array, speed: Array, ahead: Array, onset: float, last: int, rule: FaultRule) -> bool:
+    """As `braked_in_time`, for the contact after sample ``last`` with one person."""
+    time = t[: last + 1] - onset
+    fastest = float(np.max(speed[: last + 1][time >= -rule.reaction], initial=speed[last]))
+    needs = rule.reaction + fastest / rule.braking
+    begins = max(0, int(np.searchsorted(time, -needs)) - 1)
+    soon = max(needs, -time[begins]) + 1e-9
+    seen = begins + np.flatnonzero(ahead[begins : last + 1] <= soon)
+    if not len(seen):
+        return True
+    first = float(time[seen[0]])
+    goes_on = (time >= first - 1e-9) & (time <= first + rule.reaction + 1e-9)
+    allowed = float(speed[: last + 1][goes_on].max())
+    allowed -= rule.braking * max(0.0, -first - rule.reaction)
+    return bool(speed[last] <= max(0.0, allowed) + rule.speed + 1e-9)
