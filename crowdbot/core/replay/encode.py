@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from crowdbot.core.geometry.footprint import body_side
 from crowdbot.core.recording.scans import CENTIMETRE
-from crowdbot.core.replay.encode_contacts import contacts_of
 from crowdbot.core.replay.encode_images import encode_images
 from crowdbot.core.replay.encode_robot import encode_robots
 from crowdbot.core.replay.encode_scans import encode_scans
@@ -37,7 +36,6 @@ def encode(shown: ShownRun) -> tuple[dict[str, Any], dict[str, str]]:
         "status": shown.status,
         "n": len(run.t),
         "zone": nested(run.goal_zone),
-        "contacts": contacts_of(run),
         "people": None,
         **_scenery(shown),
     }

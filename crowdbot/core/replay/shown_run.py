@@ -10,12 +10,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core.recording.images import ReplayImages
 from crowdbot.core.recording.scans import ReplayScan
+from crowdbot.core.replay.other_track import OtherTrack, Seen
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.score import Score
-
-#: A part of a robot: outline (K, 2), m, and colour.
-Seen = tuple[Array, str]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,6 +46,8 @@ class ShownRun:
         scores: shown beside the run; may be empty.
         look: parts of the robot as they are seen from above, the lowest first, in its frame;
             without any it is its outline and an arrow.
+        robot: name of the run's robot, where there are others.
+        others: the other robots of a fleet.
         scenery: default: the run's walls, which stop everybody.
     """
 
@@ -59,6 +59,8 @@ class ShownRun:
     images: Sequence[ReplayImages] = ()
     scores: Sequence[Score] = ()
     look: Sequence[Seen] = ()
+    robot: str = "robot"
+    others: Sequence[OtherTrack] = ()
     scenery: Scenery | None = None
 
     @property

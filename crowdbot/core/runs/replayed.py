@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from crowdbot.core.environments.build import build_environment
-from crowdbot.core.recording import read_run
 from crowdbot.core.recording.images import ReplayImages, read_images
 from crowdbot.core.recording.scans import REPLAY_RATE
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.replay import Scenery, ShownRun
+from crowdbot.core.replay import OtherTrack, Scenery, ShownRun
 from crowdbot.core.robots import build_robot
 from crowdbot.core.robots.look import seen_from_above
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.robots import SeenRun, read_robots
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.robot import RobotModel
+from crowdbot.core.types.score import Score
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError, UsageError
 
@@ -118,21 +121,68 @@ def _labels(records: Sequence[Mapping[str, Any]]) -> list[str]:
     ]
 
 
-def _replayed(folder: Path, record: Mapping[str, Any], label: str, registry: Registry) -> ShownRun:
-    run, scans = read_run(folder / files.RECORDING, REPLAY_RATE)
-    scenario = _scenario(folder, registry)
-    model = build_robot(registry, next(iter(scenario.robots.values())))
+def shown_run(
+    scenario: Scenario,
+    seen: Mapping[str, SeenRun],
+    models: Mapping[str, RobotModel],
+    parts: EnvironmentParts,
+    record: Mapping[str, Any],
+    scores: Sequence[Score],
+    images: Sequence[ReplayImages],
+) -> ShownRun:
+    """What the page shows of a run of one robot or of several.
+
+    Args:
+        scenario: what was run.
+        seen, models: of each robot by name, in the scenario's order.
+        parts: the environment.
+        record: ``run.json``, or what will be.
+        scores: of the run.
+        images: what cameras saw.
+    """
+    # What is shown of the people goes on until the last robot has ended.
+    last = max(seen, key=lambda name: len(seen[name].run.t))
+    several = {} if len(seen) == 1 else {"Robot": last}
+    looks = {
+        name: [(part.outline, part.colour) for part in seen_from_above(model)]
+        for name, model in models.items()
+    }
     return ShownRun(
-        run=run,
-        title=f"{scenario.id} · {label}",
-        label=label,
-        facts=replay_facts(record),
-        scans=scans,
-        images=read_replay_images(folder / files.RECORDING),
-        scores=[row.score for row in read_scores_csv(folder / files.SCORES)],
-        look=[(part.outline, part.colour) for part in seen_from_above(model)],
-        scenery=scenery(build_environment(registry, scenario.environment), model.height),
+        run=seen[last].run,
+        title=f"{scenario.id} · {_label(record)}",
+        label=_label(record),
+        facts={**several, **replay_facts(record)},
+        scans=seen[last].scans,
+        images=images,
+        scores=scores,
+        look=looks[last],
+        robot=last,
+        others=[
+            OtherTrack(
+                name=name,
+                run=one.run,
+                look=looks[name],
+                leaves=scenario.robots[name].task.when_ended == "leave",
+            )
+            for name, one in seen.items()
+            if name != last
+        ],
+        scenery=scenery(parts, max(model.height for model in models.values())),
     )
+
+
+def _replayed(folder: Path, record: Mapping[str, Any], label: str, registry: Registry) -> ShownRun:
+    scenario = _scenario(folder, registry)
+    shown = shown_run(
+        scenario,
+        read_robots(folder / files.RECORDING, tuple(scenario.robots), REPLAY_RATE),
+        {name: build_robot(registry, robot) for name, robot in scenario.robots.items()},
+        build_environment(registry, scenario.environment),
+        record,
+        [row.score for row in read_scores_csv(folder / files.SCORES)],
+        read_replay_images(folder / files.RECORDING),
+    )
+    return replace(shown, label=label)
 
 
 def _scenario(folder: Path, registry: Registry) -> Scenario:

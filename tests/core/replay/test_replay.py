@@ -6,6 +6,7 @@ import json
 import re
 import zlib
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ import pytest
 from numpy.typing import NDArray
 
 from crowdbot.core.recording import read_scans, read_trajectories
-from crowdbot.core.replay import ReplayScan, ShownRun, write_replay
+from crowdbot.core.replay import OtherTrack, ReplayScan, ShownRun, write_replay
 from crowdbot.core.replay.encode import encode, summary
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
@@ -181,7 +182,11 @@ def test_robot_is_exact_to_single_precision(
     given = np.stack((robot.x, robot.y, robot.theta, robot.v, robot.w))
     assert np.array_equal(rows, given.astype("<f4"))
     (about,) = page.meta["robots"]
+    zone = run[0].goal_zone
+    assert zone is not None
     assert about == {
+        "name": "robot",
+        "zone": zone.tolist(),
         "radius": 0.2,
         "outline": [],
         "goal": [46.5, 0.0],
@@ -189,6 +194,32 @@ def test_robot_is_exact_to_single_precision(
         "goalTime": 2.25,
         "look": [],
     }
+
+
+def test_the_robots_of_a_fleet_are_a_list(run: tuple[Trajectories, list[ReplayScan]]) -> None:
+    """One that ended earlier stands where it was, or is gone; contacts say whose they are."""
+    given, n = run[0], len(run[0].t)
+    assert given.robot is not None
+    early = replace(
+        given,
+        t=given.t[:50],
+        agents=None,
+        trips=None,
+        robot=replace(
+            given.robot, **{k: getattr(given.robot, k)[:50] for k in ("x", "y", "theta", "v", "w")}
+        ),
+    )
+    others = [OtherTrack(name=f"b{i}", run=early, look=(), leaves=bool(i)) for i in (0, 1)]
+    meta, blobs = encode(ShownRun(run=given, title="", robot="a", others=others))
+    assert [robot["name"] for robot in meta["robots"]] == ["a", "b0", "b1"]
+    page = Page.__new__(Page)
+    page.scripts = {f"blob-0-{name}": text for name, text in blobs.items()}
+    stands, gone = (page.floats(f"robot{i}", 4, n) for i in (1, 2))
+    assert np.array_equal(stands[:, :50], gone[:, :50])
+    assert (stands[0, 50:] == stands[0, 49]).all()
+    assert (stands[3:, 50:] == 0.0).all()
+    assert np.isnan(gone[:, 50:]).all()
+    assert sorted(c.get("robot", 0) for c in meta["contacts"]) == [0, 0, 1, 1, 2, 2]
 
 
 def test_scans_are_thinned_and_within_a_centimetre(

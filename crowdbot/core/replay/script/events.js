@@ -16,15 +16,16 @@ function eventsOf(run) {
   return found.map((event) => ({ ...event, run })).sort((a, b) => a.t - b.t);
 }
 
-const robotName = (run, i) => (run.robots.length > 1 ? `robot ${i + 1}` : "robot");
+const robotName = (run, i) => (run.robots.length > 1 ? run.robots[i].name : "robot");
 const personName = (run, p) => `person ${run.people.id[p]}`;
 
 function contactEvents(run) {
   return run.contacts.map((contact) => {
     const whom = contact.person < 0 ? "a wall" : personName(run, contact.person);
     const force = contact.impulse === null ? "" : `, ${digits(contact.impulse, "N s")}`;
+    const who = run.robots.length > 1 ? `${robotName(run, contact.robot ?? 0)}: ` : "";
     return { kind: "contact", t: contact.t0, to: contact.t0 - EARLIER,
-      text: `contact with ${whom}, ${contact.side}${force}` };
+      text: `${who}contact with ${whom}, ${contact.side}${force}` };
   });
 }
 

@@ -20,7 +20,7 @@ function followedIn(run, frame) {
   const match = /^robot(?: (\d+))?$/.exec(state.follow);
   const index = match ? Number(match[1] ?? 1) - 1 : -1;
   const pose = frame.robots[index];
-  return pose ? { robot: index, place: pose, radius: reachOf(run.robots[index]) } : null;
+  return pose && Number.isFinite(pose.x) ? { robot: index, place: pose, radius: reachOf(run.robots[index]) } : null;
 }
 
 /** Follows from now on; the choice, the button and the address say whom. */

@@ -47,7 +47,7 @@ function clearanceOf(run, robot) {
       const i = p * run.n + k;
       if (x[i] === ABSENT) continue;
       const [dx, dy] = [x[i] * scale - robot.x[k], y[i] * scale - robot.y[k]];
-      if (Math.hypot(dx, dy) - far - own >= gaps[k]) continue; // too far away to be the nearest
+      if (!(Math.hypot(dx, dy) - far - own < gaps[k])) continue; // farther than another, or gone
       gaps[k] = Math.min(gaps[k], fromRobot(robot, robot.theta[k], dx, dy) - own);
     }
   }

@@ -5,6 +5,7 @@ const APART = 0.15; // m; nearer than that is the same place
 function drawGhost(g, other, ghost, frame, colour, px) {
   g.setLineDash([4 * px, 3 * px]);
   other.robots.forEach((robot, i) => {
+    if (!Number.isFinite(ghost.robots[i].x)) return;
     drawTrail(g, other, robot, ghost.robots[i], ghost, colour, 0.7 * px);
     g.save();
     g.translate(ghost.robots[i].x, ghost.robots[i].y);

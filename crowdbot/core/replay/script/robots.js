@@ -1,6 +1,7 @@
 // Draws robots as they are seen from above, and their paths.
 
 function drawRobot(g, robot, pose, colour, px) {
+  if (!Number.isFinite(pose.x)) return; // it has left
   const r = Math.max(robot.radius, 5 * px);
   g.save();
   g.translate(pose.x, pose.y);
@@ -86,9 +87,9 @@ function drawTrail(g, run, robot, pose, frame, colour, px) {
   g.lineJoin = "round";
   for (const [from, alpha, width] of [[0, 0.45, 1.5], [recent, 1, 2.5]]) {
     g.beginPath();
-    g.moveTo(robot.x[from], robot.y[from]);
-    for (let k = from + 1; k <= frame.k; k++) g.lineTo(robot.x[k], robot.y[k]);
-    g.lineTo(pose.x, pose.y);
+    if (Number.isFinite(robot.x[from])) g.moveTo(robot.x[from], robot.y[from]);
+    for (let k = from + 1; k <= frame.k; k++) if (Number.isFinite(robot.x[k])) g.lineTo(robot.x[k], robot.y[k]);
+    if (Number.isFinite(pose.x)) g.lineTo(pose.x, pose.y);
     g.globalAlpha = alpha;
     g.lineWidth = width * px;
     g.stroke();

@@ -29,15 +29,15 @@ function drawGrid(g, view, width, height, spacing) {
 }
 
 function drawGoals(g, run, px) {
-  if (run.zone.length) {
+  const zones = [run.zone, ...run.robots.slice(1).map(({ zone }) => zone)].filter((zone) => zone.length);
+  for (const zone of zones) {
     g.beginPath();
-    run.zone.forEach(([x, y], i) => g[i ? "lineTo" : "moveTo"](x, y));
+    zone.forEach(([x, y], i) => g[i ? "lineTo" : "moveTo"](x, y));
     g.closePath();
     drawGoal(g, px);
-    return;
   }
-  for (const { goal, goalRadius } of run.robots) {
-    if (!goal) continue;
+  for (const { goal, goalRadius, zone } of run.robots) {
+    if (!goal || zone.length) continue;
     g.beginPath();
     g.arc(goal[0], goal[1], Math.max(goalRadius, 0.3), 0, 7);
     drawGoal(g, px);

@@ -10,7 +10,7 @@ function seriesOf(run) {
 }
 
 function robotSeries(run, robot, i) {
-  const which = run.robots.length > 1 ? ` of robot ${i + 1}` : "";
+  const which = run.robots.length > 1 ? ` of ${robotName(run, i)}` : "";
   const row = (key, name, unit, values) =>
     ({ key: i ? `${key}/${i}` : key, name: name + which, unit, t: run.t, values });
   const rows = [
