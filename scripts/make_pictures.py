@@ -1,8 +1,9 @@
 """Draws the pictures of README and documents, and writes the figures beside them, from one state.
 
 The gallery is drawn from the scenarios. One run is made for the replay in the README; the scores
-and times in the text beside it are those of the same run. Pictures of pages need a browser of
-playwright; without one they are left as they are, which the last line says.
+and times in the text beside it are those of the same run. The real-time factor there is that of an
+idle core. Pictures of pages need a browser, installed or of playwright; without one they are left
+as they are, which the last line says.
 
 Examples:
     .venv/bin/python scripts/make_pictures.py
@@ -12,8 +13,10 @@ Examples:
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -36,6 +39,8 @@ SHOWN = (
     "safe_efficiency", "contacts_per_km", "push_work", "intrusion", "effect_on_velocity",
     "relative_jerk", "relative_path_length", "relative_time_to_goal",
 )  # fmt: skip
+#: Browsers that are installed are used before that of playwright.
+BROWSERS = ("chromium", "google-chrome", "chromium-browser", "google-chrome-stable")
 #: Seconds of the run at which the replay is pictured.
 MOMENT = 40
 
@@ -52,6 +57,7 @@ def main() -> int:
         shown = _crowdbot(
             "simulate", SUITE, ID, "--planner", "dwa", "--out", "runs", cwd=Path(folder)
         )
+        shown = on_an_idle_core(shown, Path(folder) / "runs" / SUITE / ID / "dwa" / "seed-0")
         readme = ROOT / "README.md"
         readme.write_text(with_figures(readme.read_text(encoding="utf-8"), shown), encoding="utf-8")
         _crowdbot("simulate", SUITE, ID, "--planner", "stop_and_go", "--out", "runs",
@@ -64,7 +70,7 @@ def main() -> int:
             name for name, url in pages.items() if not photograph(url, IMAGES / f"{name}.png")
         ]
     if missing:
-        print(f"no browser of playwright is installed: left as they were: {', '.join(missing)}")
+        print(f"no browser is installed: left as they were: {', '.join(missing)}")
     return 0
 
 
@@ -102,6 +108,16 @@ def with_figures(readme: str, shown: str) -> str:
     return ending.sub(_constant(told[0]), readme, count=1)
 
 
+def on_an_idle_core(shown: str, run: Path) -> str:
+    """What a run printed, with simulated seconds by seconds of CPU time as the real-time factor.
+
+    By the wall clock it would say how busy the machine was that drew the pictures.
+    """
+    record = json.loads((run / "run.json").read_text(encoding="utf-8"))
+    factor = record["sim_time"] / record["cpu_time"]
+    return re.sub(r"\([\d.]+ times(\s+)real", rf"({factor:.1f} times\1real", shown)
+
+
 def _constant(text: str) -> Callable[[re.Match[str]], str]:
     """What replaces every match by one text, in which a backslash is a backslash."""
     return lambda _: text
@@ -113,7 +129,8 @@ def photograph(url: str, file: Path) -> bool:
 
     try:
         with sync_playwright() as playwright:
-            browser = playwright.chromium.launch()
+            found = next(filter(None, map(shutil.which, BROWSERS)), None)
+            browser = playwright.chromium.launch(executable_path=found, args=["--no-sandbox"])
             page = browser.new_page(viewport={"width": 1280, "height": 800})
             page.goto(url)
             page.wait_for_timeout(1000)

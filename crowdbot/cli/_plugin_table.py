@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import shutil
+import sys
+import textwrap
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +16,8 @@ if TYPE_CHECKING:
 
 _HEAD = ["plugin", "distribution", "api", "state", "provides"]
 _FEW = 6
+#: Letters that the last column needs beside the others.
+_LEAST = 24
 
 
 def as_text(registry: Registry) -> str:
@@ -41,13 +47,28 @@ def tracebacks(registry: Registry) -> Iterator[str]:
 
 
 def table(rows: Sequence[Sequence[str]]) -> str:
-    """Columns as wide as their widest cell; the last one is free."""
+    """Columns as wide as their widest cell; the last one is as wide as the terminal allows."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]) - 1)]
     lines = []
     for row in rows:
         cells = [f"{cell:<{width}}" for cell, width in zip(row, widths, strict=False)]
-        lines.append("  ".join([*cells, row[-1]]).rstrip())
+        before = "  ".join([*cells, ""])
+        lines += _wrapped(before, row[-1])
     return "\n".join(lines)
+
+
+def _wrapped(before: str, last: str) -> list[str]:
+    """A row, its last cell in several lines where a terminal is not wide enough for one."""
+    seen = sys.stdout.isatty() or "COLUMNS" in os.environ  # elsewhere nothing need be folded
+    room = shutil.get_terminal_size().columns - len(before) if seen else 0
+    if not seen or len(last) <= room:
+        return [f"{before}{last}".rstrip()]
+    if room < _LEAST:
+        indent, width = 4 * " ", max(_LEAST, room + len(before) - 4)
+        below = textwrap.wrap(last, width, initial_indent=indent, subsequent_indent=indent)
+        return [before.rstrip(), *below]
+    first, *rest = textwrap.wrap(last, room)
+    return [f"{before}{first}", *(f"{' ' * len(before)}{line}" for line in rest)]
 
 
 def _row(plugin: Plugin) -> list[str]:

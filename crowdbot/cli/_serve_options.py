@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 import secrets
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from enum import StrEnum
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
+from crowdbot.cli._serve_arguments import ClockChoice, DistroChoice, MissedChoice
 from crowdbot.errors import MissingLibraryError, UsageError
 
 if TYPE_CHECKING:
@@ -18,30 +18,7 @@ if TYPE_CHECKING:
     from crowdbot.core.live.planner import Manner
     from crowdbot.core.live.services import Service
     from crowdbot.core.live.session import LiveSession
-
-
-class ClockChoice(StrEnum):
-    """Who says what time it is."""
-
-    internal = "internal"
-    external = "external"
-
-
-class DistroChoice(StrEnum):
-    """Distribution of ROS 2."""
-
-    humble = "humble"
-    jazzy = "jazzy"
-    kilted = "kilted"
-    lyrical = "lyrical"
-
-
-class MissedChoice(StrEnum):
-    """What a step does that gets no command."""
-
-    stop = "stop"
-    hold = "hold"
-    fail = "fail"
+    from crowdbot.core.recording.watcher import Watcher
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +89,7 @@ def listening(session: LiveSession, manner: Manner, listen: Listen) -> Iterator[
             doors.append(_zenoh(session, manner, listen.zenoh, listen))
             stack.callback(doors[-1].close)
         if listen.foxglove is not None:
-            doors.append(_foxglove(session, listen, listen.foxglove))
+            doors.append(_foxglove(session, manner, listen, listen.foxglove))
             stack.callback(doors[-1].close)
         yield doors
 
@@ -133,13 +110,13 @@ def _connected(session: LiveSession, manner: Manner, listen: Listen) -> Door:
     return door
 
 
-def _foxglove(session: LiveSession, listen: Listen, port: int) -> Door:
+def _foxglove(session: LiveSession, manner: Manner, listen: Listen, port: int) -> Door:
     needs("live", "foxglove")
     from crowdbot.core.live.foxglove_door import FoxgloveDoor
 
     if not _is_this_machine(listen.host):
         raise UsageError("--foxglove knows no token: it listens on this machine only")
-    door = FoxgloveDoor(session, listen.host, port, _services(session))
+    door = FoxgloveDoor(session, listen.host, port, _services(session), manner.epoch)
     _say(f"foxglove: ws://{listen.host}:{door.port}")
     return door
 
@@ -162,6 +139,7 @@ def _zenoh(session: LiveSession, manner: Manner, endpoint: str, listen: Listen) 
             domain=listen.domain,
             distro=listen.distro.value,
         ),
+        _services(session),
         resend=manner.lockstep,
         external_clock=manner.external_clock,
     )
@@ -193,6 +171,31 @@ def _rosbridge(session: LiveSession, manner: Manner, listen: Listen) -> Door:
     query = f"/?token={token}" if token else ""
     _say(f"rosbridge: ws://{shown}:{server.port}{query}; waiting for a client that drives /cmd_vel")
     return server
+
+
+def watchers_of(doors: Sequence[Door], meshcat: int | None) -> list[Watcher]:
+    """Who shows the truth of a run: Foxglove, and Meshcat at a port.
+
+    Raises:
+        InputError: the port cannot be had.
+    """
+    found = [cast("Watcher", door) for door in doors if hasattr(door, "sample")]
+    return found + meshcat_view(meshcat)
+
+
+def meshcat_view(port: int | None) -> list[Watcher]:
+    """Drake's Meshcat at a port; none without one.
+
+    Raises:
+        InputError: the port cannot be had.
+    """
+    if port is None:
+        return []
+    from crowdbot.core.sim.meshcat_view import MeshcatView
+
+    view = MeshcatView(port)
+    _say(f"meshcat: {view.url}")
+    return [view]
 
 
 def _services(session: LiveSession) -> dict[str, Service]:

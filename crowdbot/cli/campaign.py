@@ -18,7 +18,7 @@ from crowdbot.cli._options import (
     installed,
     planner_place,
 )
-from crowdbot.cli.simulate import RecordChoice
+from crowdbot.cli._run_arguments import RecordChoice
 
 if TYPE_CHECKING:
     from crowdbot.core.campaign.run import State

@@ -17,7 +17,7 @@ def export_ros(
     """
     from importlib.metadata import version
 
-    from crowdbot.core.recording.export.ros_package import layout, write_package
+    from crowdbot.core.recording.export.ros_package import LAYOUT, layout, write_package
     from crowdbot.core.support.atomic_write import atomic_write
     from crowdbot.errors import InputError
 
@@ -25,7 +25,7 @@ def export_ros(
         files = write_package(folder, version("crowdbot"))
     except OSError as error:
         raise InputError(f"{folder}: cannot be written: {error.strerror or error}") from error
-    path = folder / "crowdbot_layout.json"
+    path = folder / LAYOUT
     atomic_write(path, layout())
     for file in (*files, path):
         typer.echo(str(file))

@@ -28,6 +28,8 @@ _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 _ROOT = Path("runs")
 #: Wide enough for every table; a terminal wraps what it cannot hold.
 _WIDTH = 240
+#: Counts of runs without a value.
+_WITHOUT = ("undefined", "censored", "failed")
 #: What is shown of every planner when nobody asks for more.
 _HEADLINES = (
     *(s.metric for s in MAIN_SCORES),
@@ -283,12 +285,35 @@ def _print_table(lines: list[dict[str, Any]]) -> None:
 
     seen = sys.stdout.isatty() or "COLUMNS" in os.environ  # elsewhere nothing need be folded
     console = Console() if seen else Console(width=_WIDTH)
-    table = Table(box=SIMPLE_HEAD, pad_edge=False)
-    for name in lines[0]:
-        table.add_column(name, overflow="fold", no_wrap=not seen)
-    for line in lines:
-        table.add_row(*(Text(_shown(v)) for v in line.values()))
+
+    def table_of(rows: list[dict[str, Any]], padding: int = 1) -> Table:
+        table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, padding))
+        for name in rows[0]:
+            table.add_column(name, overflow="fold", no_wrap=not seen)
+        for row in rows:
+            table.add_row(*(Text(_shown(v)) for v in row.values()))
+        return table
+
+    table = table_of(lines)
+    if "mean" in lines[0] and Console(width=9999).measure(table).maximum > console.width:
+        table = table_of([_narrow(line) for line in lines], padding=0)
     console.print(table)
+
+
+def _narrow(line: dict[str, Any]) -> dict[str, Any]:
+    """A line of `_line` in fewer columns, for terminals that are not wide enough for all."""
+    told = {"metric", "variant", "unit", "mean", "low", "high", "n", *_WITHOUT}
+    variant = "" if line["variant"] == "corrected" else f" {line['variant']}"
+    unit = "" if line["unit"] == "1" else f", {line['unit']}"
+    ends = f" [{_shown(line['low'])}, {_shown(line['high'])}]" if line["low"] is not None else ""
+    missing = [f"{line[name]} {name}" for name in _WITHOUT if line[name]]
+    return {
+        **{name: value for name, value in line.items() if name not in (*told, "median")},
+        "metric": f"{line['metric']}{variant}{unit}",
+        "mean [95 %]": f"{_shown(line['mean'])}{ends}",
+        "median": line["median"],
+        "n": ", ".join([str(line["n"]), *missing]),
+    }
 
 
 def _shown(value: Any) -> str:

@@ -8,7 +8,6 @@ import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from enum import StrEnum
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Annotated
@@ -24,42 +23,36 @@ from crowdbot.cli._options import (
     installed,
     planner_place,
 )
+from crowdbot.cli._run_arguments import (
+    AsJson,
+    MeshcatPort,
+    OutRoot,
+    Overrides,
+    Record,
+    RecordChoice,
+    RunSeed,
+    ScenarioArgument,
+    SpecArgument,
+)
 
 if TYPE_CHECKING:
     from crowdbot.core.runs.request import Run
 
 
-class RecordChoice(StrEnum):
-    """Which sensors are simulated and recorded."""
-
-    all = "all"
-    used = "used"
-    none = "none"
-
-
 def simulate(
-    spec: Annotated[str, typer.Argument(metavar="SPEC", help="File, or name of a suite.")],
-    scenario: Annotated[
-        str | None, typer.Argument(metavar="[ID]", help="Scenario: id, unique prefix or pattern.")
-    ] = None,
+    spec: SpecArgument,
+    scenario: ScenarioArgument = None,
     planner: Annotated[
         str, typer.Option(metavar="NAME|FILE|file.py:Class", help="The planner under test.")
     ] = "dwa",
-    overrides: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change the scenario; repeatable."),
-    ] = None,
+    overrides: Overrides = None,
     planner_set: Annotated[
         list[str] | None,
         typer.Option(metavar="KEY=VALUE", help="Change the planner; repeatable."),
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Run seed: sensor noise and planner.")] = 0,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")] = Path(
-        "runs"
-    ),
-    record: Annotated[
-        RecordChoice, typer.Option(help="Sensors to simulate and record.")
-    ] = RecordChoice.all,
+    seed: RunSeed = 0,
+    out: OutRoot = Path("runs"),
+    record: Record = RecordChoice.all,
     references: Annotated[
         bool, typer.Option(help="Run robot_alone and crowd_alone where they are missing.")
     ] = True,
@@ -70,15 +63,17 @@ def simulate(
     ] = None,
     in_process: InProcess = None,
     planner_memory: PlannerMemory = MEMORY_GIB,
+    meshcat: MeshcatPort = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Simulate one scenario with one planner; record, score and replay it.
 
     Example: crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
     """
     from crowdbot.cli._progress import show_progress
+    from crowdbot.cli._serve_options import meshcat_view
     from crowdbot.core.scenarios.library import open_spec, pick
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
@@ -88,6 +83,7 @@ def simulate(
         expansion = open_spec(spec, registry, overrides or ())
         chosen = pick(expansion, scenario)
         simulate_it = _import_simulate()
+        watchers = meshcat_view(meshcat)
         with _interruptible() as stop, show_progress() as progress:
             run = simulate_it(
                 chosen,
@@ -109,6 +105,7 @@ def simulate(
                 on_hang=_end_hung_process,
                 step_budget=step_budget,
                 place=place,
+                watchers=watchers,
             )
     _print(run, as_json=as_json)
     if run.status == "planner_failed":

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import threading
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -37,12 +39,21 @@ def view(
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
+    foxglove: Annotated[
+        int | None,
+        typer.Option(min=0, max=65535, metavar="PORT", help="Play a run in Foxglove; 0: any port."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Path and facts as JSON.")] = False,
 ) -> None:
     """Draw a scenario from above, or find the replay page of a run. Nothing is simulated.
 
+    With --foxglove a run is played in Foxglove, whose controls search in it.
+
     Example: crowdbot view challenge-2020 counter-d0500-fast-c20-r05 --out scenario.png
     """
+    if foxglove is not None:
+        _play(Path(spec), foxglove)
+        return
     facts: dict[str, str] = {}
     if Path(spec).is_dir():
         if scenario is not None or out is not None or overrides:
@@ -58,6 +69,24 @@ def view(
         typer.echo(path)
     if open_:
         typer.launch(str(path.resolve()))
+
+
+def _play(run: Path, port: int) -> None:
+    """Serve a run's recording to Foxglove until Ctrl-C."""
+    from crowdbot.cli._serve_options import needs
+    from crowdbot.core.runs.run_directory import RECORDING
+
+    recording = run / RECORDING if run.is_dir() else run
+    if not recording.is_file():
+        raise InputError(f"{run}: --foxglove plays a run, or its recording; there is none")
+    needs("live", "foxglove")
+    from crowdbot.core.live.foxglove_playback import FoxglovePlayback
+
+    player = FoxglovePlayback(recording, "127.0.0.1", port)
+    typer.echo(f"foxglove: ws://127.0.0.1:{player.port}; Ctrl-C ends it", err=True)
+    with suppress(KeyboardInterrupt):
+        threading.Event().wait()
+    player.close()
 
 
 def _replay(run: Path) -> Path:

@@ -10,14 +10,27 @@ from contextlib import suppress
 from typing import Any, cast
 
 from crowdbot.core.live.commands import twist
+from crowdbot.core.live.foxglove_parameters import parameters, set_parameters
 from crowdbot.core.live.message import LiveMessage, Offer
 from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
+from crowdbot.core.recording import template
+from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.people import MARKER, PeopleMessages
+from crowdbot.core.recording.topics import Topic
+from crowdbot.core.recording.viewers import ARROWS_TYPE, PeopleArrows
+from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command
 from crowdbot.errors import InputError
 
 COMMAND = "/cmd_vel"
+#: What a spectator sees and a planner does not.
+SEEN = (
+    Offer(str(Topic.PEOPLE_MARKER), MARKER),
+    Offer(str(Topic.PEOPLE_MARKERS), ARROWS_TYPE),
+    Offer(str(Topic.POSE), "geometry_msgs/msg/PoseStamped"),
+)
 _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
 
@@ -25,9 +38,14 @@ class FoxgloveDoor:
     """A door for Foxglove; what it publishes on ``/cmd_vel`` drives, as from any client."""
 
     def __init__(
-        self, session: LiveSession, host: str, port: int, services: Mapping[str, Service]
+        self,
+        session: LiveSession,
+        host: str,
+        port: int,
+        services: Mapping[str, Service],
+        epoch: int = 0,
     ) -> None:
-        """Start to listen.
+        """Start to listen; ``epoch``: ns that are added to all stamps.
 
         Raises:
             InputError: the address cannot be had.
@@ -35,7 +53,10 @@ class FoxgloveDoor:
         import foxglove
         from foxglove.websocket import Capability
 
-        self._session = session
+        self._session, self._epoch = session, epoch
+        self._people: PeopleMessages | None = None
+        self._arrows: PeopleArrows | None = None
+        self._pose = template.pose_stamped("map")
         self._context = foxglove.Context()
         self._channels: dict[str, Any] = {}
         self._latest: dict[str, LiveMessage] = {}
@@ -46,7 +67,12 @@ class FoxgloveDoor:
                 name="crowdbot",
                 host=host,
                 port=port,
-                capabilities=[Capability.ClientPublish, Capability.Services, Capability.Time],
+                capabilities=[
+                    Capability.ClientPublish,
+                    Capability.Services,
+                    Capability.Time,
+                    Capability.Parameters,
+                ],
                 server_listener=cast(Any, self),
                 supported_encodings=["cdr", "json"],
                 services=[_offered(name, service) for name, service in services.items()],
@@ -67,13 +93,14 @@ class FoxgloveDoor:
 
         with self._lock:
             self._latest.clear()
-        for offer in offers:
+        for offer in (*offers, *SEEN):
             if offer.topic not in self._channels:
                 kind, text = offer.msgtype, ros.definition(offer.msgtype)
                 schema = Schema(name=kind, encoding="ros2msg", data=text)
                 self._channels[offer.topic] = Channel(
                     offer.topic, message_encoding="cdr", schema=schema, context=self._context
                 )
+        self._server.publish_parameter_values(parameters(self._session))
 
     def wants(self, topic: str) -> bool:
         """Whether somebody looks at a topic."""
@@ -92,6 +119,36 @@ class FoxgloveDoor:
         if messages:
             self._server.broadcast_time(max(m.ns for m in messages))
 
+    def begin(self, header: RecordingHeader) -> None:
+        """A run begins whose people are shown, as a watcher shows them."""
+        agents = header.agents
+        self._people = None if agents is None else PeopleMessages(agents)
+        self._arrows = None if agents is None else PeopleArrows(agents.id, agents.radius)
+
+    def sample(self, t: float, robot: Sequence[float] | None, agents: Array | None) -> None:
+        """Show the truth to who looks: people, and where the robot really is."""
+        ns = self._epoch + ros.nanoseconds(t)
+        for offer in SEEN:
+            if not self.wants(offer.topic):
+                continue
+            data = self._seen(offer.topic, ns, robot, agents)
+            if data is not None:
+                self._channels[offer.topic].log(data, log_time=ns)
+
+    def _seen(
+        self, topic: str, ns: int, robot: Sequence[float] | None, agents: Array | None
+    ) -> bytes | None:
+        if topic == Topic.POSE:
+            if robot is None:
+                return None
+            x, y, yaw = robot[:3]
+            return self._pose.fill(template.stamp(ns), template.two(x, y), template.turn(yaw))
+        if agents is None or self._people is None or self._arrows is None:
+            return None
+        if topic == Topic.PEOPLE_MARKERS:
+            return self._arrows.message(ns, agents)
+        return self._people.marker(ns, agents)
+
     def close(self) -> None:
         """End all connections."""
         self._server.stop()
@@ -105,6 +162,31 @@ class FoxgloveDoor:
         if message is not None:
             self._channels[channel.topic].log(message.data, log_time=message.ns)
         self._session.listened()
+
+    def on_get_parameters(
+        self, client: Any, param_names: list[str], request_id: str | None = None
+    ) -> list[Any]:
+        """What run it is."""
+        del client, request_id
+        return parameters(self._session, param_names)
+
+    def on_set_parameters(
+        self, client: Any, given: list[Any], request_id: str | None = None
+    ) -> list[Any]:
+        """Pause, begin again with another seed, or begin another scenario."""
+        from foxglove.websocket import StatusLevel
+
+        del client, request_id
+        problem = set_parameters(self._session, given)
+        if problem:
+            self._server.publish_status(problem, StatusLevel.Error)
+        return parameters(self._session)
+
+    def on_parameters_subscribe(self, param_names: list[str]) -> None:
+        """Nobody has to know."""
+
+    def on_parameters_unsubscribe(self, param_names: list[str]) -> None:
+        """Nobody has to know."""
 
     def on_unsubscribe(self, client: Any, channel: Any) -> None:
         """Nobody has to know."""

@@ -89,7 +89,8 @@ class LivePlanner:
             PlannerError: the same, where that is to end the run.
         """
         session, manner = self._session, self._manner
-        session.t = obs.t
+        session.t, session.pose = obs.t, obs.pose
+        session.twist = (*obs.twist, obs.vy)
         if session.must_stop:
             return Command(0.0, 0.0)
         if self._began == -math.inf:

@@ -16,8 +16,8 @@ from rosbags.typesys import Stores, get_typestore
 from crowdbot.core.recording import messages as ros
 
 Distro = Literal["humble", "jazzy", "kilted", "lyrical"]
-#: Kinds of entities in tokens: node, publisher, subscription.
-NODE, PUBLISHER, SUBSCRIPTION = "NN", "MP", "MS"
+#: Kinds of entities in tokens: node, publisher, subscription, server of a service.
+NODE, PUBLISHER, SUBSCRIPTION, SERVER = "NN", "MP", "MS", "SS"
 #: Humble knows no hashes of types.
 _NO_HASH = "TypeHashNotSupported"
 #: Reliable, keep last; depth 10 and volatile, or depth 1 and transient local.
@@ -36,9 +36,9 @@ class Ros2Topic:
 
     @property
     def dds_type(self) -> str:
-        """``package::msg::dds_::Name_``."""
-        package, _, name = self.msgtype.split("/")
-        return f"{package}::msg::dds_::{name}_"
+        """``package::msg::dds_::Name_``; of a service ``package::srv::dds_::Name_``."""
+        package, kind, name = self.msgtype.split("/")
+        return f"{package}::{kind}::dds_::{name}_"
 
     def key(self, domain: int) -> str:
         """The key under which its messages are put."""
@@ -64,6 +64,14 @@ def drivers_of(domain: int, name: str) -> str:
     return f"@ros2_lv/{domain}/*/*/*/{PUBLISHER}/*/*/*/{name.replace('/', '%')}/**"
 
 
+def read_attachment(data: bytes) -> tuple[int, bytes] | None:
+    """Number and sender of a request; None of bytes that are not an attachment."""
+    if len(data) != _ATTACHMENT.size:
+        return None
+    sequence, _, size, gid = _ATTACHMENT.unpack(data)
+    return (sequence, gid) if size == len(gid) else None
+
+
 def attachment(sequence: int, time_ns: int, gid: bytes) -> bytes:
     """What goes with each message: 33 bytes."""
     return _ATTACHMENT.pack(sequence, time_ns, len(gid), gid)
@@ -72,6 +80,11 @@ def attachment(sequence: int, time_ns: int, gid: bytes) -> bytes:
 def gid_of(token: str) -> bytes:
     """16 bytes that name a publisher."""
     return hashlib.blake2b(token.encode(), digest_size=16).digest()
+
+
+def service_hash_in(text: str, distro: Distro) -> str:
+    """The hash of a service in a distribution."""
+    return _NO_HASH if distro == "humble" else text
 
 
 @cache

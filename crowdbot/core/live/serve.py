@@ -14,6 +14,7 @@ from crowdbot.core.live.planner import LivePlanner, Manner, status
 from crowdbot.core.live.scene import LiveScene
 from crowdbot.core.live.session import LiveSession, State
 from crowdbot.core.planning.resolve import PlannerChoice
+from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import prepare
 from crowdbot.core.runs.request import Request, Run
@@ -32,6 +33,7 @@ class LiveServe:
         scenarios: in their order; ``first`` is the one to begin with.
         request: makes the request of a scenario's run from planner and seed.
         stay: whether to wait for what clients want when a run is complete.
+        watchers: show what a planner does not see.
         on_run: called with each complete run.
     """
 
@@ -44,6 +46,7 @@ class LiveServe:
     first: int = 0
     seed: int = 0
     stay: bool = False
+    watchers: Sequence[Watcher] = ()
     on_run: Callable[[Run], object] = lambda _: None
 
 
@@ -59,6 +62,7 @@ def serve_runs(service: LiveServe) -> Run:
     """
     session, index = service.session, service.first
     session.seed = service.seed
+    session.scenarios = [scenario.id for scenario in service.scenarios]
     last: Run | None = None
     with _quick_switches():
         while True:
@@ -72,6 +76,8 @@ def serve_runs(service: LiveServe) -> Run:
                 return _ended(last)
             if wanted == "next":
                 index = (index + 1) % len(service.scenarios)
+            elif wanted == "load":
+                index = session.scenarios.index(session.wanted)
 
 
 def _ended(last: Run | None) -> Run:
@@ -102,8 +108,10 @@ def _serve_one(service: LiveServe, scenario: Scenario) -> Run | None:
     )
     manner = service.manner
     request = service.request(scenario, choice, session.seed)
-    request = replace(request, force=True, stop=lambda: session.must_stop)
+    stop = lambda: session.must_stop  # noqa: E731
+    request = replace(request, force=True, stop=stop, watchers=service.watchers)
     scene.append(_scene(request))
+    session.robot = scene[0].name
     session.begin(scenario.id, session.seed)
     state: State = "ended"
     try:

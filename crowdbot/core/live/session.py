@@ -8,13 +8,13 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 from crowdbot.core.types.motion import Command
 
-Request = Literal["", "reset", "next"]
+Request = Literal["", "reset", "next", "load"]
 State = Literal["waiting", "running", "paused", "arrived", "timeout", "planner_failed", "ended"]
 #: How often a wait looks whether the run was interrupted, s.
 _LOOK = 0.05
@@ -57,6 +57,8 @@ class LiveSession:
         interrupted: whether the user wants to end.
         counts: of the run that is going on.
         state, scenario, run, seed, t: of the same.
+        robot, pose, twist: of the same: name of the robot; x, y, yaw and v, w, vy by odometry.
+        scenarios: ids of those that can be loaded; ``wanted`` is the one that somebody chose.
     """
 
     interrupted: Callable[[], bool] = lambda: False
@@ -66,6 +68,11 @@ class LiveSession:
     run: int = 0
     seed: int = 0
     t: float = 0.0
+    robot: str = ""
+    pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    twist: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    scenarios: Sequence[str] = ()
+    wanted: str = ""
     _changed: threading.Condition = field(default_factory=threading.Condition)
     _driver: Hashable | None = None
     _asked: _Asked | None = None
@@ -260,6 +267,12 @@ class LiveSession:
             self._request = request
             self.seed = self.seed if seed is None else seed
             self._changed.notify_all()
+
+    def load(self, scenario: str) -> None:
+        """End the run and begin one of another scenario."""
+        with self._changed:
+            self.wanted = scenario
+        self.ask_for("load")
 
     @property
     def paused(self) -> bool:

@@ -1,29 +1,41 @@
 """The standard services of simulators for ROS 2, as far as they make sense here.
 
-Source: https://github.com/ros-simulation/simulation_interfaces, version 2.
+Source: https://github.com/ros-simulation/simulation_interfaces, version 2.1.0.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Awaitable, Callable
 
-from crowdbot.core.live.services import Fields, Service, Values, steps_taken, whole
+from crowdbot.core.live.services import Service, Values, steps_taken, whole
 from crowdbot.core.live.session import LiveSession
+from crowdbot.core.live.simulation_types import PACKAGE, SERVICES
+from crowdbot.core.recording.messages import half_turn
 from crowdbot.errors import InputError
 
-PACKAGE = "simulation_interfaces"
-UNSUPPORTED, OK, INCORRECT_STATE, FAILED = 0, 1, 3, 4
+UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = 0, 1, 2, 3, 4
+#: Of LoadWorld: neither a resource nor a text is given.
+NO_RESOURCE = 102
 STOPPED, PLAYING, PAUSED, QUITTING = 0, 1, 2, 3
-#: Of SimulatorFeatures: reset, get and set the state, pause, take one step, or several.
-FEATURES = (20, 24, 25, 26, 31, 32)
+#: Of SimulatorFeatures: state of an entity; reset; state of the simulation, to read, to set, to
+#: pause; one step, several; loading of worlds, which one it is, which there are.
+FEATURES = (10, 20, 24, 25, 26, 31, 32, 40, 43, 44)
 #: Scopes of a reset: the default, time, state, what was spawned, all. A part is not possible.
 _WHOLE = (0, 255)
-_STATE: Fields = {"state": f"{PACKAGE}/SimulationState"}
-_RESULT: Fields = {"result": f"{PACKAGE}/Result"}
+#: Nobody has a longer pattern for a single name.
+_LONGEST_FILTER = 100
+Call = Callable[[Values], Awaitable[Values]]
 
 
 def simulation_services(session: LiveSession) -> dict[str, Service]:
     """The services, by name."""
+    calls = {**_course(session), **_entities(session), **_worlds(session)}
+    return {f"/{_snake(name)}": _service(name, call) for name, call in calls.items()}
+
+
+def _course(session: LiveSession) -> dict[str, Call]:
+    """Those about the course of a simulation."""
 
     async def reset(values: Values) -> Values:
         if whole(values, "scope", 0, 255, default=0) not in _WHOLE:
@@ -42,8 +54,7 @@ def simulation_services(session: LiveSession) -> dict[str, Service]:
         return {"state": {"state": _state(session)}, **_result(OK)}
 
     async def set_state(values: Values) -> Values:
-        wanted = values.get("state")
-        state = whole(dict(wanted) if isinstance(wanted, dict) else {}, "state", 0, 255)
+        state = whole(_inside(values, "state"), "state", 0, 255)
         if state not in (PLAYING, PAUSED):
             return _result(UNSUPPORTED, "the simulation can be playing or paused")
         session.pause(state == PAUSED)
@@ -55,21 +66,71 @@ def simulation_services(session: LiveSession) -> dict[str, Service]:
         return {"features": found}
 
     return {
-        "/reset_simulation": _service("ResetSimulation", {"scope": "uint8"}, _RESULT, reset),
-        "/step_simulation": _service("StepSimulation", {"steps": "uint64"}, _RESULT, step),
-        "/get_simulation_state": _service(
-            "GetSimulationState", {}, {**_STATE, **_RESULT}, get_state
-        ),
-        "/set_simulation_state": _service("SetSimulationState", _STATE, _RESULT, set_state),
-        "/get_simulator_features": _service(
-            "GetSimulatorFeatures", {}, {"features": f"{PACKAGE}/SimulatorFeatures"}, features
-        ),
+        "ResetSimulation": reset,
+        "StepSimulation": step,
+        "GetSimulationState": get_state,
+        "SetSimulationState": set_state,
+        "GetSimulatorFeatures": features,
     }
 
 
-def _service(
-    name: str, request: Fields, response: Fields, call: Callable[[Values], Awaitable[Values]]
-) -> Service:
+def _entities(session: LiveSession) -> dict[str, Call]:
+    """Those about what is there: of the robot what it knows itself, of people nothing."""
+
+    async def entities(values: Values) -> Values:
+        pattern = _inside(values, "filters").get("filter", "")
+        if not isinstance(pattern, str) or len(pattern) > _LONGEST_FILTER:
+            raise InputError("'filter' must be a text of at most 100 characters")
+        try:
+            found = [session.robot] if re.search(pattern, session.robot) else []
+        except re.error as error:
+            raise InputError(f"'filter' is not a regular expression: {error}") from error
+        return {**_result(OK), "entities": found}
+
+    async def entity_state(values: Values) -> Values:
+        name = values.get("entity", "")
+        if name != session.robot:
+            return _result(NOT_FOUND, f"no entity '{str(name)[:80]}'; people are not told")
+        return {**_result(OK), "state": _entity_state(session)}
+
+    async def spawn(values: Values) -> Values:
+        del values
+        return _result(UNSUPPORTED, "the scenario says who is there; nothing can be spawned")
+
+    return {"GetEntities": entities, "GetEntityState": entity_state, "SpawnEntity": spawn}
+
+
+def _worlds(session: LiveSession) -> dict[str, Call]:
+    """Those about worlds, which are the scenarios of a suite."""
+
+    async def available(values: Values) -> Values:
+        if _inside(values, "filter").get("tags"):
+            return _result(UNSUPPORTED, "scenarios have no tags")
+        return {**_result(OK), "worlds": [_world(name) for name in session.scenarios]}
+
+    async def current(values: Values) -> Values:
+        del values
+        return {**_result(OK), "world": _world(session.scenario)}
+
+    async def load(values: Values) -> Values:
+        resource = _inside(values, "world_resource")
+        name = resource.get("uri", "")
+        if not name:
+            text = "'uri' is the id of a scenario; a world cannot be given as text"
+            return _result(UNSUPPORTED if resource.get("resource_string") else NO_RESOURCE, text)
+        if name not in session.scenarios:
+            return _result(NOT_FOUND, f"no scenario '{str(name)[:80]}' in the suite")
+        session.load(name)
+        return {**_result(OK), "world": _world(name)}
+
+    return {"GetAvailableWorlds": available, "GetCurrentWorld": current, "LoadWorld": load}
+
+
+def _snake(name: str) -> str:
+    return re.sub(r"(?<!^)([A-Z])", r"_\1", name).lower()
+
+
+def _service(name: str, call: Call) -> Service:
     """A service whose errors are results, as its type has them."""
 
     async def answer(values: Values) -> Values:
@@ -78,12 +139,46 @@ def _service(
         except InputError as error:
             return _result(FAILED, str(error))
 
+    request, response = SERVICES[name]
     kind = f"{PACKAGE}/srv/{name}"
     return Service(kind=kind, request=request, response=response, call=answer)
 
 
+def _inside(values: Values, name: str) -> Values:
+    """A field that is an object; none where it is not."""
+    found = values.get(name)
+    return dict(found) if isinstance(found, dict) else {}
+
+
 def _result(code: int, text: str = "") -> Values:
     return {"result": {"result": code, "error_message": text}}
+
+
+def _world(scenario: str) -> Values:
+    return {
+        "name": scenario,
+        "world_resource": {"uri": scenario, "resource_string": ""},
+        "description": "",
+        "tags": [],
+    }
+
+
+def _entity_state(session: LiveSession) -> Values:
+    """Pose and twist by odometry, in the frame ``odom``; accelerations are not known."""
+    x, y, yaw = session.pose
+    v, w, vy = session.twist
+    z, turn = half_turn(yaw)
+    sec, nanosec = divmod(round(session.t * 1e9), 10**9)
+    nothing = {"x": 0.0, "y": 0.0, "z": 0.0}
+    return {
+        "header": {"stamp": {"sec": sec, "nanosec": nanosec}, "frame_id": "odom"},
+        "pose": {
+            "position": {"x": x, "y": y, "z": 0.0},
+            "orientation": {"x": 0.0, "y": 0.0, "z": z, "w": turn},
+        },
+        "twist": {"linear": {"x": v, "y": vy, "z": 0.0}, "angular": {**nothing, "z": w}},
+        "acceleration": {"linear": nothing, "angular": nothing},
+    }
 
 
 def _state(session: LiveSession) -> int:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import itertools
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from crowdbot.core.live.message import LiveMessage, Offer
 from crowdbot.core.live.ros2_keys import (
     PUBLISHER,
+    SERVER,
     SUBSCRIPTION,
     Distro,
     Ros2Topic,
@@ -21,7 +23,9 @@ from crowdbot.core.live.ros2_keys import (
     in_distro,
     node_token,
 )
+from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
+from crowdbot.core.live.zenoh_services import ZenohServices
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.types.motion import Command
 from crowdbot.errors import InputError
@@ -72,7 +76,13 @@ class ZenohDoor:
     """A door that speaks what ROS 2 nodes with rmw_zenoh speak."""
 
     def __init__(
-        self, session: LiveSession, network: Network, *, resend: bool = True, external_clock: bool
+        self,
+        session: LiveSession,
+        network: Network,
+        services: Mapping[str, Service] = MappingProxyType({}),
+        *,
+        resend: bool = True,
+        external_clock: bool,
     ) -> None:
         """Connect.
 
@@ -93,6 +103,10 @@ class ZenohDoor:
         self._hear(COMMAND, STAMPED, self._on_stamped)
         if external_clock:
             self._hear(CLOCK, _CLOCK_TYPE, self._on_clock)
+        self._servers = ZenohServices(self._zenoh)
+        for name, service in services.items():
+            topic = self._servers.serve(name, service, network.domain, network.distro)
+            self._say_there(topic, SERVER)
         fits = drivers_of(network.domain, COMMAND)
         self._kept.append(live.declare_subscriber(fits, self._on_driver, history=True))
 
@@ -124,6 +138,7 @@ class ZenohDoor:
 
     def close(self) -> None:
         """Leave."""
+        self._servers.close()
         if not self._zenoh.is_closed():
             self._zenoh.close()
 
@@ -150,9 +165,12 @@ class ZenohDoor:
     # ----------------------------------------------------------------------- zenoh's threads
     def _hear(self, name: str, msgtype: str, heard: Any) -> None:
         topic = self._topic(name, msgtype)
-        domain = self._network.domain
-        text = topic.token(domain, self._name, next(self._entities), SUBSCRIPTION, _NODE)
-        self._kept.append(self._zenoh.declare_subscriber(topic.key(domain), heard))
+        self._kept.append(self._zenoh.declare_subscriber(topic.key(self._network.domain), heard))
+        self._say_there(topic, SUBSCRIPTION)
+
+    def _say_there(self, topic: Ros2Topic, kind: str) -> None:
+        domain, number = self._network.domain, next(self._entities)
+        text = topic.token(domain, self._name, number, kind, _NODE)
         self._kept.append(self._zenoh.liveliness().declare_token(text))
 
     def _on_listener(self, found: _Publisher, status: Any) -> None:

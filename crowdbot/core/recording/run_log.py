@@ -6,6 +6,7 @@ The recording is the run: scores, replay and hashes are all computed from what i
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.recording import RecordingWriter
+from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotState
@@ -28,6 +30,7 @@ class RunLog:
         *,
         sideways: bool = False,
         aim: int = s.GOAL_X,
+        watchers: Sequence[Watcher] = (),
     ) -> None:
         """Start a log.
 
@@ -36,7 +39,9 @@ class RunLog:
             agent_id: (N,) numbers of the people.
             sideways: whether the robot's velocity may point elsewhere than it looks.
             aim: column of the crowd's state where the point begins to which people walk.
+            watchers: see each sample, too.
         """
+        self._watchers = watchers
         self.writer = writer
         self._sideways = sideways
         self._id = agent_id
@@ -60,7 +65,10 @@ class RunLog:
             jump = people[:, s.JUMPS] != self._jumps
             self._jumps = people[:, s.JUMPS].copy()
             goals = people[:, self._aim : self._aim + 2].T.copy()
-        self.writer.state(t, None if robot is None else self._row(robot), agents, jump, goals=goals)
+        row = None if robot is None else self._row(robot)
+        self.writer.state(t, row, agents, jump, goals=goals)
+        for watcher in self._watchers:
+            watcher.sample(t, row, agents)
 
     @property
     def events(self) -> int:

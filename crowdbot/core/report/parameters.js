@@ -59,7 +59,8 @@ function drawPanel(axis, a, rows, { y, width }, planners) {
   }
   picture.append(label(linesOf(measureOf(report.series[state.series]), 34, 1)[0], 2, 12, "axis"));
   const letters = Math.max(5, Math.floor((width - left - right) / rows.length / 6.2));
-  rows.forEach((row, l) => linesOf(row.word, letters, 2).forEach((text, n) =>
+  const fits = rows.every((row) => !linesOf(row.word, letters, 2).some((line) => line.endsWith("…")));
+  rows.forEach((row, l) => linesOf(fits ? row.word : row.text, letters, 2).forEach((text, n) =>
     picture.append(label(text, x(l), height - bottom + 16 + 13 * n, "label", "middle"))));
   picture.append(label(axis.title, left + (width - left - right) / 2, height - 6, "axis", "middle"));
   planners.forEach((planner, i) => {

@@ -11,6 +11,7 @@ from typing import Any, Literal
 
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
@@ -136,6 +137,7 @@ class Request:
         stop: asked several times a simulated second; True ends the run as interrupted.
         on_hang: called when a planner cannot be interrupted; should end the process.
         step_budget: seconds of wall time that a planner step may take; None sets no limit.
+        watchers: show the run, not its references, while it goes on.
     """
 
     scenario: Scenario
@@ -157,6 +159,7 @@ class Request:
     stop: Callable[[], bool] = lambda: False
     on_hang: Callable[[], object] | None = None
     step_budget: float | None = None
+    watchers: Sequence[Watcher] = ()
 
     @property
     def pinned(self) -> bool:

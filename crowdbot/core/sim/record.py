@@ -46,6 +46,8 @@ def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = No
     )
     check_start(built.parts, built.model, built.task.start, engine, built.name)
     header = replace(_header(built, engine), hashes=setup.hashes)
+    for watcher in setup.watchers:
+        watcher.begin(header)
     with (
         recording(setup, header, engine, _description(setup, built)) as (writer, ending),
         _watchdog(setup) as watchdog,
@@ -53,7 +55,7 @@ def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = No
     ):
         sideways = isinstance(built.model.drive, HolonomicDrive)
         aim = {} if engine is None else {"aim": engine.aim}
-        log = RunLog(writer, ids(engine), sideways=sideways, **aim)
+        log = RunLog(writer, ids(engine), sideways=sideways, watchers=setup.watchers, **aim)
         host = host or stack.enter_context(_host(setup, built, watchdog))
         if engine is not None:
             engine.advance(engine.initial_state())  # compiles kernels before the clock starts

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,6 +19,7 @@ from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter
 from crowdbot.core.recording.candidates import Choosers
 from crowdbot.core.recording.run_log import RunLog
+from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.outcome import INTERRUPTED, TIMEOUT, Outcome, Progress
 from crowdbot.core.sim.build_crowd import build_crowd
@@ -45,6 +46,7 @@ class RunSetup:
     on_hang: Callable[[], object] | None
     step_budget: float | None = None
     hashes: Mapping[str, str] = field(default_factory=dict)
+    watchers: Sequence[Watcher] = ()
 
 
 def record_crowd(setup: RunSetup, duration: float) -> Outcome:

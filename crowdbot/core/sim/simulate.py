@@ -12,6 +12,7 @@ from crowdbot.core.planning.given_planner import GivenPlanner, choose_planner
 from crowdbot.core.planning.watchdog import STEP_LIMIT
 from crowdbot.core.recording import read_run
 from crowdbot.core.recording.scans import REPLAY_RATE, ReplayScan
+from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.replay import write_replay
 from crowdbot.core.robots.look import seen_from_above
@@ -71,6 +72,7 @@ def simulate(
     on_hang: Callable[[], object] | None = None,
     step_budget: float | None = None,
     place: PlannerPlace = ANYWHERE,
+    watchers: Sequence[Watcher] = (),
 ) -> Run:
     """Simulate and score one run; a complete run with the same hashes is reused.
 
@@ -85,6 +87,7 @@ def simulate(
         suite, record, references, force, metrics, axes, words, position, replay: as in
             `Request`.
         progress, stop, on_hang, step_budget: as in `Request`.
+        watchers: as in `Request`.
         place: where the planner runs: by default in a process of its own, but for crowdbot's.
 
     Raises:
@@ -122,6 +125,7 @@ def simulate(
         stop=stop,
         on_hang=on_hang,
         step_budget=step_budget,
+        watchers=watchers,
     )
     return make_run(request, prepare(scenario, registry, references=request.references), keep)
 
@@ -266,4 +270,5 @@ def _setup(
         on_hang=request.on_hang,
         step_budget=request.step_budget,
         hashes=provenance.recording_hashes(provenance.digest(identity), identity),
+        watchers=request.watchers,
     )

@@ -8,10 +8,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
 import pytest
 from websockets.sync.client import ClientConnection, connect
 
 from crowdbot.core.live.foxglove_door import FoxgloveDoor
+from crowdbot.core.live.foxglove_parameters import set_parameters
 from crowdbot.core.live.message import Offer, told
 from crowdbot.core.live.services import services
 from crowdbot.core.live.session import LiveSession
@@ -19,6 +21,7 @@ from crowdbot.core.recording import messages as ros
 from crowdbot.core.types.motion import Command
 from crowdbot.errors import InputError
 from tests.core.live.live_cases import AT_MOST, clock, until
+from tests.core.recording.recording_cases import header_of, random_run
 
 TWIST = {"linear": {"x": 0.25, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": -0.5}}
 
@@ -124,3 +127,61 @@ def test_services_reset_and_pause() -> None:
 def test_an_address_that_is_taken_is_told() -> None:
     with _both() as (door, session, _), pytest.raises(InputError, match="cannot listen"):
         FoxgloveDoor(session, "127.0.0.1", door.port, {})
+
+
+def test_parameters_say_and_set() -> None:
+    with _both() as (_, session, socket):
+        session.scenario, session.scenarios = "one", ["one", "two"]
+        socket.send(json.dumps({"op": "getParameters", "parameterNames": [], "id": "a"}))
+        values = {p["name"]: p.get("value") for p in _hear(socket, "parameterValues")["parameters"]}
+        while not values:
+            found = _hear(socket, "parameterValues")["parameters"]
+            values = {p["name"]: p.get("value") for p in found}
+        assert values["scenario"] in ("one", "")
+        wish = {"op": "setParameters", "parameters": [{"name": "paused", "value": True}]}
+        socket.send(json.dumps({**wish, "id": "b"}))
+        until(lambda: session.paused)
+        wish["parameters"] = [{"name": "scenario", "value": "two"}, {"name": "seed", "value": 5}]
+        socket.send(json.dumps(wish))
+        until(lambda: session.seed == 5)
+        assert session.wanted == "two"
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("paused", 1, "true or false"),
+        ("seed", -1, "whole number"),
+        ("seed", 0.5, "whole number"),
+        ("scenario", "none", "no scenario 'none'"),
+        ("state", "arrived", "cannot be set"),
+    ],
+)
+def test_a_parameter_that_is_wrong_is_told(name: str, value: Any, message: str) -> None:
+    class Given:
+        def __init__(self) -> None:
+            self.name = name
+
+        def get_value(self) -> Any:
+            return value
+
+    session = LiveSession(scenarios=["one"])
+    assert message in set_parameters(session, [Given()])
+    assert (session.paused, session.take_request()) == (False, "")
+
+
+def test_a_spectator_sees_people_and_the_true_pose() -> None:
+    run = random_run()
+    with _both() as (door, _, socket):
+        door.begin(header_of(run))
+        assert run.robot is not None
+        assert run.agents is not None
+        ids: dict[str, int] = {}
+        while "/people_markers" not in ids or "/robot/pose" not in ids:
+            ids |= {c["topic"]: c["id"] for c in _hear(socket, "advertise")["channels"]}
+        _subscribe(socket, 1, ids["/people_markers"])
+        until(lambda: door.wants("/people_markers"))
+        door.sample(0.5, run.robot[0].tolist(), run.agents[0])
+        data = _data(socket, 1)[13:]
+        message = ros.from_cdr(data, "visualization_msgs/msg/MarkerArray")
+        assert len(message.markers) == 1 + int(np.isfinite(run.agents[0, 0]).sum())

@@ -60,4 +60,30 @@ def test_what_is_not_possible_is_told() -> None:
 
 def test_features_are_listed() -> None:
     found = _call(LiveSession(), "/get_simulator_features")["features"]
-    assert found["features"] == [20, 24, 25, 26, 31, 32]
+    assert found["features"] == [10, 20, 24, 25, 26, 31, 32, 40, 43, 44]
+
+
+def test_entities_are_the_robot_alone() -> None:
+    session = LiveSession(robot="robot")
+    assert _call(session, "/get_entities")["entities"] == ["robot"]
+    assert _call(session, "/get_entities", {"filters": {"filter": "^rob"}})["entities"] == ["robot"]
+    assert _call(session, "/get_entities", {"filters": {"filter": "x"}})["entities"] == []
+    assert _code(_call(session, "/get_entities", {"filters": {"filter": "("}})) == 4
+    session.pose, session.twist, session.t = (1.0, 2.0, 0.0), (0.5, 0.1, 0.0), 1.5
+    answer = _call(session, "/get_entity_state", {"entity": "robot"})
+    assert answer["state"]["pose"]["position"] == {"x": 1.0, "y": 2.0, "z": 0.0}
+    assert answer["state"]["header"]["stamp"] == {"sec": 1, "nanosec": 500_000_000}
+    assert _code(_call(session, "/get_entity_state", {"entity": "person"})) == 2
+    assert _code(_call(session, "/spawn_entity", {"name": "x"})) == 0
+
+
+def test_worlds_are_the_scenarios() -> None:
+    session = LiveSession(scenarios=["one", "two"], scenario="one")
+    worlds = _call(session, "/get_available_worlds")["worlds"]
+    assert [w["world_resource"]["uri"] for w in worlds] == ["one", "two"]
+    assert _call(session, "/get_current_world")["world"]["name"] == "one"
+    assert _code(_call(session, "/load_world", {"world_resource": {"uri": "none"}})) == 2
+    assert _code(_call(session, "/load_world", {})) == 102
+    assert session.take_request() == ""
+    assert _code(_call(session, "/load_world", {"world_resource": {"uri": "two"}})) == 1
+    assert (session.take_request(), session.wanted) == ("load", "two")

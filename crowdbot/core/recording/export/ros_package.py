@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import json
+from importlib.resources import files
 from pathlib import Path
-from typing import Any
 
 from crowdbot.core.recording.definitions import DEFINITIONS, LIVE_DEFINITIONS
 
 NAME = "crowdbot_msgs"
+#: Ships with the package.
+LAYOUT = "crowdbot_layout.json"
 SERVICES = {
     "Step": "uint32 steps\n---\nbool success\nstring message",
     "SetSeed": "int64 seed\n---\nbool success\nstring message",
@@ -65,46 +66,4 @@ def write_package(folder: Path, version: str) -> list[Path]:
 
 def layout() -> str:
     """A layout for Foxglove and Lichtblick, which hide all topics that no layout names."""
-    shown: dict[str, Any] = {"visible": True}
-    topics = {
-        name: dict(shown)
-        for name in (
-            "/walls_marker", "/map", "/goal_zone", "/goal_pose", "/pedestrians_marker",
-            "/people_markers", "/contact_markers", "/robot/pose", "/robot/path", "/robot_path",
-            "/scan", "/front/scan", "/rear/scan",
-        )
-    }  # fmt: skip
-    scene = {
-        "cameraState": {"perspective": True, "distance": 30, "phi": 45, "thetaOffset": 90},
-        "followMode": "follow-position",
-        "followTf": "base_link",
-        "scene": {"transforms": {"labelSize": 0}},
-        "transforms": {},
-        "topics": topics,
-        "layers": {
-            "grid": {"layerId": "foxglove.Grid", "visible": True, "size": 60, "divisions": 60},
-            "robot": {
-                "layerId": "foxglove.Urdf", "visible": True, "sourceType": "topic",
-                "topic": "/robot_description",
-            },
-        },
-    }  # fmt: skip
-    speed = {
-        "paths": [
-            {"value": "/cmd_vel.linear.x", "enabled": True, "timestampMethod": "receiveTime"},
-            {"value": "/odom.twist.twist.linear.x", "enabled": True,
-             "timestampMethod": "receiveTime"},
-        ],
-        "showLegend": True,
-    }  # fmt: skip
-    document = {
-        "configById": {"3D!scene": scene, "Plot!speed": speed},
-        "globalVariables": {},
-        "userNodes": {},
-        "playbackConfig": {"speed": 1},
-        "layout": {
-            "direction": "column", "first": "3D!scene", "second": "Plot!speed",
-            "splitPercentage": 75,
-        },
-    }  # fmt: skip
-    return json.dumps(document, indent=2) + "\n"
+    return (files(__package__) / LAYOUT).read_text(encoding="utf-8")

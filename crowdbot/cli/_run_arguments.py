@@ -1,0 +1,38 @@
+"""Arguments that commands share which make a run."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+class RecordChoice(StrEnum):
+    """Which sensors are simulated and recorded."""
+
+    all = "all"
+    used = "used"
+    none = "none"
+
+
+SpecArgument = Annotated[str, typer.Argument(metavar="SPEC", help="File, or name of a suite.")]
+ScenarioArgument = Annotated[
+    str | None, typer.Argument(metavar="[ID]", help="Scenario: id, unique prefix or pattern.")
+]
+Overrides = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change the scenario; repeatable."),
+]
+RunSeed = Annotated[int, typer.Option(min=0, help="Run seed: sensor noise and planner.")]
+OutRoot = Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")]
+Record = Annotated[RecordChoice, typer.Option(help="Sensors to simulate and record.")]
+AsJson = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
+MeshcatPort = Annotated[
+    int | None,
+    typer.Option(
+        "--meshcat", min=1024, max=65535, metavar="PORT",
+        help="Show the run in a browser while it goes on.",
+    ),
+]  # fmt: skip

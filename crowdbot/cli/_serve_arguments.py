@@ -1,0 +1,83 @@
+"""Arguments of ``crowdbot serve``."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Annotated
+
+import typer
+
+
+class ClockChoice(StrEnum):
+    """Who says what time it is."""
+
+    internal = "internal"
+    external = "external"
+
+
+class DistroChoice(StrEnum):
+    """Distribution of ROS 2."""
+
+    humble = "humble"
+    jazzy = "jazzy"
+    kilted = "kilted"
+    lyrical = "lyrical"
+
+
+class MissedChoice(StrEnum):
+    """What a step does that gets no command."""
+
+    stop = "stop"
+    hold = "hold"
+    fail = "fail"
+
+
+Host = Annotated[
+    str, typer.Option(help="Address to listen on; one that others reach needs a token.")
+]
+Port = Annotated[
+    int, typer.Option(min=0, max=65535, help="Port of the rosbridge server; 0: a free one.")
+]
+Token = Annotated[
+    str | None, typer.Option(help="What clients must know; default on the network: a new one.")
+]
+Connect = Annotated[
+    str | None, typer.Option(metavar="ws://HOST:PORT", help="Be a client of this rosbridge server.")
+]
+Stamped = Annotated[
+    bool, typer.Option("--stamped", help="With --connect: commands are TwistStamped.")
+]
+Zenoh = Annotated[
+    str | None,
+    typer.Option(metavar="tcp/HOST:PORT", help="ROS 2 topics, too, through this zenoh router."),
+]
+ZenohRouter = Annotated[
+    bool, typer.Option("--zenoh-router", help="Be the zenoh router at that endpoint.")
+]
+Domain = Annotated[int, typer.Option(min=0, max=232, help="ROS_DOMAIN_ID.")]
+Distro = Annotated[DistroChoice, typer.Option(help="ROS 2 distribution of the nodes.")]
+Foxglove = Annotated[
+    int | None,
+    typer.Option(min=0, max=65535, metavar="PORT", help="A live view for Foxglove as well."),
+]
+Rate = Annotated[
+    float | None,
+    typer.Option(metavar="FACTOR", help="Keep to real time, times FACTOR; else lockstep."),
+]
+Clock = Annotated[ClockChoice, typer.Option(help="Who says what time it is.")]
+Budget = Annotated[float, typer.Option(metavar="SECONDS", help="Lockstep: how long a step waits.")]
+Missed = Annotated[MissedChoice, typer.Option(help="What a step without a command does.")]
+Hold = Annotated[
+    float, typer.Option(metavar="SECONDS", help="Real time: how long a command counts.")
+]
+Wait = Annotated[
+    float | None,
+    typer.Option(metavar="SECONDS", help="How long to wait for a client; default: for ever."),
+]
+Epoch = Annotated[int, typer.Option(min=0, metavar="SECONDS", help="Time at which stamps begin.")]
+RosVersion = Annotated[int, typer.Option(min=1, max=2, help="ROS 1 or ROS 2 messages.")]
+PlannerName = Annotated[str, typer.Option(help="Name of the planner that drives.")]
+Stay = Annotated[bool, typer.Option("--stay", help="Go on after a run: reset, next_scenario.")]
+References = Annotated[
+    bool, typer.Option(help="Drive alone first, and run people alone, to compare with.")
+]

@@ -1,0 +1,58 @@
+"""Parameters of a live run in Foxglove: what run it is, and three that can be set."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from crowdbot.core.live.services import whole
+from crowdbot.core.live.session import LiveSession
+from crowdbot.errors import InputError
+
+_MOST_SEED = 2**63 - 1
+
+
+def parameters(session: LiveSession, names: Iterable[str] = ()) -> list[Any]:
+    """As foxglove-sdk has them; of no names all."""
+    from foxglove.websocket import Parameter
+
+    values: dict[str, Any] = {
+        "scenario": session.scenario,
+        "seed": session.seed,
+        "paused": session.paused,
+        "state": session.state,
+        "robot": session.robot,
+    }
+    wanted = list(names) or list(values)
+    return [Parameter(name, value=values[name]) for name in wanted if name in values]
+
+
+def set_parameters(session: LiveSession, given: Iterable[Any]) -> str:
+    """Do what parameters say: ``paused``, ``seed`` (begins again), ``scenario`` (begins another).
+
+    Returns:
+        What cannot be done; empty where all was.
+    """
+    problems = []
+    for parameter in given:
+        try:
+            _set(session, str(parameter.name), parameter.get_value())
+        except InputError as error:
+            problems.append(str(error))
+    return "; ".join(problems)
+
+
+def _set(session: LiveSession, name: str, value: object) -> None:
+    if name == "paused":
+        if not isinstance(value, bool):
+            raise InputError("'paused' is true or false")
+        session.pause(value)
+    elif name == "seed":
+        number = int(value) if isinstance(value, float) and value.is_integer() else value
+        session.ask_for("reset", seed=whole({"seed": number}, "seed", 0, _MOST_SEED))
+    elif name == "scenario":
+        if not isinstance(value, str) or value not in session.scenarios:
+            raise InputError(f"no scenario '{str(value)[:80]}' in the suite")
+        session.load(value)
+    else:
+        raise InputError(f"'{name[:80]}' cannot be set; paused, seed and scenario can")

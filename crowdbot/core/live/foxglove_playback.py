@@ -1,0 +1,181 @@
+"""A finished run in Foxglove: its recording, played, paused and searched from the viewer."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, cast
+
+from mcap.reader import SeekingReader
+
+from crowdbot.core.recording.contents import contents
+from crowdbot.core.recording.records import Record, Records
+from crowdbot.errors import InputError
+
+#: So far back a search looks for the latest message of each topic, s; topics with fewer messages
+#: than this are kept whole.
+_BACK, _FEW = 2.0, 64
+_SLOWEST, _FASTEST = 0.01, 100.0
+
+
+class FoxglovePlayback:
+    """Serves one recording; Foxglove's own controls say where, and how fast."""
+
+    def __init__(self, path: Path, host: str, port: int) -> None:
+        """Look through the file and start to listen.
+
+        Raises:
+            InputError: no complete recording, or the address cannot be had.
+        """
+        import foxglove
+        from foxglove.websocket import Capability
+
+        found = contents(path)
+        if not found.finished:
+            raise InputError(f"{path}: cut off; crowdbot recover makes a whole one of it")
+        self._path, self._end = path, round(found.end * 1e9)
+        few = {t.name for t in found.topics if t.count < _FEW}
+        self._context = foxglove.Context()
+        self._channels: dict[str, Any] = {}
+        self._rare: list[Record] = []
+        self._prepare(few)
+        self._changed = threading.Condition()
+        self._now, self._speed, self._playing, self._stopped = 0, 1.0, False, False
+        self._sought = True
+        try:
+            self._server = foxglove.start_server(
+                name=f"crowdbot: {path}",
+                host=host,
+                port=port,
+                capabilities=[Capability.PlaybackControl, Capability.Time],
+                playback_time_range=(0, self._end),
+                server_listener=cast(Any, self),
+                context=self._context,
+            )
+        except RuntimeError as error:
+            raise InputError(f"{host}:{port}: cannot listen there: {error}") from error
+        self._thread = threading.Thread(target=self._run, name="playback", daemon=True)
+        self._thread.start()
+
+    @property
+    def port(self) -> int:
+        """The port that it has."""
+        return int(self._server.port)
+
+    def close(self) -> None:
+        """End all connections."""
+        with self._changed:
+            self._stopped = True
+            self._changed.notify_all()
+        self._thread.join()
+        self._server.stop()
+
+    def _prepare(self, few: set[str]) -> None:
+        """Channels as the file has them; the messages of topics that have few."""
+        from foxglove import Channel, Schema
+
+        records = Records(self._path)
+        for record in records:
+            if record.topic not in self._channels and record.encoding == "cdr":
+                schema = records.channel(record.topic).schema
+                if schema is None:
+                    continue
+                described = Schema(name=schema.name, encoding=schema.encoding, data=schema.data)
+                self._channels[record.topic] = Channel(
+                    record.topic, message_encoding="cdr", schema=described, context=self._context
+                )
+            if record.topic in few and record.topic in self._channels:
+                self._rare.append(record)
+
+    # ------------------------------------------------------------------ the server's threads
+    def on_subscribe(self, client: Any, channel: Any) -> None:
+        """Somebody looks: what is there now is said again."""
+        del client, channel
+        with self._changed:
+            self._sought = True
+            self._changed.notify_all()
+
+    def on_unsubscribe(self, client: Any, channel: Any) -> None:
+        """Nobody has to know."""
+
+    def on_playback_control_request(self, request: Any) -> Any:
+        """Play, pause, go elsewhere, faster or slower."""
+        from foxglove.websocket import PlaybackCommand
+
+        with self._changed:
+            self._playing = request.playback_command == PlaybackCommand.Play
+            if request.playback_speed > 0.0:
+                self._speed = min(max(request.playback_speed, _SLOWEST), _FASTEST)
+            sought = request.seek_time is not None
+            if sought:
+                self._now = min(max(int(request.seek_time), 0), self._end)
+                self._sought = True
+            elif self._playing and self._now >= self._end:  # from the beginning again
+                self._now, self._sought = 0, True
+            self._changed.notify_all()
+            return self._state(sought, request.request_id)
+
+    def _state(self, sought: bool, request: str | None) -> Any:
+        from foxglove.websocket import PlaybackState, PlaybackStatus
+
+        ended = self._now >= self._end
+        idle = PlaybackStatus.Ended if ended else PlaybackStatus.Paused
+        status = PlaybackStatus.Playing if self._playing else idle
+        return PlaybackState(status, self._now, self._speed, sought, request)
+
+    # -------------------------------------------------------------------------- the thread
+    def _run(self) -> None:
+        while not self._stopped:
+            with self._changed:
+                self._changed.wait_for(lambda: self._stopped or self._sought or self._playing)
+                sought, self._sought, begin = self._sought, False, self._now
+            if sought:
+                self._show(begin)
+            elif self._playing:
+                self._play(begin)
+
+    def _show(self, ns: int) -> None:
+        """The latest message of each topic at a time."""
+        latest = {r.topic: (r.ns, r.data) for r in self._rare if r.ns <= ns}
+        for topic, at, data in self._messages(ns - round(_BACK * 1e9), ns + 1):
+            latest[topic] = (at, data)
+        for topic, (at, data) in latest.items():
+            self._channels[topic].log(data, log_time=at)
+        self._server.broadcast_time(ns)
+
+    def _play(self, begin: int) -> None:
+        """Go on until something is wanted, or the end is there."""
+        started, speed = time.monotonic(), self._speed
+        for topic, ns, data in self._messages(begin + 1, self._end + 1):
+            if not self._wait(started + (ns - begin) / 1e9 / speed, speed):
+                return
+            self._channels[topic].log(data, log_time=ns)
+            if ns > self._now:
+                self._now = ns
+                self._server.broadcast_time(ns)
+        with self._changed:
+            if not self._sought:
+                self._now, self._playing = self._end, False
+                self._server.broadcast_playback_state(self._state(False, None))
+
+    def _wait(self, until: float, speed: float) -> bool:
+        """Wait for a time; False where something else is wanted."""
+        with self._changed:
+            while True:
+                if self._stopped or self._sought or not self._playing or self._speed != speed:
+                    return False
+                left = until - time.monotonic()
+                if left <= 0.0:
+                    return True
+                self._changed.wait(min(left, 1.0))
+
+    def _messages(self, begin: int, end: int) -> Iterator[tuple[str, int, bytes]]:
+        """Topic, time (ns) and bytes from one time up to another, in their order."""
+        with self._path.open("rb") as file:
+            reader = SeekingReader(file)
+            for _, channel, message in reader.iter_messages(
+                topics=list(self._channels), starting_at=max(begin, 0), ending_before=end
+            ):
+                yield channel.topic, message.log_time, message.data

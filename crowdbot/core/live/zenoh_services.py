@@ -1,0 +1,78 @@
+"""Services of ROS 2 on zenoh: a query is a request, its reply the response (rmw_zenoh)."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from typing import Any
+
+from crowdbot.core.live.ros2_keys import (
+    Distro,
+    Ros2Topic,
+    attachment,
+    read_attachment,
+    service_hash_in,
+)
+from crowdbot.core.live.service_types import ServiceType, service_type
+from crowdbot.core.live.services import Service, Values
+from crowdbot.errors import InputError
+
+#: Calls that may be going on; steps wait until they are taken.
+_MOST_CALLS = 8
+
+
+class ZenohServices:
+    """Answers queries in threads of its own."""
+
+    def __init__(self, session: Any) -> None:
+        """``session``: zenoh's."""
+        self._session = session
+        self._threads = ThreadPoolExecutor(_MOST_CALLS, thread_name_prefix="zenoh-service")
+        self._kept: list[Any] = []
+
+    def serve(self, name: str, service: Service, domain: int, distro: Distro) -> Ros2Topic:
+        """Offer one service.
+
+        Returns:
+            It, as ROS 2 names it.
+        """
+        types = service_type(service)
+        topic = Ros2Topic(name, service.kind, service_hash_in(types.hash, distro))
+
+        def asked(query: Any) -> None:
+            with suppress(RuntimeError):  # closed already
+                self._threads.submit(self._answer, query, service, types)
+
+        self._kept.append(self._session.declare_queryable(topic.key(domain), asked, complete=True))
+        return topic
+
+    def close(self) -> None:
+        """Answer nobody any more."""
+        self._threads.shutdown(wait=False, cancel_futures=True)
+
+    def _answer(self, query: Any, service: Service, types: ServiceType) -> None:
+        with query:
+            told = None if query.attachment is None else query.attachment.to_bytes()
+            known = None if told is None else read_attachment(told)
+            if known is None:
+                query.reply_err(b"a request of rmw_zenoh has an attachment of 33 bytes")
+                return
+            number, who = known
+            data = b"" if query.payload is None else query.payload.to_bytes()
+            try:
+                answer = types.response(asyncio.run(_called(service, types.request(data))))
+            except InputError as error:
+                query.reply_err(str(error).encode())
+                return
+            query.reply(query.key_expr, answer, attachment=attachment(number, time.time_ns(), who))
+
+
+async def _called(service: Service, values: Values) -> Values:
+    try:
+        return await service.call(values)
+    except InputError as error:
+        if "success" not in service.response:
+            raise
+        return {"success": False, "message": str(error)}
