@@ -33,6 +33,12 @@ async function decode() {
     const row = (i) => rows.subarray(i * n, (i + 1) * n);
     Object.assign(run.robot, { x: row(0), y: row(1), theta: row(2), v: row(3) });
   }
+  run.others = meta.others ?? []; // the other robots of a fleet
+  for (const [i, other] of run.others.entries()) {
+    const rows = new Float32Array((await inflate(`other${i}`)).buffer);
+    const row = (k) => rows.subarray(k * n, (k + 1) * n);
+    Object.assign(other, { x: row(0), y: row(1), theta: row(2), v: row(3) });
+  }
   if (meta.people) {
     const count = meta.people.count;
     const words = undelta(await inflate("people"), 2 * count, n);

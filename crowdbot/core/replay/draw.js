@@ -51,7 +51,11 @@ function drawView(run, view, frame, options) {
   if (run.people) drawPeople(g, run, frame, px);
   if (options.lidar) for (const scan of frame.scans) drawHits(g, scan, px);
   if (options.sonar) for (const cone of frame.cones) drawEcho(g, cone, px);
-  if (run.robot) drawRobot(g, run, frame, px);
+  for (const other of run.others) {
+    const there = robotAt(run, frame.time, other);
+    if (Number.isFinite(there.x)) drawRobot(g, other, there, px);
+  }
+  if (run.robot) drawRobot(g, run.robot, frame.robot, px);
   drawContacts(g, run, frame, px);
   if (options.frame) drawFrame(g, options.frame, px);
   g.restore();
@@ -203,22 +207,21 @@ function drawHits(g, scan, px) {
   for (const p of scan.rim) if (p.hit) g.fillRect(p.x - d / 2, p.y - d / 2, d, d);
 }
 
-function drawRobot(g, run, frame, px) {
-  const { x, y, theta } = frame.robot;
-  const r = Math.max(run.robot.radius, 5 * px);
+function drawRobot(g, robot, { x, y, theta }, px) {
+  const r = Math.max(robot.radius, 5 * px);
   g.save();
   g.translate(x, y);
   g.rotate(theta);
-  robotPath(g, run.robot, r, 3 * px);
+  robotPath(g, robot, r, 3 * px);
   g.fillStyle = colours.floor;
   g.fill();
-  robotPath(g, run.robot, r, 0);
+  robotPath(g, robot, r, 0);
   g.fillStyle = colours.robot;
   g.fill();
   g.lineWidth = 1.5 * px;
   g.strokeStyle = colours["robot-edge"];
   g.stroke();
-  if (run.robot.look?.length) drawLook(g, run.robot, px);
+  if (robot.look?.length) drawLook(g, robot, px);
   else drawArrow(g, r);
   g.restore();
 }

@@ -33,11 +33,11 @@ _SIDES = ("front", "left", "right", "rear")
 
 def encode(run: Trajectories, scans: Sequence[ReplayScan]) -> tuple[dict[str, Any], dict[str, str]]:
     """What the page needs to draw: plain data for JSON, and named blobs of base64."""
-    blobs = {"t": _deflate(run.t.astype("<f8").tobytes())}
+    blobs = {"t": deflate(run.t.astype("<f8").tobytes())}
     meta: dict[str, Any] = {
         "n": len(run.t),
-        "walls": _nested(run.walls),
-        "zone": _nested(run.goal_zone),
+        "walls": nested(run.walls),
+        "zone": nested(run.goal_zone),
         "contacts": _contacts(run),
         "robot": None,
         "people": None,
@@ -62,12 +62,12 @@ def _robot(run: Trajectories, robot: RobotTrack) -> tuple[dict[str, Any], str]:
     rows = np.stack((robot.x, robot.y, robot.theta, robot.v)).astype("<f4")
     about = {
         "radius": robot.radius,
-        "outline": _nested(run.robot_footprint),
+        "outline": nested(run.robot_footprint),
         "goal": robot.goal,
         "goalRadius": robot.goal_radius,
         "goalTime": robot.goal_time,
     }
-    return about, _deflate(rows.tobytes())
+    return about, deflate(rows.tobytes())
 
 
 def _people(t: Array, agents: AgentTracks) -> tuple[dict[str, Any], str]:
@@ -191,14 +191,16 @@ def _pack(rows: NDArray[np.int16]) -> str:
     words = rows.astype(np.uint16)
     words[:, 1:] -= rows.astype(np.uint16)[:, :-1]
     pairs = np.ascontiguousarray(words, "<u2").view(np.uint8).reshape(-1, 2)
-    return _deflate(pairs.T.tobytes())
+    return deflate(pairs.T.tobytes())
 
 
-def _deflate(data: bytes) -> str:
+def deflate(data: bytes) -> str:
+    """Bytes as the page reads them."""
     return base64.b64encode(zlib.compress(data, _LEVEL)).decode("ascii")
 
 
-def _nested(rows: Array | None) -> list[list[float]]:
+def nested(rows: Array | None) -> list[list[float]]:
+    """A table (K, C) as lists, to a tenth of a millimetre; empty for None."""
     return [] if rows is None else np.round(rows, 4).tolist()
 
 

@@ -21,9 +21,9 @@ function turn(a, b, f) {
   return a + f * d;
 }
 
-function robotAt(run, time) {
+function robotAt(run, time, robot = run.robot) {
   const { k, f } = sampleAt(run, time);
-  const { x, y, theta, v } = run.robot;
+  const { x, y, theta, v } = robot;
   const j = Math.min(k + 1, run.n - 1);
   const mix = (a) => a[k] + f * (a[j] - a[k]);
   return { x: mix(x), y: mix(y), theta: turn(theta[k], theta[j], f), v: mix(v) };

@@ -9,15 +9,12 @@ import numpy as np
 
 from crowdbot.core.recording.scans import ReplayScan
 from crowdbot.core.replay.encode import encode, summary
+from crowdbot.core.replay.other_track import OtherTrack, Seen, other_robot
 from crowdbot.core.replay.scores import grouped
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import render_page
 from crowdbot.core.trajectories.trajectories import Trajectories
-from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.score import Score
-
-#: A part of the robot: outline (K, 2), m, and colour.
-Seen = tuple[Array, str]
 
 _SCRIPTS = ("decode.js", "motion.js", "draw.js", "timeline.js", "app.js")
 
@@ -30,6 +27,7 @@ def write_replay(
     title: str,
     facts: Mapping[str, str],
     look: Sequence[Seen] = (),
+    others: Sequence[OtherTrack] = (),
 ) -> None:
     """Write one offline HTML page; equal input gives equal bytes.
 
@@ -42,11 +40,12 @@ def write_replay(
         facts: name -> text; ``Status`` is shown beside the title.
         look: parts of the robot as they are seen from above, the lowest first: outline (K, 2) in
             its frame, m, and colour; without any it is its outline and an arrow.
+        others: the other robots of a fleet.
 
     Raises:
         InputError: the path cannot be written.
     """
-    text = _render(run, scans, scores, title, facts, look)
+    text = _render(run, scans, scores, title, facts, look, others)
     atomic_write(path, text)
 
 
@@ -57,10 +56,14 @@ def _render(
     title: str,
     facts: Mapping[str, str],
     look: Sequence[Seen],
+    others: Sequence[OtherTrack],
 ) -> str:
     meta, blobs = encode(run, scans)
     if meta["robot"] is not None:
         meta["robot"]["look"] = [[c, np.round(np.asarray(o), 3).tolist()] for o, c in look]
+    for i, other in enumerate(others):
+        about, blobs[f"other{i}"] = other_robot(run.t, other)
+        meta.setdefault("others", []).append(about)
     status = next((v for k, v in facts.items() if k.lower() == "status"), "")
     return render_page(
         __package__,

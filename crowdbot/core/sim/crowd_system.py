@@ -7,6 +7,8 @@ and the reaction on people come from one computation on one state, and balance e
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 from pydrake.systems.framework import (
     Context,
@@ -32,6 +34,22 @@ _SEEN = np.array([0, 1, 6, 2, 3, 7])
 
 #: What of the crowd's header others are told: force, events, torque.
 _NEWS = slice(s.ROBOT_FX, s.ROBOT_TORQUE + 1)
+
+
+class CrowdOutputs(Protocol):
+    """The people as one robot takes them."""
+
+    @property
+    def engine(self) -> CrowdEngine:
+        """Who they are."""
+
+    @property
+    def state(self) -> OutputPort:
+        """Their flat state."""
+
+    @property
+    def events(self) -> OutputPort:
+        """How many of their trips, and of their contacts with the robot, have ended."""
 
 
 class CrowdSystem(LeafSystem):
@@ -83,6 +101,11 @@ class CrowdSystem(LeafSystem):
         fx, fy, contacts, trips, torque = news
         self._push.write(values.get_mutable_value(self._force), fx, fy, torque)
         values.get_mutable_value(self._events)[0] = contacts + trips
+
+    @property
+    def events(self) -> OutputPort:
+        """How many trips and contacts have ended."""
+        return self.GetOutputPort(ports.EVENTS)
 
     @property
     def state(self) -> OutputPort:

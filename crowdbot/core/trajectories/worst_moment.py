@@ -7,14 +7,15 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from crowdbot.core.trajectories.encounters import encounter
-from crowdbot.core.trajectories.person_contacts import person_contacts
+from crowdbot.core.trajectories.person_contacts import at_fault, person_contacts
 from crowdbot.core.trajectories.preprocess import truncate_at_arrival
+from crowdbot.core.trajectories.proper_response import FaultRule
 from crowdbot.core.trajectories.trajectories import Trajectories
 
-#: As the metric ``contacts_at_fault`` has them by default; m/s, m, m, m/s.
-FAULT_SPEED, CONTACT_TOL, RELEASE_GAP, JUMP_SPEED = 0.05, 1e-9, 0.05, 10.0
-#: Slack of the rule whose fault a contact is, m/s: rounding decides nothing.
-_TOLERANCE = 1e-9
+#: As the metric ``contacts_at_fault`` has them by default; m, m, m/s. The slack of its speed is for
+#: rounding, which decides nothing.
+CONTACT_TOL, RELEASE_GAP, JUMP_SPEED = 1e-9, 0.05, 10.0
+RULE = FaultRule(speed=0.05 + 1e-9, reaction=0.3, braking=1.0, margin=0.1)
 
 What = Literal["contact at fault", "least clearance"]
 
@@ -46,7 +47,7 @@ def worst_moment(run: Trajectories) -> WorstMoment | None:
     run = truncate_at_arrival(run)
     contacts = person_contacts(run, JUMP_SPEED, CONTACT_TOL, RELEASE_GAP)
     gaps = encounter(run, JUMP_SPEED).gap
-    fault = contacts.at_fault(FAULT_SPEED + _TOLERANCE)
+    fault = at_fault(run, contacts, RULE, JUMP_SPEED)
     if fault.any():
         first = int(np.argmin(np.where(fault, contacts.time, np.inf)))
         sample, who = int(contacts.sample[first]), int(contacts.agent[first])

@@ -69,7 +69,10 @@ def test_nobody_there() -> None:
 
 def test_the_rule_is_that_of_the_metric() -> None:
     spec = ContactsAtFaultSpec.model_validate({})
-    assert spec.fault_speed == rule.FAULT_SPEED
+    assert spec.fault_speed == pytest.approx(rule.RULE.speed)
+    assert spec.fault_reaction == rule.RULE.reaction
+    assert spec.fault_braking == rule.RULE.braking
+    assert spec.fault_margin == rule.RULE.margin
     assert spec.contact_tol == rule.CONTACT_TOL
     assert spec.release_gap == rule.RELEASE_GAP
     assert spec.jump_speed == rule.JUMP_SPEED
