@@ -63,8 +63,13 @@ def main() -> int:
         _crowdbot("simulate", SUITE, ID, "--planner", "stop_and_go", "--out", "runs",
                   cwd=Path(folder))  # fmt: skip
         _crowdbot("report", "runs", "--out", "report.html", cwd=Path(folder))
-        run = Path(folder) / "runs" / SUITE / ID / "dwa" / "seed-0" / "replay.html"
-        pages = {"replay": f"{run.as_uri()}#t={MOMENT}",
+        runs = Path("runs") / SUITE / ID
+        planners = [str(runs / planner / "seed-0") for planner in ("dwa", "stop_and_go")]
+        _crowdbot("view", *planners, "--out", "compare.html", cwd=Path(folder))
+        run = Path(folder) / planners[0] / "replay.html"
+        compared = (Path(folder) / "compare.html").as_uri()
+        pages = {"replay": f"{run.as_uri()}#t={MOMENT}&paused",
+                 "compare": f"{compared}#t={MOMENT}&paused",
                  "report": (Path(folder) / "report.html").as_uri()}  # fmt: skip
         missing = [
             name for name, url in pages.items() if not photograph(url, IMAGES / f"{name}.png")

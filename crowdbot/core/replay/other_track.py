@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from crowdbot.core.replay.encode import deflate, nested
-from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.trajectories.trajectories import RobotTrack, Trajectories
 from crowdbot.core.types.arrays import Array
 
 #: A part of the robot: outline (K, 2), m, and colour.
@@ -32,27 +30,17 @@ class OtherTrack:
     leaves: bool
 
 
-def other_robot(t: Array, other: OtherTrack) -> tuple[dict[str, Any], str]:
-    """What the page needs to draw it: plain data, and x, y, theta, v at the times ``t``.
+def motion_of(robot: RobotTrack) -> Array:
+    """x, y, theta, v, w (5, N)."""
+    return np.stack((robot.x, robot.y, robot.theta, robot.v, robot.w))
 
-    Where it is not there any more, all are NaN.
-    """
-    robot = other.run.robot
-    assert robot is not None  # runs of robots
-    rows = np.full((4, len(t)), np.nan)
-    count = min(len(t), len(robot.x))
-    rows[:, :count] = np.stack((robot.x, robot.y, robot.theta, robot.v))[:, :count]
-    if not other.leaves:
+
+def motion_until(robot: RobotTrack, samples: int, *, leaves: bool) -> Array:
+    """`motion_of` for so many samples; after its end it stands, or all is NaN."""
+    rows = np.full((5, samples), np.nan)
+    count = min(samples, len(robot.x))
+    rows[:, :count] = motion_of(robot)[:, :count]
+    if not leaves:
         rows[:3, count:] = rows[:3, count - 1 : count]
-        rows[3, count:] = 0.0
-    about = {
-        "name": other.name,
-        "radius": robot.radius,
-        "outline": nested(other.run.robot_footprint),
-        "goal": robot.goal,
-        "goalRadius": robot.goal_radius,
-        "goalTime": robot.goal_time,
-        "zone": nested(other.run.goal_zone),
-        "look": [[c, np.round(np.asarray(o), 3).tolist()] for o, c in other.look],
-    }
-    return about, deflate(rows.astype("<f4").tobytes())
+        rows[3:, count:] = 0.0
+    return rows

@@ -26,6 +26,7 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.control.controlled import Push
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.robot import RobotModel
 
@@ -59,7 +60,7 @@ class CrowdSystem(LeafSystem):
         engine: the people.
     """
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(
         self,

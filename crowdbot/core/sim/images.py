@@ -84,7 +84,7 @@ class Images:
             rng: makes the random numbers of the reading at a time (s).
             renderer: draws the colour image of a camera that takes some.
         """
-        self._sensor, self._rng, self._painter = sensor, rng, renderer
+        self._sensor, self._rng, self._renderer = sensor, rng, renderer
         self._quick = sensor if isinstance(sensor, DepthCamera) else None
         self._stamp, self._view = -1.0, np.zeros(0)
         self._depth: Array | None = None
@@ -96,7 +96,7 @@ class Images:
         Depth in m is made only if somebody asks for a reading.
         """
         self._begin(stamp, view)
-        self._paint(scene, pose)
+        self._render(scene, pose)
         if self._quick is None:
             depth = depth_mm(self._read(scene, pose))
         else:
@@ -112,7 +112,7 @@ class Images:
         if depth is None:
             pose = show(scene, self._view)
             if not fits:
-                self._paint(scene, pose)
+                self._render(scene, pose)
             depth = self._read(scene, pose)
         return Reading(stamp, depth, self._colour)
 
@@ -121,10 +121,10 @@ class Images:
         self._stamp, self._view = stamp, view.copy()
         self._depth = self._colour = None
 
-    def _paint(self, scene: Scene, pose: Pose) -> None:
+    def _render(self, scene: Scene, pose: Pose) -> None:
         """Draw the colour image, if the camera takes some."""
-        if self._painter is not None:
-            self._colour = self._painter(scene, pose)
+        if self._renderer is not None:
+            self._colour = self._renderer(scene, pose)
             self._colour.setflags(write=False)
 
     def _read(self, scene: Scene, pose: Pose) -> Array:

@@ -23,6 +23,7 @@ from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdOutputs
 from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.wall_contact import WallContacts, wall_force
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotState
@@ -38,7 +39,7 @@ class MetricLogger(LeafSystem):
         goal_time: when the robot arrived, s, or None.
     """
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(
         self,

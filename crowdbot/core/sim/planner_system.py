@@ -33,6 +33,7 @@ from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdOutputs
 from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.sensor_bank import SensorBank
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command, Pose
@@ -92,7 +93,7 @@ class PlannerSystem(LeafSystem):
     The command is the planner's; the desired state is what the control mode makes of it.
     """
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(
         self,

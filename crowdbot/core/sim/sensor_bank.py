@@ -36,6 +36,7 @@ from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdOutputs
 from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.images import ColourRenderer, Images, capture, view_size
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, is_due
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
@@ -120,7 +121,7 @@ class SensorBank(LeafSystem):
     Entry 0 of the output is the next tick at which a sensor may be due.
     """
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(
         self,

@@ -13,8 +13,7 @@ from crowdbot.core.planning.watchdog import STEP_LIMIT
 from crowdbot.core.recording.scans import REPLAY_RATE
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.replay import OtherTrack, write_replay
-from crowdbot.core.robots.look import seen_from_above
+from crowdbot.core.replay import write_replay
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import (
@@ -26,6 +25,7 @@ from crowdbot.core.runs.identity import (
     run_identity,
 )
 from crowdbot.core.runs.outcome import Progress
+from crowdbot.core.runs.replayed import read_replay_images, shown_run
 from crowdbot.core.runs.request import (
     Recorded,
     Request,
@@ -218,7 +218,7 @@ def _write_files(
     write_scenario(folder, scenario, request.registry)
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
     if request.replay:
-        _write_replay(request, builts, folder / files.REPLAY, seen, scores, record)
+        _write_replay(request, builts, folder, seen, scores, record)
     files.attach_files(folder, record)
     whole = {**record, "files": files.sizes(folder)}
     files.write_json(folder / files.RECORD, whole)
@@ -228,48 +228,23 @@ def _write_files(
 def _write_replay(
     request: Request,
     builts: Mapping[str, BuiltRun],
-    file: Path,
+    folder: Path,
     seen: Mapping[str, SeenRun],
     scores: Scores,
     record: Mapping[str, Any],
 ) -> None:
-    scenario, arrival = request.scenario, record["goal_time"]
-    looks = {
-        name: [(part.outline, part.colour) for part in seen_from_above(built.model)]
-        for name, built in builts.items()
-    }
-    # What is shown of the people goes on until the last robot has ended.
-    shown = max(seen, key=lambda name: len(seen[name].run.t))
-    several = {} if len(seen) == 1 else {"Robot": shown}
-    write_replay(
-        file,
-        seen[shown].run,
-        seen[shown].scans,
+    infos = [info for built in builts.values() for info in built.infos.values()]
+    images = request.record == "all" and any(info.camera for info in infos)
+    shown = shown_run(
+        request.scenario,
+        seen,
+        {name: built.model for name, built in builts.items()},
+        next(iter(builts.values())).parts,
+        record,
         scores,
-        title=f"{scenario.id} · {request.choice.label}",
-        facts={
-            "Suite": request.suite,
-            "Scenario": scenario.id,
-            "Planner": request.choice.label,
-            **several,
-            **provenance.remarks(record),
-            "Seed": str(request.seed),
-            "Status": record["status"],
-            "Arrived at": "—" if arrival is None else f"{arrival:.2f} s",
-            "Spec": record["hashes"]["spec"][:24],
-        },
-        look=looks[shown],
-        others=[
-            OtherTrack(
-                name=name,
-                run=one.run,
-                look=looks[name],
-                leaves=scenario.robots[name].task.when_ended == "leave",
-            )
-            for name, one in seen.items()
-            if name != shown
-        ],
+        read_replay_images(folder / files.RECORDING) if images else (),
     )
+    write_replay(folder / files.REPLAY, shown)
 
 
 def _setup(
