@@ -13,7 +13,7 @@ from crowdbot.core.live.plain import json_array
 
 
 @given(arrays(np.float32, st.integers(0, 40), elements=st.floats(width=32)))
-def test_single_precision_comes_back_bit_by_bit(array: np.ndarray) -> None:  # type: ignore[type-arg]
+def test_single_precision_comes_back_bit_by_bit(array: np.ndarray) -> None:
     text = json.dumps(json_array(array), allow_nan=False)
     back = np.array([np.nan if x is None else x for x in json.loads(text)], np.float32)
     finite = np.isfinite(array)
@@ -31,5 +31,5 @@ def test_ranges_have_nine_digits() -> None:
         np.float64, st.integers(0, 10), elements=st.floats(allow_nan=False, allow_infinity=False)
     )
 )
-def test_double_precision_stays_as_it_is(array: np.ndarray) -> None:  # type: ignore[type-arg]
+def test_double_precision_stays_as_it_is(array: np.ndarray) -> None:
     assert np.array(json_array(array), np.float64).tobytes() == array.tobytes()
