@@ -28,6 +28,7 @@ LONG = (
     "tests/cli/test_campaign.py::test_failures_are_on_record_and_stop_nobody",
     "tests/cli/test_campaign.py::test_references_are_shared_and_replays_left_out",
     "tests/cli/test_campaign_cluster.py",
+    "tests/cli/test_kills.py",
     "tests/cli/test_planner_processes.py::test_a_hostile_planner_stops_no_campaign",
     "tests/cli/test_planner_processes.py::test_a_worker_is_killed",
     "tests/cli/test_plugins.py::test_show_every_kind",
