@@ -33,6 +33,7 @@ LONG = (
     "tests/cli/test_planner_processes.py::test_a_worker_is_killed",
     "tests/cli/test_plugins.py::test_show_every_kind",
     "tests/cli/test_simulate.py::test_runs_at_once_are_the_same_run",
+    "tests/core/replay/test_browser.py::test_axe_finds_nothing[dark]",
     "tests/core/live/test_rosbridge.py::test_two_thousand_come_and_go",
     "tests/docs/test_example_package.py",
     "tests/dsl/test_mutations.py::test_refused_or_understood",
