@@ -13,6 +13,7 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS
 from crowdbot.core.crowd.contact.robot_contact import DISC
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration
+from crowdbot.core.crowd.engine import NO_BOOKS, NO_STIFFNESSES
 from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdView
 from crowdbot.core.crowd.step import tick
@@ -72,6 +73,17 @@ def whole_step(
             present=everybody, robot=robots[:, :5], walls=walls, dt=DT, decides=everybody,
         )  # fmt: skip
         rows[:, s.AX : s.AY + 1] = desired_acceleration(chosen, view)
-        tick(flat, robots, DISC, world.pillars, DT, *people, *place, *scratch)
+        tick(
+            flat,
+            robots,
+            DISC[None],
+            NO_BOOKS,
+            NO_STIFFNESSES,
+            world.pillars,
+            DT,
+            *people,
+            *place,
+            *scratch,
+        )
 
     return step

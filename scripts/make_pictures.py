@@ -31,6 +31,10 @@ SUITE, ID = "challenge-2020", "counter-d0250-dispersed-c20-r05"
 GALLERY = {
     "counter": (SUITE, ID),
     "in": (SUITE, "in-d0500-fast-c20-r05"),
+    "crossing": ("challenge-2021", "crossing_other-d020-usual"),
+    "both": ("challenge-2026", "both-d040-never-n01"),
+    "overtaking": ("social-guidelines", "robot_overtaking"),
+    "intersection": ("social-guidelines", "intersection_no_gesture"),
     "hall": ("docs/tutorial/files/my_scenario.yaml",),
     "floor": ("docs/howto/files/my_floor.yaml", "heeded"),
 }
@@ -49,29 +53,51 @@ def main() -> int:
     """Everything, or the gallery alone."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--gallery", action="store_true", help="only what needs no run")
-    only_gallery = parser.parse_args().gallery
+    parser.add_argument(
+        "--runs", type=Path, help="folder that keeps the runs: what is there is not run again"
+    )
+    given = parser.parse_args()
     draw_gallery(IMAGES / "gallery")
-    if only_gallery:
+    if given.gallery:
         return 0
     with tempfile.TemporaryDirectory() as folder:
-        shown = _crowdbot(
-            "simulate", SUITE, ID, "--planner", "dwa", "--out", "runs", cwd=Path(folder)
-        )
-        shown = on_an_idle_core(shown, Path(folder) / "runs" / SUITE / ID / "dwa" / "seed-0")
-        readme = ROOT / "README.md"
-        readme.write_text(with_figures(readme.read_text(encoding="utf-8"), shown), encoding="utf-8")
-        _crowdbot("simulate", SUITE, ID, "--planner", "stop_and_go", "--out", "runs",
-                  cwd=Path(folder))  # fmt: skip
-        _crowdbot("report", "runs", "--out", "report.html", cwd=Path(folder))
-        run = Path(folder) / "runs" / SUITE / ID / "dwa" / "seed-0" / "replay.html"
-        pages = {"replay": f"{run.as_uri()}#t={MOMENT}",
-                 "report": (Path(folder) / "report.html").as_uri()}  # fmt: skip
-        missing = [
-            name for name, url in pages.items() if not photograph(url, IMAGES / f"{name}.png")
-        ]
+        kept: Path = (given.runs or Path(folder) / "runs").resolve()
+        missing = draw_pages(kept, Path(folder))
     if missing:
         print(f"no browser is installed: left as they were: {', '.join(missing)}")
     return 0
+
+
+def draw_pages(runs: Path, folder: Path) -> list[str]:
+    """Pictures of pages about two runs, and the figures of one of them in the README.
+
+    Args:
+        runs: root of the run directories.
+        folder: for the pages.
+
+    Returns:
+        Pictures for which there is no browser.
+    """
+    shown = _crowdbot("simulate", SUITE, ID, "--planner", "dwa", "--out", str(runs), cwd=folder)
+    run = runs / SUITE / ID / "dwa" / "seed-0"
+    shown = on_an_idle_core(shown.replace(f"{runs}/", "runs/"), run)
+    readme = ROOT / "README.md"
+    readme.write_text(with_figures(readme.read_text(encoding="utf-8"), shown), encoding="utf-8")
+    _crowdbot("simulate", SUITE, ID, "--planner", "stop_and_go", "--out", str(runs), cwd=folder)
+    _crowdbot("report", str(runs), "--out", "report.html", cwd=folder)
+    other = run.parents[1] / "stop_and_go" / "seed-0"
+    _crowdbot("view", str(run), "--out", "replay.html", cwd=folder)
+    _crowdbot("view", str(run), str(other), "--out", "compare.html", cwd=folder)
+    pages = {
+        "replay": f"replay.html#t={MOMENT}&paused",
+        "compare": f"compare.html#t={MOMENT}&paused",
+        "report": "report.html",
+    }
+    return [
+        name
+        for name, page in pages.items()
+        if not photograph(f"{folder.as_uri()}/{page}", IMAGES / f"{name}.png")
+    ]
 
 
 def draw_gallery(folder: Path) -> list[Path]:

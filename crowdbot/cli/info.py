@@ -62,12 +62,11 @@ def _about(path: Path, found: RecordingContents) -> dict[str, Any]:
 
 def _hash(path: Path) -> str | None:
     """The trajectory hash; None where there is not a single sample."""
-    from crowdbot.core.recording.reader import read_trajectories
-    from crowdbot.core.runs.provenance import trajectory_hash
+    from crowdbot.core.runs.robots import read_recorded
     from crowdbot.errors import InputError
 
     try:
-        return trajectory_hash(read_trajectories(path))
+        return read_recorded(path).trajectory
     except InputError:
         return None
 

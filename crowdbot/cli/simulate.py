@@ -6,7 +6,7 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
@@ -43,8 +43,12 @@ def simulate(
     spec: SpecArgument,
     scenario: ScenarioArgument = None,
     planner: Annotated[
-        str, typer.Option(metavar="NAME|FILE|file.py:Class", help="The planner under test.")
-    ] = "dwa",
+        list[str] | None,
+        typer.Option(
+            metavar="[ROBOT=]NAME|FILE|file.py:Class",
+            help="The planner under test, dwa by default; repeatable with the names of robots.",
+        ),
+    ] = None,
     overrides: Overrides = None,
     planner_set: Annotated[
         list[str] | None,
@@ -71,6 +75,8 @@ def simulate(
     """Simulate one scenario with one planner; record, score and replay it.
 
     Example: crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
+
+    Several robots: crowdbot simulate two.yaml --planner a=dwa --planner b=mine.py:Mine
     """
     from crowdbot.cli._progress import show_progress
     from crowdbot.cli._serve_options import meshcat_view
@@ -88,7 +94,7 @@ def simulate(
             run = simulate_it(
                 chosen,
                 registry,
-                planner=planner,
+                planner=_one_or_several(planner),
                 planner_settings=planner_set or (),
                 seed=seed,
                 out=out,
@@ -110,6 +116,22 @@ def simulate(
     _print(run, as_json=as_json)
     if run.status == "planner_failed":
         raise typer.Exit(3)
+
+
+def _one_or_several(planners: Sequence[str] | None) -> str:
+    """The planner of all robots, or those of each, as `resolve_planner` takes them.
+
+    Raises:
+        UsageError: there are several, and one does not say of which robot it is.
+    """
+    from crowdbot.core.planning.fleet_choice import planners_by_robot
+    from crowdbot.errors import UsageError
+
+    given = list(planners or ("dwa",))
+    for text in given if len(given) > 1 else ():
+        if not planners_by_robot(text):
+            raise UsageError(f"--planner {text}: of which robot? Write ROBOT={text}")
+    return ",".join(given)
 
 
 def _import_simulate() -> Callable[..., Run]:

@@ -25,12 +25,19 @@ def view(
     spec: Annotated[
         str, typer.Argument(metavar="SPEC|RUN_DIR", help="File, name of a suite, or a run.")
     ],
-    scenario: Annotated[
-        str | None, typer.Argument(metavar="[ID]", help="Id, unique beginning, or pattern.")
+    others: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[ID|RUN_DIR ...]",
+            help="Scenario: id, unique beginning, or pattern. Or more runs, to compare.",
+        ),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="FILE.html, .svg or .png; default: ID.html, here."),
+        typer.Option(
+            metavar="FILE",
+            help="FILE.html, .svg or .png; default: ID.html, of several runs compare.html, here.",
+        ),
     ] = None,
     open_: Annotated[bool, typer.Option("--open", help="Show it in the browser.")] = False,
     overrides: Annotated[
@@ -45,23 +52,30 @@ def view(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Path and facts as JSON.")] = False,
 ) -> None:
-    """Draw a scenario from above, or find the replay page of a run. Nothing is simulated.
+    """Draw a scenario from above; find the replay page of a run, or compare runs on one page.
+
+    Nothing is simulated.
 
     With --foxglove a run is played in Foxglove, whose controls search in it.
 
     Example: crowdbot view challenge-2020 counter-d0500-fast-c20-r05 --out scenario.png
+
+    Example: crowdbot view runs/a/dwa/seed-0 runs/a/stop_and_go/seed-0 --out compare.html
     """
     if foxglove is not None:
         _play(Path(spec), foxglove)
         return
     facts: dict[str, str] = {}
     if Path(spec).is_dir():
-        if scenario is not None or out is not None or overrides:
-            raise UsageError(f"{spec} is a run, whose page is there already: no ID, --out or --set")
-        path = _replay(Path(spec))
+        if overrides:
+            raise UsageError(f"{spec} is a run, which is over: no --set")
+        path = _replay([spec, *(others or [])], out, plugin, no_plugins=no_plugins)
     else:
+        if len(others or []) > 1:
+            raise UsageError(f"one ID is drawn at a time, and {others} are several")
+        pattern = next(iter(others or []), None)
         path, facts = _render_map(
-            installed(plugin, no_plugins), spec, scenario, out, overrides or []
+            installed(plugin, no_plugins), spec, pattern, out, overrides or []
         )
     if as_json:
         typer.echo(json.dumps({"path": str(path), "facts": facts}, indent=2, ensure_ascii=False))
@@ -89,13 +103,37 @@ def _play(run: Path, port: int) -> None:
     player.close()
 
 
-def _replay(run: Path) -> Path:
+def _replay(
+    names: list[str], out: Path | None, plugin: list[Path] | None, *, no_plugins: bool
+) -> Path:
+    """The page that a run has; of several runs, or with ``out``, a new one."""
+    folders = [Path(name) for name in names]
+    for folder in folders:
+        if not folder.is_dir():
+            raise UsageError(f"{folder} is not a run directory, and {folders[0]} is one")
+    if len(folders) == 1 and out is None:
+        return _own_page(folders[0])
+    if out is not None and out.suffix.lower() != ".html":
+        raise UsageError(f"--out {out}: the name of a replay page must end in .html")
+    from crowdbot.core.replay import write_replay
+    from crowdbot.core.runs.replayed import replayed_runs
+
+    shown = replayed_runs(folders, installed(plugin, no_plugins))
+    path = out or Path("compare.html")
+    scenario = shown[0].facts["Scenario"]
+    write_replay(path, *shown, title=f"{scenario} · {' and '.join(one.label for one in shown)}")
+    return path
+
+
+def _own_page(run: Path) -> Path:
     from crowdbot.core.runs.run_directory import RECORD, REPLAY
 
     if not (run / RECORD).is_file():
         raise InputError(f"{run}: no run directory, there is no {RECORD} in it")
     if not (run / REPLAY).is_file():
-        raise InputError(f"{run}: the run has no {REPLAY}")
+        raise InputError(
+            f"{run}: the run has no {REPLAY}; crowdbot view {run} --out {REPLAY} makes one"
+        )
     return run / REPLAY
 
 

@@ -16,7 +16,7 @@ from crowdbot.dsl.finder import Finder, Roots
 from crowdbot.dsl.include import Loader
 from crowdbot.dsl.installed import Installed
 from crowdbot.dsl.matrix import DRAW, combinations
-from crowdbot.dsl.merge import merge, nest, undot
+from crowdbot.dsl.merge import Merged, merge, nest, undot
 from crowdbot.dsl.nodes import Entry, Node, parse, to_data
 from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
@@ -155,6 +155,8 @@ class _Expander:
         self._problems = list(suite.problems)
         self._set = _parse_overrides(overrides, self._problems)
         self._suffix = "+" + _digest(overrides) if overrides else ""
+        self._set_in: dict[int, Node] = {}
+        self._merged: Merged = {}
         self._data: dict[Node, Any] = {}
         self._seeds: dict[str, Node] = {}
         self._parts = ValidParts()
@@ -217,10 +219,17 @@ class _Expander:
         """The reference, ``--set`` and the seed laid over a combination, in this order."""
         tree = bare.tree
         if reference is None:
-            tree = merge(tree, self._set)
+            tree = merge(tree, self._set, self._merged)
         else:
-            tree = merge(merge(tree, reference), _unless_removed(self._set, reference))
+            tree = merge(tree, reference, self._merged)
+            tree = merge(tree, self._set_below(reference), self._merged)
         return self._with_seed(tree, bare.key, bare.draw)
+
+    def _set_below(self, reference: Node) -> Node:
+        """What ``--set`` changes of a reference; the same node for the same reference."""
+        if id(reference) not in self._set_in:
+            self._set_in[id(reference)] = _unless_removed(self._set, reference)
+        return self._set_in[id(reference)]
 
     def _with_seed(self, tree: Node, key: str, draw: str) -> Node:
         """Write root and key of the seed into a suite's crowd, under what the document says.

@@ -12,9 +12,27 @@ from dataclasses import replace
 from crowdbot.dsl.diagnostics import Diagnostic, Mark
 from crowdbot.dsl.nodes import MAX_DEPTH, Entry, Node
 
+#: Pairs of trees, by their ids, with what they became; it keeps them alive.
+Merged = dict[tuple[int, int], tuple[Node, Node, Node]]
 
-def merge(base: Node, over: Node) -> Node:
-    """Lay one tree over another. Both stay as they are; untouched parts are shared."""
+
+def merge(base: Node, over: Node, known: Merged | None = None) -> Node:
+    """Lay one tree over another. Both stay as they are; untouched parts are shared.
+
+    Args:
+        base, over: trees.
+        known: what was merged before: equal pairs, below too, become the same node again, so that
+            who validates nodes once sees each once.
+    """
+    if known is None:
+        return _merge(base, over, None)
+    pair = id(base), id(over)
+    if pair not in known:
+        known[pair] = base, over, _merge(base, over, known)
+    return known[pair][2]
+
+
+def _merge(base: Node, over: Node, known: Merged | None) -> Node:
     if over.implied and not over.entries:  # nobody wrote it, so it empties nothing
         return base
     if not (base.entries and over.entries) or _changes_kind(base, over):
@@ -29,7 +47,7 @@ def merge(base: Node, over: Node) -> Node:
             removed[key] = entry.node.mark
         else:
             winner = old if entry.node.implied else entry
-            entries[key] = replace(winner, node=merge(old.node, entry.node))
+            entries[key] = replace(winner, node=merge(old.node, entry.node, known))
     place = base if over.implied else over
     return Node(place.mark, entries, base.implied and over.implied, removed)
 

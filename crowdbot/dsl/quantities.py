@@ -15,6 +15,7 @@ import math
 import re
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Annotated, Any
 
 from annotated_types import Ge, Gt
@@ -83,18 +84,10 @@ class Quantity:
         """
         if not isinstance(value, str):
             return value
-        match = _TEXT.fullmatch(value)
-        if match is None:
-            raise self._error(value, self._advice(value))
-        number, blank, unit = match.groups()
-        factor = UNITS[self.dimension].get(plain_unit(unit))
-        if factor is None or (unit[0].isdigit() and not blank):
-            raise self._error(value, self._advice(value, number, unit))
-        product = _exact(number)
-        result = None if product is None else _float(product * factor)
-        if result is None:
-            raise self._error(value, "the number is too large, too small or too long")
-        return result
+        result = _in_si(self.dimension, value)
+        if isinstance(result, float):
+            return result
+        raise self._error(value, result or self._advice(value))
 
     def within_reach(self, value: float) -> float:
         """The value, unless no world is that large.
@@ -120,10 +113,12 @@ class Quantity:
             },
         )
 
-    def _advice(self, text: str, number: str = "", unit: str = "") -> str:
+    def _advice(self, text: str) -> str:
         """What to write instead."""
-        if not number:
+        match = _TEXT.fullmatch(text)
+        if match is None:
             return f"write a number and a unit, such as '1 {self.si_unit}'"
+        number, _, unit = match.groups()
         if not unit:
             return f"write '{text.strip()} {self.si_unit}', or the number without quotes"
         name = plain_unit(unit.strip())
@@ -195,6 +190,19 @@ def _near(name: str, units: dict[str, Fraction]) -> str | None:
     if word in units:
         return word
     return next(iter(nearest(name, units, 1)), None) if len(name) > 2 else None
+
+
+@lru_cache(maxsize=4096)  # a suite writes the same few amounts thousands of times
+def _in_si(dimension: str, text: str) -> float | str:
+    """The nearest float in SI units, or what is wrong; empty: it is not a quantity at all."""
+    match = _TEXT.fullmatch(text)
+    number, blank, unit = match.groups() if match else ("", "", "")
+    factor = UNITS[dimension].get(plain_unit(unit))
+    if match is None or factor is None or (unit[0].isdigit() and not blank):
+        return ""
+    exact = _exact(number)
+    result = None if exact is None else _float(exact * factor)
+    return "the number is too large, too small or too long" if result is None else result
 
 
 def _exact(number: str) -> Fraction | None:

@@ -188,6 +188,12 @@ class TaskSpec(Spec):
     )
     goal: Goal
     time_limit: PositiveDuration = Field(default=180.0, description="The run ends here, s.")
+    when_ended: Literal["stay", "leave"] = Field(
+        default="stay",
+        exclude_if=lambda value: value == "stay",
+        description="Of one robot among several that has arrived, failed or run out of time: it "
+        "stays where it is, as an obstacle, or leaves.",
+    )
 
 
 class Robot(Spec):

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import json
+import os
+import shutil
 import socket
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
+from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from crowdbot import cli
@@ -105,12 +108,11 @@ def _inside(out: Path, capsys: pytest.CaptureFixture[str], planner: str, seconds
     return json.loads(capsys.readouterr().out)
 
 
-@pytest.mark.parametrize("kind", ["Twist", "TwistStamped"])
-def test_roslibpy_drives_as_the_same_planner_inside(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str
-) -> None:
-    port, seconds = _free_port(), 3.0
-    argv = ["challenge-2020", ID, *limit(seconds), "--out", str(tmp_path), "--record", "none"]
+@contextmanager
+def _server(out: Path, seconds: float, *more: str) -> Iterator[tuple[subprocess.Popen[str], int]]:
+    """The command in a process of its own, as soon as it listens."""
+    port = _free_port()
+    argv = ["challenge-2020", ID, *limit(seconds), "--out", str(out), "--record", "none", *more]
     code = "import sys; from crowdbot.cli import main; sys.exit(main())"
     with subprocess.Popen(
         [sys.executable, "-c", code, "serve", *argv, "--port", str(port), "--json"],
@@ -119,16 +121,75 @@ def test_roslibpy_drives_as_the_same_planner_inside(
         assert server.stderr is not None
         while "rosbridge:" not in (line := server.stderr.readline()):
             assert line
-        driver = [sys.executable, "-m", "tests.core.live.roslibpy_driver", str(port), kind]
-        assert subprocess.run(driver, cwd=ROOT, timeout=600, check=False).returncode == 0
-        out, _ = server.communicate(timeout=600)
-    outside = json.loads(out)
+        yield server, port
+
+
+def _driven(out: Path, seconds: float, driver: Callable[[int], list[str]]) -> Any:
+    """The record of a run that a client in another process drove."""
+    with _server(out, seconds) as (server, port):
+        done = subprocess.run(driver(port), cwd=ROOT, timeout=600, check=False)
+        assert done.returncode == 0
+        text, _ = server.communicate(timeout=600)
+    return json.loads(text)
+
+
+@pytest.mark.parametrize("kind", ["Twist", "TwistStamped"])
+def test_roslibpy_drives_as_the_same_planner_inside(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str
+) -> None:
+    seconds = 3.0
+    module = "tests.core.live.roslibpy_driver"
+    outside = _driven(
+        tmp_path, seconds, lambda port: [sys.executable, "-m", module, str(port), kind]
+    )
     planner = f"{ROOT / 'tests/core/live/pursuit.py'}:Pursuit"
     inside = _inside(tmp_path, capsys, planner, seconds)
     assert outside["hashes"] == inside["hashes"]
     assert outside["live"] == {"steps": 48, "missed_steps": 0, "refused_commands": 0}
     assert {p.name for p in Path(outside["directory"]).iterdir()} == FILES
     assert (outside["planner"]["label"], outside["pinned"]) == ("live", False)
+
+
+def test_roslib_drives_as_the_same_planner_inside(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Where node is, and roslib: ``npm install roslib``, CROWDBOT_NODE_MODULES says where."""
+    node, folder = shutil.which("node"), os.environ.get("CROWDBOT_NODE_MODULES", "")
+    if node is None or not (Path(folder) / "roslib").is_dir():
+        pytest.skip("needs node, and roslib in the folder that CROWDBOT_NODE_MODULES names")
+    seconds = float(os.environ.get("CROWDBOT_ROSLIB_SECONDS", "3"))
+    driver = str(ROOT / "tests/core/live/roslib_driver.mjs")
+    outside = _driven(tmp_path, seconds, lambda port: [node, driver, folder, str(port)])
+    planner = f"{ROOT / 'tests/core/live/pursuit.py'}:Straight"
+    inside = _inside(tmp_path, capsys, planner, seconds)
+    assert outside["hashes"] == inside["hashes"]
+    assert outside["status"] == inside["status"]
+    assert outside["live"]["missed_steps"] == 0
+
+
+def test_the_next_scenario_begins(tmp_path: Path) -> None:
+    """A client ends a run and begins the next one of the suite."""
+    seen: list[str] = []
+    with _server(tmp_path, 0.5) as (server, port), _connected(port) as client:
+        for name in ("/crowdbot/status", "/clock"):
+            _say(client, "subscribe", name)
+        _say(client, "advertise", "/cmd_vel")
+        with suppress(ConnectionClosed):  # when the second run is over
+            for frame in client:
+                message = json.loads(frame)
+                if message.get("topic") == "/crowdbot/status":
+                    seen.append(message["msg"]["scenario"])
+                elif message.get("topic") == "/clock":
+                    if len(set(seen)) == 1:
+                        _call(client, "/crowdbot/next_scenario", {})
+                    _say(client, "publish", "/cmd_vel", msg=TWIST)
+        text, _ = server.communicate(timeout=600)
+    record = json.loads(text)
+    first, second = dict.fromkeys(seen)
+    assert first.startswith(ID.split("+")[0])
+    assert record["scenario"] == second
+    partial = list(tmp_path.glob("*/*/live/*.partial"))
+    assert [p.parent.parent.name for p in partial] == [first]
 
 
 def test_who_disturbs_changes_nothing(served: Served) -> None:

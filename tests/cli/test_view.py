@@ -179,7 +179,11 @@ def test_json_and_set(tmp_path: Path, capsys: Captured) -> None:
         (["view", "challenge-2020"], 1, "no id was given"),
         (["view", "challenge-2020", "in"], 1, "fits more than one"),
         (["view", "run"], 1, "no run.json"),
-        (["view", "run", "in"], 2, "whose page is there already"),
+        (["view", "run", "in"], 2, "in is not a run directory"),
+        (["view", "run", "run"], 1, "no readable run.json"),
+        (["view", "run", "--out", "x.png"], 2, "must end in .html"),
+        (["view", "run", "--set", "seed=1"], 2, "no --set"),
+        (["view", "challenge-2020", "a", "b"], 2, "are several"),
     ],
 )
 def test_wrong_commands(

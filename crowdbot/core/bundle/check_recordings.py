@@ -10,9 +10,9 @@ from pathlib import Path
 from crowdbot.core.bundle.archive import Archive
 from crowdbot.core.bundle.check_run import ClaimedRun
 from crowdbot.core.bundle.pack import read_json
-from crowdbot.core.recording import WholeRecording, read_whole
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.robots import RecordedRun, read_recorded
 from crowdbot.errors import InputError
 
 #: What the record of a calibration run has besides what its id is the hash of.
@@ -52,7 +52,7 @@ def reference_members(run: ClaimedRun) -> dict[str, str]:
     return {k: posixpath.normpath(f"{run.entry.directory}/{p}") for k, p in listed.items()}
 
 
-def read_member(archive: Archive, name: str) -> WholeRecording:
+def read_member(archive: Archive, name: str) -> RecordedRun:
     """A recording of a bundle, by way of a temporary file.
 
     Raises:
@@ -62,12 +62,12 @@ def read_member(archive: Archive, name: str) -> WholeRecording:
         file = Path(folder) / files.RECORDING
         archive.unpack(name, file)
         try:
-            return read_whole(file)
+            return read_recorded(file)
         except InputError as error:
             raise InputError(str(error).removeprefix(f"{file}: ")) from None
 
 
-def ownership_problems(run: ClaimedRun, found: WholeRecording) -> Iterator[str]:
+def ownership_problems(run: ClaimedRun, found: RecordedRun) -> Iterator[str]:
     """Where a recording is not that of a run."""
     header, record = found.header, run.record
     hashes = provenance.recording_hashes(record["run_id"], record)
@@ -79,7 +79,7 @@ def ownership_problems(run: ClaimedRun, found: WholeRecording) -> Iterator[str]:
             yield f"it does not say of which {key} it is"
         elif said != wanted:
             yield f"it is of another {key}: {said[:40]} instead of {wanted[:40]}"
-    if provenance.trajectory_hash(found.run) != run.entry.trajectory:
+    if found.trajectory != run.entry.trajectory:
         yield "what happens in it has another hash than the run: it is the recording of another one"
     if not found.complete:
         yield f"it is cut: it can be read until {found.until:g} s"
@@ -102,7 +102,7 @@ def _reference_problems(archive: Archive, name: str, wanted: str) -> Iterator[st
     except InputError as error:
         yield str(error).removeprefix(f"{archive.path}: ")
         return
-    if provenance.trajectory_hash(found.run) != wanted:
+    if found.trajectory != wanted:
         yield "what happens in it has another hash than the runs say"
     key = {k: v for k, v in document.items() if k not in _ENDING}
     run_id = provenance.digest({"reference": document.get("reference"), **key})

@@ -20,8 +20,9 @@ from crowdbot.core.bundle.manifest import Manifest
 from crowdbot.core.bundle.verification import content_hash, read_verification
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.runs.provenance import trajectory_hash
-from crowdbot.core.scoring.evaluate import score
+from crowdbot.core.runs.identity import CROWD_ALONE, ROBOT_ALONE
+from crowdbot.core.runs.robots import score_robots
+from crowdbot.core.scoring.metric import References
 from crowdbot.errors import InputError
 
 SUFFIX = ".cbz"
@@ -164,13 +165,19 @@ def _score(
     for problem in ownership_problems(run, own):
         raise InputError(f"{run.entry.directory}/{files.RECORDING}: {problem}")
     read = {
-        key: read_member(archive, name).run
+        key: read_member(archive, name)
         for key, name in reference_members(run).items()
         if name in archive.names
     }
     for key, found in read.items():
-        if trajectory_hash(found) != run.record.get("reference_hashes", {}).get(key):
+        if found.trajectory != run.record.get("reference_hashes", {}).get(key):
             raise InputError(f"{run.entry.directory}: its {key} is not the one that it names")
-    return list(
-        score(registry, own.run, read.get("robot_alone"), read.get("crowd_alone"), metrics=metrics)
-    )
+    alone, crowd = read.get(ROBOT_ALONE), read.get(CROWD_ALONE)
+    references = {
+        name: References(
+            robot_alone=None if alone is None else alone.runs.get(name),
+            crowd_alone=None if crowd is None else crowd.runs.get(""),
+        )
+        for name in own.runs
+    }
+    return list(score_robots(registry, own.runs, references, metrics=metrics))

@@ -23,6 +23,7 @@ from crowdbot.core.runs import provenance
 from crowdbot.core.runs.identity import (
     Prepared,
     Reference,
+    longest,
     prepare,
     references_of,
     reusable_record,
@@ -230,7 +231,7 @@ class _PlanBuilder:
 
     def _learn(self, request: Request, record: dict[str, Any], prepared: Prepared) -> None:
         people = len(prepared.run.people.agents)
-        self._estimate.learn_run(request.directory, record, people, _limit(request))
+        self._estimate.learn_run(request.directory, record, people, longest(request.scenario))
 
     def _job(
         self,
@@ -245,7 +246,7 @@ class _PlanBuilder:
         trial = what.run if isinstance(what, Prepared) else what.trial
         directory = request.directory if isinstance(what, Prepared) else what.directory
         people = len(trial.people.agents)
-        self._size += self._estimate.size(kind, people, _limit(request))
+        self._size += self._estimate.size(kind, people, longest(request.scenario))
         self._jobs[key] = Job(
             key=key,
             kind=kind,
@@ -266,10 +267,5 @@ class _PlanBuilder:
             force=self._campaign.force,
             place=self._campaign.place,
             depends_on=tuple(r.run_id for r in depends_on),
-            cost=expected_seconds(kind, people, _limit(request)),
+            cost=expected_seconds(kind, people, longest(request.scenario)),
         )
-
-
-def _limit(request: Request) -> float:
-    (robot,) = request.scenario.robots.values()
-    return robot.task.time_limit

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import random
 import tempfile
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,7 +21,8 @@ from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import prepare
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.runs.request import Request, Run
-from crowdbot.core.scoring.evaluate import score
+from crowdbot.core.runs.robots import score_robots
+from crowdbot.core.scoring.metric import References
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.sim.simulate import make_run
 from crowdbot.core.types.score import Score
@@ -76,7 +78,8 @@ def choose_planner(
             "the team and name it: --planner FILE.py:CLASS"
         )
     try:
-        choice = resolve_planner(given or kind, registry, _settings(record), place)
+        text, settings = _named(record)
+        choice = resolve_planner(given or text, registry, settings, place)
     except InputError as error:
         raise NotRunnable(
             f"{error}; install the planner, load it with --plugin DIR, or name its class with "
@@ -163,7 +166,12 @@ def _own_scores(setup: RerunSetup, run: Run, scores: Sequence[Score]) -> frozens
     metrics = "*" if setup.expansion.metrics is None else setup.expansion.metrics
     without = {
         (s.metric, s.variant): (s.status, s.value, s.lower, s.upper)
-        for s in score(setup.registry, run.trajectories, metrics=metrics)
+        for s in score_robots(
+            setup.registry,
+            run.robots or {"robot": run.trajectories},
+            defaultdict(References),
+            metrics=metrics,
+        )
     }
     return frozenset(
         (s.metric, s.variant)
@@ -175,6 +183,15 @@ def _own_scores(setup: RerunSetup, run: Run, scores: Sequence[Score]) -> frozens
 def _class(record: Mapping[str, Any]) -> str:
     """Name of the class of a planner from a file."""
     return str(record.get("kind", "")).rpartition(":")[2]
+
+
+def _named(record: Mapping[str, Any]) -> tuple[str, list[str]]:
+    """A planner as `resolve_planner` takes it, with its settings; also those of several robots."""
+    robots = record.get("robots")
+    if record.get("kind") != "fleet" or not isinstance(robots, Mapping):
+        return str(record.get("kind", "")), _settings(record)
+    text = ",".join(f"{name}={one.get('kind', '')}" for name, one in robots.items())
+    return text, [f"{name}.{s}" for name, one in robots.items() for s in _settings(one)]
 
 
 def _settings(record: Mapping[str, Any]) -> list[str]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.agents import ONWARD, PORTAL, Agents
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS
-from crowdbot.core.crowd.contact.robot_contact import DISC, R_W, RVX, RVY
+from crowdbot.core.crowd.contact.robot_contact import DISC, FELT, R_W, RVX, RVY, TOUCH
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration
 from crowdbot.core.crowd.groups import groups_of, hold_together
 from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
@@ -33,7 +33,8 @@ from crowdbot.core.types.arrays import Array
 #: Makes the policy of a set of agents.
 PolicyFactory = Callable[[Agents], CrowdPolicy]
 
-NOBODY = np.zeros((0, 8))
+NOBODY, DISCS = np.zeros((0, 8)), np.zeros((0, 0, 2))
+NO_BOOKS, NO_STIFFNESSES = np.zeros((0, 0)), np.zeros(0)
 _SEEN = np.array([0, 1, 2, 3, 5])  # columns of a robot that policies know
 _MOTION = np.isin(np.arange(8), [RVX, RVY, R_W])  # those that say how it moves
 
@@ -160,7 +161,14 @@ class CrowdEngine:
         return found
 
     def advance(
-        self, flat: Array, robots: Array = NOBODY, outline: Array = DISC, dt: float = TICK
+        self,
+        flat: Array,
+        robots: Array = NOBODY,
+        outline: Array = DISC,
+        dt: float = TICK,
+        *,
+        books: Array = NO_BOOKS,
+        stiffnesses: Array = NO_STIFFNESSES,
     ) -> None:
         """One tick of 1/128 s, in place; decides first when a decision is due.
 
@@ -168,15 +176,24 @@ class CrowdEngine:
             flat: state vector.
             robots: (R, 8) x, y, vx, vy, physical and perceived radius, heading, yaw rate; the
                 last two may be left out.
-            outline: (K, 2) of robots that are not discs, see `robot_contact`.
+            outline: (K, 2) of robots that are not discs, see `robot_contact`; or (R, K, 2) of each
+                of them, those with fewer corners filled up with NaN.
             dt: length of a tick, s. Another one is for studies of contacts: it is the engine's
                 clock too, so that decisions come every so many ticks, not seconds.
+            books: (R, B) what each of several robots feels, see `initial_books`, changed in place.
+                Without them the state itself holds it, which has room for one robot.
+            stiffnesses: (R,) of people against each of the robots that have books, N/m.
         """
         if robots.shape[1] < 8:
             robots = np.pad(robots, ((0, 0), (0, 8 - robots.shape[1])))
+        outlines = outline if outline.ndim == 3 else _alike(outline, len(robots))
         if int(flat[s.TICK]) % self._ticks_per_decision == 0:
-            self._decide(flat, robots, outline)
-        tick(*self._given(flat, robots, outline, dt))
+            self._decide(flat, robots, outlines)
+        tick(*self._given(flat, robots, outlines, dt, books, stiffnesses))
+
+    def initial_books(self, robots: int) -> Array:
+        """(R, B) books of several robots that nobody has touched yet; see `advance`."""
+        return np.zeros((robots, len(FELT) + len(TOUCH) * len(self.agents)))
 
     def advance_alone(self, flat: Array, most: int) -> int:
         """Ticks without robots, in place, as `advance` makes them one by one.
@@ -192,16 +209,24 @@ class CrowdEngine:
         """
         since = int(flat[s.TICK]) % self._ticks_per_decision
         if since == 0:
-            self._decide(flat, NOBODY, DISC)
+            self._decide(flat, NOBODY, DISCS)
         # What pushes from across a border moves with every tick.
         count = min(most, self._ticks_per_decision - since)
         count = count if self.world.periodic_boundary is None else 1
-        return int(ticks_without_robots(count, *self._given(flat, NOBODY, DISC, TICK)))
+        return int(ticks_without_robots(count, *self._given(flat, NOBODY, DISCS, TICK)))
 
-    def _given(self, flat: Array, robots: Array, outline: Array, dt: float) -> tuple[Any, ...]:
+    def _given(
+        self,
+        flat: Array,
+        robots: Array,
+        outlines: Array,
+        dt: float,
+        books: Array = NO_BOOKS,
+        stiffnesses: Array = NO_STIFFNESSES,
+    ) -> tuple[Any, ...]:
         """All that `tick` is given."""
         return (
-            flat, robots, outline, self._fixed(flat), dt,
+            flat, robots, outlines, books, stiffnesses, self._fixed(flat), dt,
             *self._people, *self._place, *self._scratch,
         )  # fmt: skip
 
@@ -227,7 +252,7 @@ class CrowdEngine:
                 positions.append(np.where(here[:, None], rows[:, s.X : s.Y + 1], np.nan))
         return np.array(times), np.array(positions)
 
-    def _decide(self, flat: Array, robots: Array, outline: Array) -> None:
+    def _decide(self, flat: Array, robots: Array, outlines: Array) -> None:
         _, rows = s.view(flat)
         if not self.world.robot_visible:
             robots = np.where(_MOTION, 0.0, robots)
@@ -250,15 +275,15 @@ class CrowdEngine:
                 rows, self._members, self._ends, self.agents.max_acceleration,
                 self._place.boundary, self._cohesion,
             )  # fmt: skip
-        self._evade(flat, rows, robots, outline)
+        self._evade(flat, rows, robots, outlines)
 
-    def _evade(self, flat: Array, rows: Array, robots: Array, outline: Array) -> None:
+    def _evade(self, flat: Array, rows: Array, robots: Array, outlines: Array) -> None:
         """Those who have noticed robots change what they want, whatever their policy is."""
         if self._evades is None or not len(robots):
             return
         people, now = self._people, float(flat[s.TICK]) * TICK
         evade_robots(
-            rows, people.radius, people.heeds_robot, self.agents.late, robots, outline,
+            rows, people.radius, people.heeds_robot, self.agents.late, robots, outlines,
             self._evades, now,
         )  # fmt: skip
 
@@ -294,6 +319,11 @@ class CrowdEngine:
             people, self.world.periodic_boundary, reach, diagonal=not self.world.parity
         )  # fmt: skip
         return np.concatenate([self.world.pillars, seen[:, [0, 1, 4]]])
+
+
+def _alike(outline: Array, robots: int) -> Array:
+    """One outline (K, 2) for each robot."""
+    return outline[np.newaxis] if robots == 1 else np.repeat(outline[np.newaxis], robots, axis=0)
 
 
 def _who_plans(agents: Agents, world: CrowdWorld) -> NDArray[np.bool_]:

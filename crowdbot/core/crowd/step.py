@@ -10,7 +10,11 @@ import numpy as np
 from crowdbot.core.crowd.agents import PORTAL
 from crowdbot.core.crowd.contact.geometry import is_clearly_shorter
 from crowdbot.core.crowd.contact.pedestrian_contact import push_apart
-from crowdbot.core.crowd.contact.robot_contact import robot_contact
+from crowdbot.core.crowd.contact.robot_contact import (
+    contacts_of_several,
+    corners_of,
+    robot_contact,
+)
 from crowdbot.core.crowd.parameters import AgentParameters, WorldParameters
 from crowdbot.core.crowd.periodic_boundary import wrap
 from crowdbot.core.crowd.portals import entry_fraction, leave, try_to_re_enter, try_to_start
@@ -52,7 +56,8 @@ _TURNS_ABOVE = 0.1
 
 @kernel
 def tick(
-    flat: Array, robots: Array, outline: Array, discs: Array, dt: float,
+    flat: Array, robots: Array, outlines: Array, books: Array, stiffnesses: Array, discs: Array,
+    dt: float,
     ids: Indices, radius: Array, mass: Array, preferred_speed: Array, max_speed: Array,
     start_time: Array, at_goal: Indices, flow: Indices, route: Array, first: Indices,
     entry_order: Indices, heeds_robot: Mask, push: Array, goal_area: Array, pause: Array,
@@ -68,7 +73,8 @@ def tick(
 
     Args:
         flat: the crowd's state, changed in place.
-        robots, outline: (R, 8), (K, 2) as in `crowdbot.core.crowd.contact.robot_contact`.
+        robots, outlines: (R, 8), (R, K, 2) as in `crowdbot.core.crowd.contact.robot_contact`.
+        books, stiffnesses: of several robots, as in `contacts_of_several`; of one none.
         discs: (D, 3) x, y, radius of fixed discs that push, m.
         dt: length of the tick, s.
         ids to stays_at: fields of `AgentParameters`.
@@ -86,7 +92,13 @@ def tick(
     header, agents = flat[:HEADER_SIZE], flat[HEADER_SIZE:].reshape(-1, AGENT_COLUMNS)
     now = header[TICK] * dt
     push_apart(agents, radius, order, walls, discs, push, placed)
-    for r in range(robots.shape[0]):
+    if books.shape[0] > 0:
+        contacts_of_several(
+            header, agents, radius, robots, outlines, books, stiffnesses, dissipation, now, dt,
+            reaction, placed,
+        )  # fmt: skip
+    for r in range(robots.shape[0] if books.shape[0] == 0 else 0):
+        outline = outlines[r][: corners_of(outlines, r)]
         robot_contact(
             header, agents, radius, robots[r], outline, stiffness, dissipation, now, dt, reaction
         )
@@ -94,7 +106,7 @@ def tick(
         reaction[:] = 0.0
     for i in range(agents.shape[0]):
         if agents[i, WAITING] == PRESENT:
-            _advance(header, agents, i, people, world, robots, outline, reaction, now, dt)
+            _advance(header, agents, i, people, world, robots, outlines, reaction, now, dt)
     for i in entry_order:
         if agents[i, WAITING] == AT_PORTAL:
             try_to_re_enter(agents, i, people, world, robots, now + dt)
@@ -111,7 +123,7 @@ def _advance(
     people: AgentParameters,
     world: WorldParameters,
     robots: Array,
-    outline: Array,
+    outlines: Array,
     reaction: Array,
     now: float,
     dt: float,
@@ -120,7 +132,7 @@ def _advance(
     x, y, arrivals = agents[i, X], agents[i, Y], agents[i, ARRIVALS]
     ax, ay = 0.0, 0.0
     if agents[i, BESIDE] != 0.0:
-        ax, ay = stop_short(agents, i, people.radius, robots, outline, world.response)
+        ax, ay = stop_short(agents, i, people.radius, robots, outlines, world.response)
     elif world.response[KIND] == KEEP_OFF and people.heeds_robot[i]:
         ax, ay = keep_off(agents, i, people.radius, robots, world.response)
     ax += agents[i, PUSH_X] + reaction[i, 0] / people.mass[i]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.dsl.component_specs import PlannerRole
@@ -64,6 +64,7 @@ class PlannerChoice:
         repeatable: whether the same choice makes the same run; False for an object that was made
             already, whose runs are never reused.
         patience: s after which a step in this process counts as hung; None: the usual time.
+        fleet: the planner of each of several robots, where they have not all the same.
     """
 
     name: str
@@ -79,6 +80,11 @@ class PlannerChoice:
     memory: int | None = None
     repeatable: bool = True
     patience: float | None = None
+    fleet: Mapping[str, PlannerChoice] = field(default_factory=dict)
+
+    def of(self, robot: str) -> PlannerChoice:
+        """The planner of one robot."""
+        return self.fleet.get(robot, self)
 
     @property
     def process(self) -> str:

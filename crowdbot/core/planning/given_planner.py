@@ -43,7 +43,8 @@ def choose_planner(
     """The planner that somebody means, without building it.
 
     Args:
-        planner: a kind, a YAML file or ``file.py:Class`` as text or path; a spec such as
+        planner: a kind, a YAML file or ``file.py:Class`` as text or path, or those of several
+            robots as ``a=KIND,b=FILE``, see `resolve_planner`; a spec such as
             ``DwaSpec()``; a class with ``reset`` and ``step``; an object of one; or a function
             from an observation to a command.
         registry: the installed components.

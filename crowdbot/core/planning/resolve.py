@@ -14,6 +14,7 @@ from ruamel.yaml.error import YAMLError
 from crowdbot.core.planning.choice import ANYWHERE, PlannerChoice, PlannerPlace, label_of
 from crowdbot.core.planning.description import described, role_of
 from crowdbot.core.planning.external import external_choice, is_external
+from crowdbot.core.planning.fleet_choice import fleet_choice
 from crowdbot.core.planning.guarded import planner_title
 from crowdbot.core.planning.planner import Planner
 from crowdbot.core.planning.process.process_planner import ProcessPlan, describe
@@ -51,9 +52,11 @@ def resolve_planner(
     Nothing of a planner that runs in a process of its own is imported here.
 
     Args:
-        text: a kind (``dwa``), a YAML file with ``kind`` and parameters, or ``file.py:Class``.
+        text: a kind (``dwa``), a YAML file with ``kind`` and parameters, or ``file.py:Class``; for
+            several robots ``a=dwa,b=file.py:Class``, or one planner for all.
         registry: the installed components.
-        settings: ``key=value``, values in YAML; they come after those of a file.
+        settings: ``key=value``, values in YAML; they come after those of a file. Of several robots
+            with planners of their own ``a.key=value``.
         place: where it is to run.
 
     Raises:
@@ -61,6 +64,9 @@ def resolve_planner(
         InputError: a file, class or parameter is wrong.
         PlannerError: the Python file cannot be imported.
     """
+    fleet = fleet_choice(text, settings, lambda t, s: resolve_planner(t, registry, s, place))
+    if fleet is not None:
+        return fleet
     given = setting_values(settings)
     path, colon, name = text.rpartition(":")
     if colon and path.endswith(".py"):

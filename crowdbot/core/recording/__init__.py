@@ -1,6 +1,7 @@
 """Recordings: MCAP files of ROS 2 messages, and the state bit by bit beside them."""
 
 from crowdbot.core.recording.commands import read_commands
+from crowdbot.core.recording.fleet import FleetMember, fleet_names, read_fleet
 from crowdbot.core.recording.header import AgentsHeader, RecordingHeader, RobotHeader
 from crowdbot.core.recording.reader import (
     RecordingInfo,
@@ -17,14 +18,17 @@ from crowdbot.core.recording.writer import RecordingWriter
 
 __all__ = [
     "AgentsHeader",
+    "FleetMember",
     "RecordingHeader",
     "RecordingInfo",
     "RecordingWriter",
     "RobotHeader",
     "WholeRecording",
+    "fleet_names",
     "holds_run",
     "read_commands",
     "read_cones",
+    "read_fleet",
     "read_run",
     "read_scans",
     "read_trajectories",

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from crowdbot.core.recording.header import RecordingHeader, RobotHeader
+from crowdbot.core.recording.records import Record, decode
 from crowdbot.core.recording.states import States, StatesReader, series
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.trajectories.trajectories import Trajectories
@@ -41,6 +42,31 @@ class Collected:
     def add(self, topic: str, message: Any) -> None:
         """Take one message of one of `TOPICS`."""
         self._by_topic[topic].append(message)
+
+    def add_record(self, path: Path, record: Record) -> None:
+        """Take one message that has not been decoded yet, on one of `TOPICS`.
+
+        Raises:
+            InputError: it is of another type than crowdbot writes there, or damaged.
+        """
+        expected = self.TOPICS[record.topic]
+        if record.msgtype not in expected or record.encoding != "cdr":
+            found = record.msgtype or "a message without schema"
+            raise InputError(
+                f"{path}: {record.topic} holds {found} ({record.encoding or 'no encoding'}), "
+                f"not {expected[0]} (cdr)"
+            )
+        self.add(record.topic, decode(path, record))
+
+    def people(self, path: Path) -> Trajectories | None:
+        """The people of a recording that holds them apart from its robots; None without any.
+
+        Raises:
+            InputError: as `trajectories`.
+        """
+        if not self._by_topic[Topic.HEADER] or self.header(path).agents is None:
+            return None
+        return self.trajectories(path)
 
     @property
     def complete(self) -> bool:

@@ -58,6 +58,8 @@ class RecordingHeader:
         robot, agents: None in a run without.
         walls: (S, 4) segments x0, y0, x1, y1, m.
         goal_zone: (K, 2) polygon, m.
+        namespace: before topics and frames of one robot of several. It is not written: the topic
+            of the header says it.
     """
 
     scenario: str
@@ -67,6 +69,7 @@ class RecordingHeader:
     sensors: Mapping[str, SensorInfo] = field(default_factory=dict)
     walls: Array | None = None
     goal_zone: Array | None = None
+    namespace: str = ""
 
     def to_message(self) -> Any:
         """As ``crowdbot_msgs/msg/RunHeader``."""
@@ -110,6 +113,19 @@ class RecordingHeader:
             )
         except (ValueError, LookupError) as error:  # tables and lists of the wrong length
             raise InputError(f"the recording's header contradicts itself: {error}") from error
+
+
+def with_frames(header: RecordingHeader) -> RecordingHeader:
+    """The header with the frames of its sensors in its namespace, if it has one."""
+    if not header.namespace:
+        return header
+    return replace(
+        header,
+        sensors={
+            name: replace(info, frame=f"{header.namespace}/{info.frame}")
+            for name, info in header.sensors.items()
+        },
+    )
 
 
 def _robot_message(robot: RobotHeader) -> Any:

@@ -70,9 +70,13 @@ def transforms(items: Iterable[Any]) -> Any:
 
 
 def odometry(
-    ns: int, child: str, values: Array, covariances: tuple[Array, Array] | None = None
+    ns: int,
+    child: str,
+    values: Array,
+    covariances: tuple[Array, Array] | None = None,
+    frame: str = "odom",
 ) -> Any:
-    """What the robot believes: x, y, yaw, v, w, and perhaps vy, in the frame ``odom``.
+    """What the robot believes: x, y, yaw, v, w, and perhaps vy, in its frame ``odom``.
 
     Args:
         covariances: of pose and twist, (36,) each, as in ``nav_msgs/Odometry``; None: not known.
@@ -84,7 +88,7 @@ def odometry(
     speed = new("geometry_msgs/TwistWithCovariance", twist=twist(v, vy, w), covariance=of_twist)
     return new(
         "nav_msgs/Odometry",
-        header=header(ns, "odom"),
+        header=header(ns, frame),
         child_frame_id=child,
         pose=pose,
         twist=speed,

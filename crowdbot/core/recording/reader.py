@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from crowdbot.core.recording.assemble import Collected
+from crowdbot.core.recording.fleet import among
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.records import Record, Records, decode
 from crowdbot.core.recording.scan_reader import Choice, ScanCollector, cones, lidars
@@ -75,10 +76,13 @@ class WholeRecording:
 def read_whole(path: Path, robot: str | None = None) -> WholeRecording:
     """Trajectories together with header and end; arguments and errors as `read_trajectories`."""
     collected, records = Collected(), Records(path)
-    for topic, record in _of_robot(path, robot, records):
-        _check_type(path, record, Collected.TOPICS[topic])
-        collected.add(topic, decode(path, record))
+    mine, people = _of_robot(path, robot, records)
+    for topic, record in mine:
+        collected.add_record(path, record._replace(topic=topic))
     run = collected.trajectories(path)
+    if people is not None:
+        ends = [record.ns / 1e9 for topic, record in mine if topic == Topic.END]
+        run = among(run, people, ends[0] if ends else float(run.t[-1]))
     return WholeRecording(
         header=collected.header(path),
         run=run,
@@ -103,11 +107,9 @@ def read_run(path: Path, max_rate: float) -> tuple[Trajectories, list[ReplayScan
         if record.topic not in Collected.TOPICS:
             scans.add(record)
             continue
-        _check_type(path, record, Collected.TOPICS[record.topic])
-        message = decode(path, record)
+        collected.add_record(path, record)
         if record.topic == Topic.HEADER:
-            scans.open(RecordingHeader.from_message(message))
-        collected.add(record.topic, message)
+            scans.open(collected.header(path))
     return collected.trajectories(path), scans.scans()
 
 
@@ -125,8 +127,11 @@ def holds_run(path: Path) -> bool:
 
 def _of_robot(
     path: Path, robot: str | None, records: Records | None = None
-) -> list[tuple[str, Record]]:
-    """Scoring topic and message of one robot; of other topics only the names are looked at."""
+) -> tuple[list[tuple[str, Record]], Trajectories | None]:
+    """Scoring topic and message of one robot, and the people where they are recorded apart.
+
+    Of other topics only the names are looked at.
+    """
     by_prefix: dict[str, list[tuple[str, Record]]] = {}
     for record in records or Records(path):
         for topic in Collected.TOPICS:
@@ -138,24 +143,30 @@ def _of_robot(
         for prefix, messages in by_prefix.items()
         if any(topic == Topic.HEADER for topic, _ in messages)
     }
+    shared = _shared(path, robots)
+    if shared is not None:
+        del robots[""]
     if robot is not None:
         if robot.strip("/") not in robots:
             raise UnknownNameError("robot", robot, filter(None, robots))
-        return robots[robot.strip("/")]
+        name = robot.strip("/")
+        return robots[name], shared.people(path) if shared is not None and name else None
     if len(robots) > 1 and "" not in robots:
         raise InputError(
             f"{path}: the recording holds several robots: {', '.join(sorted(robots))}; name one"
         )
-    return robots.get("") or next(iter(robots.values()), [])
+    mine = robots.get("") or next(iter(robots.values()), [])
+    return mine, None if shared is None else shared.people(path)
 
 
-def _check_type(path: Path, record: Record, expected: tuple[str, ...]) -> None:
-    if record.msgtype not in expected or record.encoding != "cdr":
-        found = record.msgtype or "a message without schema"
-        raise InputError(
-            f"{path}: {record.topic} holds {found} ({record.encoding or 'no encoding'}), "
-            f"not {expected[0]} (cdr)"
-        )
+def _shared(path: Path, robots: Mapping[str, list[tuple[str, Record]]]) -> Collected | None:
+    """What is recorded for all robots together, beside them; None where there is no such thing."""
+    if len(robots) < 2 or "" not in robots:
+        return None
+    collected = Collected()
+    for topic, record in robots[""]:
+        collected.add_record(path, record._replace(topic=topic))
+    return collected if collected.header(path).robot is None else None
 
 
 def read_scans(

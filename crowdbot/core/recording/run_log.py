@@ -29,6 +29,7 @@ class RunLog:
         agent_id: NDArray[np.int64],
         *,
         sideways: bool = False,
+        people: bool = True,
         aim: int = s.GOAL_X,
         watchers: Sequence[Watcher] = (),
     ) -> None:
@@ -38,12 +39,14 @@ class RunLog:
             writer: of the recording.
             agent_id: (N,) numbers of the people.
             sideways: whether the robot's velocity may point elsewhere than it looks.
+            people: whether people and their trips are recorded, or only contacts with them: those
+                of a fleet are recorded once for all robots.
             aim: column of the crowd's state where the point begins to which people walk.
             watchers: see each sample, too.
         """
         self._watchers = watchers
         self.writer = writer
-        self._sideways = sideways
+        self._sideways, self._keeps_people = sideways, people
         self._id = agent_id
         self._aim = aim
         self._jumps = np.zeros(len(agent_id))  # at the latest sample
@@ -58,7 +61,7 @@ class RunLog:
     def sample(self, t: float, robot: RobotState | None, crowd: Array | None) -> None:
         """One row of the log grid: the robot's state and the flat crowd state, either missing."""
         agents = jump = goals = None
-        if crowd is not None:
+        if crowd is not None and self._keeps_people:
             _, people = s.view(crowd)
             agents = people[:, s.X : s.VY + 1].T.copy()
             agents[:, people[:, s.WAITING] != s.PRESENT] = np.nan
@@ -78,7 +81,7 @@ class RunLog:
     def record_events(self, crowd: Array) -> None:
         """Record trips and contacts that ended since the last call; to be called every tick."""
         header, people = s.view(crowd)
-        if int(header[s.TRIPS]) != self.trips:
+        if self._keeps_people and int(header[s.TRIPS]) != self.trips:
             self._record_trips(people)
             self.trips = int(header[s.TRIPS])
         if int(header[s.CONTACTS]) != self.contacts:
@@ -107,7 +110,9 @@ class RunLog:
             return
         self.record_events(crowd)
         _, people = s.view(crowd)
-        active = (people[:, s.ON_TRIP] != 0.0) & (people[:, s.WAITING] == s.PRESENT)
+        active = (
+            self._keeps_people & (people[:, s.ON_TRIP] != 0.0) & (people[:, s.WAITING] == s.PRESENT)
+        )
         for i in np.flatnonzero(active):
             self.writer.trip(int(self._id[i]), float(people[i, s.TRIP_START]), t, False)
         for i in np.flatnonzero(people[:, s.TOUCHING] != 0.0):

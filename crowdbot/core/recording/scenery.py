@@ -12,6 +12,7 @@ from crowdbot.core.geometry.optical_frame import OPTICAL_QUATERNION, optical
 from crowdbot.core.recording import markers
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.namespace import in_namespace
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 
@@ -26,14 +27,16 @@ _OCCUPIED = 100
 
 def static_frames(header: RecordingHeader) -> list[Any]:
     """Transforms ``map`` to ``odom``, ``base_footprint`` to ``base_link``, and to all sensors."""
-    frames = [ros.transform(0, "map", "odom", (0.0, 0.0, 0.0), 0.0)]
+    odom, footprint, base = (in_namespace(header.namespace, f) for f in ("odom", BASE, "base_link"))
+    frames = [ros.transform(0, "map", odom, (0.0, 0.0, 0.0), 0.0)]
     robot = header.robot
     if robot is None:
         return frames
-    frames.append(ros.transform(0, BASE, "base_link", (0.0, 0.0, robot.base_height), 0.0))
-    mounts = {s.frame: s.mount for s in header.sensors.values() if s.frame not in FRAMES}
+    frames.append(ros.transform(0, footprint, base, (0.0, 0.0, robot.base_height), 0.0))
+    own = [in_namespace(header.namespace, frame) for frame in FRAMES]
+    mounts = {s.frame: s.mount for s in header.sensors.values() if s.frame not in own}
     for frame, (x, y, z, yaw) in mounts.items():
-        frames.append(ros.transform(0, "base_link", frame, (x, y, z), yaw))
+        frames.append(ros.transform(0, base, frame, (x, y, z), yaw))
     for info in (s for s in header.sensors.values() if s.camera is not None):
         here = ros.transform(0, info.frame, optical(info.frame), (0.0, 0.0, 0.0), 0.0)
         turned = dict(zip("xyzw", OPTICAL_QUATERNION, strict=True))

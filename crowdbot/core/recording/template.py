@@ -111,10 +111,12 @@ def transform(parent: str, child: str) -> Template:
     return Template(message, ANY_STAMP, two(_A, _B), turn(_C))
 
 
-def odometry(child: str) -> Template:
+def odometry(child: str, frame: str = "odom") -> Template:
     """Places: stamp; x and y; turn; covariance of the pose; v and vy; w; that of the twist."""
     pose, speed = np.full(36, _A), np.full(36, _B)
-    message = ros.odometry(ANY_TIME, child, np.array([_A, _B, _C, _D, _E, _F]), (pose, speed))
+    message = ros.odometry(
+        ANY_TIME, child, np.array([_A, _B, _C, _D, _E, _F]), (pose, speed), frame
+    )
     marks = two(_A, _B), turn(_C), pose.tobytes(), two(_D, _F), one(_E), speed.tobytes()
     return Template(message, ANY_STAMP, *marks)
 

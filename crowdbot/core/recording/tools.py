@@ -8,6 +8,7 @@ from crowdbot.core.recording import markers, scenery, template
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.namespace import in_namespace
 from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
 from crowdbot.core.recording.scans import Thinning
 from crowdbot.core.recording.template import Template
@@ -35,8 +36,10 @@ class ToolTopics:
         self._arrows_due = Thinning(PEOPLE_RATE)
         self._way = None if robot is None else RobotWay(robot.radius)
         self._clock, self._twist = template.clock(), template.twist()
-        self._truth = template.transform("map", scenery.BASE)
-        self._believed = template.transform("odom", scenery.BASE)
+        self._namespace = header.namespace
+        base, odom = (in_namespace(self._namespace, f) for f in (scenery.BASE, "odom"))
+        self._truth = template.transform("map", base)
+        self._believed = template.transform(odom, base)
         self._pose = template.pose_stamped("map")
         self._usual = usual_names(header.sensors)
         self._odometry = next((n for n, s in header.sensors.items() if is_odometry(s)), None)
@@ -45,7 +48,8 @@ class ToolTopics:
     def state(self, ns: int, robot: Sequence[float] | None, agents: Array | None) -> None:
         """One sample of the log: x, y, yaw of the robot; people (4, M); either may be missing."""
         stamp = template.stamp(ns)
-        self._put(Topic.CLOCK, ns, self._clock, stamp)
+        if not self._namespace:
+            self._put(Topic.CLOCK, ns, self._clock, stamp)
         if robot is not None:
             x, y, yaw = robot[:3]
             parts = stamp, template.two(x, y), template.turn(yaw)
@@ -95,7 +99,7 @@ class ToolTopics:
             text = ros.new("std_msgs/String", data=description)
             self._file.put(Topic.DESCRIPTION, 0, text, latched=True)
         walls, zone = header.walls, header.goal_zone
-        if walls is not None and len(walls):
+        if walls is not None and len(walls) and not self._namespace:
             self._file.put(Topic.WALLS, 0, scenery.wall_lines(walls), latched=True)
             self._file.put(Topic.MAP, 0, scenery.occupancy_grid(0, walls), latched=True)
         if zone is not None and len(zone):

@@ -55,14 +55,18 @@ class SensorTopic(NamedTuple):
     message: Callable[[int, Array], bytes]
 
 
-def sensor_topics(sensors: Mapping[str, SensorInfo]) -> dict[str, SensorTopic]:
-    """Sensor name -> topic. The first odometry has ``/odom`` for itself."""
+def sensor_topics(sensors: Mapping[str, SensorInfo], namespace: str = "") -> dict[str, SensorTopic]:
+    """Sensor name -> topic. The first odometry has ``/odom`` for itself.
+
+    Args:
+        namespace: of the robot's frames; topics are without it.
+    """
     topics: dict[str, SensorTopic] = {}
     odometry = [n for n, s in sensors.items() if is_odometry(s)]
     for name, info in sensors.items():
         if name in odometry:
             topic = "/odom" if name == odometry[0] else f"/{name}/odom"
-            topics[name] = _odometry(topic, info)
+            topics[name] = _odometry(topic, info, namespace)
         elif is_scan(info):
             topics[name] = _scan(scan_topic(name), info)
         elif info.ros_type == "sensor_msgs/msg/Range" and info.shape == (1,):
@@ -127,8 +131,9 @@ def is_cloud(info: SensorInfo) -> bool:
     return known and len(info.shape) == 2 and info.ros_type == "sensor_msgs/msg/PointCloud2"
 
 
-def _odometry(topic: str, info: SensorInfo) -> SensorTopic:
-    blank = template.odometry("base_footprint")
+def _odometry(topic: str, info: SensorInfo, namespace: str) -> SensorTopic:
+    before = f"{namespace}/" if namespace else ""
+    blank = template.odometry(f"{before}base_footprint", f"{before}odom")
     known = len(info.deviations) == _DEVIATIONS
     covariance = OdometryCovariance(info.deviations) if known else None
 

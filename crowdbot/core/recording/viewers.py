@@ -121,7 +121,7 @@ class RobotWay:
         stamp = ros.nanoseconds(t)
         ball = markers.marker(stamp, "contacts", "SPHERE", size, _TOUCH, np.zeros((0, 3)))
         ball.id, ball.pose = self._contacts, ros.plane_pose(Pose(x, y, 0.0))
-        ball.text = f"person {agent}" if agent >= 0 else "wall"
+        ball.text = f"person {agent}" if agent >= 0 else ("wall" if agent == -1 else "robot")
         self._contacts += 1
         return markers.marker_array([ball])
 

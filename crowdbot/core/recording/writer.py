@@ -23,7 +23,8 @@ from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.candidates import Choosers
 from crowdbot.core.recording.container import McapFile
-from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.header import RecordingHeader, with_frames
+from crowdbot.core.recording.namespace import NamespacedFile
 from crowdbot.core.recording.scans import REPLAY_RATE, Thinning, whole_centimetres
 from crowdbot.core.recording.states import SeriesRows, StateSample, StatesWriter
 from crowdbot.core.recording.tools import ToolTopics
@@ -74,6 +75,7 @@ class RecordingWriter:
         record: Literal["all", "used", "none"] = "all",
         choosers: Sequence[Choosers] = (),
         description: str = "",
+        beside: RecordingWriter | None = None,
     ) -> None:
         """Start the file with its header.
 
@@ -86,16 +88,21 @@ class RecordingWriter:
             choosers: people whose choices are among known candidates, which makes the file
                 smaller; nobody is in two groups.
             description: the robot's URDF, which ``all`` says.
+            beside: what writes to the same file what all robots share; the header then has a
+                namespace.
 
         Raises:
             InputError: the path cannot be written.
         """
-        self._file = McapFile(path)
-        self._header = header
+        self._file: McapFile = (
+            McapFile(path) if beside is None else NamespacedFile(beside._file, header.namespace)
+        )
+        header = with_frames(header)
         self.images = record == "all"
         cameras = {n: i for n, i in header.sensors.items() if i.camera is not None}
         self._cameras = {n: CameraMessages(n, i) for n, i in cameras.items()}
-        self._sensors = sensor_topics({n: i for n, i in header.sensors.items() if n not in cameras})
+        ranging = {n: i for n, i in header.sensors.items() if n not in cameras}
+        self._sensors = sensor_topics(ranging, header.namespace)
         seen = {n: i for n, i in header.sensors.items() if is_scan(i) or is_cone(i)}
         self._thinning = {n: Thinning(REPLAY_RATE) for n in (seen if record == "used" else ())}
         known = [group for group in choosers if group.fits]
@@ -220,13 +227,16 @@ class RecordingWriter:
         self._say_path()
         self._file.flush()
 
-    def close(self, goal_time: float | None, complete: bool, status: str) -> None:
+    def close(
+        self, goal_time: float | None, complete: bool, status: str, until: float | None = None
+    ) -> None:
         """Write the end, index and footer; wait for the disk. A second call does nothing.
 
         Args:
             goal_time: when the robot arrived, s, or None.
             complete: False for a run that was interrupted.
             status: ``arrived``, ``timeout``, ``planner_failed``, …
+            until: when it ended, s; by default at the last sample.
         """
         if self._closed:
             return
@@ -240,7 +250,8 @@ class RecordingWriter:
             arrived=goal_time is not None,
             goal_time=0.0 if goal_time is None else goal_time,
         )
-        self._file.put(Topic.END, self._now, end, latched=True)
+        now = self._now if until is None else ros.nanoseconds(until)
+        self._file.put(Topic.END, now, end, latched=True)
         self._file.close()
 
     def _catch_up(self) -> None:

@@ -1,74 +1,71 @@
-"""Writes the replay page."""
+"""Writes the replay page: of one run, or of several beside each other."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
-import numpy as np
-
-from crowdbot.core.recording.scans import ReplayScan
 from crowdbot.core.replay.encode import encode, summary
-from crowdbot.core.replay.scores import grouped
+from crowdbot.core.replay.scores import compared
+from crowdbot.core.replay.shown_run import ShownRun
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import render_page
-from crowdbot.core.trajectories.trajectories import Trajectories
-from crowdbot.core.types.arrays import Array
-from crowdbot.core.types.score import Score
 
-#: A part of the robot: outline (K, 2), m, and colour.
-Seen = tuple[Array, str]
+_SCRIPTS = (
+    "script/element.js", "script/decode.js", "script/motion.js", "script/sensing.js",
+    "script/gaps.js", "script/colours.js", "script/scenery.js", "script/people.js",
+    "script/robots.js", "script/sensors.js", "script/ghosts.js", "script/contacts.js",
+    "script/views.js", "script/timeline.js", "script/series.js", "script/plots.js",
+    "script/cameras.js", "script/events.js", "script/legend.js", "script/readout.js",
+    "script/pointers.js", "script/follow.js", "script/address.js", "script/player.js",
+    "script/picture.js", "script/gif.js", "script/clip.js", "script/paper.js",
+    "script/others.js", "script/controls.js", "script/app.js",
+)  # fmt: skip
 
-_SCRIPTS = ("decode.js", "motion.js", "draw.js", "timeline.js", "app.js")
 
-
-def write_replay(
-    path: Path,
-    run: Trajectories,
-    scans: Sequence[ReplayScan],
-    scores: Sequence[Score],
-    title: str,
-    facts: Mapping[str, str],
-    look: Sequence[Seen] = (),
-) -> None:
+def write_replay(path: Path, *shown: ShownRun, title: str = "") -> None:
     """Write one offline HTML page; equal input gives equal bytes.
 
     Args:
         path: file to write, aside first and then renamed.
-        run: what to show; a run without robot or without people is fine.
-        scans: what lidars saw; drawn from the robot's true pose.
-        scores: shown beside the run; may be empty.
-        title: heading, e.g. the scenario's id.
-        facts: name -> text; ``Status`` is shown beside the title.
-        look: parts of the robot as they are seen from above, the lowest first: outline (K, 2) in
-            its frame, m, and colour; without any it is its outline and an arrow.
+        shown: the run; of several, each has a view of its own, and all have one clock.
+        title: heading; default: that of the first run.
 
     Raises:
         InputError: the path cannot be written.
     """
-    text = _render(run, scans, scores, title, facts, look)
-    atomic_write(path, text)
+    atomic_write(path, _render(shown, title or shown[0].title))
 
 
-def _render(
-    run: Trajectories,
-    scans: Sequence[ReplayScan],
-    scores: Sequence[Score],
-    title: str,
-    facts: Mapping[str, str],
-    look: Sequence[Seen],
-) -> str:
-    meta, blobs = encode(run, scans)
-    if meta["robot"] is not None:
-        meta["robot"]["look"] = [[c, np.round(np.asarray(o), 3).tolist()] for o, c in look]
-    status = next((v for k, v in facts.items() if k.lower() == "status"), "")
+def _render(shown: Sequence[ShownRun], title: str) -> str:
+    packed = [encode(one) for one in shown]
+    names = sorted({name for one in shown for name in _facts(one)}, key=_order(shown))
     return render_page(
         __package__,
         scripts=_SCRIPTS,
+        frames=True,
         title=title,
-        status=status,
-        facts={k: v for k, v in facts.items() if k.lower() != "status"} | dict(summary(run)),
-        groups=grouped(scores),
-        meta=meta,
-        blobs=blobs,
+        labels=[one.label or one.title for one in shown],
+        statuses=[one.status for one in shown],
+        facts={name: [_facts(one).get(name, "–") for one in shown] for name in names},
+        groups=compared([one.scores for one in shown]),
+        meta={"runs": [meta for meta, _ in packed]},
+        blobs={
+            f"{i}-{n}": text for i, (_, blobs) in enumerate(packed) for n, text in blobs.items()
+        },
     )
+
+
+def _facts(shown: ShownRun) -> dict[str, str]:
+    told = {k: v for k, v in shown.facts.items() if k.lower() != "status"}
+    return told | dict(summary(shown.run))
+
+
+def _order(shown: Sequence[ShownRun]) -> Any:
+    """Facts as the first run that has them tells them."""
+    names: dict[str, int] = {}
+    for one in shown:
+        for name in _facts(one):
+            names.setdefault(name, len(names))
+    return names.__getitem__

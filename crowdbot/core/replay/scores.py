@@ -1,4 +1,4 @@
-"""Scores as the rows of a table."""
+"""Scores as the rows of a table, with a column for each run."""
 
 from __future__ import annotations
 
@@ -17,45 +17,69 @@ _ARROWS = {
 }
 
 
+class Cell(NamedTuple):
+    """What one run scored."""
+
+    value: str
+    status: str
+    reason: str
+
+
 class Row(NamedTuple):
     """One line of the table; ``headline``: shown before anybody asks for all variants."""
 
     metric: str
-    symbol: str
     variant: str
-    value: str
     unit: str
     arrow: str
     meaning: str
-    status: str
-    reason: str
     headline: bool
+    cells: list[Cell]
+
+    @property
+    def status(self) -> str:
+        """That of all cells; ``ok`` where they differ."""
+        found = {cell.status for cell in self.cells}
+        return found.pop() if len(found) == 1 else "ok"
 
 
-def grouped(scores: Sequence[Score]) -> dict[str, list[Row]]:
-    """Category -> rows, in the order given; the four scores are the first one."""
+def compared(runs: Sequence[Sequence[Score]]) -> dict[str, list[Row]]:
+    """Category -> rows, in the order given; the four scores are the first one.
+
+    Args:
+        runs: the scores of each run; what one of them lacks is an empty cell.
+    """
     groups: dict[str, list[Row]] = {}
-    chosen = {id(s) for s in headlines(scores)}
-    for score in main_first(scores, lambda s: (s.metric, s.variant)):
-        row = _row(score, headline=id(score) in chosen)
-        groups.setdefault(_words(section_of(score)), []).append(row)
+    by_name = [{(s.metric, s.variant): s for s in scores} for scores in runs]
+    first = {name: score for scores in reversed(by_name) for name, score in scores.items()}
+    given = [first[name] for name in dict.fromkeys(name for scores in by_name for name in scores)]
+    chosen = {(s.metric, s.variant) for scores in runs for s in headlines(scores)}
+    for score in main_first(given, lambda s: (s.metric, s.variant)):
+        name = (score.metric, score.variant)
+        cells = [_cell(scores.get(name)) for scores in by_name]
+        groups.setdefault(_words(section_of(score)), []).append(
+            _row(score, cells, headline=name in chosen)
+        )
     return groups
 
 
-def _row(score: Score, *, headline: bool) -> Row:
+def _row(score: Score, cells: list[Cell], *, headline: bool) -> Row:
     arrow, meaning = _ARROWS[score.better]
     return Row(
         metric=_words(score.metric),
-        symbol=score.symbol,
         variant=_words(score.variant),
-        value=_value(score),
         unit="" if score.unit == "1" else score.unit,
         arrow=arrow,
         meaning=meaning,
-        status=score.status,
-        reason=_words(score.reason),
         headline=headline,
+        cells=cells,
     )
+
+
+def _cell(score: Score | None) -> Cell:
+    if score is None:
+        return Cell("–", "absent", "")
+    return Cell(_value(score), score.status, _words(score.reason))
 
 
 def _value(score: Score) -> str:

@@ -24,7 +24,7 @@ function drawDifferences() {
     numberCell(format(row.difference, decimals)), el("td", {}, compareButton(row))));
   byId("differences-more").hidden = rows.length <= differencesShown;
   byId("differences-note").textContent = `${names[0]} and ${names[1]} in ${plural(rows.length, "pair")} of the same scenario and seed, by ${measureOf(series)}, ` +
-    "the largest difference first. The button copies the command that puts both runs into one replay; run it where this page lies.";
+    "the largest difference first. A link opens both in one replay; the button copies the command that writes one file with both, to run where this page lies.";
   offer(byId("differences-save"), `${series.metric}-${series.variant}-${names.join("-against-")}`, null, () => differenceRows(rows, names));
 }
 
@@ -55,10 +55,12 @@ const quoted = (text) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replac
 function compareButton(row) {
   const command = compareCommand(row);
   if (!command) return el("small", { text: "–" });
+  const open = el("a", { href: replayAt(row.a.run, report.runs.replay[row.b.run]), text: "open both",
+    "aria-label": `both runs of ${row.scenario}, seed ${row.seed}, in one replay` });
   const button = el("button", { type: "button", title: command, text: "copy command",
     "aria-label": `copy command for one replay of both runs of ${row.scenario}, seed ${row.seed}` });
   button.onclick = () => copyText(command, button);
-  return button;
+  return el("span", { class: "pair" }, open, " ", button);
 }
 
 function differenceRows(rows, names) {

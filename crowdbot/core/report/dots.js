@@ -1,9 +1,28 @@
 // Runs in pictures: each says what it is, and opens its replay at its worst moment.
 
-/** Address of a run's replay at the moment to look at first; null without a replay. */
-function replayAt(run) {
+/** Address of a run's replay at the moment to look at first, which knows the way back. */
+function replayAt(run, beside = null) {
   const [page, moment] = [report.runs.replay[run], report.runs.moment[run]];
-  return page && moment ? `${page}#t=${moment[0]}` : page;
+  if (!page) return page;
+  const said = [
+    ...(moment ? [["t", moment[0]]] : []),
+    ...(beside ? [["with", seenFrom(page, beside)]] : []),
+    ["report", seenFrom(page, location.pathname.replace(/.*\//, ""))],
+  ];
+  return `${page}#${said.map(([name, value]) => `${name}=${encodeURI(value).replace(/[&#+]/g, encodeURIComponent)}`).join("&")}`;
+}
+
+/** An address relative to a page, where both are relative to this one. */
+function seenFrom(page, address) {
+  const [from, to] = [page.split("/").slice(0, -1), address.split("/")];
+  while (from.length && to.length > 1 && from[0] === to[0]) {
+    from.shift();
+    to.shift();
+  }
+  if (!from.includes("..")) return [...from.map(() => ".."), ...to].join("/");
+  const here = decodeURI(location.pathname).split("/").slice(0, -1); // the way down again has names
+  const down = from.reduce((names, part) => (part === ".." ? names : [...names, ".."]), []);
+  return [...down, ...here.slice(here.length - from.filter((part) => part === "..").length), ...to].join("/");
 }
 
 /** A mark of a run; a link where it has a replay. Tables list the same links for the keyboard. */

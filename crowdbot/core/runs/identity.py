@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +25,8 @@ from crowdbot.errors import InputError
 _LOG = logging.getLogger("crowdbot")
 
 ROBOT_ALONE, CROWD_ALONE = "robot_alone", "crowd_alone"
+#: What can be a part of a topic, and of a frame.
+_ROS_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 #: How the people of a scenario are found.
 Populate = Callable[[Scenario, Registry], Population]
 
@@ -101,12 +104,17 @@ def prepare(
         populate: finds people; a caller with many scenarios remembers them.
 
     Raises:
-        InputError: it has not exactly one robot, or its lock does not fit it any more.
+        InputError: it has no robot, one of several has no name for topics, or its lock does not
+            fit it any more.
     """
-    if len(scenario.robots) != 1:
-        raise InputError(
-            f"{scenario.id} has {len(scenario.robots)} robots; this release simulates exactly one"
-        )
+    if not scenario.robots:
+        raise InputError(f"{scenario.id} has no robot")
+    for name in scenario.robots if len(scenario.robots) > 1 else ():
+        if not _ROS_NAME.fullmatch(name):
+            raise InputError(
+                f"{scenario.id}: robot '{name}' needs a name for its topics: letters, digits and "
+                "'_', a letter first"
+            )
 
     def trial(of: Scenario, people: Population) -> Trial:
         spec = content_hash(of, registry.spec_versions(of))
@@ -146,16 +154,20 @@ def references_of(request: Request, prepared: Prepared) -> tuple[Reference, ...]
     """The calibration runs of a run, whether they are there or not."""
     if prepared.alone is None or prepared.crowd is None:
         return ()
-    (robot,) = prepared.run.scenario.robots.values()
     by_planner = {"planner": request.choice.spec_dump, "seed": request.seed, **_budget(request)}
     by_people = {
         "realisation": prepared.crowd.realisation,
-        "duration": robot.task.time_limit,
+        "duration": longest(prepared.run.scenario),
     }
     return (
         _reference(request, ROBOT_ALONE, prepared.alone, by_planner),
         _reference(request, CROWD_ALONE, prepared.crowd, by_people),
     )
+
+
+def longest(scenario: Scenario) -> float:
+    """The longest that a run may last, s."""
+    return max(robot.task.time_limit for robot in scenario.robots.values())
 
 
 def _budget(request: Request) -> dict[str, float | None]:

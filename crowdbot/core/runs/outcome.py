@@ -28,6 +28,7 @@ class Outcome:
     Attributes:
         clamped: commands that had to be clamped to the robot's limits.
         planner_step_time: mean and largest wall time of a planner step.
+        robots: how each of several robots ended; empty in a run of one.
     """
 
     status: str
@@ -38,6 +39,7 @@ class Outcome:
     cpu_time: float
     clamped: int = 0
     planner_step_time: Mapping[str, float] = field(default_factory=dict)
+    robots: Mapping[str, Outcome] = field(default_factory=dict)
 
     @property
     def real_time_factor(self) -> float:

@@ -47,6 +47,19 @@ class MetricPart(_Part):
     spec_version: Annotated[int, Ge(0)]
 
 
+class RobotPart(_Part):
+    """One of several robots."""
+
+    planner: PlannerPart
+    status: Literal["arrived", "timeout", "planner_failed"]
+    reason: str
+    goal_time: Seconds | None
+    sim_time: Seconds
+    trajectory: Hash
+    clamped_commands: Count = 0
+    planner_step_time: dict[str, float] = {}
+
+
 class MomentPart(_Part):
     """When a run is worst."""
 
@@ -93,6 +106,7 @@ class RecordModel(_Part):
     real_time_factor: float = 0.0
     clamped_commands: Count = 0
     planner_step_time: dict[str, float] = {}
+    robots: dict[str, RobotPart] = {}
 
 
 def record_problems(record: Mapping[str, Any]) -> list[str]:

@@ -10,10 +10,9 @@ from pathlib import Path
 from typing import Any, Literal
 
 from crowdbot.core.planning.resolve import PlannerChoice
-from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording import read_fleet, read_trajectories
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.scoring.evaluate import Scores
@@ -93,8 +92,18 @@ class Run:
 
     @cached_property
     def trajectories(self) -> Trajectories:
-        """The run itself, read from its recording."""
+        """The run itself, read from its recording.
+
+        Raises:
+            InputError: it has several robots; `robots` has the run of each.
+        """
         return read_trajectories(self.directory / files.RECORDING)
+
+    @cached_property
+    def robots(self) -> Mapping[str, Trajectories]:
+        """The run of each of several robots, by name; empty of a run of one."""
+        found = read_fleet(self.directory / files.RECORDING) if "robots" in self.record else {}
+        return {name: one.run for name, one in found.items()}
 
     @cached_property
     def references(self) -> References:
@@ -188,11 +197,6 @@ def read_references(paths: Mapping[str, Path]) -> References:
     return References(**runs)
 
 
-def reference_hashes(paths: Mapping[str, Path]) -> dict[str, str]:
-    """Hashes of the calibration runs' trajectories, by name; kept as long as the files stay."""
-    return {name: _kept_hash(*_state_of(path)) for name, path in paths.items()}
-
-
 def _read_kept(path: Path) -> Trajectories:
     try:
         state = _state_of(path)
@@ -210,8 +214,3 @@ def _state_of(path: Path) -> tuple[Path, int, int, int]:
 def _kept(path: Path, *state: int) -> Trajectories:
     del state  # another one is another recording
     return read_trajectories(path)
-
-
-@lru_cache(maxsize=64)
-def _kept_hash(path: Path, *state: int) -> str:
-    return provenance.trajectory_hash(_kept(path, *state))

@@ -11,10 +11,13 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+from crowdbot.core.recording import fleet_names, read_fleet
 from crowdbot.core.recording.commands import read_commands
 from crowdbot.core.recording.reader import WholeRecording, holds_run, read_whole
 from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.core.runs.identity import CROWD_ALONE, ROBOT_ALONE
 from crowdbot.core.runs.recordings import RecordingSource, find_source
+from crowdbot.core.runs.robots import references_by_robot, score_robots
 from crowdbot.core.scoring.evaluate import score
 from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.trajectories.questionnaires import Questionnaires
@@ -99,11 +102,14 @@ def rescore(request: RescoreRequest, registry: Registry) -> Rescored:
         source = find_source(request.path, request.robot_alone, request.crowd_alone)
         # a recording of nothing but commands is not a run, and need not be one
         if request.topics is None or holds_run(source.recording):
+            if request.robot is None and fleet_names(source.recording):
+                return _whole_fleet(request, source, registry)
             run = read(source.recording, request.robot)
+    robot = None if source.robot_alone is None else _robot_in(source.robot_alone, request.robot)
     scores = score(
         registry,
         run,
-        read(source.robot_alone),
+        read(source.robot_alone, robot),
         read(source.crowd_alone),
         commands=_commands(request, request.commands, source),
         commands_baseline=_commands(request, request.commands_baseline, None),
@@ -119,11 +125,44 @@ def rescore(request: RescoreRequest, registry: Registry) -> Rescored:
     )
 
 
+def _robot_in(file: Path, robot: str | None) -> str | None:
+    """Whose run to read in a calibration run, which may hold several robots or one."""
+    return robot if fleet_names(file) else None
+
+
+def _whole_fleet(request: RescoreRequest, source: RecordingSource, registry: Registry) -> Rescored:
+    """All robots of a run, and the fleet.
+
+    Raises:
+        IncompleteError: the recording is cut, and that is not allowed.
+        CrowdbotError: it cannot be read, or a metric failed.
+    """
+    fleet = read_fleet(source.recording)
+    until = max(one.until for one in fleet.values())
+    complete = all(one.complete for one in fleet.values())
+    if not complete and not request.allow_incomplete:
+        raise _cut(source.recording, until)
+    named = {ROBOT_ALONE: source.robot_alone, CROWD_ALONE: source.crowd_alone}
+    paths = {name: path for name, path in named.items() if path is not None}
+    scores = score_robots(
+        registry,
+        {name: one.run for name, one in fleet.items()},
+        references_by_robot(paths, tuple(fleet)),
+        metrics=request.metrics,
+        variants=request.variants,
+    )
+    return Rescored(source=source, scores=tuple(scores), until=until, complete=complete)
+
+
+def _cut(file: Path, until: float) -> IncompleteError:
+    text = f"{file}: the recording is cut: it can be read until {until:g} s"
+    return IncompleteError(f"{text}; --allow-incomplete scores what is there", until)
+
+
 def _read(file: Path, robot: str | None, *, allowed: bool) -> WholeRecording:
     found = read_whole(file, robot)
     if not found.complete and not allowed:
-        text = f"{file}: the recording is cut: it can be read until {found.until:g} s"
-        raise IncompleteError(f"{text}; --allow-incomplete scores what is there", found.until)
+        raise _cut(file, found.until)
     return found
 
 

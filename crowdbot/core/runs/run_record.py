@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.runs.realised_density import mean_density
 from crowdbot.core.runs.request import Request
+from crowdbot.core.runs.robots import trajectory_of
 from crowdbot.core.scoring.evaluate import Scores
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.trajectories.worst_moment import worst_moment
@@ -28,14 +30,15 @@ def run_record(
     identity: Mapping[str, Any],
     references: Mapping[str, Path],
     outcome: Outcome,
-    run: Trajectories,
+    runs: Mapping[str, Trajectories],
     scores: Scores,
     *,
     parts: EnvironmentParts,
 ) -> dict[str, Any]:
-    """The record of a run, but for how its people were found."""
+    """The record of a run of one robot or of several, but for how its people were found."""
     scenario, registry = request.scenario, request.registry
-    hashes = {**identity["hashes"], "trajectory": provenance.trajectory_hash(run)}
+    run = max(runs.values(), key=lambda one: len(one.t))  # sees the people to the end
+    hashes = {**identity["hashes"], "trajectory": trajectory_of(runs)}
     up = "/".join([".."] * len(request.directory.relative_to(request.out).parts))
     return {
         "run_id": provenance.digest(identity),
@@ -51,17 +54,34 @@ def run_record(
         "allowed_plugins": request.registry.allowed,
         "recorded": request.record,
         **ending(outcome),
+        **_robots(request, outcome, runs),
         "references": {
             n: f"{up}/{p.relative_to(request.out).as_posix()}" for n, p in references.items()
         },
         "density": mean_density(run, scenario, parts),
-        "conditions": _conditions(scenario, run),
+        "conditions": _conditions(scenario, runs),
         "crowd": "" if scenario.crowd is None else fingerprint(scenario.crowd),
         "metrics": _metrics(registry, scores),
         "suite_metrics": _named(request.metrics, scores),
-        "worst_moment": _worst(run),
+        "worst_moment": _worst(runs.values()),
         "machine": provenance.machine(),
     }
+
+
+def _robots(request: Request, outcome: Outcome, runs: Mapping[str, Trajectories]) -> dict[str, Any]:
+    """What became of each of several robots; nothing of one."""
+    if not outcome.robots:
+        return {}
+    kept = ("status", "reason", "goal_time", "sim_time", "planner_step_time", "clamped_commands")
+    found = {}
+    for name, one in outcome.robots.items():
+        choice, end = request.choice.of(name), ending(one)
+        found[name] = {
+            "planner": {**choice.spec_dump, "name": choice.name, "label": choice.label},
+            **{key: end[key] for key in kept},
+            "trajectory": provenance.trajectory_hash(runs[name]),
+        }
+    return {"robots": found}
 
 
 def ending(outcome: Outcome) -> dict[str, Any]:
@@ -85,12 +105,14 @@ def write_scenario(folder: Path, scenario: Scenario, registry: Registry) -> None
     (folder / files.SCENARIO).write_text(text, encoding="utf-8")
 
 
-def _conditions(scenario: Scenario, run: Trajectories) -> dict[str, str]:
+def _conditions(scenario: Scenario, runs: Mapping[str, Trajectories]) -> dict[str, str]:
     """What of a scenario must be equal in runs that are compared, whatever their axes are."""
     found = {f"rates.{name}": f"{rate:g} Hz" for name, rate in scenario.rates}
-    if scenario.crowd is not None and run.robot is not None:
+    radii = [run.robot.radius for run in runs.values() if run.robot is not None]
+    if scenario.crowd is not None and radii:
         response = scenario.crowd.robot_response
-        found["perceived_radius"] = f"{run.robot.radius + response.margin:.10g} m"
+        perceived = dict.fromkeys(f"{radius + response.margin:.10g} m" for radius in radii)
+        found["perceived_radius"] = ", ".join(perceived)
         share = f" {response.ignoring:g}" if response.ignoring_fraction is not None else ""
         words = _own_words(response), f"{response.reaction}{share}", f"velocity {response.velocity}"
         found["people_and_robot"] = ", ".join(words)
@@ -106,11 +128,12 @@ def _own_words(response: RobotResponse) -> str:
     return ", ".join([response.kind, *changed])
 
 
-def _worst(run: Trajectories) -> dict[str, Any] | None:
+def _worst(runs: Iterable[Trajectories]) -> dict[str, Any] | None:
     """When the run is worst, to the millisecond and millimetre."""
-    found = worst_moment(run)
-    if found is None:
+    moments = [found for found in map(worst_moment, runs) if found is not None]
+    if not moments:
         return None
+    found = min(moments, key=lambda m: math.inf if m.clearance is None else m.clearance)
     clearance = None if found.clearance is None else round(found.clearance, 3)
     return {"t": round(found.t, 3), "what": found.what, "clearance": clearance}
 

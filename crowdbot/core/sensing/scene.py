@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core.sensing.body_model import DISC_COLUMNS, PARTS, place_people
 from crowdbot.core.sensing.depth_renderer import DepthRenderer
 from crowdbot.core.sensing.look_model import gaits, heights, place_looks, place_things, things
+from crowdbot.core.sensing.other_robots import OtherRobot, OtherRobots
 from crowdbot.core.sensing.raycast import cast_rays
 from crowdbot.core.sensing.raycast_columns import Obstacles, RayGrid, cast_columns
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.looks import Looks
+from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotState
 
 #: In place of details that are not wanted.
@@ -37,7 +41,10 @@ class Scene:
         wall_heights: (S, 2) bottom and top, m.
         people_radius, people_height: (M,) m.
         pillars, pillar_heights: (P, 3) x, y, radius, and (P, 2) bottom and top, m.
+        fixed_walls, fixed_pillars: how many of both never move; those after them are the sides of
+            other robots.
         looks: what people look like; None: all as usual.
+        others: the other robots of a fleet.
         things: (T, 6) what they have with them, see `crowdbot.core.sensing.look_model`.
         robot: the robot's state, None before the first update or in a scene without one.
         push: force of people on the robot x, y (N, world frame), and its torque about the robot's
@@ -55,9 +62,11 @@ class Scene:
         pillars: ArrayLike = (),
         pillar_heights: ArrayLike = (0.0, 2.5),
         looks: Looks | None = None,
+        robots: Sequence[OtherRobot] = (),
     ) -> None:
         self.walls = _constant(np.reshape(walls, (-1, 4)), (np.size(walls) // 4, 4))
         self.wall_heights = _constant(wall_heights, (len(self.walls), 2))
+        self.fixed_walls = len(self.walls)
         count = np.size(people_radius)
         self.people_radius = _constant(people_radius, (count,))
         self.people_height = _constant(people_height, (count,))
@@ -75,8 +84,33 @@ class Scene:
         self._direction, self._walked = _constant((1.0, 0.0), (count, 2)), _constant(0.0, (count,))
         self.pillars = _constant(np.reshape(pillars, (-1, 3)), (np.size(pillars) // 3, 3))
         self.pillar_heights = _constant(pillar_heights, (len(self.pillars), 2))
+        self.fixed_pillars = len(self.pillars)
+        self.others = OtherRobots(robots)
+        if robots:
+            self._make_room()
         self._obstacles = Obstacles(self.walls, self.wall_heights, *self._lay_out())
         self._placed = False
+
+    def _make_room(self) -> None:
+        """For the sides of robots, after walls and pillars."""
+        others = self.others
+        self._plates = np.concatenate([self.walls, others.plates])
+        self._rounds = np.concatenate([self.pillars, others.discs])
+        # Views that kernels take for constants, as those of scenes without other robots.
+        self.walls, self.pillars = self._plates.view(), self._rounds.view()
+        self.wall_heights = np.concatenate([self.wall_heights, others.plate_heights])
+        self.pillar_heights = np.concatenate([self.pillar_heights, others.disc_heights])
+        for array in (self.walls, self.pillars, self.wall_heights, self.pillar_heights):
+            array.setflags(write=False)
+
+    def show_robots(self, poses: Sequence[Pose | None]) -> None:
+        """Put the other robots where they are now; None has left."""
+        self.others.place(poses)
+        self._plates[self.fixed_walls :] = self.others.plates
+        self._rounds[self.fixed_pillars :] = self.others.discs
+        first = PARTS * len(self.people_radius)
+        discs = self._obstacles.discs
+        discs[first + self.fixed_pillars : first + len(self.pillars), :2] = self.others.discs[:, :2]
 
     def _lay_out(self) -> tuple[Array, NDArray[np.int64]]:
         """Cylinders of everybody, placed later, and of the pillars; whose they are."""

@@ -54,21 +54,25 @@ def build_run(
     registry: Registry,
     choice: PlannerChoice,
     record: Literal["all", "used", "none"],
+    name: str | None = None,
 ) -> BuiltRun:
-    """Build what a recording of the scenario's robot needs.
+    """Build what a recording of a scenario's robot needs.
 
     Args:
-        scenario: with exactly one robot.
+        scenario: with one robot or several.
         registry: the installed components.
         choice: the planner, which says what sensors it needs.
         record: ``all`` simulates every sensor; otherwise those that the planner gets, and odometry.
+        name: of the robot; may be left out where there is one only.
 
     Raises:
         InputError: the robot lacks a sensor that the planner needs, its control mode does not fit
             its drive, or a sensor has the name of a frame that is not its own.
         PluginError: environment, robot or a sensor cannot be built.
     """
-    ((name, robot),) = scenario.robots.items()
+    if name is None:
+        (name,) = scenario.robots
+    robot = scenario.robots[name]
     parts = build_environment(registry, scenario.environment)
     model = build_robot(registry, robot)
     wheels = wheels_of(model.drive)

@@ -7,6 +7,8 @@ and the reaction on people come from one computation on one state, and balance e
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 from pydrake.systems.framework import (
     Context,
@@ -24,6 +26,7 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.control.controlled import Push
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.robot import RobotModel
 
@@ -34,6 +37,22 @@ _SEEN = np.array([0, 1, 6, 2, 3, 7])
 _NEWS = slice(s.ROBOT_FX, s.ROBOT_TORQUE + 1)
 
 
+class CrowdOutputs(Protocol):
+    """The people as one robot takes them."""
+
+    @property
+    def engine(self) -> CrowdEngine:
+        """Who they are."""
+
+    @property
+    def state(self) -> OutputPort:
+        """Their flat state."""
+
+    @property
+    def events(self) -> OutputPort:
+        """How many of their trips, and of their contacts with the robot, have ended."""
+
+
 class CrowdSystem(LeafSystem):
     """Input: robot state. Outputs: crowd state, events, force on the robot.
 
@@ -41,7 +60,7 @@ class CrowdSystem(LeafSystem):
         engine: the people.
     """
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(
         self,
@@ -83,6 +102,11 @@ class CrowdSystem(LeafSystem):
         fx, fy, contacts, trips, torque = news
         self._push.write(values.get_mutable_value(self._force), fx, fy, torque)
         values.get_mutable_value(self._events)[0] = contacts + trips
+
+    @property
+    def events(self) -> OutputPort:
+        """How many trips and contacts have ended."""
+        return self.GetOutputPort(ports.EVENTS)
 
     @property
     def state(self) -> OutputPort:

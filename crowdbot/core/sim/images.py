@@ -7,7 +7,8 @@ and, where a context was cloned or put back, again when somebody asks for it (do
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,16 +29,22 @@ _COLUMNS = (s.X, s.Y, s.VX, s.VY, s.DIR_X, s.DIR_Y, s.WALKED, s.WAITING)
 ColourRenderer = Callable[[Scene, Pose], NDArray[np.uint8]]
 
 
-def view_size(people: int) -> int:
-    """Length of what a camera saw."""
-    return ports.ROBOT_STATE_SIZE + len(_COLUMNS) * people
+def view_size(people: int, robots: int = 0) -> int:
+    """Length of what a camera saw; ``robots``: how many others there are."""
+    return ports.ROBOT_STATE_SIZE + len(Pose._fields) * robots + len(_COLUMNS) * people
 
 
-def capture(robot: RobotState, people: Array | None, out: Array) -> None:
-    """Write what a camera sees: the robot's state and the crowd's rows (N, C), if any."""
+def capture(
+    robot: RobotState, people: Array | None, out: Array, others: Sequence[Pose | None] = ()
+) -> None:
+    """Write what a camera sees: the robot's state, the others' poses, the crowd's rows (N, C)."""
     out[: ports.ROBOT_STATE_SIZE] = robot
+    at = ports.ROBOT_STATE_SIZE
+    for pose in others:
+        out[at : at + 3] = (math.nan, 0.0, 0.0) if pose is None else pose
+        at += 3
     if people is not None:
-        _pick(people, out[ports.ROBOT_STATE_SIZE :])
+        _pick(people, out[at:])
 
 
 @kernel
@@ -52,7 +59,11 @@ def _pick(people: Array, out: Array) -> None:
 def show(scene: Scene, view: Array) -> Pose:
     """Make a scene look as it did when ``view`` was captured; returns the robot's pose."""
     robot = RobotState(*view[: ports.ROBOT_STATE_SIZE].tolist())
-    people = view[ports.ROBOT_STATE_SIZE :].reshape(-1, len(_COLUMNS))
+    at = ports.ROBOT_STATE_SIZE + len(Pose._fields) * len(scene.others)
+    if scene.others.robots:
+        poses = view[ports.ROBOT_STATE_SIZE : at].reshape(-1, len(Pose._fields)).tolist()
+        scene.show_robots([None if math.isnan(p[0]) else Pose(*p) for p in poses])
+    people = view[at:].reshape(-1, len(_COLUMNS))
     scene.update(robot, people[:, :4], people[:, 7] == 0.0, people[:, 4:6], people[:, 6])
     return Pose(robot.x, robot.y, robot.yaw)
 
@@ -73,7 +84,7 @@ class Images:
             rng: makes the random numbers of the reading at a time (s).
             renderer: draws the colour image of a camera that takes some.
         """
-        self._sensor, self._rng, self._painter = sensor, rng, renderer
+        self._sensor, self._rng, self._renderer = sensor, rng, renderer
         self._quick = sensor if isinstance(sensor, DepthCamera) else None
         self._stamp, self._view = -1.0, np.zeros(0)
         self._depth: Array | None = None
@@ -85,7 +96,7 @@ class Images:
         Depth in m is made only if somebody asks for a reading.
         """
         self._begin(stamp, view)
-        self._paint(scene, pose)
+        self._render(scene, pose)
         if self._quick is None:
             depth = depth_mm(self._read(scene, pose))
         else:
@@ -101,7 +112,7 @@ class Images:
         if depth is None:
             pose = show(scene, self._view)
             if not fits:
-                self._paint(scene, pose)
+                self._render(scene, pose)
             depth = self._read(scene, pose)
         return Reading(stamp, depth, self._colour)
 
@@ -110,10 +121,10 @@ class Images:
         self._stamp, self._view = stamp, view.copy()
         self._depth = self._colour = None
 
-    def _paint(self, scene: Scene, pose: Pose) -> None:
+    def _render(self, scene: Scene, pose: Pose) -> None:
         """Draw the colour image, if the camera takes some."""
-        if self._painter is not None:
-            self._colour = self._painter(scene, pose)
+        if self._renderer is not None:
+            self._colour = self._renderer(scene, pose)
             self._colour.setflags(write=False)
 
     def _read(self, scene: Scene, pose: Pose) -> Array:

@@ -6,6 +6,7 @@ A publish event at tick k sees the state at k, before any update of that tick.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from pydrake.common.value import Value
 from pydrake.multibody.plant import ContactResults
@@ -14,12 +15,15 @@ from pydrake.systems.framework import Context, DiagramBuilder, EventStatus, Leaf
 from crowdbot.core.geometry.polygon import distance_to, entry_fraction, inside
 from crowdbot.core.planning.planner import Task
 from crowdbot.core.recording.run_log import RunLog
+from crowdbot.core.runs.outcome import ARRIVED, PLANNER_FAILED, TIMEOUT
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.clearance_cache import ClearanceCache
 from crowdbot.core.sim.control import ControlledRobot
-from crowdbot.core.sim.crowd_system import CrowdSystem
+from crowdbot.core.sim.crowd_system import CrowdOutputs
+from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.wall_contact import WallContacts, wall_force
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotState
@@ -35,7 +39,7 @@ class MetricLogger(LeafSystem):
         goal_time: when the robot arrived, s, or None.
     """
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(
         self,
@@ -46,8 +50,16 @@ class MetricLogger(LeafSystem):
         rate: float,
         *,
         felt: bool,
+        fate: Fate | None = None,
+        on_end: Callable[[], None] = lambda: None,
     ) -> None:
-        """``felt``: whether the robot's base is one that forces act on."""
+        """Watch one robot.
+
+        Args:
+            felt: whether the robot's base is one that forces act on.
+            fate: of one robot of a fleet, which ends without ending the run.
+            on_end: called when it has ended.
+        """
         super().__init__()
         self._log, self._task, self.walls = log, task, walls
         self._ticks_per_sample = ticks(rate)
@@ -55,6 +67,7 @@ class MetricLogger(LeafSystem):
         self._before: Array | None = None  # the robot one tick ago
         self._clearance = ClearanceCache()
         self.goal_time: float | None = None
+        self._fate, self._on_end = fate, on_end
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         self._crowd = self._events = None
         if crowd_size:
@@ -71,6 +84,8 @@ class MetricLogger(LeafSystem):
         if tick == self._last_tick:  # Initialize and the first step may both publish t = 0
             return None
         self._last_tick = tick
+        if self._fate is not None and self._fate.ended:
+            return None
         t = tick * TICK
         now, before = self._robot.Eval(context), self._before
         self._before = now
@@ -84,10 +99,27 @@ class MetricLogger(LeafSystem):
         if sampled:
             self._log.sample(t, RobotState(*now.tolist()), crowd)
         if arrived:
-            return EventStatus.ReachedTermination(self, "arrived")
+            return self._end(context, t, ARRIVED, "centre inside the goal zone")
+        if self._fate is not None and self._fate.failure:
+            return self._end(context, t, PLANNER_FAILED, self._fate.failure)
         if t >= self._task.time_limit:
-            return EventStatus.ReachedTermination(self, "time limit")
+            limit = self._task.time_limit
+            return self._end(context, t, TIMEOUT, f"time limit of {limit:g} s")
         return None
+
+    def _end(self, context: Context, t: float, status: str, reason: str) -> EventStatus | None:
+        """The robot has ended, and with it the run, but for that of a fleet."""
+        if self._fate is None:
+            return EventStatus.ReachedTermination(self, reason)
+        self._fate.end(status, reason, t, self.goal_time)
+        self.finish(context, t)
+        return None
+
+    def finish(self, context: Context, t: float) -> None:
+        """Record what is still going on; ``context`` is this system's own."""
+        self.walls.finish()
+        self._log.finish(t, None if self._crowd is None else self._crowd.Eval(context))
+        self._on_end()
 
     def _crowd_state(self, context: Context, *, always: bool) -> Array | None:
         """The crowd, where there is something to log: it is copied each time it is looked at."""
@@ -119,10 +151,12 @@ def add_metric_logger(
     builder: DiagramBuilder,
     built: BuiltRun,
     robot: ControlledRobot,
-    crowd: CrowdSystem | None,
+    crowd: CrowdOutputs | None,
     log: RunLog,
+    fate: Fate | None = None,
+    on_end: Callable[[], None] = lambda: None,
 ) -> MetricLogger:
-    """Add what watches the task and takes samples to a diagram."""
+    """Add what watches the task and takes samples to a diagram; the last two as it takes them."""
     logger = MetricLogger(
         log,
         built.task,
@@ -130,6 +164,8 @@ def add_metric_logger(
         0 if crowd is None else crowd.state.size(),
         built.scenario.rates.log,
         felt=robot.rig is not None,
+        fate=fate,
+        on_end=on_end,
     )
     builder.AddNamedSystem("metric_logger", logger)
     builder.Connect(robot.port, logger.GetInputPort(ports.ROBOT_STATE))
@@ -138,5 +174,5 @@ def add_metric_logger(
         builder.Connect(forces, logger.GetInputPort(ports.FORCES))
     if crowd is not None:
         builder.Connect(crowd.state, logger.GetInputPort(ports.CROWD_STATE))
-        builder.Connect(crowd.GetOutputPort(ports.EVENTS), logger.GetInputPort(ports.EVENTS))
+        builder.Connect(crowd.events, logger.GetInputPort(ports.EVENTS))
     return logger

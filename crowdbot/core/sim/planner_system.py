@@ -6,8 +6,8 @@ Discrete events run after unrestricted ones, so a planner step sees the readings
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,34 +21,48 @@ from pydrake.systems.framework import (
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as crowd_state
-from crowdbot.core.planning.host import HostedCommand, PlannerHost
+from crowdbot.core.geometry.footprint import footprint_of_model
+from crowdbot.core.planning.host import STOP, HostedCommand, PlannerHost
 from crowdbot.core.planning.planner import Observation, Task, Truth, named_signal
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.topics import is_odometry
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.companion import Companion, Company
 from crowdbot.core.sim.control import ControlledRobot
-from crowdbot.core.sim.crowd_system import CrowdSystem
+from crowdbot.core.sim.crowd_system import CrowdOutputs
+from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.sensor_bank import SensorBank
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array
-from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.motion import Command, Pose
 from crowdbot.core.types.robot import RobotLimits, RobotState
+from crowdbot.errors import PlannerError
 
 
 @dataclass(frozen=True, slots=True)
 class People:
-    """Who may be met: number and radius of everybody, also of those who are not there yet."""
+    """Who may be met: number and radius of everybody, also of those who are not there yet.
+
+    Attributes:
+        robots: (R,) how far the other robots of a fleet reach, m; they stand among the people,
+            numbered -2, -3, ….
+    """
 
     id: NDArray[np.int64]
     radius: Array
+    robots: Array = field(default_factory=lambda: np.zeros(0))
 
-    def truth(self, robot: RobotState, crowd: Array) -> Truth:
+    def truth(
+        self, robot: RobotState, crowd: Array, others: Sequence[RobotState | None] = ()
+    ) -> Truth:
         """The robot and all who are present.
 
         Args:
             robot: its state.
             crowd: the flat state of the crowd; empty where there is none.
+            others: states of the other robots; None of one that has left.
         """
         rows = np.zeros((0, 4))
         there = np.zeros(len(self.id), dtype=bool)
@@ -56,13 +70,20 @@ class People:
             _, people = crowd_state.view(crowd)
             there = people[:, crowd_state.WAITING] == crowd_state.PRESENT
             rows = people[there, crowd_state.X : crowd_state.VY + 1]
+        radius, ids = self.radius[there], self.id[there]
+        here = [k for k, other in enumerate(others) if other is not None]
+        if here:
+            met = [(o.x, o.y, o.vx, o.vy) for o in others if o is not None]
+            rows = np.concatenate([rows, np.array(met)])
+            radius = np.concatenate([radius, self.robots[here]])
+            ids = np.concatenate([ids, -2 - np.array(here, np.int64)])
         return Truth(
             pose=Pose(robot.x, robot.y, robot.yaw),
             velocity=(robot.vx, robot.vy, robot.w),
             people=rows[:, :2],
             people_velocity=rows[:, 2:],
-            people_radius=self.radius[there],
-            people_id=self.id[there],
+            people_radius=radius,
+            people_id=ids,
         )
 
 
@@ -72,7 +93,7 @@ class PlannerSystem(LeafSystem):
     The command is the planner's; the desired state is what the control mode makes of it.
     """
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(
         self,
@@ -87,8 +108,12 @@ class PlannerSystem(LeafSystem):
         on_step: Callable[[float, HostedCommand], None],
         on_signal: Callable[[float, str, float], None],
         people: People | None = None,
+        fates: Sequence[Fate] = (),
     ) -> None:
-        """``people``: who they are, for a planner that may know; None hides the truth."""
+        """``people``: who they are, for a planner that may know; None hides the truth.
+
+        ``fates``: of the robot and of all others, in a fleet.
+        """
         super().__init__()
         self._host, self._desire, self._task = host, robot.desire, task
         self._dv, self._dw = limits.a_max * TICK, limits.alpha_max * TICK
@@ -109,6 +134,9 @@ class PlannerSystem(LeafSystem):
             if len(people.id):
                 size = crowd_state.size(len(people.id))
                 self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, size)
+        self._fates = tuple(fates)
+        others = range(0 if people is None else len(people.robots))
+        self._others = [self.DeclareVectorInputPort(*ports.other_robot(k)) for k in others]
         command = self.DeclareDiscreteState(ports.COMMAND_SIZE)
         desired = self.DeclareDiscreteState(robot.desired_size)
         self.DeclareStateOutputPort(ports.COMMAND, command)
@@ -121,6 +149,8 @@ class PlannerSystem(LeafSystem):
         tick, v, w, vy, slewed_v, slewed_w, slewed_vy = state.tolist()
         since = int(tick) % self._ticks
         due = since == 0
+        if self._fates and (self._fates[0].ended or self._fates[0].failure):
+            due, v, w, vy = False, 0.0, 0.0, 0.0
         if since == self._timeout:  # a driver that hears nothing stops the robot
             v = w = vy = 0.0
         if not due and slewed_v == v and slewed_w == w and slewed_vy == vy:
@@ -128,15 +158,24 @@ class PlannerSystem(LeafSystem):
             return
         if due:
             t = tick * TICK
-            hosted = self._host.step(
-                self._observe(self._port.Eval(context), t, self._truth(context))
-            )
-            v, w, vy = hosted.command
-            self._on_step(t, hosted)
+            v, w, vy = self._ask(context, t)
         slewed_v, slewed_vy = _slew_planar(slewed_v, slewed_vy, v, vy, self._dv)
         slewed_w = _slew(slewed_w, w, self._dw)
         state[:] = (tick + 1.0, v, w, vy, slewed_v, slewed_w, slewed_vy)
         values.get_mutable_value(self._desired)[:] = self._desire(slewed_v, slewed_w, slewed_vy)
+
+    def _ask(self, context: Context, t: float) -> Command:
+        """The planner's command; one that fails in a fleet ends its own robot only."""
+        seen = self._observe(self._port.Eval(context), t, self._truth(context))
+        try:
+            hosted = self._host.step(seen)
+        except PlannerError as error:
+            if not self._fates:
+                raise
+            self._fates[0].failure = str(error)
+            return STOP
+        self._on_step(t, hosted)
+        return hosted.command
 
     def _truth(self, context: Context) -> Truth | None:
         """What is at this instant, if the planner may know."""
@@ -144,7 +183,11 @@ class PlannerSystem(LeafSystem):
             return None
         robot = RobotState(*self._robot.Eval(context).tolist())
         crowd = np.zeros(0) if self._crowd is None else self._crowd.Eval(context)
-        return self._people.truth(robot, crowd)
+        others = [
+            None if fate.gone else RobotState(*port.Eval(context).tolist())
+            for fate, port in zip(self._fates[1:], self._others, strict=False)
+        ]
+        return self._people.truth(robot, crowd, others)
 
     def _observe(self, bank: Array, t: float, truth: Truth | None) -> Observation:
         pose, twist, sideways = self._task.start, (0.0, 0.0), [0.0]
@@ -189,20 +232,27 @@ def add_planner(
     builder: DiagramBuilder,
     built: BuiltRun,
     robot: ControlledRobot,
-    crowd: CrowdSystem | None,
+    crowd: CrowdOutputs | None,
     bank: SensorBank,
     host: PlannerHost,
     log: RunLog,
     *,
     privileged: bool,
+    company: Company | None = None,
 ) -> PlannerSystem:
-    """Add the planner to a diagram, between the readings and the robot's desired state."""
+    """Add the planner to a diagram, between the readings and the robot's desired state.
+
+    Args:
+        company: the rest of a fleet.
+    """
+    others = () if company is None else company.others
     planner = PlannerSystem(
         host, bank, robot, built.model.limits, built.task,
         rate=built.scenario.rates.planner, visible=dict.fromkeys(built.visible),
         on_step=lambda t, step: log.command(t, step.command, step.seconds, step.clamped),
         on_signal=log.writer.signal,
-        people=_people(None if crowd is None else crowd.engine) if privileged else None,
+        people=_people(None if crowd is None else crowd.engine, others) if privileged else None,
+        fates=() if company is None else company.fates,
     )  # fmt: skip
     builder.AddNamedSystem("planner", planner)
     builder.Connect(bank.GetOutputPort(ports.READINGS), planner.GetInputPort(ports.READINGS))
@@ -211,10 +261,13 @@ def add_planner(
         builder.Connect(robot.port, planner.GetInputPort(ports.ROBOT_STATE))
         if crowd is not None and len(crowd.engine.agents):
             builder.Connect(crowd.state, planner.GetInputPort(ports.CROWD_STATE))
+        for k, other in enumerate(others):
+            builder.Connect(other.port, planner.GetInputPort(ports.other_robot(k)[0]))
     return planner
 
 
-def _people(engine: CrowdEngine | None) -> People:
+def _people(engine: CrowdEngine | None, others: Sequence[Companion]) -> People:
+    reach = np.array([footprint_of_model(other.model).reach for other in others])
     if engine is None:
-        return People(np.zeros(0, np.int64), np.zeros(0))
-    return People(engine.agents.id, engine.agents.radius)
+        return People(np.zeros(0, np.int64), np.zeros(0), reach)
+    return People(engine.agents.id, engine.agents.radius, reach)

@@ -18,3 +18,15 @@ DESIRED_STATE = "desired_state"
 COMMAND, COMMAND_SIZE = "command", 7
 #: Drake's contact results of the plant.
 FORCES = "forces"
+#: Force x, y (N, world frame) and torque (N m) of other robots on a robot.
+ROBOT_PUSH, ROBOT_PUSH_SIZE = "robot_push", 3
+
+
+def other_robot(number: int) -> tuple[str, int]:
+    """Name and size of the port of another robot's state."""
+    return f"other_{ROBOT_STATE}_{number}", ROBOT_STATE_SIZE
+
+
+def of_robot(port: str, number: int) -> str:
+    """Name of the port that concerns one robot of several."""
+    return f"{port}_{number}"

@@ -2,23 +2,36 @@
 
 from __future__ import annotations
 
+from crowdbot.core.planning.fleet_choice import check_robots
 from crowdbot.core.runs.request import Request
 from crowdbot.core.sim.built_run import BuiltRun, build_run
+from crowdbot.errors import InputError
 
 
-def preflight(request: Request) -> BuiltRun:
-    """Build the run; what this robot, or this machine, cannot give is refused before it is written.
+def preflight(request: Request) -> dict[str, BuiltRun]:
+    """Build the run of each robot; what it, or this machine, cannot give is refused now.
 
     Raises:
-        InputError: the robot lacks a sensor that the planner needs, its control mode does not
-            fit its drive, or a sensor has the name of a frame that is not its own.
+        InputError: a robot has no planner, or lacks a sensor that it needs; its control mode does
+            not fit its drive, or a sensor has the name of a frame that is not its own.
         PluginError: environment, robot or a sensor cannot be built.
         MissingLibraryError: colour images are wanted where they cannot be drawn.
     """
-    built = build_run(request.scenario, request.registry, request.choice, request.record)
-    cameras = (info.camera for info in built.infos.values())
+    robots = tuple(request.scenario.robots)
+    check_robots(request.choice, robots)
+    if len(robots) > 1 and request.watchers:
+        raise InputError(
+            f"only a run of one robot can be watched; {request.scenario.id} has {len(robots)}"
+        )
+    builts = {
+        name: build_run(
+            request.scenario, request.registry, request.choice.of(name), request.record, name
+        )
+        for name in robots
+    }
+    cameras = (info.camera for built in builts.values() for info in built.infos.values())
     if any(camera is not None and camera.colour for camera in cameras):
         from crowdbot.core.sim.rendering import check_egl
 
         check_egl()
-    return built
+    return builts

@@ -21,7 +21,7 @@ from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.diagram import build_diagram
-from crowdbot.core.sim.record_crowd import RunSetup, agents, ids, recording
+from crowdbot.core.sim.record_crowd import RunSetup, agents, aim_of, ids, recording
 from crowdbot.core.sim.runner import run
 from crowdbot.core.sim.start_pose_check import check_start
 from crowdbot.core.types.robot import HolonomicDrive, RobotLimits
@@ -45,18 +45,19 @@ def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = No
         built.scenario, setup.agents, built.parts, setup.registry, built.model.skin_stiffness
     )
     check_start(built.parts, built.model, built.task.start, engine, built.name)
-    header = replace(_header(built, engine), hashes=setup.hashes)
+    header = replace(header_of(built, engine), hashes=setup.hashes)
     for watcher in setup.watchers:
         watcher.begin(header)
     with (
-        recording(setup, header, engine, _description(setup, built)) as (writer, ending),
-        _watchdog(setup) as watchdog,
+        recording(setup, header, engine, description_of(setup, built)) as (writer, ending),
+        watchdog_of(setup) as watchdog,
         contextlib.ExitStack() as stack,
     ):
         sideways = isinstance(built.model.drive, HolonomicDrive)
-        aim = {} if engine is None else {"aim": engine.aim}
-        log = RunLog(writer, ids(engine), sideways=sideways, watchers=setup.watchers, **aim)
-        host = host or stack.enter_context(_host(setup, built, watchdog))
+        log = RunLog(
+            writer, ids(engine), sideways=sideways, watchers=setup.watchers, aim=aim_of(engine)
+        )
+        host = host or stack.enter_context(hosted(setup, built, watchdog))
         if engine is not None:
             engine.advance(engine.initial_state())  # compiles kernels before the clock starts
         blocks = build_diagram(
@@ -69,7 +70,8 @@ def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = No
     return outcome
 
 
-def _header(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
+def header_of(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
+    """The constants of a robot's run."""
     model, task = built.model, built.task
     return RecordingHeader(
         scenario=built.scenario.id,
@@ -88,13 +90,13 @@ def _header(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
     )
 
 
-def _description(setup: RunSetup, built: BuiltRun) -> str:
+def description_of(setup: RunSetup, built: BuiltRun) -> str:
     """The robot's URDF, where it is recorded."""
     return to_urdf(built.model, built.infos, built.name) if setup.record == "all" else ""
 
 
 @contextmanager
-def _watchdog(setup: RunSetup) -> Iterator[Watchdog | None]:
+def watchdog_of(setup: RunSetup) -> Iterator[Watchdog | None]:
     """Over a planner in this process; one in a process of its own is simply ended."""
     if not setup.choice.in_process:
         yield None
@@ -109,7 +111,7 @@ def _watchdog(setup: RunSetup) -> Iterator[Watchdog | None]:
 
 
 @contextmanager
-def _host(setup: RunSetup, built: BuiltRun, watchdog: Watchdog | None) -> Iterator[PlannerHost]:
+def hosted(setup: RunSetup, built: BuiltRun, watchdog: Watchdog | None) -> Iterator[PlannerHost]:
     """The planner, built and reset; one that fails in this fails again in its first step.
 
     A process of its own is ended afterwards; what it does too long, it does within that.

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import CrowdEngine
+from crowdbot.core.crowd import state as crowd_state
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.population.realisation import Realisation
@@ -144,3 +145,8 @@ def choosers(engine: CrowdEngine | None) -> list[Choosers]:
                 )
             )
     return found
+
+
+def aim_of(engine: CrowdEngine | None) -> int:
+    """Column of the crowd's state where the point begins to which people walk."""
+    return crowd_state.GOAL_X if engine is None else engine.aim

@@ -8,6 +8,7 @@ from __future__ import annotations
 from pydrake.systems.framework import Context, DiagramBuilder, LeafSystem
 
 from crowdbot.core.recording import RecordingWriter
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 
 _PERIOD = 1.0  # s
 
@@ -15,7 +16,7 @@ _PERIOD = 1.0  # s
 class Recorder(LeafSystem):
     """No ports. Chunks end by simulated time, so that equal runs give equal files."""
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(self, writer: RecordingWriter) -> None:
         super().__init__()

@@ -55,10 +55,13 @@ def make_reference(request: Request, reference: Reference) -> Outcome:
 
 def _record_alone(setup: RunSetup) -> Outcome:
     """A run of its own: what sensors and planner remember is not that of the run with people."""
-    from crowdbot.core.sim.record import record_robot  # imports Drake
+    from crowdbot.core.sim.record_all import record_all  # imports Drake
 
-    built = build_run(setup.scenario, setup.registry, setup.choice, setup.record)
-    return record_robot(setup, built)
+    builts = {
+        name: build_run(setup.scenario, setup.registry, setup.choice.of(name), setup.record, name)
+        for name in setup.scenario.robots
+    }
+    return record_all(setup, builts)
 
 
 def setup_of(request: Request, reference: Reference, folder: Path) -> RunSetup:

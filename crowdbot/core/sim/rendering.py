@@ -10,6 +10,7 @@ import math
 import subprocess
 import sys
 from functools import cache
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from pydrake.geometry import (
     Box,
     ClippingRange,
     ColorRenderCamera,
+    Convex,
     Cylinder,
     FrameId,
     FramePoseVector,
@@ -57,6 +59,7 @@ _CLOTHES = (
 #: Wheelchairs, strollers, suitcases.
 _THING = (0.30, 0.30, 0.34)
 _TROUSERS = ((0.16, 0.18, 0.26), (0.25, 0.22, 0.2), (0.22, 0.28, 0.36))
+_ROBOT = (0.35, 0.38, 0.45)
 _HIDDEN = RigidTransform([0.0, 0.0, -100.0])
 _PROBE = "from crowdbot.core.sim.rendering import probe; probe()"
 
@@ -84,6 +87,7 @@ class Renderer:
         self._source = self._graph.RegisterSource("crowdbot")
         self._scenery(scene)
         self._people = self._crowd(scene)
+        self._robots = self._fleet(scene)
         self._context = self._graph.CreateDefaultContext()
         self._camera = _render_camera(camera)
 
@@ -92,6 +96,8 @@ class Renderer:
         poses = FramePoseVector()
         for frame, place in zip(self._people, _places(scene), strict=True):
             poses.set_value(frame, place)
+        for frame, there in zip(self._robots, scene.others.poses, strict=True):
+            poses.set_value(frame, _HIDDEN if there is None else _on_the_floor(there))
         self._graph.get_source_pose_port(self._source).FixValue(self._context, poses)
         at, yaw = sensor_pose_in_world(self._mount, scene, pose)
         eye = RigidTransform(
@@ -105,7 +111,8 @@ class Renderer:
 
     def _scenery(self, scene: Scene) -> None:
         self._add(Box(400.0, 400.0, 0.1), RigidTransform([0.0, 0.0, -0.05]), _FLOOR, "floor")
-        for k, (wall, (low, high)) in enumerate(zip(scene.walls, scene.wall_heights, strict=True)):
+        walls = zip(scene.walls, scene.wall_heights, strict=True)
+        for k, (wall, (low, high)) in enumerate(islice(walls, scene.fixed_walls)):
             way, middle = wall[2:] - wall[:2], 0.5 * (wall[:2] + wall[2:])
             pose = RigidTransform(
                 RotationMatrix.MakeZRotation(np.arctan2(way[1], way[0])),
@@ -114,9 +121,25 @@ class Renderer:
             shape = Box(max(float(np.hypot(*way)), 1e-3), 0.01, high - low)
             self._add(shape, pose, _WALL, f"wall{k}")
         rounds = zip(scene.pillars, scene.pillar_heights, strict=True)
-        for k, ((x, y, radius), (low, high)) in enumerate(rounds):
+        for k, ((x, y, radius), (low, high)) in enumerate(islice(rounds, scene.fixed_pillars)):
             pose = RigidTransform([x, y, 0.5 * (low + high)])
             self._add(Cylinder(radius, high - low), pose, _PILLAR, f"pillar{k}")
+
+    def _fleet(self, scene: Scene) -> list[FrameId]:
+        """Frames of the other robots, each an upright body over its outline."""
+        frames = []
+        for k, robot in enumerate(scene.others.robots):
+            frame = self._graph.RegisterFrame(self._source, GeometryFrame(f"robot{k}"))
+            outline, lift = robot.footprint.outline(0.0, 0.0, 0.0), 0.0
+            shape: Shape
+            if len(outline):
+                corners = [(x, y, z) for x, y in outline for z in (0.0, robot.height)]
+                shape = Convex(points=np.array(corners).T, label=f"robot{k}")
+            else:
+                shape, lift = Cylinder(robot.footprint.radius, robot.height), 0.5 * robot.height
+            self._add(shape, RigidTransform([0.0, 0.0, lift]), _ROBOT, f"robot{k}", frame)
+            frames.append(frame)
+        return frames
 
     def _crowd(self, scene: Scene) -> list[FrameId]:
         """Frames of legs and trunk for everybody, then of what they have with them.
@@ -159,6 +182,10 @@ class Renderer:
         instance.set_perception_properties(looks)
         where = self._graph.world_frame_id() if frame is None else frame
         self._graph.RegisterGeometry(self._source, where, instance)
+
+
+def _on_the_floor(pose: Pose) -> RigidTransform:
+    return RigidTransform(RotationMatrix.MakeZRotation(pose.yaw), [pose.x, pose.y, 0.0])
 
 
 def _mesh(text: str) -> Mesh:

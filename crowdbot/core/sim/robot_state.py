@@ -17,7 +17,7 @@ from pydrake.systems.framework import (
 
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.plant import RobotPlant
-from crowdbot.core.sim.weak_callback import weak_callback
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
@@ -27,7 +27,7 @@ from crowdbot.core.types.robot import HolonomicDrive, RobotState
 class RobotStateSystem(LeafSystem):
     """Input: the robot's positions and velocities. Output: `ports.ROBOT_STATE`."""
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(self, rig: RobotPlant) -> None:
         super().__init__()
@@ -85,7 +85,7 @@ class MeasuredRobotState(RobotStateSystem):
     State: pose at the last tick, and the three angles then.
     """
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(self, rig: RobotPlant) -> None:
         drive = rig.robot.drive

@@ -25,7 +25,7 @@ from crowdbot.core.types.robot import RobotState
 from crowdbot.errors import PlannerError
 
 #: Simulated time between looks at progress and interruption, s.
-_LOOK = 0.125
+LOOK = 0.125
 
 
 def run(
@@ -48,13 +48,13 @@ def run(
     begin, cpu = time.perf_counter(), time.process_time()
     status, reason = TIMEOUT, f"time limit of {task.time_limit:g} s"
     try:
-        ended = _has_ended(simulator.Initialize())
+        ended = has_ended(simulator.Initialize())
         while not ended:
             if stop():
                 status, reason = INTERRUPTED, "interrupted by the user"
                 break
-            answer = simulator.AdvanceTo(context.get_time() + _LOOK)
-            ended = _has_ended(answer)
+            answer = simulator.AdvanceTo(context.get_time() + LOOK)
+            ended = has_ended(answer)
             if progress is not None:
                 _report(progress, stage, blocks, task, context, begin)
     except PlannerError as error:
@@ -75,7 +75,8 @@ def run(
     )
 
 
-def _has_ended(status: SimulatorStatus) -> bool:
+def has_ended(status: SimulatorStatus) -> bool:
+    """Whether a block has ended the run."""
     return bool(status.reason() == SimulatorStatus.ReturnReason.kReachedTerminationCondition)
 
 

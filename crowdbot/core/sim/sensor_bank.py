@@ -6,7 +6,7 @@ Its event is unrestricted like the crowd's, so that robot and crowd are seen at 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from types import MappingProxyType
@@ -23,15 +23,20 @@ from pydrake.systems.framework import (
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
+from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.sensing.noise import SensorStream
+from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sensing.sensor import Sensor, SensorWithMemory
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.companion import Companion, Company
 from crowdbot.core.sim.control import ControlledRobot
-from crowdbot.core.sim.crowd_system import CrowdSystem
+from crowdbot.core.sim.crowd_system import CrowdOutputs
+from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.images import ColourRenderer, Images, capture, view_size
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, is_due
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
@@ -66,11 +71,13 @@ class _Way(NamedTuple):
     stream: SensorStream | None
 
 
-def lay_out(infos: Mapping[str, SensorInfo], people: int) -> tuple[dict[str, Slot], int]:
+def lay_out(
+    infos: Mapping[str, SensorInfo], people: int, robots: int = 0
+) -> tuple[dict[str, Slot], int]:
     """Slots by sensor name and the length of the state vector; entry 0 is the tick."""
     slots, end = {}, 1
     for name, info in infos.items():
-        size = view_size(people) if info.camera else int(np.prod(info.shape))
+        size = view_size(people, robots) if info.camera else int(np.prod(info.shape))
         values_end = end + 1 + size
         memory_end = values_end + info.memory
         slots[name] = Slot(info, end, slice(end + 1, values_end), slice(values_end, memory_end))
@@ -114,7 +121,7 @@ class SensorBank(LeafSystem):
     Entry 0 of the output is the next tick at which a sensor may be due.
     """
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(
         self,
@@ -138,10 +145,13 @@ class SensorBank(LeafSystem):
         """
         super().__init__()
         self._scene = scene
+        self._poses: list[Pose | None] = []
         self._on_reading, self._on_take_frame = on_reading, on_frame
         self._idle = SensorStream(seed, robot, "").at(0)
         people = len(s.view(np.zeros(crowd_size))[1]) if crowd_size else 0
-        self.slots, size = lay_out({n: x.info() for n, x in sensors.items()}, people)
+        self.slots, size = lay_out(
+            {n: x.info() for n, x in sensors.items()}, people, len(scene.others)
+        )
         self._ways = {
             n: _Way(x, sensors[n].read, SensorStream(seed, robot, n) if x.info.random else None)
             for n, x in self.slots.items()
@@ -158,6 +168,12 @@ class SensorBank(LeafSystem):
         self._crowd = (
             self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size) if crowd_size else None
         )
+        self._fates: tuple[Fate, ...] = ()
+        others = range(len(scene.others))
+        self._others = [self.DeclareVectorInputPort(*ports.other_robot(k)) for k in others]
+        self._pushed = (
+            self.DeclareVectorInputPort(ports.ROBOT_PUSH, ports.ROBOT_PUSH_SIZE) if others else None
+        )
         index = self.DeclareDiscreteState(initial)
         self.DeclareStateOutputPort(ports.READINGS, index)
         self._index = DiscreteStateIndex(index)
@@ -167,6 +183,10 @@ class SensorBank(LeafSystem):
         infos = {n: x.info for n, x in self.slots.items()}
         self._blind = {n for n, i in infos.items() if not (i.sees or i.feels or i.camera)}
         self.DeclarePeriodicUnrestrictedUpdateEvent(self._step * TICK, 0.0, self._update)
+
+    def take_part(self, fates: Sequence[Fate]) -> None:
+        """Take the fates of a fleet: of the robot itself, then of the others."""
+        self._fates = tuple(fates)
 
     def reading(self, name: str, bank: Array) -> Reading:
         """The latest reading in a state of the bank, read-only."""
@@ -185,7 +205,7 @@ class SensorBank(LeafSystem):
         tick = int(bank[0])
         bank[0] = tick + self._step
         due = self._due(tick)
-        if not due:
+        if not due or (self._fates and self._fates[0].ended):
             return
         robot, people = RobotState(*self._robot.Eval(context).tolist()), None
         if self._blind.issuperset(due):
@@ -205,26 +225,38 @@ class SensorBank(LeafSystem):
         slot = self.slots[name]
         bank[slot.stamp] = t
         view = bank[slot.values]
-        capture(robot, people, view)
+        capture(robot, people, view, self._poses)
         if self._on_take_frame is not None:
             image = self._images[name].frame(self._scene, pose, t, view)
             self._on_take_frame(name, image)
 
     def _see(self, context: Context, robot: RobotState) -> Array | None:
         """Show the scene as it is now; returns the crowd's rows, if any."""
+        push = (0.0, 0.0, 0.0)
+        if self._pushed is not None:
+            self._show_others(context)
+            push = self._pushed.Eval(context).tolist()
         if self._crowd is None:
-            self._scene.update(robot, np.zeros((0, 4)), np.zeros(0, np.bool_))
+            self._scene.update(robot, np.zeros((0, 4)), np.zeros(0, np.bool_), push=push)
             return None
         header, rows = s.view(self._crowd.Eval(context))
+        felt = header[s.ROBOT_FX], header[s.ROBOT_FY], header[s.ROBOT_TORQUE]
         self._scene.update(
             robot,
             rows[:, s.X : s.VY + 1],
             rows[:, s.WAITING] == 0.0,
             rows[:, s.DIR_X : s.DIR_Y + 1],
             rows[:, s.WALKED],
-            (header[s.ROBOT_FX], header[s.ROBOT_FY], header[s.ROBOT_TORQUE]),
+            felt if self._pushed is None else tuple(a + b for a, b in zip(felt, push, strict=True)),
         )
         return rows
+
+    def _show_others(self, context: Context) -> None:
+        """Show where the other robots of the fleet are."""
+        states = (port.Eval(context)[:3].tolist() for port in self._others)
+        fates = self._fates[1:]
+        self._poses = [None if f.gone else Pose(*p) for f, p in zip(fates, states, strict=True)]
+        self._scene.show_robots(self._poses)
 
     def _read(self, name: str, bank: Array, pose: Pose, t: float, tick: int) -> None:
         slot, read, stream = self._ways[name]
@@ -242,13 +274,19 @@ def add_sensors(
     builder: DiagramBuilder,
     built: BuiltRun,
     robot: ControlledRobot,
-    crowd: CrowdSystem | None,
+    crowd: CrowdOutputs | None,
     writer: RecordingWriter,
     *,
     seed: int,
+    company: Company | None = None,
 ) -> SensorBank:
-    """Add the sensors of a run to a diagram; they see the robot and the people of the same tick."""
-    scene = _scene(built, None if crowd is None else crowd.engine)
+    """Add the sensors of a run to a diagram; they see the robot and the people of the same tick.
+
+    Args:
+        company: the rest of a fleet, which sensors see and feel.
+    """
+    others = () if company is None else company.others
+    scene = _scene(built, None if crowd is None else crowd.engine, others)
     bank = SensorBank(
         built.sensors,
         scene,
@@ -263,17 +301,24 @@ def add_sensors(
     builder.Connect(robot.port, bank.GetInputPort(ports.ROBOT_STATE))
     if crowd is not None:
         builder.Connect(crowd.state, bank.GetInputPort(ports.CROWD_STATE))
+    for k, other in enumerate(others):
+        builder.Connect(other.port, bank.GetInputPort(ports.other_robot(k)[0]))
+    if company is not None:
+        bank.take_part(company.fates)
+        builder.Connect(company.push, bank.GetInputPort(ports.ROBOT_PUSH))
     return bank
 
 
-def _scene(built: BuiltRun, engine: CrowdEngine | None) -> Scene:
+def _scene(built: BuiltRun, engine: CrowdEngine | None, others: Sequence[Companion] = ()) -> Scene:
     crowd, parts = built.scenario.crowd, built.parts
     radius = np.zeros(0) if engine is None else engine.agents.radius
     height = np.full(len(radius), crowd.body.height if crowd else 0.0)
     looks = None if engine is None else engine.agents.looks
+    seen = [OtherRobot(footprint_of_model(o.model), o.model.height) for o in others]
     return Scene(
-        parts.walls, parts.wall_heights, radius, height, parts.pillars, parts.pillar_heights, looks
-    )
+        parts.walls, parts.wall_heights, radius, height, parts.pillars, parts.pillar_heights,
+        looks, seen,
+    )  # fmt: skip
 
 
 def _renderers(infos: Mapping[str, SensorInfo], scene: Scene) -> dict[str, ColourRenderer]:

@@ -10,12 +10,10 @@ from typing import Any, get_args
 from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.planning.given_planner import GivenPlanner, choose_planner
 from crowdbot.core.planning.watchdog import STEP_LIMIT
-from crowdbot.core.recording import read_run
-from crowdbot.core.recording.scans import REPLAY_RATE, ReplayScan
+from crowdbot.core.recording.scans import REPLAY_RATE
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.replay import write_replay
-from crowdbot.core.robots.look import seen_from_above
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import (
@@ -27,23 +25,28 @@ from crowdbot.core.runs.identity import (
     run_identity,
 )
 from crowdbot.core.runs.outcome import Progress
+from crowdbot.core.runs.replayed import read_replay_images, shown_run
 from crowdbot.core.runs.request import (
     Recorded,
     Request,
     Run,
-    read_references,
+)
+from crowdbot.core.runs.robots import (
+    SeenRun,
+    read_robots,
     reference_hashes,
+    references_by_robot,
+    score_robots,
 )
 from crowdbot.core.runs.run_record import run_record, write_scenario
-from crowdbot.core.scoring.evaluate import Scores, metric_specs, score
+from crowdbot.core.scoring.evaluate import Scores, metric_specs
 from crowdbot.core.scoring.scores_csv import write_scores_csv
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.gc_freeze import gc_frozen
 from crowdbot.core.sim.preflight import preflight
-from crowdbot.core.sim.record import record_robot
+from crowdbot.core.sim.record_all import record_all
 from crowdbot.core.sim.record_crowd import RunSetup
 from crowdbot.core.sim.references import check_interrupted, make_references, partial
-from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.dsl.axis_words import AxisWords
 from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
@@ -158,7 +161,7 @@ def make_run(request: Request, prepared: Prepared, keep: object = None) -> Run:
         prepared: its scenario.
         keep: lives as long as the result.
     """
-    built = preflight(request)
+    builts = preflight(request)
     identity = run_identity(request, prepared.run)
     references = references_of(request, prepared)
     if not request.force:
@@ -169,7 +172,7 @@ def make_run(request: Request, prepared: Prepared, keep: object = None) -> Run:
     replaced = recorded_otherwise(request, identity)
     with gc_frozen():
         paths = make_references(request, references)
-        record = _record_run(request, prepared, built, identity, paths)
+        record = _record_run(request, prepared, builts, identity, paths)
     return Run(request.directory, record, replaced=replaced, _keep=keep)
 
 
@@ -177,37 +180,36 @@ def make_run(request: Request, prepared: Prepared, keep: object = None) -> Run:
 def _record_run(
     request: Request,
     prepared: Prepared,
-    built: BuiltRun,
+    builts: Mapping[str, BuiltRun],
     identity: Mapping[str, Any],
     references: Mapping[str, Path],
 ) -> dict[str, Any]:
     final = request.directory
+    parts = next(iter(builts.values())).parts
     with partial(final) as folder:
-        outcome = record_robot(_setup(request, prepared, folder, identity), built)
+        outcome = record_all(_setup(request, prepared, folder, identity), builts)
         check_interrupted(outcome, folder)
-        run, scans = read_run(folder / files.RECORDING, REPLAY_RATE)
-        calibration = read_references(references)
-        scores = score(
+        seen = read_robots(folder / files.RECORDING, tuple(builts), REPLAY_RATE)
+        runs = {name: one.run for name, one in seen.items()}
+        scores = score_robots(
             request.registry,
-            run,
-            calibration.robot_alone,
-            calibration.crowd_alone,
+            runs,
+            references_by_robot(references, tuple(builts)),
             metrics="*" if request.metrics is None else request.metrics,
         )
-        record = run_record(request, identity, references, outcome, run, scores, parts=built.parts)
+        record = run_record(request, identity, references, outcome, runs, scores, parts=parts)
         record["agents"] = prepared.run.people.source
         record["reference_hashes"] = reference_hashes(references)
-        record = _write_files(request, built, folder, run, scans, scores, record)
+        record = _write_files(request, builts, folder, seen, scores, record)
         files.publish(folder, final)
     return record
 
 
 def _write_files(
     request: Request,
-    built: BuiltRun,
+    builts: Mapping[str, BuiltRun],
     folder: Path,
-    run: Trajectories,
-    scans: Sequence[ReplayScan],
+    seen: Mapping[str, SeenRun],
     scores: Scores,
     record: Mapping[str, Any],
 ) -> dict[str, Any]:
@@ -216,7 +218,7 @@ def _write_files(
     write_scenario(folder, scenario, request.registry)
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
     if request.replay:
-        _write_replay(request, built, folder / files.REPLAY, run, scans, scores, record)
+        _write_replay(request, builts, folder, seen, scores, record)
     files.attach_files(folder, record)
     whole = {**record, "files": files.sizes(folder)}
     files.write_json(folder / files.RECORD, whole)
@@ -225,32 +227,24 @@ def _write_files(
 
 def _write_replay(
     request: Request,
-    built: BuiltRun,
-    file: Path,
-    run: Trajectories,
-    scans: Sequence[ReplayScan],
+    builts: Mapping[str, BuiltRun],
+    folder: Path,
+    seen: Mapping[str, SeenRun],
     scores: Scores,
     record: Mapping[str, Any],
 ) -> None:
-    scenario, arrival = request.scenario, record["goal_time"]
-    write_replay(
-        file,
-        run,
-        scans,
+    infos = [info for built in builts.values() for info in built.infos.values()]
+    images = request.record == "all" and any(info.camera for info in infos)
+    shown = shown_run(
+        request.scenario,
+        seen,
+        {name: built.model for name, built in builts.items()},
+        next(iter(builts.values())).parts,
+        record,
         scores,
-        title=f"{scenario.id} · {request.choice.label}",
-        facts={
-            "Suite": request.suite,
-            "Scenario": scenario.id,
-            "Planner": request.choice.label,
-            **provenance.remarks(record),
-            "Seed": str(request.seed),
-            "Status": record["status"],
-            "Arrived at": "—" if arrival is None else f"{arrival:.2f} s",
-            "Spec": record["hashes"]["spec"][:24],
-        },
-        look=[(part.outline, part.colour) for part in seen_from_above(built.model)],
+        read_replay_images(folder / files.RECORDING) if images else (),
     )
+    write_replay(folder / files.REPLAY, shown)
 
 
 def _setup(

@@ -6,7 +6,7 @@ its sensors and people, for as long as the process lives (2.6 MB for each run):
 
 - an output port holds its callback where the collector does not look: hence `weak_callback`;
 - in Python 3.11 and 3.12 a system's attributes are counted twice when its class has a dictionary of
-  its own beside that of its base: hence ``__slots__ = ()`` in each class, which adds none.
+  its own beside that of its base: hence ``__slots__ = NO_ATTRIBUTES`` in each class.
 """
 
 from __future__ import annotations
@@ -16,6 +16,10 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 T = TypeVar("T")
+
+#: ``__slots__`` of a system. By its name, since mypy, which does not see the dictionary of the
+#: base in C++, would take a literal for all attributes that there may be.
+NO_ATTRIBUTES: tuple[str, ...] = ()
 
 
 def weak_callback(method: Callable[..., T]) -> Callable[..., T]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import base64
 import hashlib
 from collections.abc import Sequence
+from functools import cache
 from importlib import resources
 from typing import Any
 
@@ -22,6 +23,7 @@ def render_page(
     scripts: Sequence[str] = (),
     more_style: str = "",
     images: str = "",
+    frames: bool = False,
     **values: Any,
 ) -> str:
     """Fill in the page of a package; equal input gives equal text.
@@ -31,24 +33,34 @@ def render_page(
         scripts: names of its files, in the order in which they run.
         more_style: rules to add to ``page.css``.
         images: sources of images that the page makes itself, such as ``blob:``.
+        frames: whether the page may open others from its own site or folder within itself.
         values: what the template names, beside ``policy``, ``style`` and ``script``. Text is
             escaped.
     """
     style = "\n".join(filter(None, [_part(package, "page.css"), more_style]))
     script = "\n".join(_part(package, name) for name in scripts)
-    template = jinja2.Environment(
-        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    ).from_string(_part(package, "page.html.j2"))
-    return template.render(
-        policy=_policy(style, script, images), style=Markup(style), script=Markup(script), **values
+    return _template(package).render(
+        policy=_policy(style, script, images, frames=frames),
+        style=Markup(style),
+        script=Markup(script),
+        **values,
     )
 
 
-def _policy(style: str, script: str, images: str) -> str:
+@cache
+def _template(package: str) -> jinja2.Template:
+    return jinja2.Environment(
+        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    ).from_string(_part(package, "page.html.j2"))
+
+
+@cache
+def _policy(style: str, script: str, images: str, *, frames: bool) -> str:
     scripts = f"script-src {_hash(script)}; " if script else ""
     pictures = f"img-src {images}; " if images else ""
+    opened = "frame-src 'self'; " if frames else ""
     return (
-        f"default-src 'none'; {scripts}style-src {_hash(style)}; {pictures}"
+        f"default-src 'none'; {scripts}style-src {_hash(style)}; {pictures}{opened}"
         "base-uri 'none'; form-action 'none'"
     )
 
@@ -58,5 +70,6 @@ def _hash(text: str) -> str:
     return f"'sha256-{digest}'"
 
 
+@cache
 def _part(package: str, name: str) -> str:
     return resources.files(package).joinpath(name).read_text(encoding="utf-8")

@@ -78,9 +78,10 @@ class Trips:
 class ContactEvents:
     """Contacts of the robot, each (K,).
 
-    t0, t1 (s), agent id (-1: a wall), impulse (N s), peak force (N), relative speed before (m/s),
-    bearing of the point of the robot that was touched first, in the robot's frame (rad; NaN:
-    unknown), for which `crowdbot.core.geometry.footprint.body_side` has names.
+    t0, t1 (s), agent id (-1: a wall; -2, -3, …: another robot of the run), impulse (N s), peak
+    force (N), relative speed before (m/s), bearing of the point of the robot that was touched
+    first, in the robot's frame (rad; NaN: unknown), for which
+    `crowdbot.core.geometry.footprint.body_side` has names.
     """
 
     t0: Array

@@ -49,7 +49,7 @@ class WallContactCount:
         factory = ScoreFactory(WALL_CONTACT_COUNT)
         if run.contacts is None:
             return factory.undefined("recorded", "invalid_no_contacts")
-        return factory.ok("recorded", (run.contacts.agent < 0).sum())
+        return factory.ok("recorded", (run.contacts.agent == -1).sum())
 
     def _geometric(self, run: Trajectories) -> Score:
         factory, tol = ScoreFactory(WALL_CONTACT_COUNT), self.spec.contact_tol

@@ -61,7 +61,7 @@ def nearest_per_sector(points: Array, sectors: int, reach: float) -> Array:
     count = 0
     for at in range(sectors):
         if index[at] >= 0:
-            out[count] = points[index[at]]
+            out[count, 0], out[count, 1] = points[index[at], 0], points[index[at], 1]
             count += 1
     return out[:count]
 

@@ -99,10 +99,11 @@ def _middles(legs: Array) -> Array:
             apart = math.hypot(legs[i, 0] - legs[j, 0], legs[i, 1] - legs[j, 1])
             if not used[j] and legs[i, 2] + legs[j, 2] == 0.0 and apart < best:
                 best, other = apart, j
-        out[count] = legs[i, :2]
+        out[count, 0], out[count, 1] = legs[i, 0], legs[i, 1]
         if other >= 0:
             used[other] = True
-            out[count] = 0.5 * (legs[i, :2] + legs[other, :2])
+            out[count, 0] = 0.5 * (legs[i, 0] + legs[other, 0])
+            out[count, 1] = 0.5 * (legs[i, 1] + legs[other, 1])
         count += 1
     return out[:count]
 
@@ -137,7 +138,8 @@ def with_discs(points: Array, people: Array, radius: float) -> Array:
     """
     out = np.empty((points.shape[0] + people.shape[0] * _ARC, 2))
     count = points.shape[0]
-    out[:count] = points
+    for i in range(count):  # a copy of the slice takes seconds to compile
+        out[i, 0], out[i, 1] = points[i, 0], points[i, 1]
     for k in range(people.shape[0]):
         x, y = people[k, 0], people[k, 1]
         away = math.hypot(x, y)
@@ -165,4 +167,4 @@ def carry(points: Array, velocities: Array, people: Array, going: Array, radius:
             gap = math.hypot(dx, dy)
             if gap < best:
                 best = gap
-                velocities[i] = going[k]
+                velocities[i, 0], velocities[i, 1] = going[k, 0], going[k, 1]

@@ -21,7 +21,7 @@ from crowdbot.core.recording import (
     recording_info,
 )
 from crowdbot.core.recording.scans import REPLAY_RATE, Thinning
-from crowdbot.core.replay import write_replay
+from crowdbot.core.replay import ShownRun, write_replay
 from crowdbot.core.runs.provenance import trajectory_hash
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError, UnknownNameError
@@ -189,7 +189,7 @@ def test_record_used_keeps_what_the_replay_shows_too(tmp_path: Path) -> None:
     pages = []
     for name in ("all", "used"):
         run, scans = read_run(tmp_path / name, REPLAY_RATE)
-        write_replay(tmp_path / f"{name}.html", run, scans, [], "run", {})
+        write_replay(tmp_path / f"{name}.html", ShownRun(run=run, scans=scans, title="run"))
         pages.append((tmp_path / f"{name}.html").read_bytes())
     assert pages[0] == pages[1]
 

@@ -5,6 +5,8 @@ import hashlib
 import json
 import re
 import zlib
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -14,7 +16,7 @@ import pytest
 from numpy.typing import NDArray
 
 from crowdbot.core.recording import read_scans, read_trajectories
-from crowdbot.core.replay import ReplayScan, write_replay
+from crowdbot.core.replay import OtherTrack, ReplayScan, ShownRun, write_replay
 from crowdbot.core.replay.encode import encode, summary
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
@@ -56,17 +58,39 @@ class Page(HTMLParser):
 
     @property
     def meta(self) -> Any:
-        return json.loads(self.scripts["meta"], parse_constant=lambda c: pytest.fail(c))
+        (run,) = json.loads(self.scripts["meta"], parse_constant=lambda c: pytest.fail(c))["runs"]
+        return run
 
     def blob(self, name: str) -> bytes:
-        return zlib.decompress(base64.b64decode(self.scripts[f"blob-{name}"], validate=True))
+        return zlib.decompress(base64.b64decode(self.scripts[f"blob-0-{name}"], validate=True))
 
-    def rows(self, name: str, count: int, columns: int) -> NDArray[np.float64]:
-        """Undo the differences: low bytes first, then high bytes, modulo 2^16."""
+    def changes(self, name: str, count: int, columns: int) -> NDArray[np.int64]:
+        """Unfold: low bytes first, then high bytes; 0, 1, 2, 3 are 0, -1, 1, -2."""
         planes = np.frombuffer(self.blob(name), np.uint8).reshape(2, count, columns).astype(int)
-        words = np.cumsum(planes[0] + 256 * planes[1], axis=1) % 65536
+        words: NDArray[np.int64] = planes[0] + 256 * planes[1]
+        changes: NDArray[np.int64] = (words >> 1) ^ -(words & 1)
+        return changes
+
+    def motion(self, name: str, count: int, columns: int) -> NDArray[np.float64]:
+        """Undo differences of differences along rows, modulo 2^16."""
+        once = np.cumsum(self.changes(name, count, columns), axis=1)
+        return self.signed(np.cumsum(once, axis=1))
+
+    def readings(self, name: str, count: int, columns: int) -> NDArray[np.float64]:
+        """Undo differences from row to row, modulo 2^16."""
+        return self.signed(np.cumsum(self.changes(name, count, columns), axis=0))
+
+    @staticmethod
+    def signed(words: NDArray[np.int64]) -> NDArray[np.float64]:
+        words = words % 65536
         signed: NDArray[np.int64] = np.where(words >= 32768, words - 65536, words)
         return np.where(signed == -32768, np.nan, signed)
+
+    def floats(self, name: str, size: int, columns: int) -> NDArray[np.float64]:
+        """Undo differences of bits along rows of floats of some bytes."""
+        planes = np.frombuffer(self.blob(name), np.uint8).reshape(size, -1)
+        bits = np.ascontiguousarray(planes.T).view(f"<u{size}").reshape(-1, columns)
+        return np.cumsum(bits, axis=1, dtype=bits.dtype).view(f"<f{size}")
 
 
 def score(metric: str, variant: str, value: float | None = 0.5, **more: Any) -> Score:
@@ -83,6 +107,18 @@ def score(metric: str, variant: str, value: float | None = 0.5, **more: Any) -> 
             **more,
         }
     )
+
+
+def write(
+    path: Path,
+    run: Trajectories,
+    scans: Sequence[ReplayScan] = (),
+    scores: Sequence[Score] = (),
+    title: str = "t",
+    facts: Mapping[str, str] | None = None,
+) -> None:
+    shown = ShownRun(run=run, scans=scans, scores=scores, title=title, facts=facts or {})
+    write_replay(path, shown)
 
 
 SCORES = [
@@ -106,7 +142,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Trajectories, list[Re
 def page(run: tuple[Trajectories, list[ReplayScan]], tmp_path_factory: Any) -> Page:
     path = tmp_path_factory.mktemp("page") / "replay.html"
     facts = {"Planner": "dwa", "Status": "arrived"}
-    write_replay(path, *run, SCORES, "counter-d0500", facts)
+    write(path, *run, SCORES, "counter-d0500", facts)
     return Page(path)
 
 
@@ -116,12 +152,12 @@ def test_positions_are_within_a_centimetre(
     agents, n = run[0].agents, len(run[0].t)
     assert agents is not None
     people = page.meta["people"]
-    x, y = np.split(page.rows("people", 2 * people["count"], n) * people["scale"], 2)
+    x, y = np.split(page.motion("people", 2 * people["count"], n) * people["scale"], 2)
     for got, given in ((x.T, agents.x), (y.T, agents.y)):
         assert np.array_equal(np.isnan(got), np.isnan(given))
         assert np.nanmax(np.abs(got - given)) <= 0.01
     assert np.isnan(x).any()
-    assert np.array_equal(np.frombuffer(page.blob("t"), "<f8"), run[0].t)
+    assert np.array_equal(page.floats("t", 8, n)[0], run[0].t)
 
 
 def test_jumps_are_those_of_the_run(
@@ -133,7 +169,7 @@ def test_jumps_are_those_of_the_run(
     assert page.meta["people"]["jumps"] == np.flatnonzero(agents.jump).tolist() != []
     untold = random_run(n=120, m=9)
     write_run(tmp_path / "x.mcap", type(untold)(untold.t, untold.robot, untold.agents, None))
-    write_replay(tmp_path / "x.html", read_trajectories(tmp_path / "x.mcap"), [], [], "", {})
+    write(tmp_path / "x.html", read_trajectories(tmp_path / "x.mcap"), [], [], "", {})
     assert Page(tmp_path / "x.html").meta["people"]["jumps"] == page.meta["people"]["jumps"]
 
 
@@ -142,10 +178,15 @@ def test_robot_is_exact_to_single_precision(
 ) -> None:
     robot = run[0].robot
     assert robot is not None
-    rows = np.frombuffer(page.blob("robot"), "<f4").reshape(4, -1)
-    given = np.stack((robot.x, robot.y, robot.theta, robot.v))
+    rows = page.floats("robot0", 4, len(run[0].t))
+    given = np.stack((robot.x, robot.y, robot.theta, robot.v, robot.w))
     assert np.array_equal(rows, given.astype("<f4"))
-    assert page.meta["robot"] == {
+    (about,) = page.meta["robots"]
+    zone = run[0].goal_zone
+    assert zone is not None
+    assert about == {
+        "name": "robot",
+        "zone": zone.tolist(),
         "radius": 0.2,
         "outline": [],
         "goal": [46.5, 0.0],
@@ -155,6 +196,32 @@ def test_robot_is_exact_to_single_precision(
     }
 
 
+def test_the_robots_of_a_fleet_are_a_list(run: tuple[Trajectories, list[ReplayScan]]) -> None:
+    """One that ended earlier stands where it was, or is gone; contacts say whose they are."""
+    given, n = run[0], len(run[0].t)
+    assert given.robot is not None
+    early = replace(
+        given,
+        t=given.t[:50],
+        agents=None,
+        trips=None,
+        robot=replace(
+            given.robot, **{k: getattr(given.robot, k)[:50] for k in ("x", "y", "theta", "v", "w")}
+        ),
+    )
+    others = [OtherTrack(name=f"b{i}", run=early, look=(), leaves=bool(i)) for i in (0, 1)]
+    meta, blobs = encode(ShownRun(run=given, title="", robot="a", others=others))
+    assert [robot["name"] for robot in meta["robots"]] == ["a", "b0", "b1"]
+    page = Page.__new__(Page)
+    page.scripts = {f"blob-0-{name}": text for name, text in blobs.items()}
+    stands, gone = (page.floats(f"robot{i}", 4, n) for i in (1, 2))
+    assert np.array_equal(stands[:, :50], gone[:, :50])
+    assert (stands[0, 50:] == stands[0, 49]).all()
+    assert (stands[3:, 50:] == 0.0).all()
+    assert np.isnan(gone[:, 50:]).all()
+    assert sorted(c.get("robot", 0) for c in meta["contacts"]) == [0, 0, 1, 1, 2, 2]
+
+
 def test_scans_are_thinned_and_within_a_centimetre(
     page: Page, run: tuple[Trajectories, list[ReplayScan]]
 ) -> None:
@@ -162,7 +229,7 @@ def test_scans_are_thinned_and_within_a_centimetre(
     assert np.allclose(about["t"], given.t[::2])  # 16 Hz to 8 Hz
     assert np.allclose(about["angles"], given.angles, atol=1e-5)
     assert about["mount"] == list(given.mount)
-    got = page.rows("scan0", len(about["angles"]), len(about["t"])).T * 0.01
+    got = page.readings("scan0", len(about["angles"]), len(about["t"])).T * 0.01
     returned = np.isfinite(given.ranges[::2])
     assert np.array_equal(got > 0, returned)
     assert np.abs(got - given.ranges[::2])[returned].max() <= 0.01
@@ -176,10 +243,10 @@ def test_many_beams_are_thinned(tmp_path: Path) -> None:
     )
     write_run(tmp_path / "x.mcap", random_run(n=8))
     run = read_trajectories(tmp_path / "x.mcap")
-    write_replay(tmp_path / "x.html", run, [scan], [], "", {})
+    write(tmp_path / "x.html", run, [scan], [], "", {})
     page = Page(tmp_path / "x.html")
     assert np.allclose(page.meta["scans"][0]["angles"], angles[::2], atol=1e-5)
-    got = page.rows("scan0", 240, 4) * 0.01
+    got = page.readings("scan0", 240, 4) * 0.01
     assert np.abs(got - ranges[::2, ::2].T).max() <= 0.01
 
 
@@ -198,7 +265,7 @@ def test_sonars_are_told_together() -> None:
     ]  # fmt: skip
     robot = {f"robot_{n}": np.zeros(2) for n in ("x", "y", "theta")}
     run = Trajectories.from_arrays(t=[0.0, 3.0], robot_radius=0.2, robot_mass=6.3, **robot)  # type: ignore[arg-type]
-    meta, blobs = encode(run, cones)
+    meta, blobs = encode(ShownRun(run=run, title="", scans=cones))
     assert meta["scans"] == []
     assert [[s["sensor"] for s in group["sensors"]] for group in meta["cones"]] == [
         ["us0", "us1"], ["us2"],
@@ -206,12 +273,12 @@ def test_sonars_are_told_together() -> None:
     assert meta["cones"][0]["sensors"][1]["mount"] == [0.1, 0.0, 0.2, 0.5]
     assert meta["cones"][0]["t"] == (np.arange(20) / 8.0).tolist()
     page = Page.__new__(Page)
-    page.scripts = {f"blob-{name}": text for name, text in blobs.items()}
-    got = page.rows("cones0", 2, 20) * 0.01
+    page.scripts = {f"blob-0-{name}": text for name, text in blobs.items()}
+    got = page.motion("cones0", 2, 20) * 0.01
     given = ranges[:2, ::2, 0]
     assert got[0, 2] == 0.0
     assert np.abs(got - np.where(np.isfinite(given), given, 0.0)).max() <= 0.0051
-    assert page.rows("cones1", 1, 20).shape == (1, 20)
+    assert page.motion("cones1", 1, 20).shape == (1, 20)
 
 
 BOX = [[0.4, -0.2], [0.4, 0.2], [-0.3, 0.2], [-0.3, -0.2]]
@@ -236,12 +303,12 @@ def test_contacts_lie_on_the_robots_outline(
         t=[0.0, 1.0], robot_radius=0.25, robot_mass=6.3, robot_footprint=outline,
         contacts={**table, "agent": [-1], "bearing": [bearing]}, **robot,  # type: ignore[arg-type]
     )  # fmt: skip
-    meta, _ = encode(run, [])
+    meta, _ = encode(ShownRun(run=run, title=""))
     (contact,) = meta["contacts"]
     assert contact["reach"] == pytest.approx(reach, abs=5e-3)
     assert contact["side"] == side
     assert (contact["bearing"] is None) == np.isnan(bearing)
-    assert meta["robot"]["outline"] == (outline or [])
+    assert meta["robots"][0]["outline"] == (outline or [])
     words = "1" if side == "unknown" else f"1 (1 {side})"
     assert summary(run)["Contacts"] == words
 
@@ -259,7 +326,7 @@ def test_nothing_comes_from_outside(page: Page) -> None:
     for name, script in page.scripts.items():
         if name and name.startswith("blob-"):
             text = text.replace(script, "")  # base64 has slashes
-    assert not re.search(r"https?:|wss?:|//\w|@import|url\(|fetch\(|XMLHttp", text)
+    assert not re.search(r"https?:|\bwss?:|//\w|@import|url\(|fetch\(|XMLHttp", text)
     for tag, attributes in page.tags:
         assert tag not in ("link", "img", "iframe", "object", "base")
         assert not {"src", "href", "style"} & set(attributes)
@@ -278,7 +345,7 @@ def test_policy_allows_our_style_and_script_only(page: Page) -> None:
 
     assert policy == (
         f"default-src 'none'; script-src {hashed(page.scripts[None])}; "
-        f"style-src {hashed(page.style)}; base-uri 'none'; form-action 'none'"
+        f"style-src {hashed(page.style)}; frame-src 'self'; base-uri 'none'; form-action 'none'"
     )
 
 
@@ -295,7 +362,7 @@ def test_what_no_run_can_answer_is_shown_on_request_only(
 ) -> None:
     asked = score("fluency", "corrected", None, reason="no_command", category="shared control")
     path = tmp_path / "x.html"
-    write_replay(path, run[0], [], [asked], title="t", facts={})
+    write(path, run[0], [], [asked], title="t", facts={})
     rows = re.findall(r'<tr class="([^"]*)"', path.read_text(encoding="utf-8"))
     assert rows == ["category extra", "undefined extra"]
 
@@ -314,9 +381,9 @@ def test_hostile_text_stays_text(
         ranges=scan.ranges,
     )
     evil_score = score(EVIL, EVIL, None, reason=EVIL, category=EVIL, symbol=EVIL, unit=EVIL)
-    write_replay(path, run[0], [evil_scan], [evil_score], EVIL, {EVIL: EVIL, "Status": EVIL})
+    write(path, run[0], [evil_scan], [evil_score], EVIL, {EVIL: EVIL, "Status": EVIL})
     page, clean = Page(path), tmp_path / "clean.html"
-    write_replay(clean, run[0], [scan], [score("a", "b", None)], "t", {"f": "g", "Status": "s"})
+    write(clean, run[0], [scan], [score("a", "b", None)], "t", {"f": "g", "Status": "s"})
     names = [tag for tag, _ in page.tags]
     assert names.count("script") == [tag for tag, _ in Page(clean).tags].count("script")
     assert page.meta["scans"][0]["sensor"] == EVIL
@@ -328,7 +395,7 @@ def test_equal_input_gives_equal_bytes(
     run: tuple[Trajectories, list[ReplayScan]], tmp_path: Path
 ) -> None:
     for name in ("a", "b"):
-        write_replay(tmp_path / name, *run, SCORES, "t", {"x": "y"})
+        write(tmp_path / name, *run, SCORES, "t", {"x": "y"})
     assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a", "b"]
 
@@ -348,14 +415,14 @@ def test_reference_runs_have_a_page(missing: str, tmp_path: Path) -> None:
         run = Trajectories.from_arrays(
             t=run.t, agent_x=[[1e4]] * 40, agent_y=[[0.0]] * 40, agent_radius=0.3, agent_mass=70.0
         )
-    write_replay(tmp_path / "x.html", run, read_scans(tmp_path / "x.mcap"), [], "x", {})
+    write(tmp_path / "x.html", run, read_scans(tmp_path / "x.mcap"), [], "x", {})
     meta = Page(tmp_path / "x.html").meta
-    assert (meta["robot"] is None) == (run.robot is None)
+    assert len(meta["robots"]) == (run.robot is not None)
     assert (meta["people"] is None) == (run.agents is None)
     assert bool(meta["scans"]) == (run.robot is not None)
     if missing == "walls":  # too far away for centimetres
         page = Page(tmp_path / "x.html")
-        far = page.rows("people", 2, 40)[0] * meta["people"]["scale"]
+        far = page.motion("people", 2, 40)[0] * meta["people"]["scale"]
         assert np.allclose(far, 1e4, rtol=1e-4)
         assert meta["walls"] == []
 
@@ -385,7 +452,7 @@ def test_a_long_crowded_run_stays_below_three_megabytes(tmp_path: Path) -> None:
         )
         for name in ("front", "rear")
     ]
-    write_replay(tmp_path / "x.html", run, scans, [], "x", {})
+    write(tmp_path / "x.html", run, scans, [], "x", {})
     assert (tmp_path / "x.html").stat().st_size < 3e6
 
 
@@ -393,4 +460,4 @@ def test_an_unwritable_path_is_an_input_error(
     run: tuple[Trajectories, list[ReplayScan]], tmp_path: Path
 ) -> None:
     with pytest.raises(InputError, match="cannot be written"):
-        write_replay(tmp_path / "no" / "x.html", run[0], [], [], "x", {})
+        write(tmp_path / "no" / "x.html", run[0], [], [], "x", {})

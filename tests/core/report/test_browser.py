@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from urllib.parse import parse_qs, urljoin
 
 import numpy as np
 import pytest
@@ -211,7 +212,10 @@ def test_failures_are_found_with_their_replays(browser: Browser, path: Path) -> 
         link = worst.query_selector("a")
         assert link is not None
         moment = run.record["worst_moment"]["t"]
-        assert link.get_attribute("href") == f"runs/{run.directory}/replay.html#t={moment:.4g}"
+        up = "../" * (1 + len(Path(run.directory).parts))
+        assert link.get_attribute("href") == (
+            f"runs/{run.directory}/replay.html#t={moment:.4g}&report={up}{path.name}"
+        )
 
 
 def test_keys_are_enough(browser: Browser, path: Path) -> None:
@@ -374,7 +378,7 @@ def test_a_dot_says_which_run_it_is_and_opens_it_at_its_worst_moment(
         links = page.query_selector_all("#distribution a")
         assert len(links) == len(runs)
         found = re.fullmatch(
-            r"runs/(.*)/replay.html#t=([\d.]+)", links[0].get_attribute("href") or ""
+            r"runs/(.*)/replay.html#t=([\d.]+)&report=\S+", links[0].get_attribute("href") or ""
         )
         assert found is not None
         run = runs[found[1]]
@@ -437,11 +441,34 @@ def test_where_planners_differ_most_says_how_to_see_both(browser: Browser, path:
             r"crowdbot view runs/\S+/dwa/seed-0 runs/\S+/orca_lookahead/seed-0 --out compare.html",
             command,
         )
+        href = page.eval_on_selector("#differences-table tbody .pair a", "a => a.href")
+        first, _, said = href.partition("#")
+        beside = parse_qs(said)["with"][0]
+        assert urljoin(first, beside) == first.replace("/dwa/", "/orca_lookahead/")
+        assert urljoin(first, parse_qs(said)["report"][0]) == path.as_uri()
         numbers = page.eval_on_selector_all(
             "#differences-table tbody tr", "rows => rows.map(r => r.cells[4].innerText)"
         )
         sizes = [abs(float(n.replace("\u2212", "-"))) for n in numbers]
         assert sizes == sorted(sizes, reverse=True)
+
+
+@pytest.mark.parametrize(
+    ("page_of_run", "address", "seen"),
+    [
+        ("runs/a/replay.html", "report.html", "../../report.html"),
+        ("runs/a/replay.html", "runs/b/replay.html", "../b/replay.html"),
+        ("replay.html", "report.html", "report.html"),
+        ("../b/c/replay.html", "../b/d/replay.html", "../d/replay.html"),
+    ],
+)
+def test_addresses_are_seen_from_a_run(
+    page_of_run: str, address: str, seen: str, browser: Browser, path: Path
+) -> None:
+    with Visit(browser, path) as page:
+        assert page.evaluate(f"seenFrom({page_of_run!r}, {address!r})") == seen
+        back = page.evaluate("seenFrom('../x/replay.html', 'report.html')")
+        assert back == f"../{path.parent.name}/{path.name}"
 
 
 def test_small_numbers_are_not_shown_as_zero(browser: Browser, path: Path) -> None:

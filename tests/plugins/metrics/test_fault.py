@@ -271,7 +271,6 @@ def test_who_steps_aside_in_time_or_a_little_is_not_driven() -> None:
 
 def test_each_person_counts_once_and_others_shove_is_not_the_robots() -> None:
     run = escaping(0.3, 0.1)
-    fields = {"forced_headway": "5 s"}
     assert run.agents is not None
     two = dataclasses.replace(
         run.agents,
@@ -280,5 +279,5 @@ def test_each_person_counts_once_and_others_shove_is_not_the_robots() -> None:
         **{k: np.repeat(getattr(run.agents, k), 2, axis=1) for k in ("x", "y", "vx", "vy")},
     )  # fmt: skip
     overlapping = dataclasses.replace(run, agents=two)
-    found = scores_of("safe_efficiency", overlapping, **fields)["corrected"]
+    found = scores_of("safe_efficiency", overlapping, forced_headway="5 s")["corrected"]
     assert found.extras["driven_aside"] == 0  # they touch each other all the time

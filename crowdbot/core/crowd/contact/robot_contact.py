@@ -40,6 +40,19 @@ RELEASE_GAP = 0.05
 RX, RY, RVX, RVY, R_BODY, R_SEEN, R_YAW, R_W = range(8)
 #: Outline of a robot that is a disc.
 DISC = np.zeros((0, 2))
+#: Columns of an agent that tell of its contact with one robot.
+TOUCH = np.array(
+    [
+        TOUCHING, TOUCH_START, TOUCH_END, TOUCH_IMPULSE, TOUCH_PEAK, TOUCH_SPEED, TOUCHES,
+        TOUCH_SIDE,
+    ]
+)  # fmt: skip
+#: Entries of the header that tell of one robot.
+FELT = np.array(
+    [
+        ROBOT_JX, ROBOT_JY, PEOPLE_JX, PEOPLE_JY, ROBOT_FX, ROBOT_FY, CONTACTS, ROBOT_TORQUE,
+    ]
+)  # fmt: skip
 #: Nearer to an edge a point's direction from it is rounding: the edge's normal counts, m.
 _ON_EDGE = 1e-12
 
@@ -106,6 +119,66 @@ def robot_contact(
         agents[i, TOUCH_END] = now
         agents[i, TOUCH_IMPULSE] += force * dt
         agents[i, TOUCH_PEAK] = max(agents[i, TOUCH_PEAK], force)
+
+
+@kernel
+def contacts_of_several(
+    header: Array,
+    agents: Array,
+    radius: Array,
+    robots: Array,
+    outlines: Array,
+    books: Array,
+    stiffness: Array,
+    dissipation: float,
+    now: float,
+    dt: float,
+    reaction: Array,
+    total: Array,
+) -> None:
+    """`robot_contact` with each of several robots, each with a book of its own.
+
+    Args:
+        books: (R, 8 + 8 N) what `FELT` and `TOUCH` hold of each robot, changed in place; header
+            and agents hold none of it before and afterwards.
+        stiffness: (R,) of the contact with each, N/m.
+        reaction: (N, 2) the sum of the forces of all on each agent, N.
+        total: (N, 2 or more) room to add them up.
+    """
+    total[:, :2] = 0.0
+    for r in range(robots.shape[0]):
+        _exchange(header, agents, books[r])
+        outline = outlines[r][: corners_of(outlines, r)]
+        robot_contact(
+            header, agents, radius, robots[r], outline, stiffness[r], dissipation, now, dt, reaction
+        )
+        for i in range(agents.shape[0]):
+            total[i, 0] += reaction[i, 0]
+            total[i, 1] += reaction[i, 1]
+        _exchange(header, agents, books[r])
+    for i in range(agents.shape[0]):
+        reaction[i, 0], reaction[i, 1] = total[i, 0], total[i, 1]
+
+
+@kernel
+def _exchange(header: Array, agents: Array, book: Array) -> None:
+    """Swap what header and agents say of one robot with a book."""
+    for k in range(len(FELT)):
+        header[FELT[k]], book[k] = book[k], header[FELT[k]]
+    at = len(FELT)
+    for i in range(agents.shape[0]):
+        for k in range(len(TOUCH)):
+            agents[i, TOUCH[k]], book[at] = book[at], agents[i, TOUCH[k]]
+            at += 1
+
+
+@kernel
+def corners_of(outlines: Array, r: int) -> int:
+    """How many corners robot r has, of outlines (R, K, 2) whose shorter ones end with NaN."""
+    count = 0
+    while count < outlines.shape[1] and outlines[r, count, 0] == outlines[r, count, 0]:
+        count += 1
+    return count
 
 
 @kernel

@@ -14,6 +14,7 @@ from crowdbot.core.crowd.contact.robot_contact import (
     RVY,
     RX,
     RY,
+    corners_of,
     overlap,
 )
 from crowdbot.core.crowd.response.notice import reacts
@@ -46,7 +47,7 @@ def evade_robots(
     heeds: Mask,
     late: Mask,
     robots: Array,
-    outline: Array,
+    outlines: Array,
     response: Array,
     now: float,
 ) -> None:
@@ -56,20 +57,22 @@ def evade_robots(
         agents: (N, C) rows of the state; ``AX`` and ``AY`` hold what each wants without robots.
         radius: (N,) of the agents, m.
         heeds, late: (N,) who takes notice of robots at all, and who does late.
-        robots, outline: as people see them, see `crowdbot.core.crowd.contact.robot_contact`.
+        robots, outlines: as people see them, see `crowdbot.core.crowd.contact.robot_contact`.
         response: `crowdbot.core.crowd.response.parameters.Human.by_decision`.
         now: time since the start, s.
     """
     for i in range(agents.shape[0]):
         if not heeds[i]:
             if response[ALL_STOP] != 0.0:  # of no robot but one that stands
-                reacts(agents, i, radius[i], late[i], robots, outline, response, now)
+                reacts(agents, i, radius[i], late[i], robots, outlines, response, now)
             continue
-        if not reacts(agents, i, radius[i], late[i], robots, outline, response, now):
+        if not reacts(agents, i, radius[i], late[i], robots, outlines, response, now):
             continue
         ex = ey = 0.0
         for r in range(robots.shape[0]):
-            x, y = evasion(agents, i, radius[i], robots[r], outline, response)
+            x, y = evasion(
+                agents, i, radius[i], robots[r], outlines[r][: corners_of(outlines, r)], response
+            )
             ex += x
             ey += y
         if ex != 0.0 or ey != 0.0:

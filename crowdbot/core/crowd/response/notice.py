@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from crowdbot.core.crowd.contact.robot_contact import R_BODY, RVX, RVY, RX, RY, extent_of, overlap
+from crowdbot.core.crowd.contact.robot_contact import (
+    R_BODY,
+    RVX,
+    RVY,
+    RX,
+    RY,
+    corners_of,
+    extent_of,
+    overlap,
+)
 from crowdbot.core.crowd.response.parameters import (
     DECISION,
     LATE_GAP,
@@ -42,7 +51,7 @@ def reacts(
     radius: float,
     late: bool,
     robots: Array,
-    outline: Array,
+    outlines: Array,
     response: Array,
     now: float,
 ) -> bool:
@@ -53,17 +62,17 @@ def reacts(
     Args:
         radius: of the agent, m.
         late: whether the agent notices late.
-        robots, outline: as in `crowdbot.core.crowd.contact.robot_contact`.
+        robots, outlines: as in `crowdbot.core.crowd.contact.robot_contact`.
         response: `crowdbot.core.crowd.response.parameters.Human.by_decision`.
         now: time since the start, s.
     """
-    near, found, extent = False, False, extent_of(outline)
+    near, found = False, False
     agents[i, BESIDE] = 0.0
     if agents[i, WAITING] == PRESENT:
         for r in range(robots.shape[0]):
             dx, dy = robots[r, RX] - agents[i, X], robots[r, RY] - agents[i, Y]
-            reach = robots[r, R_BODY] + radius
-            away2, around = dx * dx + dy * dy, extent + reach
+            reach, outline = robots[r, R_BODY] + radius, outlines[r][: corners_of(outlines, r)]
+            away2, around = dx * dx + dy * dy, extent_of(outline) + reach
             if away2 < (FAR + _FASTEST * response[DECISION] + around) ** 2:
                 agents[i, BESIDE] = 1.0
             if away2 > (response[SIGHT] + around) ** 2:

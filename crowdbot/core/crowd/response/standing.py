@@ -15,6 +15,7 @@ from crowdbot.core.crowd.contact.robot_contact import (
     RVY,
     RX,
     RY,
+    corners_of,
     extent_of,
     overlap,
 )
@@ -37,18 +38,19 @@ _ROOM = 0.02
 
 @kernel
 def stop_short(
-    agents: Array, i: int, radius: Array, robots: Array, outline: Array, response: Array
+    agents: Array, i: int, radius: Array, robots: Array, outlines: Array, response: Array
 ) -> tuple[float, float]:
     """What agent i adds to its own will beside robots that stand, m/s^2.
 
     Args:
-        robots, outline: as in `crowdbot.core.crowd.contact.robot_contact`.
+        robots, outlines: as in `crowdbot.core.crowd.contact.robot_contact`.
         response: `crowdbot.core.crowd.response.parameters.Human.by_tick`.
     """
     ax = ay = 0.0
     for r in range(robots.shape[0]):
         dx, dy = robots[r, RX] - agents[i, X], robots[r, RY] - agents[i, Y]
         reach = robots[r, R_BODY] + radius[i]
+        outline = outlines[r][: corners_of(outlines, r)]
         extent = extent_of(outline)
         far = FAR + extent + reach
         if dx * dx + dy * dy > far * far:

@@ -71,7 +71,8 @@ def write_discs(
         count += 1
     people = count
     for r in range(robots.shape[0]):
-        discs[count, X : DISC_RADIUS + 1] = robots[r]
+        for column in range(X, DISC_RADIUS + 1):  # slices take seconds to compile
+            discs[count, column] = robots[r, column - X]
         discs[count, WANTED_X], discs[count, WANTED_Y] = robots[r, 2], robots[r, 3]
         discs[count, PILLAR], discs[count, INDEX] = 0.0, -1.0
         count += 1
@@ -106,7 +107,8 @@ def _write_images(
                 oy = max(0.0, box[2] - y, y - box[3])
                 if ox * ox + oy * oy >= reach * reach:
                     continue
-                discs[count, :] = discs[i]
+                for column in range(DISC_COLUMNS):
+                    discs[count, column] = discs[i, column]
                 discs[count, X], discs[count, Y], discs[count, INDEX] = x, y, -1.0
                 count += 1
     return count

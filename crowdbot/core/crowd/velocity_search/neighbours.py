@@ -78,7 +78,8 @@ def sort_discs(discs: Array, count: int, height: float, table: Array) -> tuple[f
         starts[int((discs[b, Y] - low) / height) + 1, 0] += 1
     for s in range(strips):
         starts[s + 1, 0] += starts[s, 0]
-    starts[:, 1] = starts[:, 0]
+    for s in range(strips + 1):
+        starts[s, 1] = starts[s, 0]
     place = starts[:, 0].copy()
     for a in range(count):
         b = order[a]

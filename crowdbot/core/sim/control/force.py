@@ -16,7 +16,7 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.control.controlled import ControlledRobot, push_on
 from crowdbot.core.sim.plant import RobotPlant, add_plant, motor_of, place_robot
 from crowdbot.core.sim.robot_state import MeasuredRobotState, add_robot_state
-from crowdbot.core.sim.weak_callback import weak_callback
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive, RobotModel
@@ -28,7 +28,7 @@ class ForceDrive(LeafSystem):
     The output follows the state directly: one tick late, a gain of one would oscillate.
     """
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(self, rig: RobotPlant) -> None:
         super().__init__()

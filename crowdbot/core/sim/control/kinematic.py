@@ -23,6 +23,7 @@ from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control.controlled import ControlledRobot, Push
 from crowdbot.core.sim.outline_gap import outline_gap
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
@@ -37,7 +38,7 @@ _ROUNDING = 1e-13  # m; must not hold a robot that drives along a wall
 class KinematicBase(LeafSystem):
     """Input: v, w, vy. Output: `ports.ROBOT_STATE`, which is the whole state."""
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(self, parts: EnvironmentParts, robot: RobotModel, tick: float) -> None:
         super().__init__()

@@ -166,7 +166,7 @@ def run_away():
 def test_children_do_not_outlive_it(tmp_path: Path) -> None:
     """One in a session of its own, whose parent is gone, and one that holds all pipes."""
     file = tmp_path / "pid"
-    child = "self.child = subprocess.Popen(['sleep', '1000'], close_fds=False)"
+    child = "self.child = subprocess.Popen(['sleep', 'infinity'], close_fds=False)"
     choice = choose(
         tmp_path,
         planner_text(f"run_away(); {child}; return (float(self.child.pid), 0.0)",
@@ -177,9 +177,7 @@ def test_children_do_not_outlive_it(tmp_path: Path) -> None:
         wait_until(lambda: file.exists() and bool(file.read_text()))
         away = int(file.read_text())
         assert is_alive(away)
-        begin = time.monotonic()
-    assert time.monotonic() - begin < 30.0
-    assert not is_alive(away)
+    assert not is_alive(away)  # it would never end by itself, and nobody waited for it
     assert sum("sleep" in _name(pid) for pid in below(os.getpid())) == 0
 
 

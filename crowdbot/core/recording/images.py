@@ -1,0 +1,87 @@
+"""Reads images out of a recording, small ones and few, as the replay page shows them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.recording.records import Record, Records, decode
+from crowdbot.core.recording.scans import Thinning
+from crowdbot.errors import InputError
+
+_LEAVES: dict[str, tuple[Literal["depth", "colour"], str]] = {
+    "/depth/image_raw": ("depth", "16UC1"),
+    "/colour/image_raw": ("colour", "rgb8"),
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReplayImages:
+    """Images of one camera, all of one size.
+
+    Attributes:
+        kind: ``depth``: pixels are (K, H, W) uint16, mm, 0 where nothing was measured;
+            ``colour``: (K, H, W, 3) uint8.
+        t: (K,) stamps, increasing, s.
+    """
+
+    sensor: str
+    kind: Literal["depth", "colour"]
+    t: NDArray[np.float64]
+    pixels: NDArray[Any]
+
+
+def read_images(path: Path, max_rate: float, width: int) -> list[ReplayImages]:
+    """What cameras saw.
+
+    Args:
+        path: a recording.
+        max_rate: leave out images so that at most this many per second remain, Hz.
+        width: leave out rows and columns of larger images, so that at most this many remain.
+
+    Raises:
+        InputError: no recording of crowdbot, or damaged.
+    """
+    found: dict[str, list[tuple[int, NDArray[Any]]]] = {}
+    thinning: dict[str, Thinning] = {}
+    for record in Records(path):
+        if record.msgtype != "sensor_msgs/msg/Image" or _leaf(record.topic) is None:
+            continue
+        if thinning.setdefault(record.topic, Thinning(max_rate)).keeps(record.ns):
+            found.setdefault(record.topic, []).append((record.ns, _pixels(path, record, width)))
+    return [_images(path, topic, rows) for topic, rows in found.items()]
+
+
+def _leaf(topic: str) -> str | None:
+    return next((leaf for leaf in _LEAVES if topic.endswith(leaf)), None)
+
+
+def _pixels(path: Path, record: Record, width: int) -> NDArray[Any]:
+    message = decode(path, record)
+    kind, encoding = _LEAVES[_leaf(record.topic) or ""]
+    depth = kind == "depth"
+    shape = (message.height, message.width, *(() if depth else (3,)))
+    flat = np.asarray(message.data, np.uint8).view("<u2") if depth else np.asarray(message.data)
+    if message.encoding != encoding or flat.size != np.prod(shape) or not flat.size:
+        raise InputError(
+            f"{path}: {record.topic} holds an image of {message.encoding or 'no encoding'} with "
+            f"{flat.size} numbers, not {encoding} of {message.width} x {message.height}"
+        )
+    every = -(-message.width // width)
+    return flat.reshape(shape)[every // 2 :: every, every // 2 :: every].copy()
+
+
+def _images(path: Path, topic: str, rows: list[tuple[int, NDArray[Any]]]) -> ReplayImages:
+    leaf = _leaf(topic) or ""
+    if len({pixels.shape for _, pixels in rows}) > 1:
+        raise InputError(f"{path}: the images of {topic} differ in size")
+    return ReplayImages(
+        sensor=topic.removesuffix(leaf).removeprefix("/"),
+        kind=_LEAVES[leaf][0],
+        t=np.array([ns for ns, _ in rows]) / 1e9,
+        pixels=np.stack([pixels for _, pixels in rows]),
+    )

@@ -1,0 +1,68 @@
+"""Packs what cameras saw: 255 colours or distances, and what changed since the image before."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.recording.images import ReplayImages
+from crowdbot.core.replay.pack import deflate
+
+#: Of base64, for all images of a run: beyond, every second one is left out, and so on.
+BUDGET = 130_000
+_COLOURS = 255
+_BITS = 4  # of each channel by which colours are told apart
+
+
+def encode_images(cameras: Sequence[ReplayImages]) -> tuple[dict[str, Any], dict[str, str]]:
+    """Size, stamps and palette of each camera; pixels are indices, from image to image XOR."""
+    every = 1
+    while True:
+        packed = [_packed(camera, every) for camera in cameras]
+        alone = all(len(about["t"]) == 1 for about, _ in packed)
+        if alone or sum(len(text) for _, text in packed) <= BUDGET:
+            break
+        every *= 2
+    blobs = {f"images{i}": text for i, (_, text) in enumerate(packed)}
+    return {"cameras": [about for about, _ in packed]}, blobs
+
+
+def _packed(camera: ReplayImages, every: int) -> tuple[dict[str, Any], str]:
+    pixels = camera.pixels[::every]
+    indices, palette, far = _depths(pixels) if camera.kind == "depth" else _colours(pixels)
+    changes = indices.copy()
+    changes[1:] ^= indices[:-1]
+    about = {
+        "sensor": camera.sensor,
+        "kind": camera.kind,
+        "height": indices.shape[1],
+        "width": indices.shape[2],
+        "t": np.round(camera.t[::every], 6).tolist(),
+        "palette": palette,
+        "far": far,
+    }
+    return about, deflate(changes.tobytes())
+
+
+def _depths(millimetres: NDArray[Any]) -> tuple[NDArray[np.uint8], list[int], float | None]:
+    """Steps of the largest distance (m); 0 where nothing was measured."""
+    far = max(int(millimetres.max()), 1)
+    steps = np.ceil(millimetres * (_COLOURS / far)).astype(np.uint8)
+    return steps, [], far / 1000.0
+
+
+def _colours(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], list[int], float | None]:
+    """The commonest colours, and for every other the nearest of them."""
+    coarse = pixels.astype(np.int64) >> (8 - _BITS)
+    codes = (coarse[..., 0] << 2 * _BITS) | (coarse[..., 1] << _BITS) | coarse[..., 2]
+    counts = np.bincount(codes.ravel(), minlength=1 << 3 * _BITS)
+    commonest = np.argsort(-counts, kind="stable")[: min(_COLOURS, int((counts > 0).sum()))]
+    every = np.arange(len(counts))
+    parts = np.stack([every >> 2 * _BITS, every >> _BITS, every], axis=1) & ((1 << _BITS) - 1)
+    apart = ((parts[:, None] - parts[commonest][None]) ** 2).sum(axis=2)
+    nearest = apart.argmin(axis=1).astype(np.uint8)
+    shades = parts[commonest] * 255 // ((1 << _BITS) - 1)
+    return nearest[codes], shades.ravel().tolist(), None

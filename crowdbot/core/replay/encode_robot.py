@@ -1,0 +1,52 @@
+"""Packs the robots of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.replay.encode_contacts import contacts_of
+from crowdbot.core.replay.other_track import OtherTrack, Seen, motion_of, motion_until
+from crowdbot.core.replay.pack import pack_words
+from crowdbot.core.replay.shown_run import ShownRun
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.arrays import Array
+
+
+def encode_robots(shown: ShownRun) -> tuple[dict[str, Any], dict[str, str]]:
+    """A list of robots with the contacts of all, and of each x, y, theta, v, w (5, N), float32."""
+    run = shown.run
+    contacts = contacts_of(run)
+    about, motions = [], []
+    if run.robot is not None:
+        about.append(_about(run, shown.robot, shown.look))
+        motions.append(motion_of(run.robot))
+    for other in shown.others:
+        contacts += [{**contact, "robot": len(about)} for contact in contacts_of(other.run)]
+        about.append(_about(other.run, other.name, other.look))
+        motions.append(_motion(other, len(run.t)))
+    blobs = {f"robot{i}": pack_words(rows.astype("<f4")) for i, rows in enumerate(motions)}
+    contacts.sort(key=lambda contact: contact["t0"])
+    return {"robots": about, "contacts": contacts}, blobs
+
+
+def _motion(other: OtherTrack, samples: int) -> Array:
+    assert other.run.robot is not None  # runs of robots
+    return motion_until(other.run.robot, samples, leaves=other.leaves)
+
+
+def _about(run: Trajectories, name: str, look: Sequence[Seen]) -> dict[str, Any]:
+    robot, outline, zone = run.robot, run.robot_footprint, run.goal_zone
+    assert robot is not None
+    return {
+        "name": name,
+        "radius": robot.radius,
+        "outline": [] if outline is None else np.round(outline, 4).tolist(),
+        "goal": robot.goal,
+        "goalRadius": robot.goal_radius,
+        "goalTime": robot.goal_time,
+        "zone": [] if zone is None else np.round(zone, 4).tolist(),
+        "look": [[colour, np.round(part, 3).tolist()] for part, colour in look],
+    }

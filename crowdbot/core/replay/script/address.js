@@ -1,0 +1,75 @@
+// The address says what is seen: #t= and what differs from the beginning.
+
+const SWITCHES = ["lidar", "sonar", "trails", "ghost"];
+const ON_AT_FIRST = { lidar: true, sonar: true, trails: false, ghost: true };
+let addressDue = 0;
+
+const fragment = () => new URLSearchParams(location.hash.slice(1));
+
+/** Takes over what the address says. */
+function readAddress() {
+  const said = fragment();
+  if (said.has("t")) state.time = clamp(Number(said.get("t")) || shown.first, shown.first, shown.last);
+  const span = Number(said.get("span"));
+  if (span > 0) state.span = clamp(span, 2, widest());
+  for (const name of SWITCHES) if (said.has(name)) state[name] = said.get(name) !== "0";
+  state.plots = new Set((said.get("plot") ?? "").split(",").filter(Boolean).map(decodeURIComponent));
+  if (said.has("follow")) state.follow = said.get("follow") === "0" ? "" : said.get("follow");
+  const [x, y] = ["x", "y"].map((name) => Number.parseFloat(said.get(name)));
+  if (Number.isFinite(x) && Number.isFinite(y)) state.middle = { x, y };
+  setTheme(["light", "dark"].includes(said.get("theme")) ? said.get("theme") : "");
+}
+
+/** The address of what is seen now. */
+function addressNow() {
+  const said = fragment();
+  const put = (name, value) => (value === null ? said.delete(name) : said.set(name, value));
+  put("t", state.time.toFixed(2));
+  put("span", Math.abs(state.span - SPAN_AT_FIRST) < 1e-9 ? null : state.span.toFixed(2));
+  for (const name of SWITCHES) put(name, state[name] === ON_AT_FIRST[name] ? null : String(Number(state[name])));
+  put("plot", state.plots.size ? [...state.plots].map(encodeURIComponent).join(",") : null);
+  const whom = state.follow || "0";
+  put("follow", whom === (shown.hasRobot ? "robot" : "0") ? null : whom);
+  put("x", state.follow ? null : state.middle.x.toFixed(2));
+  put("y", state.follow ? null : state.middle.y.toFixed(2));
+  put("theme", document.documentElement.dataset.theme ?? null);
+  return `#${said.toString().replaceAll("%2F", "/")}`;
+}
+
+/** Writes the address soon: browsers allow only so many changes a second. */
+function keepAddress() {
+  if (addressDue) return;
+  addressDue = setTimeout(() => {
+    addressDue = 0;
+    history.replaceState(null, "", addressNow());
+  }, 200);
+}
+
+/** Copies a link to this moment; an older browser gets it by way of a selection. */
+async function copyLink() {
+  const link = new URL(addressNow(), location.href).href;
+  try {
+    await navigator.clipboard.writeText(link);
+  } catch {
+    const box = el("textarea", { text: link, readonly: true, "aria-label": "Link" });
+    document.body.append(box);
+    box.select();
+    document.execCommand("copy");
+    box.remove();
+  }
+  say("The link to this moment is in the clipboard.");
+}
+
+/** The report from which one came, where it said so: a page of the same kind of address. */
+function offerReport() {
+  const said = fragment().get("report");
+  const url = said ? new URL(said, location.href) : null;
+  const safe = url && url.protocol === location.protocol && url.host === location.host;
+  byId("report").hidden = !safe;
+  if (safe) byId("report").href = url.href;
+}
+
+/** Tells what was done, to eyes and to screen readers. */
+function say(text) {
+  byId("said").textContent = text;
+}

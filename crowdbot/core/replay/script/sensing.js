@@ -1,0 +1,57 @@
+// What sensors saw at any time, in the world.
+
+/** Where a sensor is in the world and where it looks, with the robot at some pose. */
+function mounted(robot, [mx, my, , yaw]) {
+  const [c, s] = [Math.cos(robot.theta), Math.sin(robot.theta)];
+  return { x: robot.x + c * mx - s * my, y: robot.y + s * mx + c * my, yaw: robot.theta + yaw };
+}
+
+/** The robot that carries a sensor, at some time. */
+function carrierAt(run, sensor, time) {
+  return robotAt(run, run.robots[sensor.robot ?? 0], time);
+}
+
+/** What a group of cones read last; only those to which something came back. */
+function conesAt(run, group, time) {
+  const j = lastBefore(group.t, time);
+  if (j < 0) return [];
+  const robot = carrierAt(run, group, group.t[j]);
+  return group.sensors.flatMap(({ mount, edges }, i) => {
+    const range = group.ranges[i * group.t.length + j] * 0.01;
+    if (range <= 0) return [];
+    const { x, y, yaw } = mounted(robot, mount);
+    return [{ x, y, range, from: yaw + Math.min(...edges), to: yaw + Math.max(...edges) }];
+  });
+}
+
+/** Points a lidar saw in its latest scan; from the robot's pose at that time. */
+function scanAt(run, scan, time) {
+  const j = lastBefore(scan.t, time);
+  if (j < 0) return null;
+  if (scan.cached?.j === j) return scan.cached;
+  const { x, y, yaw } = mounted(carrierAt(run, scan, scan.t[j]), scan.mount);
+  const rim = scan.angles.map((angle, i) => {
+    const word = scan.ranges[i * scan.t.length + j];
+    const range = word > 0 ? word * 0.01 : scan.rangeMax;
+    const along = yaw + angle;
+    return { x: x + range * Math.cos(along), y: y + range * Math.sin(along), hit: word > 0 };
+  });
+  scan.cached = { j, x, y, rim };
+  return scan.cached;
+}
+
+/** Everything of a run at a time; after its end it stays as it was last. */
+function frameAt(run, time) {
+  const last = run.t[run.n - 1];
+  const now = Math.min(time, last);
+  const people = run.people ? peopleAt(run, now) : { size: 0 };
+  return {
+    time: now,
+    ended: time > last + 1e-9,
+    k: sampleAt(run, now).k,
+    robots: run.robots.map((robot) => robotAt(run, robot, now)),
+    people,
+    scans: run.scans.map((s) => scanAt(run, s, now)).filter(Boolean),
+    cones: run.cones.flatMap((group) => conesAt(run, group, now)),
+  };
+}

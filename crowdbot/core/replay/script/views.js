@@ -1,0 +1,62 @@
+// Draws one view. A view is {canvas, x, y, scale}: its middle (m) and pixels per metre.
+
+/** Fits the canvas to its box, or to a given size; returns a context in CSS pixels. */
+function prepareCanvas({ canvas, size }) {
+  const ratio = size ? size.ratio : window.devicePixelRatio || 1;
+  const width = size ? size.width : canvas.clientWidth;
+  const height = size ? size.height : canvas.clientHeight;
+  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height * ratio);
+  }
+  const g = canvas.getContext("2d");
+  g.setTransform(ratio, 0, 0, ratio, 0, 0);
+  return { g, width, height };
+}
+
+const widthOf = ({ canvas, size }) => (size ? size.width : canvas.clientWidth);
+const heightOf = ({ canvas, size }) => (size ? size.height : canvas.clientHeight);
+
+/** Draws a run; `others`: what of further runs is to be seen in it. */
+function drawView(run, view, frame, options) {
+  const { g, width, height } = prepareCanvas(view);
+  g.fillStyle = colours.floor;
+  g.fillRect(0, 0, width, height);
+  g.save();
+  g.translate(width / 2, height / 2);
+  g.scale(view.scale, -view.scale);
+  g.translate(-view.x, -view.y);
+  const px = 1 / view.scale;
+  drawGrid(g, view, width, height, options.grid);
+  drawGoals(g, run, px);
+  drawAll(g, run, frame, options, px);
+  if (options.frames) for (const box of options.frames) drawFrame(g, box, px);
+  g.restore();
+  return { g, width, height };
+}
+
+function drawAll(g, run, frame, options, px) {
+  const { lidar, sonar, trails, followed } = options;
+  if (lidar) for (const scan of frame.scans) drawFan(g, scan);
+  if (sonar) for (const cone of frame.cones) drawCone(g, cone, px);
+  drawWalls(g, run, px);
+  run.robots.forEach((r, i) => drawTrail(g, run, r, frame.robots[i], frame, options.colour, px));
+  if (run.people && trails) drawPeopleTrails(g, run, frame, px);
+  if (followed?.person >= 0) drawFollowedTrail(g, run, frame, followed.person, px);
+  if (run.people) drawPeople(g, run, frame, px);
+  for (const { other, ghost, colour } of options.ghosts) drawGhost(g, other, ghost, frame, colour, px);
+  if (lidar) for (const scan of frame.scans) drawHits(g, scan, px);
+  if (sonar) for (const cone of frame.cones) drawEcho(g, cone, px);
+  run.robots.forEach((r, i) => drawRobot(g, r, frame.robots[i], options.colour, px));
+  if (followed) drawFollowed(g, followed.place, Math.max(followed.radius, 4 * px), px);
+  drawContacts(g, run, frame, px);
+}
+
+/** What a close-up shows of the whole scene. */
+function drawFrame(g, { x, y, w, h, colour }, px) {
+  g.strokeStyle = colour;
+  g.globalAlpha = 0.8;
+  g.lineWidth = 1.5 * px;
+  g.strokeRect(x - w / 2, y - h / 2, w, h);
+  g.globalAlpha = 1;
+}

@@ -1,0 +1,189 @@
+"""What the replay page shows of a run: while it is made, and later from its directory."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.recording.images import ReplayImages, read_images
+from crowdbot.core.recording.scans import REPLAY_RATE
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.replay import OtherTrack, Scenery, ShownRun
+from crowdbot.core.robots import build_robot
+from crowdbot.core.robots.look import seen_from_above
+from crowdbot.core.runs import provenance
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.robots import SeenRun, read_robots
+from crowdbot.core.scenarios.library import open_spec, pick
+from crowdbot.core.scoring.scores_csv import read_scores_csv
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.robot import RobotModel
+from crowdbot.core.types.score import Score
+from crowdbot.dsl.scenario import Scenario
+from crowdbot.errors import InputError, UsageError
+
+_IMAGE_RATE, _IMAGE_WIDTH = 2.0, 96
+
+
+def replay_facts(record: Mapping[str, Any]) -> dict[str, str]:
+    """What the page tells of a run, name -> text.
+
+    Args:
+        record: ``run.json``, or what will be.
+    """
+    arrival = record["goal_time"]
+    return {
+        "Suite": record["suite"],
+        "Scenario": record["scenario"],
+        "Planner": _label(record),
+        **provenance.remarks(record),
+        "Seed": str(record["seed"]),
+        "Status": record["status"],
+        "Arrived at": "—" if arrival is None else f"{arrival:.2f} s",
+        "Spec": record["hashes"]["spec"][:24],
+    }
+
+
+def scenery(parts: EnvironmentParts, height: float) -> Scenery:
+    """What stands in the way of a robot of some height, m, and of people."""
+    low = parts.wall_heights[:, 0] < height
+    return Scenery(
+        walls=parts.walls[low],
+        stops_robot=parts.stops_robot[low],
+        stops_crowd=parts.stops_crowd[low],
+        pillars=parts.pillars[parts.pillar_heights[:, 0] < height],
+    )
+
+
+def read_replay_images(recording: Path) -> list[ReplayImages]:
+    """What the page shows of cameras.
+
+    Raises:
+        InputError: no recording of crowdbot, or damaged.
+    """
+    return read_images(recording, _IMAGE_RATE, _IMAGE_WIDTH)
+
+
+def replayed_runs(folders: Sequence[Path], registry: Registry) -> list[ShownRun]:
+    """Runs of one scenario, from their directories.
+
+    Args:
+        folders: run directories.
+        registry: the installed components; those of the scenario have to be among them.
+
+    Raises:
+        InputError: one of them is not a complete run, or its scenario cannot be built.
+        UsageError: they are runs of different scenarios.
+    """
+    records = [_record(folder) for folder in folders]
+    first = records[0]
+    for folder, record in zip(folders, records, strict=True):
+        if record["scenario"] != first["scenario"]:
+            raise UsageError(
+                f"{folder} is a run of {record['scenario']}, {folders[0]} of {first['scenario']}: "
+                "only runs of one scenario can be shown beside each other"
+            )
+    labels = _labels(records)
+    return [
+        _replayed(folder, record, label, registry)
+        for folder, record, label in zip(folders, records, labels, strict=True)
+    ]
+
+
+def _record(folder: Path) -> dict[str, Any]:
+    record = files.read_record(folder)
+    if record is None:
+        raise InputError(f"{folder}: no run directory, there is no readable {files.RECORD} in it")
+    missing = {"scenario", "suite", "planner", "seed", "status", "goal_time", "hashes"} - set(
+        record
+    )
+    damaged = f"{files.RECORD} lacks {', '.join(sorted(missing))}" if missing else ""
+    damaged = damaged or files.damage(folder, record)
+    if damaged:
+        raise InputError(f"{folder}: {damaged}")
+    return record
+
+
+def _label(record: Mapping[str, Any]) -> str:
+    planner = record["planner"]
+    return str(planner.get("label") or planner.get("name") or planner.get("kind"))
+
+
+def _labels(records: Sequence[Mapping[str, Any]]) -> list[str]:
+    """By planner; runs of the same planner by seed, too."""
+    planners = [_label(record) for record in records]
+    return [
+        planner if planners.count(planner) == 1 else f"{planner}, seed {record['seed']}"
+        for planner, record in zip(planners, records, strict=True)
+    ]
+
+
+def shown_run(
+    scenario: Scenario,
+    seen: Mapping[str, SeenRun],
+    models: Mapping[str, RobotModel],
+    parts: EnvironmentParts,
+    record: Mapping[str, Any],
+    scores: Sequence[Score],
+    images: Sequence[ReplayImages],
+) -> ShownRun:
+    """What the page shows of a run of one robot or of several.
+
+    Args:
+        scenario: what was run.
+        seen, models: of each robot by name, in the scenario's order.
+        parts: the environment.
+        record: ``run.json``, or what will be.
+        scores: of the run.
+        images: what cameras saw.
+    """
+    # What is shown of the people goes on until the last robot has ended.
+    last = max(seen, key=lambda name: len(seen[name].run.t))
+    several = {} if len(seen) == 1 else {"Robot": last}
+    looks = {
+        name: [(part.outline, part.colour) for part in seen_from_above(model)]
+        for name, model in models.items()
+    }
+    return ShownRun(
+        run=seen[last].run,
+        title=f"{scenario.id} · {_label(record)}",
+        label=_label(record),
+        facts={**several, **replay_facts(record)},
+        scans=seen[last].scans,
+        images=images,
+        scores=scores,
+        look=looks[last],
+        robot=last,
+        others=[
+            OtherTrack(
+                name=name,
+                run=one.run,
+                look=looks[name],
+                leaves=scenario.robots[name].task.when_ended == "leave",
+            )
+            for name, one in seen.items()
+            if name != last
+        ],
+        scenery=scenery(parts, max(model.height for model in models.values())),
+    )
+
+
+def _replayed(folder: Path, record: Mapping[str, Any], label: str, registry: Registry) -> ShownRun:
+    scenario = _scenario(folder, registry)
+    shown = shown_run(
+        scenario,
+        read_robots(folder / files.RECORDING, tuple(scenario.robots), REPLAY_RATE),
+        {name: build_robot(registry, robot) for name, robot in scenario.robots.items()},
+        build_environment(registry, scenario.environment),
+        record,
+        [row.score for row in read_scores_csv(folder / files.SCORES)],
+        read_replay_images(folder / files.RECORDING),
+    )
+    return replace(shown, label=label)
+
+
+def _scenario(folder: Path, registry: Registry) -> Scenario:
+    return pick(open_spec(str(folder / files.SCENARIO), registry), None)

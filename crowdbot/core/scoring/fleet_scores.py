@@ -1,0 +1,62 @@
+"""Scores of several robots in one run: of each, and of the fleet."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from crowdbot.core.types.score import Score
+
+#: Between a variant and the robot whose score it is.
+AT = "@"
+
+
+def variant_of(variant: str, robot: str) -> str:
+    """Name of a variant of one robot's score: ``rate@a``."""
+    return f"{variant}{AT}{robot}"
+
+
+def fleet_scores(by_robot: Mapping[str, Sequence[Score]]) -> list[Score]:
+    """One score of the fleet for each score of its robots, followed by theirs.
+
+    The fleet's is the mean over its robots: of those of whom it is known, which the reason tells
+    where it is not all of them. If it is censored for one, it is for the fleet.
+
+    Args:
+        by_robot: name -> scores, of the same metrics and variants in the same order.
+    """
+    found: list[Score] = []
+    for scores in zip(*by_robot.values(), strict=True):
+        found.append(_of_fleet(dict(zip(by_robot, scores, strict=True))))
+        found += [
+            replace(score, variant=variant_of(score.variant, robot))
+            for robot, score in zip(by_robot, scores, strict=True)
+        ]
+    return found
+
+
+def _of_fleet(scores: Mapping[str, Score]) -> Score:
+    first = next(iter(scores.values()))
+    known = {robot: score for robot, score in scores.items() if score.status != "undefined"}
+    if not known:
+        reasons = dict.fromkeys(score.reason for score in scores.values())
+        return replace(first, extras={}, reason="; ".join(reasons), lower=None, upper=None)
+    reason = "" if len(known) == len(scores) else f"of {', '.join(known)} only"
+    if any(score.status == "censored" for score in known.values()):
+        lower = _mean([s.value if s.value is not None else s.lower for s in known.values()])
+        upper = _mean([s.value if s.value is not None else s.upper for s in known.values()])
+        told = [f"{r}: {s.reason}" for r, s in known.items() if s.reason]
+        return replace(
+            first, status="censored", value=None, lower=lower, upper=upper, extras={},
+            reason="; ".join([*told, *([reason] if reason else [])]),
+        )  # fmt: skip
+    value = _mean([score.value for score in known.values()])
+    return replace(
+        first, status="ok", value=value, lower=None, upper=None, extras={}, reason=reason
+    )
+
+
+def _mean(numbers: Sequence[float | None]) -> float | None:
+    """None if one is not known."""
+    known = [number for number in numbers if number is not None]
+    return sum(known) / len(known) if known and len(known) == len(numbers) else None

@@ -1,0 +1,42 @@
+"""Fate: what has become of one robot of a fleet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(slots=True, kw_only=True)
+class Fate:
+    """A robot goes on, or has ended: then it stands where it is, or has left.
+
+    Watched at the beginning of each tick (`crowdbot.core.sim.metric_logger`), so that all blocks
+    agree on it during the tick.
+
+    Attributes:
+        leaves: whether it is out of everybody's way once it has ended.
+        status, reason: how it ended; empty before.
+        goal_time: when it arrived, s, or None.
+        until: when it ended, s.
+        failure: what its planner failed with; the robot ends at the next tick.
+    """
+
+    leaves: bool = False
+    status: str = ""
+    reason: str = ""
+    goal_time: float | None = None
+    until: float = 0.0
+    failure: str = ""
+
+    @property
+    def ended(self) -> bool:
+        """Whether it has arrived, failed, or run out of time."""
+        return bool(self.status)
+
+    @property
+    def gone(self) -> bool:
+        """Whether it is not there any more."""
+        return self.leaves and self.ended
+
+    def end(self, status: str, reason: str, t: float, goal_time: float | None = None) -> None:
+        """It ends at ``t``, s."""
+        self.status, self.reason, self.until, self.goal_time = status, reason, t, goal_time

@@ -1,0 +1,49 @@
+"""What pushes one robot of a fleet: people, and other robots."""
+
+from __future__ import annotations
+
+from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, LeafSystem
+
+from crowdbot.core.sim import ports
+from crowdbot.core.sim.control import ControlledRobot
+from crowdbot.core.sim.fleet.crowd_system import FleetCrowdSystem
+from crowdbot.core.sim.fleet.robot_contacts import FleetContacts
+from crowdbot.core.sim.weak_callback import weak_callback
+
+
+class PushSum(LeafSystem):
+    """Inputs: pushes of people and of robots. Output: their sum, as the control mode wants it."""
+
+    __slots__ = ()
+
+    def __init__(self, robot: ControlledRobot, *, people: bool) -> None:
+        super().__init__()
+        self._layout, size = robot.push, robot.push.size
+        self._people = self.DeclareVectorInputPort(ports.CROWD_STATE, size) if people else None
+        self._robots = self.DeclareVectorInputPort(ports.ROBOT_PUSH, ports.ROBOT_PUSH_SIZE)
+        self.DeclareVectorOutputPort(ports.ROBOT_FORCE, size, weak_callback(self._calc))
+
+    def _calc(self, context: Context, output: BasicVector) -> None:
+        values = output.get_mutable_value()
+        values[:] = 0.0
+        self._layout.write(values, *self._robots.Eval(context).tolist())
+        if self._people is not None:
+            values += self._people.Eval(context)
+
+
+def connect_pushes(
+    builder: DiagramBuilder,
+    k: int,
+    robot: ControlledRobot,
+    crowd: FleetCrowdSystem | None,
+    contacts: FleetContacts,
+) -> None:
+    """Let people and robots push robot k, if anything can."""
+    if robot.push_port is None:
+        return
+    total = builder.AddSystem(PushSum(robot, people=crowd is not None))
+    if crowd is not None:
+        force = crowd.GetOutputPort(ports.of_robot(ports.ROBOT_FORCE, k))
+        builder.Connect(force, total.GetInputPort(ports.CROWD_STATE))
+    builder.Connect(contacts.on(k), total.GetInputPort(ports.ROBOT_PUSH))
+    builder.Connect(total.GetOutputPort(ports.ROBOT_FORCE), robot.push_port)

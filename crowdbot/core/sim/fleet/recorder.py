@@ -1,0 +1,32 @@
+"""Closes a chunk of a fleet's recording each simulated second, as that of one robot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pydrake.systems.framework import Context, DiagramBuilder
+
+from crowdbot.core.recording import RecordingWriter
+from crowdbot.core.sim.recorder import Recorder
+
+
+class FleetRecorder(Recorder):
+    """No ports. What robots have to write comes before the chunk of all ends."""
+
+    __slots__ = ()
+
+    def __init__(self, robots: Sequence[RecordingWriter], shared: RecordingWriter) -> None:
+        super().__init__(shared)
+        self._robots = tuple(robots)
+
+    def _publish(self, context: Context) -> None:
+        for writer in self._robots:
+            writer.flush()
+        super()._publish(context)
+
+
+def add_fleet_recorder(
+    builder: DiagramBuilder, robots: Sequence[RecordingWriter], shared: RecordingWriter
+) -> None:
+    """Add the recorder to a diagram; nothing is connected to it."""
+    builder.AddNamedSystem("recorder", FleetRecorder(robots, shared))

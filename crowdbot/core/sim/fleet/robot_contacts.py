@@ -1,0 +1,228 @@
+"""FleetContacts: robots that touch each other push each other, by one number for both.
+
+The force is that between people and robots (`crowdbot.core.crowd.contact.robot_contact`): Hunt and
+Crossley's along the normal, without friction, never pulling. Shells are as stiff as a person's
+body by default (30 kN/m, proposed, not published), in series with both skins; what is stiffer
+needs shorter ticks. Robots that are moved kinematically push and are not pushed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import combinations
+
+import numpy as np
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    DiagramBuilder,
+    DiscreteStateIndex,
+    LeafSystem,
+    OutputPort,
+    State,
+)
+
+from crowdbot.core.crowd.contact.robot_contact import (
+    R_W,
+    R_YAW,
+    RELEASE_GAP,
+    RVX,
+    RVY,
+    RX,
+    RY,
+    corners_of,
+)
+from crowdbot.core.recording.run_log import RunLog
+from crowdbot.core.sim import ports
+from crowdbot.core.sim.build_crowd import in_series
+from crowdbot.core.sim.control import ControlledRobot
+from crowdbot.core.sim.fate import Fate
+from crowdbot.core.sim.fleet.bodies import SEEN, outlines_of, rows_of
+from crowdbot.core.sim.outline_overlap import overlap_of_robots
+from crowdbot.core.sim.weak_callback import weak_callback
+from crowdbot.core.support.ticks import TICK
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.robot import RobotModel
+
+#: Stiffness of two rigid shells against each other, N/m, and their dissipation, s/m.
+SHELL, DISSIPATION = 30000.0, 0.3
+#: What stands for robot k in a table of contacts is this less k; -1 is a wall.
+FIRST_ROBOT = -2
+
+
+@dataclass(slots=True)
+class _Touch:
+    """A contact that is going on; its bearings are those at its start, as each robot sees it."""
+
+    start: float
+    end: float
+    speed: float
+    bearings: tuple[float, float]
+    impulse: float = 0.0
+    peak: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Touched:
+    """Forces of one tick on one robot.
+
+    Attributes:
+        depth: how far the two overlap, m.
+        at: where, world frame, m.
+        normal: away from the first robot.
+        force: N.
+        speed: relative, m/s.
+    """
+
+    depth: float
+    at: tuple[float, float]
+    normal: tuple[float, float]
+    force: float
+    speed: float
+
+
+def touch(
+    a: Array, outline_a: Array, b: Array, outline_b: Array, stiffness: float
+) -> Touched | None:
+    """Two robots (rows and outlines as in `robot_contact`) against each other; None: apart."""
+    depth, nx, ny, x, y = overlap_of_robots(a, outline_a, b, outline_b)
+    if depth <= 0.0:
+        return None
+    vx, vy = (_velocity_at(b, x, y)[i] - _velocity_at(a, x, y)[i] for i in (0, 1))
+    closing = -(vx * nx + vy * ny)
+    force = max(0.0, stiffness * depth * (1.0 + DISSIPATION * closing))
+    return Touched(depth, (x, y), (nx, ny), force, math.hypot(vx, vy))
+
+
+def _velocity_at(row: Array, x: float, y: float) -> tuple[float, float]:
+    return row[RVX] - row[R_W] * (y - row[RY]), row[RVY] + row[R_W] * (x - row[RX])
+
+
+class FleetContacts(LeafSystem):
+    """Inputs: states of all robots. Outputs: of each, force x, y and torque (`ports.ROBOT_PUSH`).
+
+    The event is unrestricted, as that of the crowd: both robots of a pair feel one computation.
+    """
+
+    __slots__ = ()
+
+    def __init__(
+        self, models: Sequence[RobotModel], fates: Sequence[Fate], logs: Sequence[RunLog]
+    ) -> None:
+        super().__init__()
+        self._rows, self._fates, self._logs = rows_of(models), tuple(fates), tuple(logs)
+        outlines = outlines_of(models)
+        self._outlines = [outlines[k][: corners_of(outlines, k)] for k in range(len(models))]
+        self._pairs = tuple(combinations(range(len(models)), 2))
+        self._stiffness = {
+            (i, j): in_series(in_series(SHELL, models[i].skin_stiffness), models[j].skin_stiffness)
+            for i, j in self._pairs
+        }
+        self._going_on: dict[tuple[int, int], _Touch] = {}
+        count = len(models)
+        self._ports = [self.DeclareVectorInputPort(*ports.other_robot(k)) for k in range(count)]
+        index = self.DeclareDiscreteState(count * ports.ROBOT_PUSH_SIZE)
+        self._index, self._tick = DiscreteStateIndex(index), 0
+        for k in range(count):
+            self.DeclareVectorOutputPort(
+                ports.of_robot(ports.ROBOT_PUSH, k),
+                ports.ROBOT_PUSH_SIZE,
+                partial(weak_callback(self._share), k),
+                prerequisites_of_calc={self.all_state_ticket()},
+            )
+        self.DeclarePeriodicUnrestrictedUpdateEvent(TICK, 0.0, self._update)
+
+    def on(self, k: int) -> OutputPort:
+        """What pushes robot k."""
+        return self.GetOutputPort(ports.of_robot(ports.ROBOT_PUSH, k))
+
+    def _share(self, k: int, context: Context, output: BasicVector) -> None:
+        forces: Array = context.get_discrete_state(self._index).value()
+        output.get_mutable_value()[:] = forces.reshape(-1, ports.ROBOT_PUSH_SIZE)[k]
+
+    def _update(self, context: Context, state: State) -> None:
+        t = float(context.get_time())
+        for row, port in zip(self._rows, self._ports, strict=True):
+            row[SEEN] = port.Eval(context)[:6]
+        flat = state.get_mutable_discrete_state().get_mutable_value(self._index)
+        forces = flat.reshape(-1, ports.ROBOT_PUSH_SIZE)
+        forces[:] = 0.0
+        for i, j in self._pairs:
+            if self._fates[i].gone or self._fates[j].gone:
+                continue
+            found = self._touch(i, j)
+            self._keep(i, j, found, t)
+            if found is not None:
+                self._add(forces, i, j, found)
+
+    def _touch(self, i: int, j: int) -> Touched | None:
+        of = self._outlines
+        return touch(self._rows[i], of[i], self._rows[j], of[j], self._stiffness[i, j])
+
+    def _add(self, forces: Array, i: int, j: int, found: Touched) -> None:
+        """Equal and opposite, at one point."""
+        (x, y), (nx, ny) = found.at, found.normal
+        fx, fy = found.force * nx, found.force * ny
+        for k, sign in ((i, -1.0), (j, 1.0)):
+            px, py = x - self._rows[k, RX], y - self._rows[k, RY]
+            forces[k] += sign * np.array([fx, fy, px * fy - py * fx])
+
+    def _keep(self, i: int, j: int, found: Touched | None, t: float) -> None:
+        """Keep the book of this pair's contact."""
+        going_on = self._going_on.get((i, j))
+        if found is None:
+            if going_on is not None and self._gap_exceeds(i, j):
+                self._finish(i, j)
+            return
+        if going_on is None:
+            sides = self._bearing(i, found.at), self._bearing(j, found.at)
+            going_on = self._going_on[i, j] = _Touch(t, t, found.speed, sides)
+        going_on.end = t
+        going_on.impulse += found.force * TICK
+        going_on.peak = max(going_on.peak, found.force)
+
+    def _bearing(self, k: int, at: tuple[float, float]) -> float:
+        row = self._rows[k]
+        side = math.atan2(at[1] - row[RY], at[0] - row[RX]) - row[R_YAW]
+        return math.remainder(side, 2.0 * math.pi)
+
+    def _gap_exceeds(self, i: int, j: int) -> bool:
+        grown = self._rows[i].copy()
+        grown[4] += RELEASE_GAP
+        depth = overlap_of_robots(grown, self._outlines[i], self._rows[j], self._outlines[j])[0]
+        return bool(depth <= 0.0)
+
+    def finish(self, k: int | None = None) -> None:
+        """End the contacts that are going on: all, or those of one robot."""
+        for i, j in list(self._going_on):
+            if k is None or k in (i, j):
+                self._finish(i, j)
+
+    def _finish(self, i: int, j: int) -> None:
+        c = self._going_on.pop((i, j))
+        for mine, other in ((i, j), (j, i)):
+            if self._fates[mine].ended and self._fates[mine].until < c.start:
+                continue
+            self._logs[mine].writer.contact(
+                t0=c.start, t1=c.end, agent=FIRST_ROBOT - other, impulse=c.impulse,
+                peak_force=c.peak, relative_speed=c.speed,
+                bearing=c.bearings[mine == j],
+            )  # fmt: skip
+
+
+def add_fleet_contacts(
+    builder: DiagramBuilder,
+    models: Sequence[RobotModel],
+    robots: Sequence[ControlledRobot],
+    fates: Sequence[Fate],
+    logs: Sequence[RunLog],
+) -> FleetContacts:
+    """Add the contacts between robots to a diagram; their pushes are connected elsewhere."""
+    contacts = FleetContacts(models, fates, logs)
+    builder.AddNamedSystem("robot_contacts", contacts)
+    for k, robot in enumerate(robots):
+        builder.Connect(robot.port, contacts.GetInputPort(ports.other_robot(k)[0]))
+    return contacts

@@ -1,0 +1,18 @@
+"""Records one run, of one robot or of several."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from crowdbot.core.runs.outcome import Outcome
+from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.fleet.record import record_fleet
+from crowdbot.core.sim.record import record_robot
+from crowdbot.core.sim.record_crowd import RunSetup
+
+
+def record_all(setup: RunSetup, builts: Mapping[str, BuiltRun]) -> Outcome:
+    """Simulate the scenario's robots: one as `record_robot` does, several as `record_fleet`."""
+    if len(builts) == 1:
+        return record_robot(setup, next(iter(builts.values())))
+    return record_fleet(setup, builts)
