@@ -59,6 +59,9 @@ def export(
     names: Annotated[
         bool, typer.Option("--ros-names/--own-names", help="Bags: /scan, /imu/data, color.")
     ] = True,
+    robot: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Tables: which of several robots.")
+    ] = None,
 ) -> None:
     """Write a recording in the format of other tools.
 
@@ -84,7 +87,7 @@ def export(
         )
         _whole(target, lambda aside: _bag(to, recording, aside, options, run))
     else:
-        _whole(target, lambda aside: _tables(to, recording, aside))
+        _whole(target, lambda aside: _tables(to, recording, aside, robot))
     typer.echo(str(target))
 
 
@@ -111,8 +114,16 @@ def _whole(target: Path, write: Callable[[Path], None]) -> None:
 
 
 def _bag(to: ExportFormat, recording: Path, out: Path, options: BagOptions, run: Path) -> None:
+    from crowdbot.core.recording import fleet_names
     from crowdbot.core.recording.export.bag import write_ros1, write_ros2
     from crowdbot.core.runs import run_directory as files
+    from crowdbot.errors import InputError
+
+    if names := fleet_names(recording):
+        raise InputError(
+            f"{recording}: bags are made of runs of one robot, not of {', '.join(names)}; the "
+            "recording itself is a ROS 2 one, which 'ros2 bag play -s mcap' plays"
+        )
 
     if to is ExportFormat.rosbag1:
         write_ros1(recording, out, options)
@@ -124,11 +135,11 @@ def _bag(to: ExportFormat, recording: Path, out: Path, options: BagOptions, run:
                 shutil.copyfile(run / name, out / name)
 
 
-def _tables(to: ExportFormat, recording: Path, out: Path) -> None:
+def _tables(to: ExportFormat, recording: Path, out: Path, robot: str | None) -> None:
     from crowdbot.core.recording import read_trajectories, recording_info
     from crowdbot.core.recording.export import tables
 
-    run = read_trajectories(recording)
+    run = read_trajectories(recording, robot)
     if to is ExportFormat.geojson:
         out.write_text(tables.geojson(run), encoding="utf-8")
     elif to is ExportFormat.trajnet:

@@ -291,3 +291,40 @@ def test_nothing_heavy_is_imported(tmp_path: Path) -> None:
     argv = [sys.executable, "-c", code]
     done = subprocess.run(argv, capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.slow
+def test_runs_beside_each_other(tmp_path: Path, capsys: Captured) -> None:
+    """Two real runs become one page; a page can be made anew; runs of others are refused."""
+    other_id = "in-d0125-slow-c01-r02"
+    for planner, id_ in (("goal_seek", ONE[2]), ("stop_and_go", ONE[2]), ("goal_seek", other_id)):
+        words = ["simulate", ONE[1], id_, "--planner", planner, "--out", str(tmp_path)]
+        short = ["--set", "robots.robot.task.time_limit=0.5", "--no-references", "-q"]
+        assert main([*words, *short]) == 0
+
+    def made(planner: str, id_: str = ONE[2]) -> str:
+        (found,) = tmp_path.glob(f"{ONE[1]}/{id_}*/{planner}/seed-0")
+        return str(found)
+
+    runs = [made("goal_seek"), made("stop_and_go")]
+    out = tmp_path / "compare.html"
+    capsys.readouterr()
+    assert main(["view", *runs, "--out", str(out), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["path"] == str(out)
+    text = out.read_text(encoding="utf-8")
+    (meta,) = re.findall(r'id="meta">(.*?)</script>', text)
+    shown = json.loads(meta)["runs"]
+    assert [run["label"] for run in shown] == ["goal_seek", "stop_and_go"]
+    assert {wall[4] for run in shown for wall in run["walls"]} == {1, 3}
+    assert all(run["robots"][0]["look"] and run["cameras"] for run in shown)
+    assert "blob-1-people" in text
+
+    again = tmp_path / "again.html"
+    assert main(["view", runs[0], "--out", str(again)]) == 0
+    first = (Path(runs[0]) / "replay.html").read_bytes()
+    assert again.read_bytes() == first
+    assert main(["view", runs[0], made("goal_seek", other_id), "--out", str(out)]) == 2
+    assert "only runs of one scenario" in capsys.readouterr().err
+    (Path(runs[1]) / "run.mcap").write_bytes(b"")
+    assert main(["view", *runs, "--out", str(out)]) == 1
+    assert "run.mcap has 0 bytes" in capsys.readouterr().err

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 Ros = Literal[1, 2]
 _TIMES = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 _HEADER = "std_msgs/msg/Header"
+#: Bytes of a number of single precision; powers of ten up to which float64 has them exactly.
+_SINGLE, _EXACT = 4, 22
 
 
 def to_plain(message: Any, ros: Ros, array: Callable[[NDArray[Any]], Any]) -> dict[str, Any]:
@@ -58,10 +60,26 @@ def _value(value: Any, ros: Ros, array: Callable[[NDArray[Any]], Any]) -> Any:
 
 def json_array(array: NDArray[Any]) -> list[Any]:
     """Numbers of an array; JSON has no infinity and no NaN, which become None."""
-    values: list[Any] = array.tolist()
-    if array.dtype.kind == "f" and not np.isfinite(array).all():
-        return [x if math.isfinite(x) else None for x in values]
-    return values
+    if array.dtype.kind != "f":
+        return list(array.tolist())
+    finite = np.isfinite(array).all()
+    values: list[Any] = (_short(array) if array.dtype.itemsize == _SINGLE else array).tolist()
+    return values if finite else [x if math.isfinite(x) else None for x in values]
+
+
+def _short(array: NDArray[Any]) -> NDArray[np.float64]:
+    """Single precision as the numbers of nine digits that stand for it: half as long as text.
+
+    A whole number over a power of ten is rounded once, so that its shortest text has no more
+    digits; nine of them are enough to get the same number of single precision back.
+    """
+    wide = array.astype(np.float64)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        power = 8.0 - np.floor(np.log10(np.abs(wide)))
+        scale = np.power(10.0, power)
+        short: NDArray[np.float64] = np.rint(wide * scale) / scale
+    fits = np.isfinite(short) & (np.abs(power) <= _EXACT)
+    return np.where(fits, short, wide)
 
 
 def ros_type(msgtype: str, ros: Ros) -> str:

@@ -18,11 +18,11 @@ async function inflate(name) {
 /** Doubles whose four highest bytes are given: all first bytes, then all second ones, and so on. */
 function numbersOf(bytes) {
   const count = bytes.length / 4;
-  const words = new DataView(new ArrayBuffer(8 * count));
+  const doubles = new DataView(new ArrayBuffer(8 * count));
   for (let i = 0; i < count; i++) {
-    for (let k = 0; k < 4; k++) words.setUint8(8 * i + k, bytes[k * count + i]);
+    for (let k = 0; k < 4; k++) doubles.setUint8(8 * i + k, bytes[k * count + i]);
   }
-  return Float64Array.from({ length: count }, (_, i) => words.getFloat64(8 * i));
+  return Float64Array.from({ length: count }, (_, i) => doubles.getFloat64(8 * i));
 }
 
 async function decode() {

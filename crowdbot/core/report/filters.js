@@ -10,7 +10,7 @@ const HEADLINE = "headline";
 function buildFilters(onchange) {
   const box = byId("filters");
   for (const axis of report.axes) {
-    const options = [["", "all"], ...axis.labels.map((label, l) => [label, wordAndLabel(axis, l)])];
+    const options = [["", "all"], ...axis.labels.map((name, l) => [name, wordAndLabel(axis, l)])];
     box.append(choice(`axis-${axis.name}`, axis.title, options, (v) => {
       state.axes[axis.name] = v;
       onchange();

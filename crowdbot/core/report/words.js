@@ -1,12 +1,12 @@
 // Words for axes and their values: "ttca_dca weight" and "20" for `coeff` and `c20`.
 
 /** Texts of a label: the words of the suite where there are some. */
-const wordOf = (axis, label) => axis.words[axis.labels.indexOf(label)] ?? label;
+const wordOf = (axis, name) => axis.words[axis.labels.indexOf(name)] ?? name;
 
 /** The same with the label itself, which ids of scenarios show. */
 function wordAndLabel(axis, l) {
-  const [word, label] = [axis.words[l], axis.labels[l]];
-  return word === label ? label : `${word} (${label})`;
+  const [word, name] = [axis.words[l], axis.labels[l]];
+  return word === name ? name : `${word} (${name})`;
 }
 
 /** What a score is measured in, for the title of a picture's axis. */

@@ -42,13 +42,13 @@ class StopAndGoSpec(PlannerSpec):
         default=0.785, description="Heading error above which the robot turns on the spot, rad."
     )
     side_margin: NonNegativeLength = Field(
-        default=0.05, description="Free space beside the robot, m."
+        default=0.1, description="Free space beside the robot, m."
     )
     front_margin: NonNegativeLength = Field(
-        default=0.2, description="Free space that remains before the robot when it stands, m."
+        default=0.1, description="Free space that remains before the robot when it stands, m."
     )
     reaction_time: NonNegativeDuration = Field(
-        default=0.2, description="Driven at full speed before braking sets in, s."
+        default=0.3, description="Driven at full speed before braking sets in, s."
     )
     look_back: NonNegativeDuration = Field(
         default=0.3, description="Age of the scan that shows who walks; 0 takes all as still, s."

@@ -82,8 +82,7 @@ class StopAndGo:
     def _safe_speed(self, t: float, pose: Pose, points: Array) -> tuple[float, float]:
         """The largest speed whose box is empty (m/s), and the room ahead (m).
 
-        That is how far the robot may go before something is ``front_margin`` before it; before
-        people who walk towards it it has to stand, no more.
+        That is how far the robot may go before something is ``front_margin`` before it.
 
         Args:
             t: now, s.
@@ -99,8 +98,7 @@ class StopAndGo:
         carry(points, velocities, people, going, spec.person_radius)
         inside = (np.abs(points[:, 1]) <= self._half_width + spec.side_margin) & (points[:, 0] > 0)
         approach = np.maximum(0.0, -velocities[inside, 0])
-        margin = np.where(approach > 0.0, 0.0, spec.front_margin)
-        room = points[inside, 0] - self._front - margin
+        room = points[inside, 0] - self._front - spec.front_margin
         speeds = safe_speed(room, approach, self._limits.a_max, spec.reaction_time)
         return float(speeds.min(initial=math.inf)), float(room.min(initial=math.inf))
 

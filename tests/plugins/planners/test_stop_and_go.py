@@ -60,7 +60,7 @@ def test_goes_on_when_the_way_is_free() -> None:
     speed = np.diff([p.x for p in out.path]) * 128
     assert not out.contacts
     assert out.arrived
-    assert speed[len(speed) // 4 :].min() == pytest.approx(0.0, abs=1e-6)  # it did stand
+    assert speed[len(speed) // 4 :].min() == pytest.approx(0.0, abs=0.02)  # it did wait
 
 
 def test_walls_beside_it_do_not_count() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 
+from crowdbot.cli import main
 from crowdbot.core.recording import read_fleet, read_trajectories
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.runs.provenance import trajectory_hash
@@ -58,6 +59,11 @@ def test_a_run_says_of_each_robot_and_of_the_fleet(tmp_path: Path) -> None:
     assert rows["success", "corrected"].value == 0.5
     with pytest.raises(InputError, match="several robots: a, b"):
         read_trajectories(one.directory / "run.mcap")
+    table = tmp_path / "b"
+    order = ["export", str(one.directory), "--to", "csv", "--robot", "b", "--out", str(table)]
+    assert main(order) == 0
+    lines = (table / "robot.csv").read_text().splitlines()
+    assert len(lines) == len(one.robots["b"].t) + 1
     agents = one.robots["b"].agents
     assert agents is not None
     assert np.isfinite(agents.x).all()
