@@ -11,6 +11,11 @@ ARRIVED, TIMEOUT, PLANNER_FAILED, INTERRUPTED = (
 )  # fmt: skip
 
 
+def toppled(t: float) -> str:
+    """What is said of a robot that toppled at ``t``, s."""
+    return f"toppled at {t:.1f} s"
+
+
 class Progress(NamedTuple):
     """How far a run is: simulated time and limit (s), real-time factor, distance to goal (m)."""
 
@@ -26,6 +31,7 @@ class Outcome:
     """How a run ended; times in s.
 
     Attributes:
+        toppled_time: when the robot toppled, or None.
         clamped: commands that had to be clamped to the robot's limits.
         planner_step_time: mean and largest wall time of a planner step.
         robots: how each of several robots ended; empty in a run of one.
@@ -37,6 +43,7 @@ class Outcome:
     sim_time: float
     wall_time: float
     cpu_time: float
+    toppled_time: float | None = None
     clamped: int = 0
     planner_step_time: Mapping[str, float] = field(default_factory=dict)
     robots: Mapping[str, Outcome] = field(default_factory=dict)

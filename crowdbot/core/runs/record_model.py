@@ -56,6 +56,7 @@ class RobotPart(_Part):
     goal_time: Seconds | None
     sim_time: Seconds
     trajectory: Hash
+    toppled_time: Seconds | None = None
     clamped_commands: Count = 0
     planner_step_time: dict[str, float] = {}
 
@@ -104,6 +105,7 @@ class RecordModel(_Part):
     files: dict[str, Count] = {}
     cpu_time: Seconds = 0.0
     real_time_factor: float = 0.0
+    toppled_time: Seconds | None = None
     clamped_commands: Count = 0
     planner_step_time: dict[str, float] = {}
     robots: dict[str, RobotPart] = {}

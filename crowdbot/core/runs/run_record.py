@@ -72,24 +72,29 @@ def _robots(request: Request, outcome: Outcome, runs: Mapping[str, Trajectories]
     """What became of each of several robots; nothing of one."""
     if not outcome.robots:
         return {}
-    kept = ("status", "reason", "goal_time", "sim_time", "planner_step_time", "clamped_commands")
+    kept = (
+        "status", "reason", "goal_time", "toppled_time", "sim_time", "planner_step_time",
+        "clamped_commands",
+    )  # fmt: skip
     found = {}
     for name, one in outcome.robots.items():
         choice, end = request.choice.of(name), ending(one)
         found[name] = {
             "planner": {**choice.spec_dump, "name": choice.name, "label": choice.label},
-            **{key: end[key] for key in kept},
+            **{key: end[key] for key in kept if key in end},
             "trajectory": provenance.trajectory_hash(runs[name]),
         }
     return {"robots": found}
 
 
 def ending(outcome: Outcome) -> dict[str, Any]:
-    """How a run ended, and what it took."""
+    """How a run ended, and what it took; ``toppled_time`` only of a robot that toppled."""
+    fallen = {} if outcome.toppled_time is None else {"toppled_time": outcome.toppled_time}
     return {
         "status": outcome.status,
         "reason": outcome.reason,
         "goal_time": outcome.goal_time,
+        **fallen,
         "sim_time": outcome.sim_time,
         "wall_time": round(outcome.wall_time, 3),
         "cpu_time": round(outcome.cpu_time, 3),

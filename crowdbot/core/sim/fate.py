@@ -16,6 +16,7 @@ class Fate:
         leaves: whether it is out of everybody's way once it has ended.
         status, reason: how it ended; empty before.
         goal_time: when it arrived, s, or None.
+        toppled_time: when it toppled, s, or None.
         until: when it ended, s.
         failure: what its planner failed with; the robot ends at the next tick.
     """
@@ -24,6 +25,7 @@ class Fate:
     status: str = ""
     reason: str = ""
     goal_time: float | None = None
+    toppled_time: float | None = None
     until: float = 0.0
     failure: str = ""
 
@@ -37,6 +39,14 @@ class Fate:
         """Whether it is not there any more."""
         return self.leaves and self.ended
 
-    def end(self, status: str, reason: str, t: float, goal_time: float | None = None) -> None:
+    def end(
+        self,
+        status: str,
+        reason: str,
+        t: float,
+        goal_time: float | None = None,
+        toppled_time: float | None = None,
+    ) -> None:
         """It ends at ``t``, s."""
-        self.status, self.reason, self.until, self.goal_time = status, reason, t, goal_time
+        self.status, self.reason, self.until = status, reason, t
+        self.goal_time, self.toppled_time = goal_time, toppled_time

@@ -15,7 +15,7 @@ from pydrake.systems.framework import Context, DiagramBuilder, EventStatus, Leaf
 from crowdbot.core.geometry.polygon import distance_to, entry_fraction, inside
 from crowdbot.core.planning.planner import Task
 from crowdbot.core.recording.run_log import RunLog
-from crowdbot.core.runs.outcome import ARRIVED, PLANNER_FAILED, TIMEOUT
+from crowdbot.core.runs.outcome import ARRIVED, PLANNER_FAILED, TIMEOUT, toppled
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.clearance_cache import ClearanceCache
@@ -29,6 +29,9 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotState
 
 _ROUNDING = 1e-9  # m; of the distance to the goal zone
+_TILT = RobotState._fields.index("tilt")
+#: A robot that leans by more than this has toppled, however it comes to lie, rad.
+TOPPLED = math.radians(60.0)
 
 
 class MetricLogger(LeafSystem):
@@ -37,6 +40,7 @@ class MetricLogger(LeafSystem):
     Attributes:
         walls: contacts of the robot with walls.
         goal_time: when the robot arrived, s, or None.
+        toppled_time: when it toppled, s, or None; from then on it cannot arrive.
     """
 
     __slots__ = NO_ATTRIBUTES
@@ -67,6 +71,7 @@ class MetricLogger(LeafSystem):
         self._before: Array | None = None  # the robot one tick ago
         self._clearance = ClearanceCache()
         self.goal_time: float | None = None
+        self.toppled_time: float | None = None
         self._fate, self._on_end = fate, on_end
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         self._crowd = self._events = None
@@ -89,6 +94,8 @@ class MetricLogger(LeafSystem):
         t = tick * TICK
         now, before = self._robot.Eval(context), self._before
         self._before = now
+        if self.toppled_time is None and now.item(_TILT) > TOPPLED:
+            self.toppled_time = t
         sampled = tick % self._ticks_per_sample == 0
         crowd = self._crowd_state(context, always=sampled)
         if crowd is not None:
@@ -103,15 +110,19 @@ class MetricLogger(LeafSystem):
         if self._fate is not None and self._fate.failure:
             return self._end(context, t, PLANNER_FAILED, self._fate.failure)
         if t >= self._task.time_limit:
-            limit = self._task.time_limit
-            return self._end(context, t, TIMEOUT, f"time limit of {limit:g} s")
+            return self._end(context, t, TIMEOUT, self.late())
         return None
+
+    def late(self) -> str:
+        """Why the robot did not arrive, if no planner is to blame."""
+        reason = f"time limit of {self._task.time_limit:g} s"
+        return reason if self.toppled_time is None else f"{reason}; {toppled(self.toppled_time)}"
 
     def _end(self, context: Context, t: float, status: str, reason: str) -> EventStatus | None:
         """The robot has ended, and with it the run, but for that of a fleet."""
         if self._fate is None:
             return EventStatus.ReachedTermination(self, reason)
-        self._fate.end(status, reason, t, self.goal_time)
+        self._fate.end(status, reason, t, self.goal_time, self.toppled_time)
         self.finish(context, t)
         return None
 
@@ -140,7 +151,7 @@ class MetricLogger(LeafSystem):
         zone = self._task.goal_zone
         distance = distance_to(zone, robot.x, robot.y)
         self._clearance.reset(robot.x, robot.y, min(free, distance - _ROUNDING))
-        if distance > 0.0 or not inside(zone, robot.x, robot.y):
+        if self.toppled_time is not None or distance > 0.0 or not inside(zone, robot.x, robot.y):
             return False
         fraction = entry_fraction(zone, was.x, was.y, robot.x, robot.y) if t > 0.0 else 1.0
         self.goal_time = t - (1.0 - fraction) * TICK

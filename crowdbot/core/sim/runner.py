@@ -46,7 +46,7 @@ def run(
     context = simulator.get_mutable_context()
     blocks.robot.place(context, task.start)
     begin, cpu = time.perf_counter(), time.process_time()
-    status, reason = TIMEOUT, f"time limit of {task.time_limit:g} s"
+    status, reason = TIMEOUT, ""
     try:
         ended = has_ended(simulator.Initialize())
         while not ended:
@@ -63,10 +63,13 @@ def run(
         _finish(blocks, log, context)
     if blocks.logger.goal_time is not None:
         status, reason = ARRIVED, "centre inside the goal zone"
+    if status == TIMEOUT:
+        reason = blocks.logger.late()
     return Outcome(
         status=status,
         reason=reason,
         goal_time=blocks.logger.goal_time,
+        toppled_time=blocks.logger.toppled_time,
         sim_time=float(context.get_time()),
         wall_time=time.perf_counter() - begin,
         cpu_time=time.process_time() - cpu,

@@ -175,6 +175,7 @@ def _outcome(one: FleetRobot) -> Outcome:
         status=fate.status or INTERRUPTED,
         reason=fate.reason or "interrupted by the user",
         goal_time=fate.goal_time,
+        toppled_time=fate.toppled_time,
         sim_time=fate.until,
         wall_time=0.0,
         cpu_time=0.0,
