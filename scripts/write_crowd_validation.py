@@ -80,7 +80,8 @@ def page(rows: Sequence[dict[str, Any]], reference: RealismReference) -> str:
         "",
         "Named crowds have no bodies and speeds of their own unless the part says so: people of "
         "0.2 m radius who prefer 1.5 m/s. `challenge mix` is the crowd of `challenge-2026` with "
-        "its own bodies and speeds.",
+        "its own bodies and speeds. `demo_2` equals `social_forces`: they differ only in ranges "
+        "beyond which nobody is felt ([named policies](named_policies.md)).",
         "",
         *_table(
             ["crowd", "index", "score", "speed", "acceleration", "turning", "nearest",
