@@ -98,7 +98,12 @@ def _watch(campaign: subprocess.Popen[bytes], out: Path, runs: int) -> dict[int,
 
 
 def _complete(out: Path) -> int:
-    return sum(1 for _ in out.glob("*/*/*/*/run.json") if ".partial" not in str(_.parent))
+    """Runs that are complete, without those for comparison."""
+    try:
+        records = list(out.glob(f"{SUITE}/*/*/*/run.json"))
+    except FileNotFoundError:  # a folder got its final name meanwhile
+        return _complete(out)
+    return sum(1 for file in records if not file.parent.name.endswith(".partial"))
 
 
 def _tree(root: int) -> list[int]:

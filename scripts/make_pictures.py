@@ -20,6 +20,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import textwrap
 from collections.abc import Callable
 from pathlib import Path
 
@@ -141,7 +142,15 @@ def on_an_idle_core(shown: str, run: Path) -> str:
     """
     record = json.loads((run / "run.json").read_text(encoding="utf-8"))
     factor = record["sim_time"] / record["cpu_time"]
-    return re.sub(r"\([\d.]+ times(\s+)real", rf"({factor:.1f} times\1real", shown)
+    ending = re.compile(
+        rf"^({ID} [^;(]*?\d s)(;\s+was\s+complete[^/]*?again|\s+\([\d.]+ times\s+real\s+time\))$",
+        re.MULTILINE,
+    )
+    line = ending.search(shown)
+    if line is None:
+        raise SystemExit("how the run ended is not shown by the run")
+    said = f"{' '.join(line[1].split())} ({factor:.1f} times real time)"
+    return ending.sub(_constant(textwrap.fill(said, 80)), shown, count=1)
 
 
 def _constant(text: str) -> Callable[[re.Match[str]], str]:

@@ -49,6 +49,7 @@ class PlannerHost:
         budget: seconds of wall time that a step may take; None sets no limit.
         watchdog: ends a step that never returns; None waits for ever.
         origin: the distribution, or the file, that the planner comes from, for messages.
+        copies: whether it gets copies of arrays; a planner in a process of its own has them anyway.
 
     Attributes:
         steps: steps so far.
@@ -65,8 +66,9 @@ class PlannerHost:
         budget: float | None = None,
         watchdog: Watchdog | None = None,
         origin: str = "",
+        copies: bool = True,
     ) -> None:
-        self._planner, self._limits = planner, limits
+        self._planner, self._limits, self._copies = planner, limits, copies
         self._who = planner_title(name, origin)
         self._guarded = GuardedPlanner(planner, self._who, watchdog)
         self._budget, self._watchdog = budget, watchdog
@@ -90,14 +92,14 @@ class PlannerHost:
         """Ask for the next command.
 
         Args:
-            obs: handed on with read-only copies of its arrays.
+            obs: handed on with read-only copies of its arrays, where ``copies`` says so.
 
         Raises:
             PlannerError: the planner raised, returned something that is not a command, or
                 exceeded the budget.
             PlannerHungError: it did not return.
         """
-        seen = _protected(obs)
+        seen = _protected(obs) if self._copies else obs
         begin = time.perf_counter()
         try:
             with self._named("step"):

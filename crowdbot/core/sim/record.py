@@ -125,6 +125,7 @@ def hosted(setup: RunSetup, built: BuiltRun, watchdog: Watchdog | None) -> Itera
         host = PlannerHost(
             planner, choice.name, limits,
             budget=setup.step_budget, watchdog=watchdog, origin=choice.origin,
+            copies=not isinstance(planner, ProcessPlanner),
         )  # fmt: skip
         # Halved, so that planners may hand the seed to generators of signed integers.
         host.reset(built.task, sensors, stream_seed(setup.seed, built.name, "planner") >> 1)

@@ -14,6 +14,7 @@ from crowdbot.core.runs.outcome import INTERRUPTED, PLANNER_FAILED, Outcome
 from crowdbot.core.runs.request import Request
 from crowdbot.core.runs.run_record import ending, write_scenario
 from crowdbot.core.sim.built_run import build_run
+from crowdbot.core.sim.gc_freeze import gc_frozen
 from crowdbot.core.sim.record_crowd import RunSetup, record_crowd
 from crowdbot.errors import Interrupted, PluginError
 
@@ -36,7 +37,7 @@ def make_reference(request: Request, reference: Reference) -> Outcome:
         PlannerHungError: a planner step never returned; a ``.partial`` directory is left.
         Interrupted: ``request.stop`` said so; a ``.partial`` directory is left.
     """
-    with partial(reference.directory) as folder:
+    with gc_frozen(), partial(reference.directory) as folder:
         setup = setup_of(request, reference, folder)
         if reference.name == CROWD_ALONE:
             outcome = record_crowd(setup, reference.key["duration"])

@@ -11,10 +11,14 @@ import pytest
 from pydrake.systems.framework import Diagram, DiagramBuilder, LeafSystem
 
 import crowdbot.core.sim
+from crowdbot.core.planning.given_planner import choose_planner
+from crowdbot.core.runs.identity import prepare, references_of
+from crowdbot.core.runs.request import Request
+from crowdbot.core.sim.references import make_reference
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.core.sim.weak_callback import weak_callback
 from crowdbot.testing.tiny import tiny_scenario
-from tests.core.sim.sim_worlds import registry
+from tests.core.sim.sim_worlds import registry, scenario
 
 _MODES = ("differential_drive", "force", "kinematic")
 _HELD = (Diagram, DiagramBuilder, LeafSystem)
@@ -57,6 +61,21 @@ def test_a_finished_run_is_thrown_away(mode: str, tmp_path: Path) -> None:
     before = _alive()
     world = tiny_scenario(registry(), control=mode, time_limit=0.125)
     simulate(world, registry(), planner="goal_seek", out=tmp_path, references=False, replay=False)
+    assert _alive() - before == set()
+
+
+@pytest.mark.slow
+def test_so_is_a_run_for_comparison(tmp_path: Path) -> None:
+    """A campaign's worker makes these by themselves."""
+    before = _alive()
+    world = scenario("robots.robot.task.time_limit=0.125")
+    choice = choose_planner("goal_seek", registry())
+    request = Request(
+        scenario=world, choice=choice, registry=registry(), seed=0, out=tmp_path, suite="tiny"
+    )
+    prepared = prepare(world, registry())
+    made = [make_reference(request, one) for one in references_of(request, prepared)]
+    assert made
     assert _alive() - before == set()
 
 

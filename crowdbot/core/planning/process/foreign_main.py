@@ -26,7 +26,8 @@ _METHODS = ("reset", "step")
 
 Command = namedtuple("Command", "v w vy", defaults=(0.0,))
 Pose = namedtuple("Pose", "x y yaw")
-Task = namedtuple("Task", "start goal goal_zone time_limit")
+Task = namedtuple("Task", "start goal goal_zone time_limit robot")
+RobotBody = namedtuple("RobotBody", "drive radius footprint front back half_width")
 RobotLimits = namedtuple("RobotLimits", "v_min v_max w_max a_max alpha_max command_timeout vy_max")
 Pinhole = namedtuple("Pinhole", "width height focal colour")
 SensorInfo = namedtuple(

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.planning.planner import Observation, Task, Truth
 from crowdbot.core.planning.process.shared_memory import SharedMemory, in_message
-from crowdbot.core.types.robot import RobotLimits
+from crowdbot.core.types.robot import RobotBody, RobotLimits
 from crowdbot.core.types.sensor import Reading, SensorInfo
 
 _INFO = ("category", "frame", "rate", "ros_type", "range_min", "range_max", "privileged")
@@ -31,6 +31,7 @@ def reset_message(
             "goal": [float(x) for x in task.goal],
             "goal_zone": _array(task.goal_zone),
             "time_limit": float(task.time_limit),
+            "robot": None if task.robot is None else _body(task.robot),
         },
         "limits": {name: float(value) for name, value in asdict(limits).items()},
         "sensors": {name: _sensor(info) for name, info in sensors.items()},
@@ -39,22 +40,36 @@ def reset_message(
     }
 
 
-def observe_message(step: int, obs: Observation, memory: SharedMemory | None) -> dict[str, Any]:
-    """``observe``: what the planner sees in one step."""
-    message = {
-        "type": "observe",
-        "step": step,
-        "t": float(obs.t),
-        "pose": [float(x) for x in obs.pose],
-        "twist": [float(x) for x in obs.twist],
-        "vy": float(obs.vy),
-        "goal": [float(x) for x in obs.goal],
-        "goal_zone": _array(obs.goal_zone),
-        "readings": {n: _reading(n, r, memory) for n, r in obs.readings.items()},
-    }
-    if obs.truth is not None:
-        message["truth"] = _truth(obs.truth)
-    return message
+class ObservationWriter:
+    """Makes ``observe`` messages; what does not change from step to step is made once.
+
+    Args:
+        memory: for large arrays; None: they go into the message.
+    """
+
+    def __init__(self, memory: SharedMemory | None) -> None:
+        self._memory = memory
+        self._zone: Any = None
+        self._zone_map: dict[str, Any] = {}
+
+    def message(self, step: int, obs: Observation) -> dict[str, Any]:
+        """What the planner sees in one step."""
+        if obs.goal_zone is not self._zone:
+            self._zone, self._zone_map = obs.goal_zone, _array(obs.goal_zone)
+        message = {
+            "type": "observe",
+            "step": step,
+            "t": float(obs.t),
+            "pose": [float(x) for x in obs.pose],
+            "twist": [float(x) for x in obs.twist],
+            "vy": float(obs.vy),
+            "goal": [float(x) for x in obs.goal],
+            "goal_zone": self._zone_map,
+            "readings": {n: _reading(n, r, self._memory) for n, r in obs.readings.items()},
+        }
+        if obs.truth is not None:
+            message["truth"] = _truth(obs.truth)
+        return message
 
 
 def reserve(memory: SharedMemory, sensors: Mapping[str, SensorInfo]) -> None:
@@ -80,16 +95,22 @@ def _reading(name: str, reading: Reading, memory: SharedMemory | None) -> dict[s
     put = _in_message if memory is None else memory.put
     message: dict[str, Any] = {
         "stamp": float(reading.stamp),
-        "values": put(name, "values", np.ascontiguousarray(reading.values)),
+        "values": put(name, "values", reading.values),
     }
     if reading.colour is not None:
-        message["colour"] = put(name, "colour", np.ascontiguousarray(reading.colour))
+        message["colour"] = put(name, "colour", reading.colour)
     return message
 
 
 def _in_message(name: str, part: str, array: NDArray[Any]) -> dict[str, Any]:
     del name, part
-    return in_message(array)
+    return in_message(np.ascontiguousarray(array))
+
+
+def _body(body: RobotBody) -> dict[str, Any]:
+    footprint = None if body.footprint is None else _array(body.footprint)
+    numbers = {n: float(getattr(body, n)) for n in ("radius", "front", "back", "half_width")}
+    return {"drive": body.drive, "footprint": footprint, **numbers}
 
 
 def _truth(truth: Truth) -> dict[str, Any]:

@@ -29,13 +29,13 @@ from crowdbot.core.planning.planner import (
 from crowdbot.core.planning.process import serving
 from crowdbot.core.planning.python_file import build_of_class, check_parameters, planner_class
 from crowdbot.core.types.motion import Pose
-from crowdbot.core.types.robot import RobotLimits
+from crowdbot.core.types.robot import RobotBody, RobotLimits
 from crowdbot.core.types.sensor import Pinhole, Reading, SensorInfo
 from crowdbot.errors import CrowdbotError, InputError
 
 _TYPES = SimpleNamespace(
-    Task=Task, Pose=Pose, RobotLimits=RobotLimits, SensorInfo=SensorInfo, Pinhole=Pinhole,
-    Reading=Reading, Observation=Observation, Truth=Truth,
+    Task=Task, Pose=Pose, RobotBody=RobotBody, RobotLimits=RobotLimits, SensorInfo=SensorInfo,
+    Pinhole=Pinhole, Reading=Reading, Observation=Observation, Truth=Truth,
 )  # fmt: skip
 
 

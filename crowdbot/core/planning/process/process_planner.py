@@ -18,7 +18,7 @@ import msgpack
 from crowdbot.core.planning.description import PlannerDescription, read_description
 from crowdbot.core.planning.host import RESET_LIMIT
 from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Task
-from crowdbot.core.planning.process.messages import observe_message, reserve, reset_message
+from crowdbot.core.planning.process.messages import ObservationWriter, reserve, reset_message
 from crowdbot.core.planning.process.planner_line import (
     LineClosed,
     LineTimeout,
@@ -126,6 +126,7 @@ class ProcessPlanner:
             self.close()
             raise
         self._shares = said.get("arrays") == "shared" and self._memory is not None
+        self._write = ObservationWriter(self._memory if self._shares else None)
 
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
@@ -149,8 +150,7 @@ class ProcessPlanner:
             PlannerError: it failed.
         """
         self._step += 1
-        memory = self._memory if self._shares else None
-        message = observe_message(self._step, obs, memory)
+        message = self._write.message(self._step, obs)
         said = self._ask("return from step", message, Watchdog().limit, "command", "stop")
         self._pass_on(said, obs)
         if said["type"] == "stop":

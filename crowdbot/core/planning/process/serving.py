@@ -102,8 +102,8 @@ class Decoder:
     """Makes of messages what `reset` and `step` are given.
 
     Args:
-        types: has ``Task``, ``Pose``, ``RobotLimits``, ``SensorInfo``, ``Pinhole``, ``Reading``,
-            ``Observation`` and ``Truth``.
+        types: has ``Task``, ``Pose``, ``RobotBody``, ``RobotLimits``, ``SensorInfo``, ``Pinhole``,
+            ``Reading``, ``Observation`` and ``Truth``.
         array: makes an array of its type (as numpy writes it), shape and bytes.
     """
 
@@ -127,13 +127,19 @@ class Decoder:
         return self._array(sent["dtype"], sent["shape"], raw)
 
     def task(self, sent: dict[str, Any]) -> Any:
-        """Start, goal and time limit."""
+        """Start, goal, time limit, and the robot."""
         return self._types.Task(
             start=self._types.Pose(*sent["start"]),
             goal=tuple(sent["goal"]),
             goal_zone=self.array(sent["goal_zone"]),
             time_limit=sent["time_limit"],
+            robot=self._body(sent.get("robot")),
         )
+
+    def _body(self, sent: dict[str, Any] | None) -> Any:
+        if sent is None:
+            return None
+        return self._types.RobotBody(**{**sent, "footprint": self.array(sent["footprint"])})
 
     def limits(self, sent: dict[str, Any]) -> Any:
         """Box of velocities and slew limits."""

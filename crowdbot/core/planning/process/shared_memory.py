@@ -30,6 +30,7 @@ class SharedMemory:
         self.descriptor = os.memfd_create("crowdbot-planner", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
         self._block: mmap.mmap | None = None
         self._places: dict[tuple[str, str], int] = {}
+        self._views: dict[tuple[str, str], tuple[NDArray[Any], dict[str, Any]]] = {}
         self._size = 0
 
     def place(self, sensor: str, part: str, size: int) -> None:
@@ -48,21 +49,26 @@ class SharedMemory:
 
     def put(self, sensor: str, part: str, array: NDArray[Any]) -> dict[str, Any]:
         """An array as a message tells it: where it lies, or with its bytes."""
-        at = self._places.get((sensor, part))
-        if at is None or self._block is None:
-            return in_message(array)
-        view = np.frombuffer(self._block, array.dtype, array.size, at)
-        view[:] = array.reshape(-1)
-        return {
-            "dtype": array.dtype.str,
-            "shape": list(array.shape),
-            "offset": at,
-            "bytes": array.nbytes,
-        }
+        known = self._views.get((sensor, part))
+        if known is None or known[0].shape != array.shape or known[0].dtype != array.dtype:
+            at = self._places.get((sensor, part))
+            if at is None or self._block is None:
+                return in_message(np.ascontiguousarray(array))
+            known = self._views[sensor, part] = self._view(at, array)
+        known[0][...] = array
+        return known[1]
+
+    def _view(self, at: int, array: NDArray[Any]) -> tuple[NDArray[Any], dict[str, Any]]:
+        """Where an array of this kind lies, to write to, and what a message says of it."""
+        assert self._block is not None
+        view = np.frombuffer(self._block, array.dtype, array.size, at).reshape(array.shape)
+        told = {"dtype": array.dtype.str, "shape": list(array.shape), "offset": at}
+        return view, {**told, "bytes": array.nbytes}
 
     def close(self) -> None:
         """Give it back."""
         os.close(self.descriptor)
+        self._views.clear()  # they hold the block
         if self._block is not None:
             self._block.close()
             self._block = None
