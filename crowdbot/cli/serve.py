@@ -94,8 +94,8 @@ def serve(
 
     Example: crowdbot serve challenge-2020 in-d0125-slow-c01-r02 --port 9090
     """
+    from crowdbot.cli._one_run import print_run
     from crowdbot.cli._serve_options import Listen, manner_of
-    from crowdbot.cli.simulate import _print
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
     times = {"budget": budget, "hold": hold, "wait": wait}
@@ -112,7 +112,7 @@ def serve(
             meshcat=meshcat,
         )  # fmt: skip
         run = _serve(what, how, manner, listen)
-    _print(run, as_json=as_json)
+    print_run(run, as_json=as_json)
     if run.status == "planner_failed":
         raise typer.Exit(3)
 
@@ -152,14 +152,14 @@ def _what(
 
 
 def _serve(what: _What, how: _Serving, manner: Manner, listen: Listen) -> Run:
+    from crowdbot.cli._one_run import import_simulate, interruptible
     from crowdbot.cli._serve_options import listening, report, watchers_of
-    from crowdbot.cli.simulate import _import_simulate, _interruptible
 
-    _import_simulate()
+    import_simulate()
     from crowdbot.core.live.serve import LiveServe, serve_runs
     from crowdbot.core.live.session import LiveSession
 
-    with _interruptible() as stop:
+    with interruptible() as stop:
         session = LiveSession(interrupted=stop)
         with listening(session, manner, listen) as doors:
             service = LiveServe(
@@ -190,7 +190,7 @@ def _request(
         registry=what.registry,
         seed=seed,
         out=how.out,
-        suite="scenarios" if expansion.single else expansion.suite_id,
+        suite=expansion.folder,
         metrics=expansion.metrics,
         axes=expansion.axes.get(scenario.id, {}),
         words=expansion.words_of(scenario.id),

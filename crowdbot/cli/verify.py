@@ -161,11 +161,11 @@ def _make_reruns(
     runs: Sequence[ClaimedRun],
     sample: tuple[int | None, int, str],
 ) -> RerunVerdict:
+    from crowdbot.cli._one_run import end_hung_process, import_simulate, interruptible
     from crowdbot.cli._progress import show_progress
-    from crowdbot.cli.simulate import _end_hung_process, _import_simulate, _interruptible
     from crowdbot.core.bundle.rerun_verdict import RerunVerdict, verdict_of
 
-    _import_simulate()  # says what is missing where Drake cannot be imported
+    import_simulate()  # says what is missing where Drake cannot be imported
     from crowdbot.core.campaign.verify import (
         NotRunnable,
         RerunSetup,
@@ -179,10 +179,10 @@ def _make_reruns(
     except NotRunnable as error:
         return RerunVerdict(outcome="cannot be re-run", findings=(str(error),))
     size, seed, content = sample
-    with _interruptible() as stop, show_progress() as progress:
+    with interruptible() as stop, show_progress() as progress:
         setup = RerunSetup(
             expansion=expansion, registry=registry, choice=choice, progress=progress, stop=stop,
-            on_hang=_end_hung_process,
+            on_hang=end_hung_process,
         )  # fmt: skip
         numbers = draw_sample(runs, size, seed, content)
         reruns = [make_rerun(setup, runs[number]) for number in numbers]

@@ -18,7 +18,7 @@ from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import prepare
 from crowdbot.core.runs.request import Request, Run
-from crowdbot.core.sim.built_run import build_run
+from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError, Interrupted
 
@@ -110,13 +110,14 @@ def _serve_one(service: LiveServe, scenario: Scenario) -> Run | None:
     request = service.request(scenario, choice, session.seed)
     stop = lambda: session.must_stop  # noqa: E731
     request = replace(request, force=True, stop=stop, watchers=service.watchers)
-    scene.append(_scene(request))
+    built = _built(request)
+    scene.append(_scene(request, built))
     session.robot = scene[0].name
     session.begin(scenario.id, session.seed)
     state: State = "ended"
     try:
         prepared = prepare(scenario, request.registry, references=request.references)
-        run = make_run(request, prepared)
+        run = make_run(request, prepared, builts={built.name: built})
         state = cast(State, run.status)
     except Interrupted:
         if session.interrupted():
@@ -152,10 +153,17 @@ def live_choice(name: str, manner: Manner, build: Callable[[], LivePlanner]) -> 
     )
 
 
-def _scene(request: Request) -> LiveScene:
+def _built(request: Request) -> BuiltRun:
+    """The run of the one robot that clients drive: what they are told of is what is simulated."""
+    from crowdbot.core.sim.preflight import preflight
+
     if len(request.scenario.robots) != 1:
         raise InputError(f"{request.scenario.id} has {len(request.scenario.robots)} robots, not 1")
-    built = build_run(request.scenario, request.registry, request.choice, request.record)
+    (built,) = preflight(request).values()
+    return built
+
+
+def _scene(request: Request, built: BuiltRun) -> LiveScene:
     return LiveScene(
         scenario=request.scenario.id,
         name=built.name,

@@ -42,7 +42,7 @@ def is_user_interrupt(error: BaseException) -> bool:
     return default or type(error) is not KeyboardInterrupt
 
 
-class _Pressed(KeyboardInterrupt):
+class UserInterrupt(KeyboardInterrupt):
     """Ctrl-C, as opposed to a plugin that raises KeyboardInterrupt itself."""
 
 
@@ -55,7 +55,7 @@ def telling_interrupts() -> Iterator[None]:
 
     def press(number: int, frame: object) -> None:
         del number, frame
-        raise _Pressed
+        raise UserInterrupt
 
     try:
         theirs = signal.getsignal(signal.SIGINT) is not signal.default_int_handler

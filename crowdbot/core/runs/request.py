@@ -193,11 +193,16 @@ def read_references(paths: Mapping[str, Path]) -> References:
 
     Several runs share them: the latest few are kept, as long as their files do not change.
     """
-    runs: dict[str, Any] = {name: _read_kept(path) for name, path in paths.items()}
+    runs: dict[str, Any] = {name: read_kept(path) for name, path in paths.items()}
     return References(**runs)
 
 
-def _read_kept(path: Path) -> Trajectories:
+def read_kept(path: Path) -> Trajectories:
+    """The trajectories of a recording that several runs share.
+
+    Raises:
+        InputError: it cannot be read.
+    """
     try:
         state = _state_of(path)
     except OSError:

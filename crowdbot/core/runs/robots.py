@@ -12,14 +12,13 @@ from crowdbot.core.recording import (
     fleet_names,
     read_fleet,
     read_run,
-    read_trajectories,
     read_whole,
 )
 from crowdbot.core.recording.scans import ReplayScan
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs.identity import CROWD_ALONE, ROBOT_ALONE
-from crowdbot.core.runs.request import read_references
+from crowdbot.core.runs.request import read_kept, read_references
 from crowdbot.core.scoring.evaluate import Scores, score
 from crowdbot.core.scoring.fleet_scores import fleet_scores
 from crowdbot.core.scoring.metric import References
@@ -152,4 +151,4 @@ def _hash(path: Path, *state: int) -> str:
     del state  # another one is another recording
     if fleet_names(path):
         return read_recorded(path).trajectory
-    return provenance.trajectory_hash(read_trajectories(path))
+    return provenance.trajectory_hash(read_kept(path))

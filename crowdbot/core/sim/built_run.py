@@ -49,12 +49,38 @@ class BuiltRun:
     visible: tuple[str, ...]
 
 
+def build_runs(
+    scenario: Scenario,
+    registry: Registry,
+    choice: PlannerChoice,
+    record: Literal["all", "used", "none"],
+) -> dict[str, BuiltRun]:
+    """Build what a recording of all robots of a scenario needs, by name; one environment for all.
+
+    Args:
+        scenario: with one robot or several.
+        registry: the installed components.
+        choice: the planners, one of each robot.
+        record: as for `build_run`.
+
+    Raises:
+        InputError: as `build_run`.
+        PluginError: as `build_run`.
+    """
+    parts = build_environment(registry, scenario.environment)
+    return {
+        name: build_run(scenario, registry, choice.of(name), record, name, parts)
+        for name in scenario.robots
+    }
+
+
 def build_run(
     scenario: Scenario,
     registry: Registry,
     choice: PlannerChoice,
     record: Literal["all", "used", "none"],
     name: str | None = None,
+    parts: EnvironmentParts | None = None,
 ) -> BuiltRun:
     """Build what a recording of a scenario's robot needs.
 
@@ -64,6 +90,7 @@ def build_run(
         choice: the planner, which says what sensors it needs.
         record: ``all`` simulates every sensor; otherwise those that the planner gets, and odometry.
         name: of the robot; may be left out where there is one only.
+        parts: the environment, where it is built already.
 
     Raises:
         InputError: the robot lacks a sensor that the planner needs, its control mode does not fit
@@ -73,7 +100,7 @@ def build_run(
     if name is None:
         (name,) = scenario.robots
     robot = scenario.robots[name]
-    parts = build_environment(registry, scenario.environment)
+    parts = parts or build_environment(registry, scenario.environment)
     model = build_robot(registry, robot)
     wheels = wheels_of(model.drive)
     sensors = {n: build_sensor(registry, with_wheels(x, *wheels)) for n, x in robot.sensors.items()}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from crowdbot.core.planning.fleet_choice import check_robots
 from crowdbot.core.runs.request import Request
-from crowdbot.core.sim.built_run import BuiltRun, build_run
+from crowdbot.core.sim.built_run import BuiltRun, build_runs
 from crowdbot.errors import InputError
 
 
@@ -23,12 +23,7 @@ def preflight(request: Request) -> dict[str, BuiltRun]:
         raise InputError(
             f"only a run of one robot can be watched; {request.scenario.id} has {len(robots)}"
         )
-    builts = {
-        name: build_run(
-            request.scenario, request.registry, request.choice.of(name), request.record, name
-        )
-        for name in robots
-    }
+    builts = build_runs(request.scenario, request.registry, request.choice, request.record)
     cameras = (info.camera for built in builts.values() for info in built.infos.values())
     if any(camera is not None and camera.colour for camera in cameras):
         from crowdbot.core.sim.rendering import check_egl

@@ -13,7 +13,7 @@ from crowdbot.core.runs.identity import CROWD_ALONE, Reference
 from crowdbot.core.runs.outcome import INTERRUPTED, PLANNER_FAILED, Outcome
 from crowdbot.core.runs.request import Request
 from crowdbot.core.runs.run_record import ending, write_scenario
-from crowdbot.core.sim.built_run import build_run
+from crowdbot.core.sim.built_run import build_runs
 from crowdbot.core.sim.gc_freeze import gc_frozen
 from crowdbot.core.sim.record_crowd import RunSetup, record_crowd
 from crowdbot.errors import Interrupted, PluginError
@@ -58,10 +58,7 @@ def _record_alone(setup: RunSetup) -> Outcome:
     """A run of its own: what sensors and planner remember is not that of the run with people."""
     from crowdbot.core.sim.record_all import record_all  # imports Drake
 
-    builts = {
-        name: build_run(setup.scenario, setup.registry, setup.choice.of(name), setup.record, name)
-        for name in setup.scenario.robots
-    }
+    builts = build_runs(setup.scenario, setup.registry, setup.choice, setup.record)
     return record_all(setup, builts)
 
 

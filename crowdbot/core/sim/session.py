@@ -7,99 +7,33 @@ in the planner's step while the session waits for a command: only one of the two
 
 from __future__ import annotations
 
-import atexit
 import math
 import os
-import queue
-import sys
 import threading
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from numbers import Real
 from pathlib import Path
 from types import TracebackType
 from typing import Any, cast
 
-from crowdbot.core.planning.host import STOP, PlannerHost
-from crowdbot.core.planning.planner import Observation, Planner, Task
+from crowdbot.core.planning.host import PlannerHost
+from crowdbot.core.planning.planner import Observation, Planner
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.recording import read_trajectories
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.sim.built_run import BuiltRun, build_run
-from crowdbot.core.sim.record import record_robot
 from crowdbot.core.sim.record_crowd import RunSetup
+from crowdbot.core.sim.run_thread import Exchange, own_stdout, start_run
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.motion import Command
-from crowdbot.core.types.robot import RobotLimits
-from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.dsl.seeds import stream_seed
 from crowdbot.errors import InputError
 
 #: What a session takes as a command: v, w and for a robot that goes sideways vy; m/s, rad/s.
 CommandLike = Command | tuple[float, ...] | Sequence[float]
-
-
-class _Exchange:
-    """Hands observations out of the run's thread and commands into it."""
-
-    def __init__(self) -> None:
-        self._out: queue.SimpleQueue[Observation | Outcome | BaseException] = queue.SimpleQueue()
-        self._in: queue.SimpleQueue[Command | None] = queue.SimpleQueue()
-        self.closed = False
-
-    def reset(
-        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
-    ) -> None:
-        """Nothing: whoever holds the session knows all that already."""
-
-    def step(self, obs: Observation) -> Command:
-        """The planner's side: show what is seen, wait for the answer."""
-        if self.closed:
-            return STOP
-        self._out.put(obs)
-        answer = self._in.get()
-        return STOP if answer is None else answer
-
-    def put(self, end: Outcome | BaseException) -> None:
-        """The run's side: it is over."""
-        self._out.put(end)
-
-    def next(self) -> Observation | Outcome | BaseException:
-        """The session's side: what comes next."""
-        return self._out.get()
-
-    def answer(self, command: Command) -> None:
-        """The session's side: go on."""
-        self._in.put(command)
-
-    def close(self) -> None:
-        """The session's side: end the run at its next look."""
-        self.closed = True
-        self._in.put(None)
-
-
-#: Runs that go on, with their threads: at its exit Python must not cut one off inside Drake.
-_GOING_ON: dict[_Exchange, threading.Thread] = {}
-
-
-@atexit.register
-def _end_all() -> None:
-    for exchange, thread in list(_GOING_ON.items()):
-        exchange.close()
-        thread.join()
-
-
-def _simulate(exchange: _Exchange, setup: RunSetup, built: BuiltRun, host: PlannerHost) -> None:
-    """The run's thread."""
-    try:
-        exchange.put(record_robot(setup, built, host))
-    except BaseException as error:  # raised again where the session is stepped
-        exchange.put(error)
-    finally:
-        _GOING_ON.pop(exchange, None)
 
 
 class Session:
@@ -156,12 +90,13 @@ class Session:
         self._choice = _choice(sensors, privileged=privileged)
         self._recording = None if recording is None else Path(recording)
         self._people = population(scenario, self._registry).agents
-        self._exchange: _Exchange | None = None
+        self._exchange: Exchange | None = None
         self._thread: threading.Thread | None = None
         self._observation: Observation | None = None
         self._outcome: Outcome | None = None
         self._seed = _checked_seed(seed)
-        self._describe(self._build())
+        self._built: BuiltRun | None = self._build()
+        self._describe(self._built)
 
     def reset(self, seed: int | None = None) -> Observation:
         """Begin the run, again if it has begun already.
@@ -178,10 +113,10 @@ class Session:
         """
         self.close()
         self._seed = self._seed if seed is None else _checked_seed(seed)
-        built = self._build()
+        built, self._built = self._built or self._build(), None  # sensors remember: for one run
         self._describe(built)
         self._outcome = None
-        exchange = self._exchange = _Exchange()
+        exchange = self._exchange = Exchange()
         host = PlannerHost(cast(Planner, exchange), "session", self.limits)
         setup = RunSetup(
             scenario=self.scenario,
@@ -196,11 +131,7 @@ class Session:
             stop=lambda: exchange.closed,
             on_hang=None,
         )
-        self._thread = threading.Thread(
-            target=_simulate, args=(exchange, setup, built, host), name="session", daemon=True
-        )
-        _GOING_ON[exchange] = self._thread
-        self._thread.start()
+        self._thread = start_run(exchange, setup, built, host)
         return self._take()
 
     def step(self, command: CommandLike) -> Observation:
@@ -238,7 +169,7 @@ class Session:
         exchange, self._exchange = self._exchange, None
         if exchange is None or self._thread is None:
             return
-        with _own_stdout():
+        with own_stdout():
             exchange.close()
             self._thread.join()
         self._thread = None
@@ -298,7 +229,7 @@ class Session:
 
     def __del__(self) -> None:
         if getattr(self, "_exchange", None) is not None:
-            cast(_Exchange, self._exchange).close()
+            cast(Exchange, self._exchange).close()
 
     def _build(self) -> BuiltRun:
         return build_run(self.scenario, self._registry, self._choice, "used")
@@ -311,7 +242,7 @@ class Session:
     def _take(self) -> Observation:
         """What the run says next; errors of the run are raised here."""
         assert self._exchange is not None
-        with _own_stdout():
+        with own_stdout():
             answer = self._exchange.next()
         if isinstance(answer, Observation):
             self._observation = answer
@@ -330,16 +261,6 @@ class Session:
     def _partial(self) -> Path:
         assert self._recording is not None
         return self._recording.with_name(f"{self._recording.name}.partial")
-
-
-@contextmanager
-def _own_stdout() -> Iterator[None]:
-    """Undo that the run sends what a planner prints to stderr: the planner waits in its step."""
-    mine = sys.stdout
-    try:
-        yield
-    finally:
-        sys.stdout = mine
 
 
 def _checked_seed(seed: int) -> int:

@@ -153,15 +153,22 @@ def _check_options(seed: int, suite: str, record: str, step_budget: float | None
         )
 
 
-def make_run(request: Request, prepared: Prepared, keep: object = None) -> Run:
+def make_run(
+    request: Request,
+    prepared: Prepared,
+    keep: object = None,
+    builts: Mapping[str, BuiltRun] | None = None,
+) -> Run:
     """Simulate and score one run whose scenario is prepared; see `simulate`.
 
     Args:
         request: what is wanted.
         prepared: its scenario.
         keep: lives as long as the result.
+        builts: what `preflight` made of the request, where the caller had to look at it; no other
+            run may use it.
     """
-    builts = preflight(request)
+    builts = preflight(request) if builts is None else builts
     identity = run_identity(request, prepared.run)
     references = references_of(request, prepared)
     if not request.force:

@@ -31,7 +31,10 @@ class Trips:
         self.x: list[Array] = []
         self.jumps: list[Array] = []
 
-    def state(self, t: float, robot: None, agents: Array, jump: Array) -> None:
+    def state(
+        self, t: float, robot: None, agents: Array, jump: Array, *, goals: Array | None
+    ) -> None:
+        assert goals is not None
         assert t >= 0.0
         assert robot is None
         self.x.append(agents[0])

@@ -83,7 +83,8 @@ class Memory:
     contacts: list[dict[str, float]] = field(default_factory=list)
     flushes: int = 0
 
-    def state(self, t: float, robot: Any, agents: Any, jump: Any) -> None:
+    def state(self, t: float, robot: Any, agents: Any, jump: Any, *, goals: Array | None) -> None:
+        del goals
         self.states.append((t, robot, agents, jump))
 
     def reading(self, name: str, reading: Reading) -> None:

@@ -9,12 +9,19 @@ from typing import Any
 import pytest
 
 from crowdbot.api import registry
-from crowdbot.core.planning.resolve import resolve_planner
+from crowdbot.core.live.planner import Manner
+from crowdbot.core.live.serve import LiveServe, serve_runs
+from crowdbot.core.live.session import LiveSession
+from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
+from crowdbot.core.runs.request import Request
 from crowdbot.core.sim.built_run import build_run
+from crowdbot.core.sim.session import Session
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.dsl.component_specs import EnvironmentSpec, RobotSpec, SensorSpec
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
+from tests.core.sim.fleet.fleets import robot
+from tests.core.sim.fleet.fleets import scenario as fleet_scenario
 from tests.core.sim.sim_worlds import scenario
 
 SHORT = "robots.robot.task.time_limit=0.25"
@@ -44,8 +51,8 @@ def counted(
         world, counting, planner="goal_seek", out=out, record=record,  # type: ignore[arg-type]
         references=references, replay=False,
     )  # fmt: skip
-    robot = world.robots["robot"]
-    named = [world.environment, robot.model, *robot.sensors.values()]
+    one = world.robots["robot"]
+    named = [world.environment, one.model, *one.sensors.values()]
     return counting.built, Counter(f"{spec.category} {spec.kind}" for spec in named)
 
 
@@ -63,6 +70,53 @@ def test_calibration_runs_are_recordings_of_their_own(tmp_path: Path) -> None:
     place = f"environment {world.environment.kind}"
     assert built.pop(place) == 3  # the run, the robot alone, the people alone
     assert built == Counter({kind: 2 * n for kind, n in named.items() if kind != place})
+
+
+@pytest.mark.slow
+def test_several_robots_share_one_environment(tmp_path: Path) -> None:
+    robots = {name: robot(x, 0.0, 0.0, "east", 0.25) for name, x in (("a", -6.0), ("b", 6.0))}
+    counting = Counting()
+    world = fleet_scenario(tmp_path, registry(), robots)
+    simulate(
+        world, counting, planner="goal_seek", out=tmp_path, replay=False,  # type: ignore[arg-type]
+    )  # fmt: skip
+    assert counting.built == {
+        "environment floor": 1, "robot turtlebot2": 2, "sensor lidar2d": 2,
+        "sensor wheel_odometry": 2,
+    }  # fmt: skip
+
+
+@pytest.mark.slow
+def test_a_session_builds_what_each_of_its_runs_needs() -> None:
+    """Its first run takes what the session looked at; another one does not get used sensors."""
+    world, counting = scenario(SHORT), Counting()
+    with Session(world, sensors=["lidar"], registry=counting) as session:  # type: ignore[arg-type]
+        session.reset()
+        place = f"environment {world.environment.kind}"
+        assert counting.built[place] == 1
+        once = Counter(counting.built)
+        session.reset()
+    assert counting.built == {kind: 2 * n for kind, n in once.items()}
+
+
+@pytest.mark.slow
+def test_a_live_run_shows_clients_what_is_simulated(tmp_path: Path) -> None:
+    world, counting = scenario(SHORT), Counting()
+
+    def request(scenario: Scenario, choice: PlannerChoice, seed: int) -> Request:
+        return Request(
+            scenario=scenario, choice=choice, registry=counting,  # type: ignore[arg-type]
+            seed=seed, out=tmp_path, references=False, replay=False,
+        )  # fmt: skip
+
+    manner = Manner(rate=None, budget=0.001, wait=0.0)
+    live = LiveServe(
+        session=LiveSession(), doors=(), manner=manner, scenarios=(world,), request=request
+    )
+    assert serve_runs(live).status == "timeout"
+    one = world.robots["robot"]
+    named = [world.environment, one.model, *one.sensors.values()]
+    assert counting.built == Counter(f"{spec.category} {spec.kind}" for spec in named)
 
 
 @pytest.mark.slow
