@@ -3,15 +3,15 @@
     python scripts/write_crowd_validation.py [--seeds 1..3] [NAME...]
 
 Simulates each named crowd (and the crowd of challenge-2026) where people were recorded, and writes
-docs/reference/crowd/validation.md and crowdbot/core/realism/known_crowds.json. With names only
-these are simulated again; the others keep what was written before.
+docs/reference/crowd/validation.md and crowdbot/core/realism/known_crowds.json, crowd by crowd. With
+names only these are simulated, in that order; the others keep what was written before.
 """
 
 from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,7 @@ from crowdbot.core.scenarios.named_crowds import crowd_parts, open_crowd
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.dsl.crowd_likeness import fingerprint
 from crowdbot.dsl.scenario import Crowd
+from crowdbot.errors import UnknownNameError
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "reference" / "crowd" / "validation.md"
@@ -79,7 +80,8 @@ def page(rows: Sequence[dict[str, Any]], reference: RealismReference) -> str:
         "",
         "Named crowds have no bodies and speeds of their own unless the part says so: people of "
         "0.2 m radius who prefer 1.5 m/s. `challenge mix` is the crowd of `challenge-2026` with "
-        "its own bodies and speeds.",
+        "its own bodies and speeds. `demo_2` equals `social_forces`: they differ only in ranges "
+        "beyond which nobody is felt ([named policies](named_policies.md)).",
         "",
         *_table(
             ["crowd", "index", "score", "speed", "acceleration", "turning", "nearest",
@@ -164,6 +166,13 @@ def _table(head: list[str], rows: list[list[str]]) -> list[str]:
     return [f"| {' | '.join(line)} |" for line in [head, ["---"] * len(head), *rows]]
 
 
+def write(rows: Mapping[str, tuple[str, dict[str, Any]]], reference: RealismReference) -> None:
+    """Numbers and page, after each crowd: whoever stops this keeps what was measured."""
+    kept = dict(rows.values())
+    atomic_write(NUMBERS, json.dumps(kept, indent=1, ensure_ascii=False) + "\n")
+    atomic_write(PAGE, page([row for _, row in rows.values()], reference))
+
+
 def main(arguments: Sequence[str]) -> None:
     """Measure and write."""
     from crowdbot.cli._campaign_run import read_seeds
@@ -176,20 +185,17 @@ def main(arguments: Sequence[str]) -> None:
         del words[place : place + 2]
     registry, reference = discover(allow=()), shipped()
     before = json.loads(NUMBERS.read_text(encoding="utf-8")) if NUMBERS.exists() else {}
-    known = {row["name"]: row for row in before.values()}
-    rows = {}
-    for name, crowd in crowds(registry):
-        if name in known and words and name not in words:
-            rows[fingerprint(crowd)] = known[name]
-            continue
-        if words and name not in words:
-            continue
+    rows = {row["name"]: (key, row) for key, row in before.items()}
+    listed = dict(crowds(registry))
+    for name in words:
+        if name not in listed:
+            raise UnknownNameError("crowd", name, sorted(listed))
+    for name in words or listed:
+        crowd = listed[name]
         found = measure(name, model_of(crowd, registry), reference, seeds)
-        rows[fingerprint(crowd)] = row_of(name, found)
-        print(found.line, flush=True)
-        atomic_write(NUMBERS, json.dumps(rows, indent=1, ensure_ascii=False) + "\n")
-    atomic_write(NUMBERS, json.dumps(rows, indent=1, ensure_ascii=False) + "\n")
-    atomic_write(PAGE, page(list(rows.values()), reference))
+        rows[name] = fingerprint(crowd), row_of(name, found)
+        print(f"{found.line}, index {found.index:.3f}", flush=True)
+        write({n: rows[n] for n in listed if n in rows}, reference)
     print(f"{PAGE}\n{NUMBERS}; floors: {', '.join(FLOORS)}")
 
 

@@ -29,7 +29,9 @@ def calibrate(
     reference: Annotated[
         list[Path] | None,
         typer.Option(
-            metavar="FILE", help="Recordings of your own, .mcap or .csv (t,id,x,y); repeatable."
+            metavar="FILE",
+            help="Recordings of your own: .mcap, .csv (t,id,x,y), .ndjson (TrajNet++), .txt (ETH, "
+            "UCY), a bag of ROS or BAG:/TOPIC; repeatable.",
         ),
     ] = None,
     fit: Annotated[

@@ -35,10 +35,12 @@ def realism(
     reference: Annotated[
         list[Path] | None,
         typer.Option(
-            metavar="FILE", help="Recordings of your own, .mcap or .csv (t,id,x,y); repeatable."
+            metavar="FILE",
+            help="Recordings of your own: .mcap, .csv (t,id,x,y), .ndjson (TrajNet++), .txt (ETH, "
+            "UCY), a bag of ROS or BAG:/TOPIC; repeatable.",
         ),
     ] = None,
-    seeds: Annotated[str, typer.Option(metavar="1,2,3|1..5", help="Draws.")] = "1..3",
+    seeds: Annotated[str, typer.Option(metavar="1,2,3|1..5", help="Draws.")] = "1..16",
     overrides: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Change the crowd; repeatable."),
@@ -111,12 +113,15 @@ def _simulated(
 def _of_runs(path: Path, beside: RealismReference) -> Realism:
     """What people in finished runs did, all runs together."""
     from crowdbot.core.realism.measure import measure_tracks
-    from crowdbot.core.realism.reference import read_tracks
+    from crowdbot.core.realism.recordings import read_runs
 
     files = sorted(path.rglob("*.mcap")) if path.is_dir() else [path]
     if not files:
         raise InputError(f"{path}: there are no recordings (.mcap) in it")
-    return measure_tracks(str(path), [[read_tracks(f) for f in files]], beside)
+    tracks, without = read_runs(files)
+    if without:
+        typer.echo(f"left out: {len(without)} of {len(files)} recordings; {without[0]}", err=True)
+    return measure_tracks(str(path), [tracks], beside)
 
 
 def _json(found: Sequence[Realism]) -> str:

@@ -16,8 +16,8 @@ from crowdbot.core.realism.reference import RealismReference
 from crowdbot.core.realism.statistics import Statistics, statistics_of
 from crowdbot.core.realism.tracks import Tracks
 
-#: Draws of the corridors: three keep the index within 0.01.
-SEEDS = (1, 2, 3)
+#: Draws of the corridors: the index of one deviates by 0.022, the mean of sixteen by 0.006.
+SEEDS = tuple(range(1, 17))
 #: What is told beside the five features, as parts from 0 to 1.
 DIAGRAM, LANES, PAIRS = "fundamental_diagram", "lanes", "pair_correlation"
 

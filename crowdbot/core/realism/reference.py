@@ -13,9 +13,9 @@ from typing import Any
 from crowdbot.core.realism.compare import RealismScore, compared_cells, score
 from crowdbot.core.realism.corridor import corridors, simulate
 from crowdbot.core.realism.model import CrowdModel, avoid_nobody, ghosts
+from crowdbot.core.realism.recordings import read_tracks
 from crowdbot.core.realism.statistics import Statistics, statistics_of
-from crowdbot.core.realism.tracks import Tracks, tracks_of
-from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.realism.tracks import Tracks
 from crowdbot.errors import InputError
 
 SHIPPED = "recorded_corridors.json"
@@ -119,27 +119,12 @@ def reference_of(
 
 
 def read_reference(files: Sequence[Path]) -> RealismReference:
-    """A reference from files of the user: recordings (.mcap) or tables t,id,x,y (.csv).
+    """A reference from files of the user, in the formats of `read_tracks`.
 
     Raises:
         InputError: a file cannot be read, or there is nothing to compare in it.
     """
     return reference_of([read_tracks(f) for f in files], [str(f) for f in files])
-
-
-def read_tracks(path: Path) -> Tracks:
-    """Tracks from a recording or from a table of people.
-
-    Raises:
-        InputError: it cannot be read.
-    """
-    if not path.is_file():
-        raise InputError(f"{path}: no such file")
-    if path.suffix.lower() == ".mcap":
-        return tracks_of(Trajectories.from_mcap(path), str(path))
-    if path.suffix.lower() == ".csv":
-        return tracks_of(Trajectories.from_csv(agents=path, agent_radius=0.0), str(path))
-    raise InputError(f"{path}: neither a recording (.mcap) nor a table of people (.csv)")
 
 
 def floors_of(seeds: Sequence[int]) -> dict[str, Statistics]:
@@ -188,7 +173,6 @@ __all__ = [
     "RealismReference",
     "floors_of",
     "read_reference",
-    "read_tracks",
     "reference_of",
     "shipped",
 ]

@@ -24,6 +24,10 @@ _TAIL = 0.005
 _LONG = 20.0
 
 
+class NothingToCompareError(InputError):
+    """Nobody walks in a recording, or not for long enough."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tracks:
     """People in a corridor along x, at 4 Hz.
@@ -77,16 +81,16 @@ def tracks_of(
         centre: compare only one window, about x = 0 (recordings whose cameras see no more).
 
     Raises:
-        InputError: nobody walks, or the run is too short.
+        NothingToCompareError: nobody walks, or the run is too short.
     """
     if run.agents is None or not np.any(np.isfinite(run.agents.x)):
-        raise InputError(f"{name}: there are no people in it")
+        raise NothingToCompareError(f"{name}: there are no people in it")
     at = _at_rate(run.t, run.agents.x, run.agents.y, run.agents.jump)
     at = _along_x(at)
     frames = len(at)
     first, last = int(_MARGIN * frames), int((1.0 - _MARGIN) * frames)
     if last - first < 8:
-        raise InputError(
+        raise NothingToCompareError(
             f"{name}: {frames / RATE:.1f} s are too short; 3 s and more can be compared"
         )
     windows = np.array([[-WINDOW / 2, WINDOW / 2]]) if centre else _windows(at[..., 0])

@@ -47,7 +47,21 @@ def bag_tables(
     return _table(path, robot, robot_rows), _table(path, people, people_rows)
 
 
-def _messages(path: Path, topics: set[str]) -> Iterator[tuple[str, int, Any]]:
+def people_topics(path: Path) -> list[str]:
+    """Topics of a bag whose messages have a list of people with positions, in order.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    found: dict[str, bool] = {}
+    for topic, _, message in _messages(path):
+        items = next((getattr(message, n) for n in _LISTS if hasattr(message, n)), ())
+        if len(items):  # whoever looks at an empty list does not know yet
+            found[topic] = found.get(topic, True) and all(_pose(i) is not None for i in items)
+    return sorted(topic for topic, people in found.items() if people)
+
+
+def _messages(path: Path, topics: set[str] | None = None) -> Iterator[tuple[str, int, Any]]:
     from rosbags.highlevel import AnyReader, AnyReaderError
     from rosbags.typesys import Stores, get_typestore
 
@@ -56,9 +70,9 @@ def _messages(path: Path, topics: set[str]) -> Iterator[tuple[str, int, Any]]:
     try:
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
             known = {c.topic for c in reader.connections}
-            for topic in sorted(topics - known):
+            for topic in sorted((topics or set()) - known):
                 raise UnknownNameError("topic", topic, known)
-            chosen = [c for c in reader.connections if c.topic in topics]
+            chosen = [c for c in reader.connections if topics is None or c.topic in topics]
             for connection, ns, raw in reader.messages(connections=chosen):
                 yield connection.topic, ns, reader.deserialize(raw, connection.msgtype)
     except AnyReaderError as error:

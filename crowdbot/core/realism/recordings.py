@@ -1,0 +1,116 @@
+"""Tracks of people from files, in the formats that `Trajectories` reads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from crowdbot.core.realism.tracks import NothingToCompareError, Tracks, tracks_of
+from crowdbot.core.trajectories.bag_tables import people_topics
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.errors import InputError
+
+#: Between a bag and a topic in it.
+_TOPIC = ":/"
+_BAGS = (".bag", ".db3")
+#: Before the first text of a container (mcap.dev/spec): magic, opcode and length; and its begin.
+_HEAD, _LONGEST = 8 + 1 + 8, 1000
+_FORMATS = (
+    "a recording (.mcap), a table t,id,x,y (.csv, .tsv), a bag of ROS (.bag, .db3, .mcap, or a "
+    "folder with metadata.yaml), TrajNet++ (.ndjson), or ETH and UCY (.txt)"
+)
+
+
+def read_tracks(path: Path) -> Tracks:
+    """Tracks from a recording, a table of people, a bag of ROS, or a file of a data set.
+
+    Args:
+        path: of a bag with several topics of people, ``BAG:/TOPIC``.
+
+    Raises:
+        InputError: it cannot be read, or is of another format.
+        UnknownNameError: a bag has no such topic.
+    """
+    if not path.exists() and _TOPIC in str(path):
+        bag, _, topic = str(path).partition(_TOPIC)
+        return tracks_of(_bag(Path(bag), f"/{topic}"), str(path))
+    if not path.exists():
+        raise InputError(f"{path}: no such file")
+    if path.is_dir():
+        if (path / "metadata.yaml").is_file():
+            return tracks_of(_bag(path), str(path))
+        raise InputError(f"{path}: a folder, but not a bag of ROS: it has no metadata.yaml")
+    reader = _READERS.get(path.suffix.lower())
+    if reader is None:
+        raise InputError(f"{path}: not {_FORMATS}")
+    return tracks_of(reader(path), str(path))
+
+
+def read_runs(files: Sequence[Path]) -> tuple[list[Tracks], list[str]]:
+    """Tracks of finished runs, and why others are left out: nobody is there, or for too short.
+
+    Raises:
+        InputError: a recording cannot be read, or all are left out.
+    """
+    found: list[Tracks] = []
+    without: list[str] = []
+    for file in files:
+        try:
+            found.append(tracks_of(Trajectories.from_mcap(file), str(file)))
+        except NothingToCompareError as error:
+            without.append(str(error))
+    if not found:
+        raise InputError(without[0])
+    return found, without
+
+
+def _bag(path: Path, topic: str | None = None) -> Trajectories:
+    """People of a bag: of the topic that has some, if none is named."""
+    if topic is None:
+        topics = people_topics(path)
+        if len(topics) != 1:
+            seen = f"people are in {', '.join(topics)}" if topics else "no topic holds people"
+            raise InputError(f"{path}: which topic? Write {path}{_TOPIC}TOPIC; {seen}")
+        topic = topics[0]
+    return Trajectories.from_rosbag(path, people=topic)
+
+
+def _recording(path: Path) -> Trajectories:
+    """A recording of crowdbot's, or a bag of ROS in the same container."""
+    profile, library = _origin(path)
+    if profile.startswith("ros") and library != "crowdbot":
+        return _bag(path)
+    return Trajectories.from_mcap(path)
+
+
+def _origin(path: Path) -> tuple[str, str]:
+    """Profile and library that a container names in its first record; empty where it does not."""
+    with path.open("rb") as file:
+        head = file.read(_LONGEST)
+    at, found = _HEAD, []
+    for _ in range(2):
+        length = int.from_bytes(head[at : at + 4], "little")
+        found.append(head[at + 4 : at + 4 + length].decode("utf-8", errors="replace"))
+        at += 4 + length
+    return found[0], found[1]
+
+
+def _table(path: Path) -> Trajectories:
+    return Trajectories.from_csv(agents=path, agent_radius=0.0)
+
+
+def _data_set(path: Path) -> Trajectories:
+    return Trajectories.from_eth_ucy(path)
+
+
+_READERS: Mapping[str, Callable[[Path], Trajectories]] = {
+    ".mcap": _recording,
+    ".csv": _table,
+    ".tsv": _table,
+    ".ndjson": Trajectories.from_trajnet,
+    ".txt": _data_set,
+    **dict.fromkeys(_BAGS, _bag),
+}
+
+
+__all__ = ["read_runs", "read_tracks"]
