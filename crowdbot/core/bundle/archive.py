@@ -24,7 +24,7 @@ LIMITS: Mapping[str, int] = {
 }
 _ALL_TEXTS = 2 << 30  # all members but recordings, which are stored as they are
 _MOST = 100_000
-_NAME = re.compile(r"(?:[A-Za-z0-9_+.:@~-]+/)*[A-Za-z0-9_+.:@~-]+")
+_NAME = re.compile(r"(?:[A-Za-z0-9_+.:@~=,-]+/)*[A-Za-z0-9_+.:@~=,-]+")
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the first moment that the format knows
 _CHUNK = 1 << 20
 
@@ -195,7 +195,7 @@ def _name_problem(name: str) -> str:
     if name.startswith("/") or "\\" in name or ".." in name.split("/") or "." in name.split("/"):
         return "it leads out of the folder"
     if not _NAME.fullmatch(name):
-        return "its name has other characters than letters, digits and _ + - . : @ ~"
+        return "its name has other characters than letters, digits and _ + - . : @ ~ = ,"
     if Path(name).suffix not in LIMITS:
         return f"only {', '.join(LIMITS)} belong into a bundle"
     return ""

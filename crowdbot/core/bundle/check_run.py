@@ -7,12 +7,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from crowdbot.core.bundle.check_fleet import arrivals, fleet_problems
 from crowdbot.core.bundle.manifest import BundledRun, Manifest
 from crowdbot.core.bundle.pack import is_privileged
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_model import record_problems
+from crowdbot.core.scoring.fleet_scores import AT
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.metric_component import MetricComponent
 
@@ -50,6 +52,7 @@ def run_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:
     yield from _identity_problems(run, manifest)
     yield from _ending_problems(run)
     yield from _score_problems(run, manifest)
+    yield from fleet_problems(run.record, run.scores)
 
 
 def declared_problems(run: ClaimedRun, registry: Registry) -> Iterator[str]:
@@ -60,7 +63,7 @@ def declared_problems(run: ClaimedRun, registry: Registry) -> Iterator[str]:
         version = _map(_map(run.record, "metrics"), score.metric).get("spec_version")
         if not isinstance(metric, MetricComponent) or metric.spec_version != version:
             continue  # not comparable, which is told where scores are compared
-        declared = metric.variants.get(score.variant)
+        declared = metric.variants.get(score.variant.partition(AT)[0])
         if declared is None:
             yield f"{score.metric} has no variant '{score.variant[:60]}'"
             continue
@@ -107,12 +110,16 @@ def _directory(run: ClaimedRun, manifest: Manifest) -> str:
 
 def _ending_problems(run: ClaimedRun) -> Iterator[str]:
     """Where status, time of arrival and success contradict each other."""
-    arrived = run.record["goal_time"] is not None
-    if (run.record["status"] == "arrived") > arrived:
+    if run.record["status"] == "arrived" and run.record["goal_time"] is None:
         yield "its status is 'arrived', but it has no time of arrival"
+    arrived = arrivals(run.record)
     for score in run.scores:
-        if (score.metric, score.status) == ("success", "ok") and score.value != arrived:
-            yield f"its success is {score.value:g}, which its time of arrival contradicts"
+        _, _, robot = score.variant.partition(AT)
+        if (score.metric, score.status) != ("success", "ok") or robot not in arrived:
+            continue
+        if score.value != arrived[robot]:
+            whose = f"success of {robot}" if robot else "success"
+            yield f"its {whose} is {score.value:g}, which its time of arrival contradicts"
 
 
 def _score_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:

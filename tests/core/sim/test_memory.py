@@ -18,6 +18,7 @@ from crowdbot.core.sim.references import make_reference
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.core.sim.weak_callback import weak_callback
 from crowdbot.testing.tiny import tiny_scenario
+from tests.core.sim.fleet import fleets
 from tests.core.sim.sim_worlds import registry, scenario
 
 _MODES = ("differential_drive", "force", "kinematic")
@@ -61,6 +62,14 @@ def test_a_finished_run_is_thrown_away(mode: str, tmp_path: Path) -> None:
     before = _alive()
     world = tiny_scenario(registry(), control=mode, time_limit=0.125)
     simulate(world, registry(), planner="goal_seek", out=tmp_path, references=False, replay=False)
+    assert _alive() - before == set()
+
+
+@pytest.mark.slow
+def test_so_is_a_run_of_several_robots(tmp_path: Path) -> None:
+    two = {"a": fleets.robot(-6, 0, 0, "east", 0.125), "b": fleets.robot(6, 0, 180, "west", 0.125)}
+    before = _alive()
+    fleets.run(fleets.scenario(tmp_path, registry(), two, fleets.PEOPLE), registry(), tmp_path)
     assert _alive() - before == set()
 
 

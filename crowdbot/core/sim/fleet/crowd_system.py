@@ -30,7 +30,7 @@ from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.fleet.bodies import SEEN, outlines_of, rows_of
-from crowdbot.core.sim.weak_callback import weak_callback
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array
 
@@ -55,7 +55,7 @@ class FleetCrowdSystem(LeafSystem):
         engine: the people.
     """
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(
         self,

@@ -10,6 +10,7 @@ from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.crowd_system import CrowdOutputs
 from crowdbot.core.sim.fate import Fate
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 
 
@@ -19,7 +20,7 @@ class PeopleLogger(LeafSystem):
     To be added after what watches the robots: blocks publish in the order in which they came.
     """
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(self, log: RunLog, crowd_size: int, rate: float, fates: Sequence[Fate]) -> None:
         super().__init__()

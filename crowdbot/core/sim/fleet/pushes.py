@@ -8,13 +8,13 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.fleet.crowd_system import FleetCrowdSystem
 from crowdbot.core.sim.fleet.robot_contacts import FleetContacts
-from crowdbot.core.sim.weak_callback import weak_callback
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 
 
 class PushSum(LeafSystem):
     """Inputs: pushes of people and of robots. Output: their sum, as the control mode wants it."""
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(self, robot: ControlledRobot, *, people: bool) -> None:
         super().__init__()

@@ -8,12 +8,13 @@ from pydrake.systems.framework import Context, DiagramBuilder
 
 from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.sim.recorder import Recorder
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 
 
 class FleetRecorder(Recorder):
     """No ports. What robots have to write comes before the chunk of all ends."""
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(self, robots: Sequence[RecordingWriter], shared: RecordingWriter) -> None:
         super().__init__(shared)

@@ -42,7 +42,7 @@ from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.fleet.bodies import SEEN, outlines_of, rows_of
 from crowdbot.core.sim.outline_overlap import overlap_of_robots
-from crowdbot.core.sim.weak_callback import weak_callback
+from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotModel
@@ -107,7 +107,7 @@ class FleetContacts(LeafSystem):
     The event is unrestricted, as that of the crowd: both robots of a pair feel one computation.
     """
 
-    __slots__ = ()
+    __slots__ = NO_ATTRIBUTES
 
     def __init__(
         self, models: Sequence[RobotModel], fates: Sequence[Fate], logs: Sequence[RunLog]

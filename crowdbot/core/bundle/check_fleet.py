@@ -1,0 +1,69 @@
+"""Whether the scores of a bundled run of several robots fit each other."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.scoring.fleet_scores import AT, fleet_scores
+from crowdbot.core.types.score import Score
+
+#: Of sums that are read from texts.
+_ROUNDING = 1e-12
+
+
+def arrivals(record: Mapping[str, Any]) -> dict[str, bool]:
+    """Which robots arrived: by name; the robot of a run of one has an empty name."""
+    robots = record.get("robots")
+    if not robots:
+        return {"": record["goal_time"] is not None}
+    return {name: one["goal_time"] is not None for name, one in robots.items()}
+
+
+def fleet_problems(record: Mapping[str, Any], scores: Sequence[Score]) -> Iterator[str]:
+    """Where the scores of a fleet are not those of its robots together."""
+    robots = record.get("robots") or {}
+    fleet: dict[tuple[str, str], Score] = {}
+    by_robot: dict[str, dict[tuple[str, str], Score]] = {name: {} for name in robots}
+    for score in scores:
+        variant, _, robot = score.variant.partition(AT)
+        if robot and robot not in by_robot:
+            yield f"{score.metric[:60]}.{score.variant[:60]} is of a robot that {files.RECORD} " \
+                  "does not name"  # fmt: skip
+            continue
+        (by_robot[robot] if robot else fleet)[score.metric, variant] = score
+    for robot, found in by_robot.items():
+        for metric, variant in sorted(fleet.keys() ^ found.keys()):
+            yield f"{files.SCORES}: {metric[:60]}.{variant[:60]} is there of the fleet only, or " \
+                  f"of robot {robot} only"  # fmt: skip
+    if robots and all(found.keys() == fleet.keys() for found in by_robot.values()):
+        yield from _contradictions(fleet, by_robot)
+
+
+def _contradictions(
+    fleet: Mapping[tuple[str, str], Score], by_robot: Mapping[str, Mapping[tuple[str, str], Score]]
+) -> Iterator[str]:
+    for (metric, variant), score in fleet.items():
+        own = {
+            name: [replace(found[metric, variant], variant=variant)]
+            for name, found in by_robot.items()
+        }
+        wanted = fleet_scores(own)[0]
+        if score.status != wanted.status or not all(
+            _equal(a, b)
+            for a, b in (
+                (score.value, wanted.value),
+                (score.lower, wanted.lower),
+                (score.upper, wanted.upper),
+            )
+        ):
+            yield f"{metric}.{variant} of the fleet is not the mean over its robots"
+
+
+def _equal(a: float | None, b: float | None) -> bool:
+    if a is None or b is None:
+        return a is b
+    return math.isclose(a, b, rel_tol=_ROUNDING, abs_tol=_ROUNDING)
