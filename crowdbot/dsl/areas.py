@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Annotated, Any
 
 from pydantic import Discriminator, Field, Tag
@@ -10,6 +11,9 @@ from pydantic import Discriminator, Field, Tag
 from crowdbot.dsl.quantities import Angle, Length, PositiveLength
 from crowdbot.dsl.spec import Rectangle, Spec
 from crowdbot.dsl.unions import AnyOf
+
+#: Places at which room is looked for are so far apart, m, and at most so many along each side.
+_APART, _MOST_PLACES = 0.2, 100
 
 
 class Area(Spec):
@@ -49,6 +53,17 @@ class Area(Spec):
         """The corners, counter-clockwise, m."""
         a, b = 0.5 * self.size[0], 0.5 * self.size[1]
         return tuple(self.point(u, v) for u, v in ((-a, -b), (a, -b), (a, b), (-a, b)))
+
+
+def places_in(area: Area, radius: float) -> Iterator[tuple[float, float]]:
+    """Places all over an area at which a body can be told to come in, 20 cm apart up to 20 m; m."""
+    half = [max(0.0, 0.5 * side - radius) for side in area.size]
+    counts = [min(_MOST_PLACES, math.ceil(2.0 * h / _APART)) for h in half]
+    for i in range(counts[0] + 1):
+        for j in range(counts[1] + 1):
+            steps = zip((i, j), counts, half, strict=True)
+            u, v = (h * (2.0 * k / n - 1.0) if n else 0.0 for k, n, h in steps)
+            yield area.point(u, v)
 
 
 def _place_tag(value: Any) -> str:

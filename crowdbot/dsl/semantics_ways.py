@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from crowdbot.dsl.areas import Area
+from crowdbot.dsl.areas import Area, places_in
+from crowdbot.dsl.areas import Place as PlaceName
 from crowdbot.dsl.component_specs import EnvironmentSpec
 from crowdbot.dsl.diagnostics import Diagnostic
 from crowdbot.dsl.place import Place
@@ -13,6 +14,7 @@ from crowdbot.dsl.reach import Reach, reach_of
 from crowdbot.dsl.routing import MeshRouting
 from crowdbot.dsl.semantics_facts import Facts
 from crowdbot.dsl.spawning import Agent, Spawn
+from crowdbot.dsl.stream_kinds import StreamChoice, ThroughStream, WanderingStream
 from crowdbot.errors import InputError
 
 #: A body may touch a wall by rounding, m.
@@ -37,6 +39,7 @@ def check_ways(facts: Facts) -> Iterator[Diagnostic]:
         return
     ways = _Ways(facts, place.bodies(facts.crowd.body.height), environment)
     yield from ways.check_starts()
+    yield from ways.check_streams()
     if finds_way:
         yield from ways.check_agents()
         yield from ways.check_spawns()
@@ -56,6 +59,27 @@ class _Ways:
                 text = f"agent {agent.id} stands in a wall, a block or a pillar"
                 hint = f"at ({agent.x:g}, {agent.y:g}) there is {-gap:.3g} m too little room"
                 yield Diagnostic("E143", text, self.facts.mark("crowd", "agents", i, "x"), hint)
+
+    def check_streams(self) -> Iterator[Diagnostic]:
+        """There is room to come in where streams do."""
+        for name, stream in self.facts.crowd.streams.items():
+            radius = stream.body.radius or self.facts.crowd.body.radius
+            field, place = _entrance(stream)
+            area = None if place is None else self._resolve(place)
+            if area is not None and not self._has_room(area, radius):
+                text = f"nobody of stream '{name}' can come in around {_at(area)}"
+                hint = f"walls leave no room for a body of radius {radius:g} m"
+                yield Diagnostic(
+                    "E143", text, self.facts.mark("crowd", "streams", name, field), hint
+                )
+
+    def _resolve(self, place: PlaceName) -> Area | None:
+        """A place as an area: of its own, a zone or a portal."""
+        portal = self.environment.portals.get(place) if isinstance(place, str) else None
+        return self.facts.resolve(place) or (Area.of(portal) if portal else None)
+
+    def _has_room(self, area: Area, radius: float) -> bool:
+        return any(self.place.clearance(*at) >= radius - _SLACK for at in places_in(area, radius))
 
     def check_agents(self) -> Iterator[Diagnostic]:
         """A way leads along the whole route of each explicit agent."""
@@ -106,6 +130,15 @@ class _Ways:
             points += [p for area in areas if area is not None for p in area.corners]
         xs, ys = [p[0] for p in points] or [0.0], [p[1] for p in points] or [0.0]
         return reach_of(self.place, radius, (min(xs), max(xs), min(ys), max(ys)))
+
+
+def _entrance(stream: StreamChoice) -> tuple[str, PlaceName | None]:
+    """The field with the area in which people of a stream come in, if they do, and the area."""
+    if isinstance(stream, ThroughStream) and (stream.arrivals or stream.end == "return"):
+        return "origin", stream.origin
+    if isinstance(stream, WanderingStream) and stream.arrivals:
+        return "area", stream.area
+    return "", None
 
 
 def _at(area: Area) -> str:

@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -79,6 +80,7 @@ class WorldParameters(NamedTuple):
         response: what people do about robots tick by tick, see
             `crowdbot.core.crowd.response.parameters`.
         goal_key: key of the counter-based random numbers of goals and entries.
+        solids: (M, 5) sides x0, y0, x1, y1 of convex outlines, m, and the outline's number.
     """
 
     walls: Array
@@ -91,6 +93,7 @@ class WorldParameters(NamedTuple):
     stiffness: float
     dissipation: float
     goal_key: np.uint64
+    solids: Array
 
     @classmethod
     def of(cls, world: CrowdWorld) -> WorldParameters:
@@ -100,7 +103,17 @@ class WorldParameters(NamedTuple):
             w.walls, w.entrance, w.out, w.exit_point == "offset",
             ENDLESS if boundary is None else np.array(boundary, np.float64), not w.parity,
             w.response.by_tick, w.stiffness, w.dissipation, np.uint64(w.goal_key),
+            _sides(w.solids),
         )  # fmt: skip
+
+
+def _sides(outlines: Sequence[Array]) -> Array:
+    """Sides of outlines (K, 2), (M, 5), and to which outline each belongs."""
+    rows = [
+        np.column_stack([outline, np.roll(outline, -1, axis=0), np.full(len(outline), k)])
+        for k, outline in enumerate(outlines)
+    ]
+    return np.concatenate([np.zeros((0, 5)), *rows])
 
 
 class Scratch(NamedTuple):

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import RETURN
+from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.goal_areas import point_in_area
 from crowdbot.core.crowd.parameters import AgentParameters, WorldParameters
 from crowdbot.core.crowd.routes import end_trip, head_for, start_trip
@@ -112,6 +113,28 @@ def is_free(agents: Array, i: int, radius: Array, robots: Array, x: float, y: fl
 
 
 @kernel
+def is_off_walls(radius: float, world: WorldParameters, discs: Array, x: float, y: float) -> bool:
+    """Whether a body at a point touches no wall and no disc (D, 3), and is in no solid."""
+    reach = radius - _CLEAR
+    for wall in world.walls:
+        nx, ny = nearest_on_segment(x, y, wall[0], wall[1], wall[2], wall[3])
+        if (nx - x) ** 2 + (ny - y) ** 2 < reach * reach:
+            return False
+    for disc in discs:
+        if (disc[0] - x) ** 2 + (disc[1] - y) ** 2 < (reach + disc[2]) ** 2:
+            return False
+    within = False
+    for k in range(world.solids.shape[0]):
+        side = world.solids[k]
+        first = k == 0 or world.solids[k - 1, 4] != side[4]
+        if first and within:
+            return False
+        left = (side[2] - side[0]) * (y - side[1]) - (side[3] - side[1]) * (x - side[0]) > 0.0
+        within = left and (first or within)
+    return not within
+
+
+@kernel
 def enter(agents: Array, i: int, x: float, y: float, preferred: float, now: float) -> None:
     """Put agent i into the world, on the way to its goal at preferred speed."""
     agents[i, WAITING], agents[i, X], agents[i, Y] = PRESENT, x, y
@@ -133,6 +156,7 @@ def try_to_re_enter(
     people: AgentParameters,
     world: WorldParameters,
     robots: Array,
+    discs: Array,
     now: float,
 ) -> None:
     """Try one point of the in-portal; start a new trip there if it is free.
@@ -141,7 +165,7 @@ def try_to_re_enter(
     is drawn anew in each attempt.
     """
     if people.at_goal[i] == RETURN:
-        _try_to_come_back(agents, i, people, world.goal_key, robots, now)
+        _try_to_come_back(agents, i, people, world, robots, discs, now)
         return
     flow, radius, key = people.flow[i], people.radius[i], world.goal_key
     out, trip, attempt = world.out[flow], int(agents[i, TRIP]), int(agents[i, ATTEMPT])
@@ -176,12 +200,16 @@ def place_of_entry(
 
 @kernel
 def _try_to_come_back(
-    agents: Array, i: int, people: AgentParameters, key: np.uint64, robots: Array, now: float
-) -> None:
+    agents: Array, i: int, people: AgentParameters, world: WorldParameters, robots: Array,
+    discs: Array, now: float,
+) -> None:  # fmt: skip
     """Try one point of the origin; begin the way anew there if it is free."""
+    key = world.goal_key
     x, y = place_of_entry(agents, i, people, key)
     agents[i, ATTEMPT] += 1.0
     if not is_free(agents, i, people.radius, robots, x, y):
+        return
+    if not is_off_walls(people.radius[i], world, discs, x, y):
         return
     agents[i, TRIP] += 1.0
     agents[i, JUMPS] += 1.0
@@ -193,8 +221,9 @@ def _try_to_come_back(
 
 @kernel
 def try_to_start(
-    agents: Array, i: int, people: AgentParameters, key: np.uint64, robots: Array, now: float
-) -> None:
+    agents: Array, i: int, people: AgentParameters, world: WorldParameters, robots: Array,
+    discs: Array, now: float,
+) -> None:  # fmt: skip
     """Put agent i into the world where it starts, if nobody stands there.
 
     Who has an origin tries another point of it next time.
@@ -202,8 +231,9 @@ def try_to_start(
     x, y = agents[i, X], agents[i, Y]
     choice = people.origin[i, 2] > 0.0
     if choice and agents[i, ATTEMPT] > 0.0:
-        x, y = place_of_entry(agents, i, people, key)
-    if not is_free(agents, i, people.radius, robots, x, y):
+        x, y = place_of_entry(agents, i, people, world.goal_key)
+    free = is_free(agents, i, people.radius, robots, x, y)
+    if not free or (choice and not is_off_walls(people.radius[i], world, discs, x, y)):
         agents[i, ATTEMPT] += 1.0 if choice else 0.0
         return
     on_trip = agents[i, ON_TRIP]

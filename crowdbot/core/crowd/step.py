@@ -64,6 +64,7 @@ def tick(
     ahead: Indices, origin: Array, guide: Indices, abreast: Array, stays_at: Mask,
     walls: Array, entrance: Array, out: Array, keep_offset: bool, boundary: Array,
     goals_wrap: bool, response: Array, stiffness: float, dissipation: float, goal_key: np.uint64,
+    solids: Array,
     reaction: Array, placed: Array, order: Indices,
 ) -> None:  # fmt: skip
     """Advance from tick k to k + 1.
@@ -78,7 +79,7 @@ def tick(
         discs: (D, 3) x, y, radius of fixed discs that push, m.
         dt: length of the tick, s.
         ids to stays_at: fields of `AgentParameters`.
-        walls to goal_key: fields of `WorldParameters`.
+        walls to solids: fields of `WorldParameters`.
         reaction, placed, order: fields of `Scratch`.
     """
     people = AgentParameters(
@@ -87,7 +88,7 @@ def tick(
     )  # fmt: skip
     world = WorldParameters(
         walls, entrance, out, keep_offset, boundary, goals_wrap, response, stiffness, dissipation,
-        goal_key,
+        goal_key, solids,
     )  # fmt: skip
     header, agents = flat[:HEADER_SIZE], flat[HEADER_SIZE:].reshape(-1, AGENT_COLUMNS)
     now = header[TICK] * dt
@@ -109,9 +110,9 @@ def tick(
             _advance(header, agents, i, people, world, robots, outlines, reaction, now, dt)
     for i in entry_order:
         if agents[i, WAITING] == AT_PORTAL:
-            try_to_re_enter(agents, i, people, world, robots, now + dt)
+            try_to_re_enter(agents, i, people, world, robots, discs, now + dt)
         elif agents[i, WAITING] == NOT_YET and start_time[i] <= now + dt:
-            try_to_start(agents, i, people, goal_key, robots, now + dt)
+            try_to_start(agents, i, people, world, robots, discs, now + dt)
     header[TICK] += 1.0
 
 

@@ -27,6 +27,8 @@ class CrowdWorld:
     Attributes:
         walls: (S, 4) segments that people avoid, m.
         pillars: (P, 3) x, y and radius of round obstacles, m.
+        solids: convex, counter-clockwise outlines (K, 2), m, in which nobody comes in; their sides
+            are walls, too.
         periodic_boundary: (x0, x1, y0, y1) of a floor whose opposite borders are one, m; infinite
             where it has no border.
         entrance, out: (F, 4) boxes x0, x1, y0, y1 of each flow's portals, m.
@@ -46,6 +48,7 @@ class CrowdWorld:
 
     walls: Array = field(default_factory=lambda: np.zeros((0, 4)))
     pillars: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    solids: tuple[Array, ...] = ()
     periodic_boundary: Box | None = None
     entrance: Array = field(default_factory=lambda: np.zeros((0, 4)))
     out: Array = field(default_factory=lambda: np.zeros((0, 4)))

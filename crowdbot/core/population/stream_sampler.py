@@ -29,7 +29,7 @@ from crowdbot.core.population.stream_routes import (
     way_through,
 )
 from crowdbot.core.types.arrays import Array, Point
-from crowdbot.dsl.areas import Area, Place
+from crowdbot.dsl.areas import Area, Place, places_in
 from crowdbot.dsl.parameters import DurationSample, Sample
 from crowdbot.dsl.scenario import AtGoal, Crowd, Scenario
 from crowdbot.dsl.stream_kinds import (
@@ -177,9 +177,19 @@ class StreamSampler:
             for i in self._groups[unit]:
                 yield i, (float(placer.places[i, 0]), float(placer.places[i, 1]))
 
-    def _entering(self, area: Area, unit: int) -> Iterator[tuple[int, Point]]:
-        """Places of a group that enters later: clear of each other, of nobody else."""
-        yield from self._placed(area, [unit], Occupancy([]))
+    def _entering(self, area: Area, unit: int, occupancy: Occupancy) -> Iterator[tuple[int, Point]]:
+        """Places of a group that enters later: clear of walls and of each other, of nobody else."""
+        yield from self._placed(area, [unit], Occupancy([], occupancy.ground))
+
+    def _check_entrance(self, area: Area, occupancy: Occupancy) -> None:
+        """Refuse an area to come in at in which walls leave no room for the largest body."""
+        radius = float(np.max(self._radius, initial=0.0))
+        if not any(occupancy.ground.is_free(*at, radius) for at in places_in(area, radius)):
+            raise InputError(
+                f"nobody can come in at the origin of stream '{self._name}': walls leave no room "
+                f"for a body of radius {radius:g} m around "
+                f"({area.centre[0]:g}, {area.centre[1]:g})"
+            )
 
     # ------------------------------------------------------------------------ ways
     @singledispatchmethod
@@ -193,6 +203,8 @@ class StreamSampler:
         lane = [used[u % len(used)] for u in units]
         for number in dict.fromkeys(lane):
             way = self._way_through(stream, number)
+            if way.origin is not None:
+                self._check_entrance(way.origin, occupancy)
             mine = [u for u in units if lane[u] == number]
             if not self._times:
                 start = lane_of(self._area(stream.starts_in), lanes, number)
@@ -201,7 +213,7 @@ class StreamSampler:
                 continue
             origin = lane_of(self._area(stream.origin), lanes, number)
             for unit in mine:
-                for i, at in self._entering(origin, unit):
+                for i, at in self._entering(origin, unit, occupancy):
                     yield i, Start(at, way, self._times[unit])
 
     def _way_through(self, stream: ThroughStream, lane: int) -> Way:
@@ -289,7 +301,9 @@ class StreamSampler:
     ) -> Iterator[tuple[int, Start]]:
         area, units = self._area(stream.area), range(len(self._groups))
         if self._times:
-            places = dict(pair for unit in units for pair in self._entering(area, unit))
+            self._check_entrance(area, occupancy)
+            entering = (self._entering(area, unit, occupancy) for unit in units)
+            places = dict(pair for places in entering for pair in places)
         else:
             places = dict(self._placed(area, units, occupancy))
         for unit, members in enumerate(self._groups):

@@ -56,9 +56,9 @@ function compareButton(row) {
   const command = compareCommand(row);
   if (!command) return el("small", { text: "–" });
   const open = el("a", { href: replayAt(row.a.run, report.runs.replay[row.b.run]), text: "open both",
-    "aria-label": `both runs of ${row.scenario}, seed ${row.seed}, in one replay` });
+    "aria-label": `open both: the runs of ${row.scenario}, seed ${row.seed}, in one replay` });
   const button = el("button", { type: "button", title: command, text: "copy command",
-    "aria-label": `copy command for one replay of both runs of ${row.scenario}, seed ${row.seed}` });
+    "aria-label": `copy command: for one replay of both runs of ${row.scenario}, seed ${row.seed}` });
   button.onclick = () => copyText(command, button);
   return el("span", { class: "pair" }, open, " ", button);
 }

@@ -151,10 +151,11 @@ def _world(
     boxes: NDArray[np.float64],
 ) -> CrowdWorld:
     response = crowd.robot_response
-    walls, pillars, _ = parts.in_the_way(crowd.body.height)
+    walls, pillars, solids = parts.in_the_way(crowd.body.height)
     return CrowdWorld(
         walls=walls,
         pillars=pillars,
+        solids=solids,
         periodic_boundary=parts.periodic_boundary,
         entrance=boxes[:, 0],
         out=boxes[:, 1],

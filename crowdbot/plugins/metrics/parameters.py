@@ -151,7 +151,7 @@ ForcedFactor = Annotated[
     float,
     Ge(0),
     Le(1),
-    Field(default=0.5, description="Each person driven aside multiplies the score by this."),
+    Field(default=0.5, description="Share of the score that is left for each person driven aside."),
 ]
 ForcedHeadway = Annotated[
     PositiveDuration,

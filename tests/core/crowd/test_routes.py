@@ -54,6 +54,7 @@ def _record(agents: Agents, seconds: float, world: CrowdWorld | None = None) -> 
     return trips
 
 
+@settings(deadline=None)  # the first call loads a kernel
 @given(st.tuples(*[st.floats(-3, 3)] * 4), st.floats(0.05, 1.0))
 def test_reach_fraction_is_the_first_moment_within_the_radius(
     ends: tuple[float, float, float, float], radius: float

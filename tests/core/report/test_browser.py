@@ -214,7 +214,7 @@ def test_failures_are_found_with_their_replays(browser: Browser, path: Path) -> 
         moment = run.record["worst_moment"]["t"]
         up = "../" * (1 + len(Path(run.directory).parts))
         assert link.get_attribute("href") == (
-            f"runs/{run.directory}/replay.html#t={moment:.4g}&report={up}{path.name}"
+            f"runs/{run.directory}/replay.html#t={round(moment, 2):g}&report={up}{path.name}"
         )
 
 

@@ -1,0 +1,330 @@
+"""Writes what crowds do in a corridor and before a bottleneck beside published curves.
+
+    python scripts/write_flow_validation.py
+
+Simulates two crowds with the crowd engine alone and writes docs/reference/crowd/flow_validation.md
+with its picture docs/images/flow_validation.svg. The published curves:
+
+- the fundamental diagram of Weidmann, Transporttechnik der Fussgänger, ETH Zürich, 1993;
+- flow through a bottleneck that grows linearly with its width: Seyfried et al., Transportation
+  Science 43(3), 2009; Kretz et al., Journal of Statistical Mechanics, 2006, P10014.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.agents import REMOVE, Agents
+from crowdbot.core.crowd.engine import CrowdEngine
+from crowdbot.core.crowd.routing.parameters import WayFinding
+from crowdbot.core.crowd.world import CrowdWorld
+from crowdbot.core.realism.corridor import Corridor, simulate
+from crowdbot.core.realism.model import CrowdModel, model_of
+from crowdbot.core.realism.reference import shipped
+from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.core.scenarios.library import open_spec
+from crowdbot.core.scenarios.named_crowds import open_crowd
+from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs" / "reference" / "crowd" / "flow_validation.md"
+PICTURE = ROOT / "docs" / "images" / "flow_validation.svg"
+
+DENSITIES = (0.2, 0.6, 1.0, 1.4, 1.7, 2.0)  # 1/m^2
+WIDTHS = (0.8, 1.2, 1.6, 2.0, 2.4)  # m
+SEEDS = (1, 2)
+#: The bottleneck: a passage as long as that of Seyfried et al. 2009, behind a hall, m.
+LENGTH, HALL = 2.8, 8.0
+#: People before it; those who pass between the first and the last of these numbers are counted.
+PEOPLE, FIRST, LAST = 60, 15, 45
+#: After so long a jam that does not dissolve is given up, s.
+PATIENCE = 120.0
+_SPECIFIC_FLOW = 1.9  # persons per metre and second
+_COLOURS = ("#0063b1", "#c8500a")
+
+Points = list[tuple[float, float]]
+
+
+def weidmann(density: float) -> float:
+    """Speed at a density (1/m^2), m/s."""
+    return 1.34 * (1.0 - math.exp(-1.913 * (1.0 / density - 1.0 / 5.4)))
+
+
+def seyfried(width: float) -> float:
+    """Flow through a bottleneck of a width (m), persons/s."""
+    return _SPECIFIC_FLOW * width
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Measured:
+    """One crowd: speed over density, (1/m^2, m/s), and flow over width, (m, persons/s)."""
+
+    name: str
+    model: CrowdModel
+    speed: Points
+    flow: Points
+
+
+def crowds(registry: Registry) -> Iterator[tuple[str, CrowdModel]]:
+    """The two crowds that are measured."""
+    yield "calibrated", model_of(open_crowd("calibrated", registry), registry)
+    challenge = open_spec("challenge-2026", registry).scenarios[0].crowd
+    assert challenge is not None
+    yield "challenge mix", model_of(challenge, registry)
+
+
+def mean_speed(model: CrowdModel, density: float) -> float:
+    """Along a corridor of 3 m without ends in which all walk one way, m/s."""
+    found = []
+    for seed in SEEDS:
+        tracks = simulate(model, Corridor(flow="uni", density=density, seed=seed))
+        way = tracks.way[tracks.first : tracks.last, :, 0]
+        found.append(float(np.mean(way[-1] - way[0])) / (0.25 * (len(way) - 1)))
+    return float(np.mean(found))
+
+
+def bottleneck_walls(width: float) -> NDArray[np.float64]:
+    """A hall of 8 m by 10 m, and a passage along x from 0 to its length; (S, 4)."""
+    half, side = 0.5 * width, 0.5 * HALL
+    walls = [[-10.0, -side, -10.0, side]]
+    for k in (-1.0, 1.0):
+        walls += [
+            [-10.0, k * side, 0.0, k * side],
+            [0.0, k * side, 0.0, k * half],
+            [0.0, k * half, LENGTH, k * half],
+            [LENGTH, k * half, LENGTH, k * side],
+        ]
+    return np.array(walls)
+
+
+def bottleneck_flow(model: CrowdModel, width: float, seed: int) -> float:
+    """People a second through the middle of the passage; NaN if they are stuck."""
+    rng = np.random.default_rng([seed, round(100 * width), 0xB0])
+    side = math.ceil(math.sqrt(PEOPLE))
+    pitch = (HALL - 2.0 * model.radius - 0.1) / (side - 1)
+    row, column = np.divmod(np.arange(PEOPLE), side)
+    room = max(0.0, 0.5 * pitch - model.radius)
+    x = -1.0 - pitch * row + rng.uniform(-room, room, PEOPLE)
+    y = pitch * (column - 0.5 * (side - 1)) + 0.9 * rng.uniform(-room, room, PEOPLE)
+    speed = np.clip(rng.normal(model.speed, model.speed_deviation, PEOPLE), 0.5, 2.5)
+    beyond = LENGTH + 8.0
+    agents = Agents.of(
+        x=x, y=np.clip(y, -0.5 * HALL + model.radius, 0.5 * HALL - model.radius),
+        preferred_speed=speed, radius=model.radius, avoided_radius=model.avoided_radius,
+        max_speed=model.max_speed, max_acceleration=model.max_acceleration, at_goal=REMOVE,
+        routes=[[(beyond, float(v))] for v in rng.uniform(-0.4 * width, 0.4 * width, PEOPLE)],
+    )  # fmt: skip
+    world = CrowdWorld(
+        walls=bottleneck_walls(width), steering=model.steering, routing=WayFinding(key=seed),
+        decision_rate=model.decision_rate,
+    )  # fmt: skip
+    return _count(CrowdEngine(agents, world, model.policy))
+
+
+def _count(engine: CrowdEngine) -> float:
+    """Persons/s from the first to the last who are counted."""
+    flat = engine.initial_state()
+    _, rows = s.view(flat)
+    rows[:, s.VX : s.VY + 1] = 0.0
+    passed = np.full(len(rows), np.nan)
+    for k in range(round(PATIENCE * TICKS_PER_SECOND)):
+        engine.advance(flat)
+        through = np.isnan(passed) & (rows[:, s.X] > 0.5 * LENGTH)
+        passed[through] = (k + 1) * TICK
+        if np.count_nonzero(np.isfinite(passed)) > LAST:
+            times = np.sort(passed)
+            return (LAST - FIRST) / float(times[LAST] - times[FIRST])
+    return math.nan
+
+
+def measure(name: str, model: CrowdModel) -> Measured:
+    """Both curves of a crowd."""
+    speed = [(d, mean_speed(model, d)) for d in DENSITIES]
+    print(name, [f"{d:g}: {v:.2f}" for d, v in speed], flush=True)
+    flow = []
+    for width in WIDTHS:
+        found = [bottleneck_flow(model, width, seed) for seed in SEEDS]
+        flow.append((width, float(np.mean(found))))
+        print(name, width, [f"{f:.2f}" for f in found], flush=True)
+    return Measured(name=name, model=model, speed=speed, flow=flow)
+
+
+# ----------------------------------------------------------------------------------------- picture
+@dataclass(frozen=True, slots=True)
+class _Axes:
+    """A diagram from (0, 0) to ``most``; left upper corner and size in pixels."""
+
+    left: float
+    most: tuple[float, float]
+    step: tuple[float, float]
+    titles: tuple[str, str]
+    top: float = 20.0
+    size: tuple[float, float] = (330.0, 250.0)
+
+    def at(self, x: float, y: float) -> tuple[float, float]:
+        """Pixels of a point."""
+        (width, height), (wide, high) = self.size, self.most
+        return self.left + width * x / wide, self.top + height * (1.0 - y / high)
+
+    def frame(self) -> Iterator[str]:
+        """Axes, marks and titles."""
+        (x0, y0), (x1, y1) = self.at(0, 0), self.at(*self.most)
+        yield f'<path d="M{x0:.1f} {y1:.1f}V{y0:.1f}H{x1:.1f}" fill="none" stroke="#222"/>'
+        for k in range(round(self.most[0] / self.step[0]) + 1):
+            value = k * self.step[0]
+            x = self.at(value, 0)[0]
+            yield f'<text x="{x:.1f}" y="{y0 + 16:.1f}" text-anchor="middle">{value:g}</text>'
+        for k in range(round(self.most[1] / self.step[1]) + 1):
+            value = k * self.step[1]
+            y = self.at(0, value)[1]
+            yield f'<path d="M{x0:.1f} {y:.1f}H{x1:.1f}" stroke="#ddd"/>'
+            yield f'<text x="{x0 - 6:.1f}" y="{y + 4:.1f}" text-anchor="end">{value:g}</text>'
+        middle = 0.5 * (x0 + x1)
+        below = f'x="{middle:.1f}" y="{y0 + 34:.1f}" text-anchor="middle"'
+        yield f"<text {below}>{self.titles[0]}</text>"
+        yield f'<text x="{x0 - 30:.1f}" y="{y1 - 7:.1f}">{self.titles[1]}</text>'
+
+    def line(self, points: Points, style: str) -> str:
+        """A curve."""
+        text = " ".join("{:.1f},{:.1f}".format(*self.at(*p)) for p in points)
+        return f'<polyline points="{text}" fill="none" stroke-width="2" {style}/>'
+
+    def dots(self, points: Points, colour: str) -> Iterator[str]:
+        """What was measured."""
+        for x, y in points:
+            if math.isfinite(y):
+                px, py = self.at(x, y)
+                yield f'<circle cx="{px:.1f}" cy="{py:.1f}" r="4" fill="{colour}"/>'
+
+
+def picture(found: Sequence[Measured], recorded: Points) -> str:
+    """Both diagrams as SVG text."""
+    left = _Axes(45.0, (2.0, 1.6), (0.5, 0.4), ("people per m²", "speed, m/s"))
+    right = _Axes(440.0, (2.5, 6.0), (0.5, 1.0), ("width of the bottleneck, m", "persons/s"))
+    published = 'stroke="#222" stroke-dasharray="6 4"'
+    fine = np.linspace(0.05, 2.0, 80).tolist()
+    shapes = [*left.frame(), *right.frame()]
+    shapes.append(left.line([(d, weidmann(d)) for d in fine], published))
+    shapes.append(left.line(recorded, 'stroke="#2b8a3e"'))
+    shapes.append(right.line([(b, seyfried(b)) for b in WIDTHS], published))
+    for one, colour in zip(found, _COLOURS, strict=True):
+        shapes += left.dots(one.speed, colour)
+        shapes += right.dots(one.flow, colour)
+    legend = [("#222", "published (dashed)"), ("#2b8a3e", "recorded people")]
+    legend += [(c, one.name) for one, c in zip(found, _COLOURS, strict=True)]
+    for k, (colour, text) in enumerate(legend):
+        x = 60 + 180 * k
+        shapes.append(f'<circle cx="{x}" cy="330" r="4" fill="{colour}"/>')
+        shapes.append(f'<text x="{x + 10}" y="334">{text}</text>')
+    return (
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 790 345" role="img" '
+        'aria-label="Speed over density and flow over width beside published curves" '
+        'font-family="sans-serif" font-size="12" fill="#222">'
+        '<rect width="790" height="345" fill="#fff"/>' + "".join(shapes) + "</svg>\n"
+    )
+
+
+# -------------------------------------------------------------------------------------------- page
+def _rows(
+    found: Sequence[Measured], of: Callable[[Measured], Points], curve: Callable[[float], float]
+) -> Iterator[str]:
+    """A table: the published curve, and each crowd with its deviation."""
+    for k, (x, _) in enumerate(of(found[0])):
+        cells = [f"{x:.1f}", f"{curve(x):.2f}"]
+        for one in found:
+            y = of(one)[k][1]
+            away = f"{y:.2f} ({100.0 * (y / curve(x) - 1.0):+.0f} %)"
+            cells.append(away if math.isfinite(y) else "stuck")
+        yield f"| {' | '.join(cells)} |"
+
+
+def page(found: Sequence[Measured]) -> str:
+    """The page in Markdown."""
+    names = " | ".join(one.name for one in found)
+    line = "| --- | --- |" + " --- |" * len(found)
+    bodies = "; ".join(
+        f"`{one.name}` {one.model.speed:g} ± {one.model.speed_deviation:g} m/s, radius "
+        f"{one.model.radius:g} m" for one in found
+    )  # fmt: skip
+    return "\n".join([
+        "# Flow beside published curves",
+        "",
+        "Two crowds, each with its own speeds and bodies, in a corridor and before a bottleneck; "
+        "the crowd engine alone, means of two draws. Written by "
+        f"`scripts/write_flow_validation.py`. Preferred speeds: {bodies}. Nothing was fitted to "
+        "these curves; deviations are left as they are.",
+        "",
+        "![Speed over density and flow over width](../../images/flow_validation.svg)",
+        "",
+        "## Speed over density, in one direction",
+        "",
+        "A corridor 3 m wide without ends, 10 s after 6 s in which people sort themselves; the "
+        "density is that of the whole corridor. Published: v = 1.34 m/s · (1 − exp(−1.913/m² · "
+        "(1/ρ − 1/5.4 m²))), Weidmann, *Transporttechnik der Fussgänger*, ETH Zürich, 1993. "
+        "In brackets: deviation from it. The picture also has the "
+        "[recorded people](../realism.md#recorded-people) to whom `calibrated` was fitted; they "
+        "walk faster than Weidmann's.",
+        "",
+        f"| people per m² | Weidmann, m/s | {names} |",
+        line,
+        *_rows(found, lambda m: m.speed, weidmann),
+        "",
+        "## Flow through a bottleneck",
+        "",
+        f"{PEOPLE} people stand in a hall of {HALL:g} m × 10 m and leave it through a passage "
+        f"{LENGTH:g} m long, with [ways](../../howto/worlds.md#ways); between the {FIRST}th and "
+        f"the {LAST}th who pass its middle, persons per second are counted. Published: "
+        f"J = {_SPECIFIC_FLOW:g} · b persons/s for a width b in m. That the flow grows linearly "
+        "with the width is the result of Seyfried et al., *New insights into pedestrian flow "
+        "through bottlenecks*, Transportation Science 43(3), 2009; Kretz et al., *Experimental "
+        "study of pedestrian flow through a bottleneck*, J. Stat. Mech. 2006, P10014, find a "
+        "constant flow per metre as soon as two pass side by side. "
+        "*stuck*: fewer passed in two minutes.",
+        "",
+        f"| width, m | published, persons/s | {names} |",
+        line,
+        *_rows(found, lambda m: m.flow, seyfried),
+        "",
+        *NOTES,
+        "",
+    ])  # fmt: skip
+
+
+#: What the numbers mean; looked at again whenever they are written anew.
+NOTES: tuple[str, ...] = (
+    "## Where they are wrong",
+    "",
+    "- `calibrated` walks faster than Weidmann's people at all densities, by 7 to 23 %: it was "
+    "fitted to people who were told to walk through a corridor and who prefer more than 1.34 m/s. "
+    "The shape is the same.",
+    "- The challenge's mix does not slow down: up to 2 people/m² in one direction everybody keeps "
+    "walking at nearly the preferred speed, twice as fast as published. Its functions of cost "
+    "look at collisions, and who walks the same way at the same pace is on no way to collide; "
+    "nothing in it keeps a distance that grows with speed. A robot in such a flow meets a crowd "
+    "that is dense and fast.",
+    "- Before a bottleneck both are slower than published, most where it is narrow: 25 to 40 % at "
+    "0.8 and 1.2 m, about 15 % at 2.4 m. Discs do not turn their shoulders; two of the mix's "
+    "(0.66 m wide) do not fit side by side into 1.2 m, and may block each other there for "
+    "seconds, so that draws differ by a factor of two (1.77 and 0.92 persons/s).",
+)
+
+
+def main() -> None:
+    """Measure and write."""
+    found = [measure(name, model) for name, model in crowds(discover(allow=()))]
+    recorded = [(float(d), float(v)) for d, v, *_ in shipped().whole.diagram["uni"] if d <= 2.0]
+    atomic_write(PICTURE, picture(found, recorded))
+    atomic_write(PAGE, page(found))
+    print(PAGE)
+
+
+if __name__ == "__main__":
+    main()
