@@ -56,7 +56,7 @@ def run_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:
 
 
 def declared_problems(run: ClaimedRun, registry: Registry) -> Iterator[str]:
-    """Scores whose unit, direction or category is not the one that their metric declares."""
+    """Scores whose unit, direction, category or value is not what their metric declares."""
     known = registry.components("metric")
     for score in run.scores:
         metric = known.get(score.metric)
@@ -72,6 +72,10 @@ def declared_problems(run: ClaimedRun, registry: Registry) -> Iterator[str]:
         if said != wanted:
             yield f"{score.metric}.{score.variant} is {', '.join(said)} there, here " \
                   f"{', '.join(wanted)}"  # fmt: skip
+        low, high = declared.invariants.minimum, declared.invariants.maximum
+        if score.value is not None and not low <= score.value <= high:
+            yield f"{score.metric}.{score.variant} is {score.value:g}; it lies between " \
+                  f"{low:g} and {high:g}"  # fmt: skip
 
 
 def _identity_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:

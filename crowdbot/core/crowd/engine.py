@@ -264,7 +264,7 @@ class CrowdEngine:
             view = self._view(flat, rows, group.members, seen if group.sees_robot else nobody)
             decides = np.asarray(view.decides)[:, np.newaxis]
             if group.foreign:
-                view = replace(immutable_fields(view), **self._kept)
+                view = immutable_fields(replace(view, **self._kept))
             wanted = desired_acceleration(group.policy, view)
             if self._steering:
                 relaxation = getattr(group.policy, "relaxation_time", 0.0)

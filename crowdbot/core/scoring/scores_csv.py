@@ -135,11 +135,18 @@ def _row(path: str, line: int, cells: Mapping[str, Any]) -> RunScore:
         return RunScore(
             scenario=cells["scenario"],
             planner=cells["planner"],
-            seed=int(cells["seed"]),
+            seed=int(_plain(cells["seed"])),
             score=_score(cells),
         )
     except ValueError as error:
         raise InputError(f"{path}:{line}: not a score: {error}") from error
+
+
+def _plain(number: str) -> str:
+    """A number that others read alike: Python also takes ``1_0``, spaces and other digits."""
+    if not number.isascii() or "_" in number or number != number.strip():
+        raise ValueError(f"'{number[:40]}' is not a number")
+    return number
 
 
 def _score(cells: Mapping[str, Any]) -> Score:
@@ -150,7 +157,7 @@ def _score(cells: Mapping[str, Any]) -> Score:
         if cells[name] not in known:
             raise ValueError(f"{name} '{cells[name]}' is not one of {', '.join(known)}")
     values: dict[str, Any] = {name: cells[name] for name in _TEXTS}
-    values |= {name: float(cells[name]) if cells[name] else None for name in _NUMBERS}
+    values |= {name: float(_plain(cells[name])) if cells[name] else None for name in _NUMBERS}
     return Score(**values)
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +14,7 @@ from crowdbot.core.sensing.look_model import gaits, heights, place_looks, place_
 from crowdbot.core.sensing.other_robots import OtherRobot, OtherRobots
 from crowdbot.core.sensing.raycast import cast_rays
 from crowdbot.core.sensing.raycast_columns import Obstacles, RayGrid, cast_columns
+from crowdbot.core.support.immutable import immutable, immutable_fields
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.looks import Looks
 from crowdbot.core.types.motion import Pose
@@ -20,27 +22,25 @@ from crowdbot.core.types.robot import RobotState
 
 #: In place of details that are not wanted.
 _UNTOUCHED = (0.0, 0.0, 0.0)
+_Shown = TypeVar("_Shown")
 _NO_ANGLES, _NOBODY = np.empty((0, 0)), np.empty((0, 0), dtype=np.int64)
 
 
 def _constant(values: ArrayLike, shape: tuple[int, ...]) -> Array:
-    array = np.ascontiguousarray(np.broadcast_to(np.asarray(values, dtype=np.float64), shape))
-    array = array.copy()
-    array.setflags(write=False)
-    return array
+    return immutable(np.broadcast_to(np.asarray(values, dtype=np.float64), shape))
 
 
 class Scene:
     """Walls, pillars, walking people, and the robot; world frame, SI.
 
     Built once. `update` keeps views, no copies: whoever owns the arrays may go on changing them
-    in place until the first reading. The robot's own body is never hit.
+    in place until the first reading. The robot's own body is never hit. Nobody can make the arrays
+    writable that it shows.
 
     Attributes:
-        walls: (S, 4) segments x0, y0, x1, y1, m.
-        wall_heights: (S, 2) bottom and top, m.
+        wall_heights: (S, 2) bottom and top of `walls`, m.
         people_radius, people_height: (M,) m.
-        pillars, pillar_heights: (P, 3) x, y, radius, and (P, 2) bottom and top, m.
+        pillar_heights: (P, 2) bottom and top of `pillars`, m.
         fixed_walls, fixed_pillars: how many of both never move; those after them are the sides of
             other robots.
         looks: what people look like; None: all as usual.
@@ -49,8 +49,6 @@ class Scene:
         robot: the robot's state, None before the first update or in a scene without one.
         push: force of people on the robot x, y (N, world frame), and its torque about the robot's
             base (N m), in the last tick.
-        people: (M, 4) x, y (m), vx, vy (m/s), a read-only view.
-        present: (M,) bool, who is in the world, a read-only view.
     """
 
     def __init__(
@@ -64,44 +62,46 @@ class Scene:
         looks: Looks | None = None,
         robots: Sequence[OtherRobot] = (),
     ) -> None:
-        self.walls = _constant(np.reshape(walls, (-1, 4)), (np.size(walls) // 4, 4))
-        self.wall_heights = _constant(wall_heights, (len(self.walls), 2))
-        self.fixed_walls = len(self.walls)
+        self._walls = _constant(np.reshape(walls, (-1, 4)), (np.size(walls) // 4, 4))
+        self.wall_heights = _constant(wall_heights, (len(self._walls), 2))
+        self.fixed_walls = len(self._walls)
         count = np.size(people_radius)
         self.people_radius = _constant(people_radius, (count,))
         self.people_height = _constant(people_height, (count,))
         if looks is not None:
+            looks = immutable_fields(looks)
             usual = float(self.people_height[0]) if count else 0.0
             self.people_height = _constant(heights(looks, usual), (count,))
         self.looks = looks
         self._gait = None if looks is None else gaits(looks, self.people_height)
-        self.things = np.zeros((0, 6)) if looks is None else things(looks)
+        self.things = immutable(np.zeros((0, 6)) if looks is None else things(looks))
         self.robot: RobotState | None = None
         self.push: tuple[float, float, float] = _UNTOUCHED
-        self.people: Array = _constant(0.0, (count, 4))
-        self.present: NDArray[np.bool_] = np.zeros(count, dtype=np.bool_)
-        self.present.setflags(write=False)
+        self._people: Array = _constant(0.0, (count, 4))
+        self._present: NDArray[np.bool_] = immutable(np.zeros(count, dtype=np.bool_))
         self._direction, self._walked = _constant((1.0, 0.0), (count, 2)), _constant(0.0, (count,))
-        self.pillars = _constant(np.reshape(pillars, (-1, 3)), (np.size(pillars) // 3, 3))
-        self.pillar_heights = _constant(pillar_heights, (len(self.pillars), 2))
-        self.fixed_pillars = len(self.pillars)
+        self._pillars = _constant(np.reshape(pillars, (-1, 3)), (np.size(pillars) // 3, 3))
+        self.pillar_heights = _constant(pillar_heights, (len(self._pillars), 2))
+        self.fixed_pillars = len(self._pillars)
         self.others = OtherRobots(robots)
         if robots:
             self._make_room()
-        self._obstacles = Obstacles(self.walls, self.wall_heights, *self._lay_out())
+        self._obstacles = Obstacles(self._walls, self.wall_heights, *self._lay_out())
         self._placed = False
+        self._shown: dict[str, Any] = {}
 
     def _make_room(self) -> None:
         """For the sides of robots, after walls and pillars."""
         others = self.others
-        self._plates = np.concatenate([self.walls, others.plates])
-        self._rounds = np.concatenate([self.pillars, others.discs])
+        self._plates = np.concatenate([self._walls, others.plates])
+        self._rounds = np.concatenate([self._pillars, others.discs])
         # Views that kernels take for constants, as those of scenes without other robots.
-        self.walls, self.pillars = self._plates.view(), self._rounds.view()
-        self.wall_heights = np.concatenate([self.wall_heights, others.plate_heights])
-        self.pillar_heights = np.concatenate([self.pillar_heights, others.disc_heights])
-        for array in (self.walls, self.pillars, self.wall_heights, self.pillar_heights):
+        self._walls, self._pillars = self._plates.view(), self._rounds.view()
+        for array in (self._walls, self._pillars):
             array.setflags(write=False)
+        plates = np.concatenate([self.wall_heights, others.plate_heights])
+        discs = np.concatenate([self.pillar_heights, others.disc_heights])
+        self.wall_heights, self.pillar_heights = immutable(plates), immutable(discs)
 
     def show_robots(self, poses: Sequence[Pose | None]) -> None:
         """Put the other robots where they are now; None has left."""
@@ -110,18 +110,21 @@ class Scene:
         self._rounds[self.fixed_pillars :] = self.others.discs
         first = PARTS * len(self.people_radius)
         discs = self._obstacles.discs
-        discs[first + self.fixed_pillars : first + len(self.pillars), :2] = self.others.discs[:, :2]
+        end = first + len(self._pillars)
+        discs[first + self.fixed_pillars : end, :2] = self.others.discs[:, :2]
+        self._shown.clear()
 
     def _lay_out(self) -> tuple[Array, NDArray[np.int64]]:
         """Cylinders of everybody, placed later, and of the pillars; whose they are."""
         people = PARTS * len(self.people_radius)
-        fixed = people + len(self.pillars)
+        fixed = people + len(self._pillars)
         discs = np.zeros((fixed + len(self.things), DISC_COLUMNS))
-        discs[people:fixed, :3] = self.pillars
+        discs[people:fixed, :3] = self._pillars
         discs[people:fixed, 3:] = self.pillar_heights
         owner = np.arange(people) // PARTS
-        pillar = -(2 + len(self.walls) + np.arange(len(self.pillars)))
-        return discs, np.concatenate([owner, pillar, self.things[:, 0]]).astype(np.int64)
+        pillar = -(2 + len(self._walls) + np.arange(len(self._pillars)))
+        whose = np.concatenate([owner, pillar, self.things[:, 0]]).astype(np.int64)
+        return discs, whose
 
     def update(
         self,
@@ -151,31 +154,59 @@ class Scene:
         if present.shape != (count,) or present.dtype != np.bool_:
             raise ValueError(f"present must be bool ({count},), not {present.shape}")
         self.robot, self.push = robot_state, push
-        self.people = people_xyv.view()
-        self.people.setflags(write=False)
-        self.present = present.view()
-        self.present.setflags(write=False)
+        self._people = people_xyv.view()
+        self._people.setflags(write=False)
+        self._present = present.view()
+        self._present.setflags(write=False)
         self._direction = self._direction if direction is None else direction
         self._walked = self._walked if walked is None else walked
         self._placed = False
+        self._shown.clear()
+
+    @property
+    def walls(self) -> Array:
+        """Segments (S, 4) x0, y0, x1, y1, m; those of other robots last."""
+        return self._show("walls", lambda: immutable(self._walls))
+
+    @property
+    def pillars(self) -> Array:
+        """Circles (P, 3) x, y, radius, m; those of other robots last."""
+        return self._show("pillars", lambda: immutable(self._pillars))
+
+    @property
+    def people(self) -> Array:
+        """Position x, y (m) and velocity x, y (m/s) of everybody (M, 4), world frame."""
+        return self._show("people", lambda: immutable(self._people))
+
+    @property
+    def present(self) -> NDArray[np.bool_]:
+        """Who is in the world (M,)."""
+        return self._show("present", lambda: immutable(self._present))
+
+    def _show(self, name: str, copy: Callable[[], _Shown]) -> _Shown:
+        """What is shown of this instant, which nobody can write to; copied once."""
+        if name not in self._shown:
+            self._shown[name] = copy()
+        shown: _Shown = self._shown[name]
+        return shown
 
     @property
     def people_hip(self) -> Array:
         """Where the legs of people end who have their own (M,), m; 0: where they usually do."""
         none = np.zeros(len(self.people_radius))
-        return none if self._gait is None else np.ascontiguousarray(self._gait[:, 0])
+        return immutable(none if self._gait is None else self._gait[:, 0])
 
     @property
     def headings(self) -> Array:
         """Way that people face (M,), world frame, rad."""
         yaw: Array = np.arctan2(self._direction[:, 1], self._direction[:, 0])
-        return yaw
+        return immutable(yaw)
 
     @property
     def cylinders(self) -> Array:
         """Legs and trunk of everybody, pillars, then what people have with them: (D, 5).
 
-        Left leg, right leg, trunk; not to be changed.
+        Of each person the left leg, the right leg, the trunk.
 
         Columns are x, y, radius, bottom and top, m; the absent are at infinity.
         """
@@ -187,14 +218,25 @@ class Scene:
 
     @property
     def obstacles(self) -> Obstacles:
-        """All that rays can hit; not to be changed. People are placed when somebody looks."""
+        """All that rays can hit."""
+        walls, heights, discs, owner = self._everything
+        return self._show(
+            "obstacles",
+            lambda: Obstacles(
+                immutable(walls), immutable(heights), immutable(discs), immutable(owner)
+            ),
+        )
+
+    @property
+    def _everything(self) -> Obstacles:
+        """As `obstacles`, in arrays used again; people are placed when somebody looks."""
         if not self._placed:
             self._place()
             self._placed = True
         return self._obstacles
 
     def _place(self) -> None:
-        now = self.people, self.present, self._direction
+        now = self._people, self._present, self._direction
         sizes, discs = (self.people_radius, self.people_height), self._obstacles.discs
         if self._gait is None:
             place_people(*now, self._walked, *sizes, discs)
@@ -220,7 +262,7 @@ class Scene:
             without a hit; body (R,) int64, a person's index, -(2 + index) of a wall, and on from
             there of a pillar, -1 for none.
         """
-        return cast_rays(origins, directions, max_range, *self.obstacles)
+        return cast_rays(origins, directions, max_range, *self._everything)
 
     def cast_grid(
         self,
@@ -251,7 +293,7 @@ class Scene:
         if distance.size:
             x, y, z = at
             cast_columns(
-                x, y, z, yaw, max_range, floor, *grid.arrays, *self.obstacles,
+                x, y, z, yaw, max_range, floor, *grid.arrays, *self._everything,
                 distance, incidence, body,
             )  # fmt: skip
         return distance, incidence, body
@@ -270,7 +312,7 @@ class Scene:
             (H, W) depth along the axis, m: 0 for too near, inf for nothing in reach.
         """
         image = np.empty(renderer.shape, np.float32)
-        renderer.render_depth(image, at, yaw, self.walls, self.wall_heights, self.cylinders)
+        self._render(renderer, image, at, yaw)
         return image
 
     def render_depth_mm(
@@ -281,5 +323,15 @@ class Scene:
         The camera measures less than `crowdbot.core.sensing.depth_renderer.MOST_MILLIMETRES`.
         """
         image = np.empty(renderer.shape, np.uint16)
-        renderer.render_depth(image, at, yaw, self.walls, self.wall_heights, self.cylinders)
+        self._render(renderer, image, at, yaw)
         return image
+
+    def _render(
+        self,
+        renderer: DepthRenderer,
+        image: NDArray[np.float32] | NDArray[np.uint16],
+        at: tuple[float, float, float],
+        yaw: float,
+    ) -> None:
+        discs = self._everything.discs
+        renderer.render_depth(image, at, yaw, self._walls, self.wall_heights, discs)

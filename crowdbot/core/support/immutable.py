@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import fields, is_dataclass, replace
 from typing import Any, Literal, TypeVar
 
 import numpy as np
@@ -13,16 +13,35 @@ D = TypeVar("D")
 
 
 def immutable(array: NDArray[T]) -> NDArray[T]:
-    """A copy of an array, laid out like it, that refuses ``setflags(write=True)`` for good."""
+    """A copy of an array, laid out like it, that refuses ``setflags(write=True)`` for good.
+
+    The array itself if it is one of these.
+    """
+    if _lies_in_bytes(array):
+        return array
     column = array.flags.f_contiguous and not array.flags.c_contiguous
     order: Literal["F", "C"] = "F" if column else "C"
     return np.ndarray(array.shape, array.dtype, buffer=array.tobytes(order), order=order)
 
 
+def _lies_in_bytes(array: NDArray[Any]) -> bool:
+    memory: Any = array
+    while isinstance(memory, np.ndarray) and not memory.flags.writeable:
+        memory = memory.base
+    return isinstance(memory, bytes)
+
+
 def immutable_fields(value: D) -> D:
-    """A copy of a dataclass whose arrays nobody can make writable."""
+    """A copy of a dataclass whose arrays, and those of dataclasses in it, nobody can change."""
     holder: Any = value
-    arrays = {f.name: getattr(holder, f.name) for f in fields(holder) if f.init}
-    frozen = {n: immutable(a) for n, a in arrays.items() if isinstance(a, np.ndarray)}
-    copy: D = replace(holder, **frozen)
+    changed: dict[str, Any] = {}
+    for field in fields(holder):
+        old: Any = getattr(holder, field.name)
+        if field.init and isinstance(old, np.ndarray):
+            changed[field.name] = immutable(old)
+        elif field.init and is_dataclass(old) and not isinstance(old, type):
+            changed[field.name] = immutable_fields(old)
+    if all(new is getattr(holder, name) for name, new in changed.items()):
+        return value
+    copy: D = replace(holder, **changed)
     return copy

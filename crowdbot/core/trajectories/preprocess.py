@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from crowdbot.core.support.immutable import immutable
 from crowdbot.core.trajectories.trajectories import (
     AgentTracks,
     ContactEvents,
@@ -170,8 +171,7 @@ def _of_parts(
     """Velocities of a run; up to the arrival they do not know what comes after it."""
     whole = moves(run)
     for name, values in moves(truncate_at_arrival(run)).items():
-        whole[name] = np.concatenate([values, whole[name][len(values) :]])
-        whole[name].setflags(write=False)
+        whole[name] = immutable(np.concatenate([values, whole[name][len(values) :]]))
     return whole
 
 

@@ -6,13 +6,13 @@ Layout of the metric specification, section 1. Arrays are float64, read-only, sh
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core.support.immutable import immutable
+from crowdbot.core.support.immutable import immutable, immutable_fields
 from crowdbot.core.trajectories.from_recordings import FromRecordings
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
@@ -26,6 +26,18 @@ def _read_only(values: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
     except (TypeError, ValueError) as error:
         raise InputError(f"trajectories: not an array of numbers: {error}") from error
     return immutable(array)
+
+
+def _for_all(value: _Cached) -> _Cached:
+    """The same with arrays that nobody can make writable."""
+    found: Any = value
+    if isinstance(found, np.ndarray):
+        return cast(_Cached, immutable(found))
+    if type(found) is tuple:
+        return cast(_Cached, tuple(_for_all(part) for part in found))
+    if is_dataclass(found):
+        return cast(_Cached, immutable_fields(cast(Any, found)))
+    return value
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,10 +137,11 @@ class Trajectories(FromRecordings):
     def cached(self, key: Hashable, compute: Callable[[], _Cached]) -> _Cached:
         """What ``compute`` makes of this run; computed once, for all metrics that ask.
 
-        A run never changes, and its cache is dropped with it.
+        A run never changes, and its cache is dropped with it. Nobody can make arrays writable that
+        others get too: one alone, those of a tuple, those of a dataclass.
         """
         if key not in self._cache:
-            self._cache[key] = compute()
+            self._cache[key] = _for_all(compute())
         return cast(_Cached, self._cache[key])
 
     @classmethod

@@ -106,7 +106,7 @@ def make_runs(
             text = dump_scenario_yaml(scenario, registry().spec_versions(scenario))
             (folder / files.SCENARIO).write_text(text, encoding="utf-8")
             write_scores_csv(
-                folder / files.SCORES, scores(value(number), value(number)), scenario.id,
+                folder / files.SCORES, scores(value(number), value(number) / 10.0), scenario.id,
                 choice.label, seed,
             )  # fmt: skip
 

@@ -175,6 +175,7 @@ def change_row(content: bytes, old: bytes, new: bytes) -> bytes:
     (lambda c: c + c.split(b"\r\n")[1] + b"\r\n", "risk.corrected is there 2 times"),
     (lambda c: change_row(c, b",dwa,", b",other,"), "scores of another planner: 'other'"),
     (lambda c: re.sub(rb",(lower|higher),ok", b",none,ok", c), ", none there, here "),
+    (lambda c: re.sub(rb"(spl,.*,corrected),[^,]*,", rb"\1,2.5,", c), "is 2.5; it lies between 0 "),
     (lambda c: change_row(c, b",corrected,", b",better,"), "risk has no variant 'better'"),
     (lambda c: change_row(c, b",risk,", b",riskk,"), "which version of riskk was scored"),
     (lambda c: re.sub(rb",corrected,[^,]*,", b",corrected,nan,", c), "must not escape"),

@@ -162,6 +162,9 @@ GOOD = "s,p,0,collision,risk,R,corrected,1.5,s,lower,ok,,,"
         (f"{HEADER}\r\n{GOOD.replace('ok', 'fine')}\r\n", ":2: not a score: status 'fine'"),
         (f"{HEADER}\r\n{GOOD.replace('lower', 'down')}\r\n", ":2: not a score: better 'down'"),
         (f"{HEADER}\r\n{GOOD.replace(',0,', ',zero,')}\r\n", ":2: not a score: invalid literal"),
+        (f"{HEADER}\r\n{GOOD.replace('1.5', '1_0')}\r\n", ":2: not a score: '1_0' is not a number"),
+        (f"{HEADER}\r\n{GOOD.replace('1.5', '٣')}\r\n", ":2: not a score: '٣' is not a number"),
+        (f"{HEADER}\r\n{GOOD.replace(',0,', ', 0,')}\r\n", ":2: not a score: ' 0' is not a number"),
         (f'{HEADER}\r\n"s"x,p', "not a table of scores"),
     ],
 )
