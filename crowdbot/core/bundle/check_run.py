@@ -22,6 +22,8 @@ from crowdbot.dsl.metric_component import MetricComponent
 _IDENTITY = ("scenario", "suite", "planner", "seed", "hashes", "versions", "plugins")
 #: The same, in runs that have them only.
 _SOMETIMES = ("step_budget",)
+#: What an honest score may exceed its bounds by.
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +75,7 @@ def declared_problems(run: ClaimedRun, registry: Registry) -> Iterator[str]:
             yield f"{score.metric}.{score.variant} is {', '.join(said)} there, here " \
                   f"{', '.join(wanted)}"  # fmt: skip
         low, high = declared.invariants.minimum, declared.invariants.maximum
-        if score.value is not None and not low <= score.value <= high:
+        if score.value is not None and not low - _ROUNDING <= score.value <= high + _ROUNDING:
             yield f"{score.metric}.{score.variant} is {score.value:g}; it lies between " \
                   f"{low:g} and {high:g}"  # fmt: skip
 
