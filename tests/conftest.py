@@ -19,7 +19,7 @@ settings.register_profile("repeat", derandomize=True, max_examples=40)
 settings.register_profile("explore", derandomize=False, max_examples=200)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeat"))
 
-#: The longest tests, 5 minutes of processor time together: `make test-all` runs them too, so that
+#: The longest tests, 7 minutes of processor time together: `make test-all` runs them too, so that
 #: `make test` ends within 15 minutes on two cores.
 LONG = (
     "tests/cli/test_audit.py::test_a_suite_without_people_tells_nothing",
@@ -27,13 +27,21 @@ LONG = (
     "tests/cli/test_campaign.py::test_ctrl_c_ends_workers_and_keeps_what_is_finished",
     "tests/cli/test_campaign.py::test_failures_are_on_record_and_stop_nobody",
     "tests/cli/test_campaign.py::test_references_are_shared_and_replays_left_out",
+    "tests/cli/test_campaign.py::test_failures_of_planners_in_the_workers",
     "tests/cli/test_campaign_cluster.py",
     "tests/cli/test_kills.py",
     "tests/cli/test_planner_processes.py::test_a_hostile_planner_stops_no_campaign",
     "tests/cli/test_planner_processes.py::test_a_worker_is_killed",
     "tests/cli/test_plugins.py::test_show_every_kind",
+    "tests/cli/test_plugins_new.py::test_the_other_scenario_runs",
+    "tests/cli/test_plugins_new.py::test_the_package_keeps_its_promises",
+    "tests/cli/test_serve.py::test_roslibpy_drives_as_the_same_planner_inside[Twist]",
     "tests/cli/test_simulate.py::test_runs_at_once_are_the_same_run",
+    "tests/cli/test_verify_fleet.py::test_scores_of_robots_that_do_not_fit_are_found",
+    "tests/cli/test_view.py::test_runs_beside_each_other",
+    "tests/core/planning/process/test_same_trajectory.py::test_another_language_drives",
     "tests/core/replay/test_browser.py::test_axe_finds_nothing[dark]",
+    "tests/core/replay/test_browser.py::test_pictures_and_clips_are_saved",
     "tests/core/live/test_rosbridge.py::test_two_thousand_come_and_go",
     "tests/docs/test_example_package.py",
     "tests/dsl/test_mutations.py::test_refused_or_understood",

@@ -64,7 +64,8 @@ class Site:
     def run(self, *words: str, **environment: str) -> subprocess.CompletedProcess[str]:
         """A command in a process that has the packages installed."""
         paths = os.pathsep.join([str(self.folder), environment.pop("more_paths", "")])
-        env = {**os.environ, "PYTHONPATH": paths.strip(os.pathsep), **environment}
+        paths = paths.strip(os.pathsep)
+        env = {**os.environ, "PYTHONPATH": paths, "COLUMNS": "400", **environment}
         command = [sys.executable, "-c", MAIN, *words]
         done = subprocess.run(
             command, env=env, cwd=self.folder, capture_output=True, text=True, check=False

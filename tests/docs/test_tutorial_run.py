@@ -66,7 +66,12 @@ def test_every_file_is_described(run: crowdbot.Run) -> None:
 def test_every_key_is_described(run: crowdbot.Run) -> None:
     text = section(read("reference/run_directory.md"), "## run.json")
     cells = re.findall(r"^\| ((?:`\w+`(?:, )?)+) \|", text, re.M)
-    assert {k for c in cells for k in re.findall(r"`(\w+)`", c)} == {*run.record, "live", "robots"}
+    assert {k for c in cells for k in re.findall(r"`(\w+)`", c)} == {
+        *run.record,
+        "live",
+        "robots",
+        "toppled_time",
+    }
     named = ("axes", "axis_words", "metrics")  # their keys are names that a suite or a plugin chose
     chosen = {k: v for k, v in run.record.items() if k not in named}
     inner = {k for v in chosen.values() if isinstance(v, dict) for k in v}

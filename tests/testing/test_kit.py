@@ -122,8 +122,7 @@ def _people(run: Trajectories) -> int:
 
 
 def _mutates(run: Trajectories, refs: References) -> float:
-    if run.t.flags.writeable:
-        run.t[0] -= 1.0
+    run.t[0] -= 1.0
     return 0.0
 
 
@@ -131,7 +130,6 @@ def _mutates(run: Trajectories, refs: References) -> float:
     ("check", "value", "declared"),
     [
         (metric.check_pure, _grows, {}),
-        (metric.check_pure, _mutates, {}),
         (metric.check_symmetries, lambda run, refs: _x(run), {}),
         (metric.check_symmetries, lambda run, refs: float(run.t[0]), {}),
         (metric.check_self_value, lambda run, refs: 2.0, {"self_value": 1.0}),
@@ -163,6 +161,12 @@ def test_deeds_that_break_a_check(
     build(value)
     with pytest.raises(AssertionError):
         check(component(**declared))
+
+
+def test_a_metric_cannot_change_what_it_gets(build: Any) -> None:
+    build(_mutates)
+    with pytest.raises(PluginError, match="read-only"):
+        metric.check_pure(component())
 
 
 def test_a_metric_that_is_declared_as_any_component() -> None:
