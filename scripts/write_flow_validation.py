@@ -306,14 +306,14 @@ NOTES: tuple[str, ...] = (
     "fitted to people who were told to walk through a corridor and who prefer more than 1.34 m/s. "
     "The shape is the same.",
     "- The challenge's mix does not slow down: up to 2 people/m² in one direction everybody keeps "
-    "walking at nearly the preferred speed, twice as fast as published. Its functions of cost "
-    "look at collisions, and who walks the same way at the same pace is on no way to collide; "
-    "nothing in it keeps a distance that grows with speed. A robot in such a flow meets a crowd "
-    "that is dense and fast.",
+    "walking at nearly the preferred speed, twice as fast as published. A likely cause, not "
+    "tested: its cost functions look at collisions, and people who walk the same way at the same "
+    "pace are not going to collide. A robot in such a flow meets a crowd that is dense and fast.",
     "- Before a bottleneck both are slower than published, most where it is narrow: 25 to 40 % at "
-    "0.8 and 1.2 m, about 15 % at 2.4 m. Discs do not turn their shoulders; two of the mix's "
-    "(0.66 m wide) do not fit side by side into 1.2 m, and may block each other there for "
-    "seconds, so that draws differ by a factor of two (1.77 and 0.92 persons/s).",
+    "0.8 and 1.2 m, about 15 % at 2.4 m. Likely causes, not tested: discs do not "
+    "turn their shoulders, and two of the mix's (0.66 m wide) do not fit side by side into 1.2 m. "
+    "There its two draws differ by a factor of two (1.77 and 0.92 persons/s), so take the mix's "
+    "means here as rough.",
 )
 
 
