@@ -35,7 +35,7 @@ LONG = (
     "tests/cli/test_plugins.py::test_show_every_kind",
     "tests/cli/test_plugins_new.py::test_the_other_scenario_runs",
     "tests/cli/test_plugins_new.py::test_the_package_keeps_its_promises",
-    "tests/cli/test_serve.py::test_roslibpy_drives_as_the_same_planner_inside[Twist]",
+    "tests/cli/test_serve.py::test_roslibpy_drives_to_the_goal_as_the_same_planner_inside[Twist]",
     "tests/cli/test_simulate.py::test_runs_at_once_are_the_same_run",
     "tests/cli/test_verify_fleet.py::test_scores_of_robots_that_do_not_fit_are_found",
     "tests/cli/test_view.py::test_runs_beside_each_other",
