@@ -21,8 +21,9 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import cbor2
 from websockets.exceptions import ConnectionClosed
@@ -39,8 +40,10 @@ _OPS = ("subscribe", "publish", "advertise", "fragment", "call_service", "unsubs
         "set_level", "auth", "png", "", "unadvertise")  # fmt: skip
 _FIELDS = ("topic", "id", "msg", "type", "service", "args", "data", "num", "total",
            "throttle_rate", "queue_length", "fragment_size", "compression")  # fmt: skip
-_VALUES = (None, True, -1, 3, 1e308, "x", "/clock", "/rosapi/topics", [], {}, [[]], {"x": 1},
-           "9" * 50, 2**80, {"linear": 3}, {"twist": []}, {"linear": {"x": "1"}})  # fmt: skip
+_VALUES: tuple[Any, ...] = (
+    None, True, -1, 3, 1e308, "x", "/clock", "/rosapi/topics", [], {}, [[]], {"x": 1}, "9" * 50,
+    2**80, {"linear": 3}, {"twist": []}, {"linear": {"x": "1"}},
+)  # fmt: skip
 
 
 class Look(NamedTuple):
@@ -68,11 +71,9 @@ def main() -> int:
     with connect(_uri(server), compression=None) as driver:
         driver.send(json.dumps({"op": "advertise", "topic": "/cmd_vel"}))
         steps = _Steps(server, session, driver)
-        for what, count, act in (
-            ("frames", chosen.frames, _garbage),
-            ("connections", chosen.connects, _come_and_go),
-        ):
-            grew |= _watched(what, count, lambda n, a=act: a(server, rng, n), server, steps)
+        send, visit = partial(_garbage, server, rng), partial(_come_and_go, server)
+        grew |= _watched("frames", chosen.frames, send, server, steps)
+        grew |= _watched("connections", chosen.connects, visit, server, steps)
     server.close()
     print(f"{steps.taken} steps meanwhile, each answered; the longest took {steps.longest:.2f} s")
     return int(grew)
@@ -147,17 +148,17 @@ def _garbage(server: RosbridgeServer, rng: random.Random, count: int) -> None:
 def _frame(rng: random.Random) -> str | bytes:
     message = {"op": rng.choice(_OPS), **{f: rng.choice(_VALUES) for f in rng.sample(_FIELDS, 4)}}
     text = json.dumps(message)
-    kinds = {
-        0: lambda: rng.randbytes(rng.randrange(60)),
-        1: lambda: text[: rng.randrange(len(text))],
-        2: lambda: cbor2.dumps(message)[: rng.randrange(1, 80)],
-        3: lambda: "[" * rng.randrange(5000),
-    }
-    return kinds.get(rng.randrange(6), lambda: text)()
+    kind = rng.randrange(6)
+    if kind == 0:
+        return rng.randbytes(rng.randrange(60))
+    if kind == 1:
+        return text[: rng.randrange(len(text))]
+    if kind == 2:
+        return cbor2.dumps(message)[: rng.randrange(1, 80)]
+    return "[" * rng.randrange(5000) if kind == 3 else text
 
 
-def _come_and_go(server: RosbridgeServer, rng: random.Random, count: int) -> None:
-    del rng
+def _come_and_go(server: RosbridgeServer, count: int) -> None:
     for k in range(count):
         with connect(_uri(server), compression=None, close_timeout=1.0) as client:
             client.send(json.dumps({"op": "subscribe", "topic": "/clock"}))
