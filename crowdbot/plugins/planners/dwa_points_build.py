@@ -90,7 +90,7 @@ def apparent_velocity(
     if before.shape[0] == 0 or dt <= 0.0:
         return out
     low, high = (slowest * dt) ** 2, (fastest * dt) ** 2
-    # Who is farther along x alone than anything moves is no nearest neighbour that counts.
+    # Whoever is farther away along x alone than anything moves does not count.
     order = np.argsort(before[:, 0])
     far = fastest * dt + 1e-9 * (1.0 + fastest * dt)
     for i in range(now.shape[0]):
