@@ -54,6 +54,19 @@ def test_apparent_velocity() -> None:
 
 
 @settings(deadline=None)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.25, 1.0]))
+def test_apparent_velocity_is_that_of_the_first_nearest_neighbour(seed: int, dt: float) -> None:
+    rng = np.random.default_rng(seed)
+    now, before = (rng.integers(-9, 10, (int(n), 2)) / 8.0 for n in rng.integers(1, 60, 2))
+    square = ((now[:, None] - before) ** 2).sum(axis=2)
+    nearest = square.argmin(axis=1)  # on a grid many are equally near: the first of them
+    best = square.min(axis=1)
+    moves = (best > (0.3 * dt) ** 2) & (best < (2.5 * dt) ** 2)
+    expected = np.where(moves[:, None], (now - before[nearest]) / dt, 0.0)
+    np.testing.assert_array_equal(apparent_velocity(now, before, dt, 0.3, 2.5), expected)
+
+
+@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_apart_from_all_others(seed: int) -> None:
     rng = np.random.default_rng(seed)
