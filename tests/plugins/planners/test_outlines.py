@@ -1,9 +1,10 @@
-"""Planners of robots that are no discs: outlines, manoeuvres, and ways aside."""
+"""Planners of robots with outlines other than discs: gaps, manoeuvres, and ways aside."""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -33,10 +34,14 @@ CAPSULE = np.array([[0.051, 0.0], [-0.515, 0.0]])
 REACH = math.hypot(0.55, 0.35)
 
 
-def body(footprint: Array | None, radius: float, drive: str = "differential") -> RobotBody:
+def body(
+    footprint: Array | None,
+    radius: float,
+    drive: Literal["differential", "holonomic"] = "differential",
+) -> RobotBody:
     return RobotBody(
         drive=drive, radius=radius, footprint=footprint, front=0.55, back=0.5, half_width=0.35
-    )  # type: ignore[arg-type]
+    )
 
 
 def test_what_a_robot_says_becomes_its_core() -> None:
@@ -233,6 +238,7 @@ def test_pepper_goes_sideways_around_a_person_without_contact(tmp_path: Path) ->
     assert status == "arrived"
     assert done.contacts is None or len(done.contacts.t0) == 0
     robot = done.robot
+    assert robot is not None
     vx, vy = np.gradient(robot.x, done.t), np.gradient(robot.y, done.t)
     aside = np.cos(robot.theta) * vy - np.sin(robot.theta) * vx
     assert np.abs(aside).max() > 0.2  # m/s to the side
