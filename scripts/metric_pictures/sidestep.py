@@ -1,4 +1,4 @@
-"""A planner for pictures: it sways and hardly brakes, so that every metric has something to tell."""
+"""A planner for pictures: it sways and hardly brakes, so that metrics have something to tell."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from crowdbot.core.interfaces import Command, Observation, RobotLimits, SensorIn
 
 
 class Sidestep:
-    """Sways on its way to the goal, the more the nearer somebody is; backs off once."""
+    """Sways on its way to the goal where somebody is near; backs off once."""
 
     needs = ("lidar",)
 
@@ -24,7 +24,7 @@ class Sidestep:
         """One command."""
         near = min(float(r.values.min()) for r in obs.readings.values())
         bearing = math.atan2(obs.goal[1] - obs.pose.y, obs.goal[0] - obs.pose.x)
-        sway = 0.9 * max(0.0, 1.3 - near) * math.sin(0.8 * obs.t)
+        sway = 0.45 * min(1.0, max(0.0, 1.7 - near)) * math.sin(0.9 * obs.t)
         turn = math.remainder(bearing + sway - obs.pose.yaw, math.tau)
         if 10.0 <= obs.t < 11.5:  # so that there is something to see of a way that is lost
             return Command(-0.4 * self.limits.v_max, 0.0)

@@ -215,6 +215,7 @@ class World:
 
 
 def all_metrics() -> list[str]:
+    """Names of crowdbot's own metrics that have no successor."""
     from crowdbot.core.registry.registry import discover
 
     found = discover(entry_points=False).components("metric")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +11,8 @@ import pytest
 import crowdbot
 from crowdbot.core.trajectories.preprocess import time_weights, truncate_at_arrival
 from scripts import make_metric_pictures as pictures
+from scripts.metric_pictures.figure import Array
+from scripts.metric_pictures.near import wall_gap
 from scripts.metric_pictures.registry import DRAWINGS
 from scripts.metric_pictures.world import ANSWERS, World, all_metrics, made_up_commands
 from tests.docs.doc_pages import read
@@ -35,7 +38,7 @@ def test_the_gallery_is_current() -> None:
     assert read("reference/gallery_of_metrics.md") == pictures.gallery()
 
 
-def _track(t: np.ndarray[tuple[int], np.dtype[np.float64]], way: float) -> dict[str, object]:
+def _track(t: Array, way: float) -> dict[str, Any]:
     """A robot that goes aside once by ``way`` (m) and reaches its goal."""
     y = way * np.sin(np.pi * t / t[-1]) ** 2
     vx, vy = np.full(len(t), 0.5), np.gradient(y, t)
@@ -44,12 +47,12 @@ def _track(t: np.ndarray[tuple[int], np.dtype[np.float64]], way: float) -> dict[
         "robot_v": np.hypot(vx, vy), "robot_w": np.gradient(np.arctan2(vy, vx), t),
         "robot_radius": 0.18, "robot_mass": 6.3, "robot_goal_time": float(t[-1]),
         "robot_goal": (0.5 * float(t[-1]) + 0.4, 0.0), "robot_speed_limit": 0.65,
-        "goal_zone": [[0.5 * t[-1], -1], [0.5 * t[-1] + 1, -1], [0.5 * t[-1] + 1, 1], [0.5 * t[-1], 1]],
+        "goal_zone": [[0.5 * t[-1] + x, y] for x, y in ((0, -1), (1, -1), (1, 1), (0, 1))],
         "walls": [[-1, -2, 14, -2], [-1, 2, 14, 2]],
     }  # fmt: skip
 
 
-def _crowd(t: np.ndarray[tuple[int], np.dtype[np.float64]], aside: float) -> dict[str, object]:
+def _crowd(t: Array, aside: float) -> dict[str, Any]:
     """Two who come towards the robot, one of whom goes aside by ``aside`` (m), and one behind."""
     x = np.stack([8 - t, 9 - 0.8 * t, -0.5 + 0.6 * t], axis=1)
     y = np.stack([0.1 + aside * np.exp(-((t - 5.0) ** 2)), 0.9 + 0 * t, -0.9 + 0 * t], axis=1)
@@ -65,7 +68,7 @@ def _crowd(t: np.ndarray[tuple[int], np.dtype[np.float64]], aside: float) -> dic
 @pytest.fixture(scope="module")
 def world() -> World:
     t = np.linspace(0.0, 10.0, 161)
-    touched = {
+    touched: dict[str, Any] = {
         "t0": [5.0], "t1": [5.2], "agent": [0], "impulse": [3.0], "peak_force": [40.0],
         "relative_speed": [1.2], "bearing": [0.0],
     }  # fmt: skip
@@ -105,7 +108,7 @@ def test_what_is_drawn_gives_the_score(world: World) -> None:
         "neighbour_count": weights @ world.near.sum(axis=1) / span,
         "time_exposed": weights @ (world.time_to_collision < 5.0),
         "min_time_to_collision": world.time_to_collision.min(),
-        "min_wall_clearance": pictures.near.wall_gap(world).min(),
+        "min_wall_clearance": wall_gap(world).min(),
         "final_distance_to_goal": world.to_goal(world.run)[-1],
         "contact_impulse": 3.0,
         "max_planner_time": 0.02,
