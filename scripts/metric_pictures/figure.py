@@ -192,7 +192,7 @@ class Figure:
             py = self._pixel(0, value)[1]
             yield (
                 f'<path d="M{_LEFT - 4} {py:.1f}h4" stroke="#888"/>'
-                f'<text x="{_LEFT - 6}" y="{py + 3.5:.1f}" text-anchor="end">{value:g}</text>'
+                f'<text x="{_LEFT - 6}" y="{py + 3.5:.1f}" text-anchor="end">{_short(value)}</text>'
             )
 
     def _pieces(self, x: Array, y: Array) -> Iterator[str]:
@@ -230,6 +230,11 @@ class Figure:
 def number(value: float) -> str:
     """With three significant digits."""
     return f"{value:.3g}"
+
+
+def _short(value: float) -> str:
+    """Of a tick: thousands as k, or there is no room."""
+    return f"{value / 1000:g}k" if abs(value) >= 10_000 else f"{value:g}"
 
 
 def _round_numbers(low: float, high: float, wanted: int = 6) -> Array:

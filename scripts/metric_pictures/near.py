@@ -9,7 +9,7 @@ from crowdbot.core.trajectories.evasion import evasion
 from crowdbot.core.trajectories.headway import share_below
 from scripts.metric_pictures.figure import BAD, PERSON, QUIET, ROBOT, Array, Figure
 from scripts.metric_pictures.registry import draws
-from scripts.metric_pictures.world import JUMP, World
+from scripts.metric_pictures.world import JUMP, World, mean_of
 
 _ZONES = {"intimate": (0.0, 0.45), "personal": (0.45, 1.2), "social": (1.2, 3.6)}
 
@@ -66,9 +66,11 @@ def _proximity(world: World, metric: str) -> Figure:
 @draws("normalized_proximity", "Distances to neighbours within 3 m: their spread over their mean.")
 def _normalized_proximity(world: World, metric: str) -> Figure:
     figure = world.over_time(metric, "distance in m", 0.0, 3.6)
-    for j in range(world.pair.distance.shape[1]):
+    mean = mean_of(np.where(world.near, world.pair.distance, np.nan))
+    for j in range(0, world.pair.distance.shape[1], 3):
         there = np.where(world.near[:, j], world.pair.distance[:, j], np.nan)
-        figure.line(world.t, there, PERSON, "each neighbour" if j == 0 else "", wide=1.0)
+        figure.line(world.t, there, QUIET, "some neighbours", wide=1.0)
+    figure.line(world.t, mean, PERSON, "mean of all", wide=2.0)
     return figure.level(3.0, "neighbours are within 3 m")
 
 

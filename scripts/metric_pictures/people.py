@@ -9,18 +9,9 @@ from crowdbot.core.trajectories.evasion import evasion
 from crowdbot.core.trajectories.headway import share_below
 from crowdbot.core.trajectories.preprocess import truncate
 from crowdbot.core.trajectories.trips import meets_robot
-from scripts.metric_pictures.figure import BAD, PERSON, QUIET, ROBOT, WITHOUT, Array, Figure
+from scripts.metric_pictures.figure import BAD, PERSON, QUIET, ROBOT, WITHOUT, Figure
 from scripts.metric_pictures.registry import draws
-from scripts.metric_pictures.world import JUMP, World
-
-
-def _mean(values: Array) -> Array:
-    """Mean of each row over what is there."""
-    there = np.isfinite(values)
-    count = there.sum(axis=1)
-    total = np.where(there, values, 0.0).sum(axis=1)
-    mean: Array = np.divide(total, count, out=np.full(len(total), np.nan), where=count > 0)
-    return mean
+from scripts.metric_pictures.world import JUMP, World, mean_of
 
 
 def _most_moved(world: World) -> tuple[int, int, int]:
@@ -84,21 +75,18 @@ def _crowd_deviation(world: World, metric: str) -> Figure:
     count = min(len(world.t), len(world.crowd.t))
     agents, crowd = world.agents, people(world.crowd)
     off = np.hypot(agents.x[:count] - crowd.x[:count], agents.y[:count] - crowd.y[:count])
-    rows = [(world.t[:count], off[:, j], QUIET, "each person") for j in range(off.shape[1])]
+    some = range(0, off.shape[1], max(1, off.shape[1] // 5))
+    rows = [(world.t[:count], off[:, j], QUIET, "some of them") for j in some]
     figure = world.lines(metric, "distance in m", rows)
-    return figure.line(world.t[:count], _mean(off), PERSON, "mean", wide=2.2)
+    return figure.line(world.t[:count], mean_of(off), PERSON, "mean of all", wide=2.2)
 
 
 @draws("evasive_acceleration", "Accelerations of people within 2 m of the robot.")
 def _evasive(world: World, metric: str) -> Figure:
     found = evasion(world.run, 2.0, JUMP)
-    size = np.where(found.near, found.size, np.nan)
+    size = np.where(found.near, found.size, 0.0)
     t = (world.t[1:] + world.t[:-1]) / 2
-    rows = [
-        (t, size[:, j], PERSON, "each person near the robot")
-        for j in range(size.shape[1])
-        if np.isfinite(size[:, j]).any()
-    ]
+    rows = [(t, size.max(axis=1), PERSON, "the largest at each time")]
     figure = world.lines(metric, "acceleration in m/s²", rows)
     return figure.level(world.scores.find(metric).value or 0.0, "score", BAD)
 
@@ -120,8 +108,8 @@ def _push_work(world: World, metric: str) -> Figure:
 def _effect_on_velocity(world: World, metric: str) -> Figure:
     crowd = truncate(world.crowd, float(world.t[-1]))
     rows = [
-        (world.t, _mean(world.walking), PERSON, "with the robot"),
-        (crowd.t, _mean(people_speeds(crowd, JUMP)), WITHOUT, "without the robot"),
+        (world.t, mean_of(world.walking), PERSON, "with the robot"),
+        (crowd.t, mean_of(people_speeds(crowd, JUMP)), WITHOUT, "without the robot"),
     ]
     return world.lines(metric, "walking speed in m/s", rows)
 
@@ -129,8 +117,8 @@ def _effect_on_velocity(world: World, metric: str) -> Figure:
 @draws("neighbours_velocity", "Mean walking speed of those within 3 m of the robot, and of all.")
 def _neighbours_velocity(world: World, metric: str) -> Figure:
     rows = [
-        (world.t, _mean(np.where(world.near, world.walking, np.nan)), PERSON, "near the robot"),
-        (world.t, _mean(world.walking), WITHOUT, "all"),
+        (world.t, mean_of(np.where(world.near, world.walking, np.nan)), PERSON, "near the robot"),
+        (world.t, mean_of(world.walking), WITHOUT, "all"),
     ]
     return world.lines(metric, "walking speed in m/s", rows)
 
@@ -185,7 +173,7 @@ def _speeds(world: World, metric: str) -> Figure:
     near = metric.startswith("neighbour")
     others = np.where(world.near, world.walking, np.nan) if near else world.walking
     name = "people within 3 m" if near else "people"
-    rows = [(world.t, world.speed, ROBOT, "robot"), (world.t, _mean(others), PERSON, name)]
+    rows = [(world.t, world.speed, ROBOT, "robot"), (world.t, mean_of(others), PERSON, name)]
     return world.lines(metric, "speed in m/s", rows)
 
 
@@ -196,7 +184,7 @@ def _heading(world: World, metric: str) -> Figure:
     turn = np.abs(np.angle(np.exp(1j * np.diff(heading, axis=0)))) / dt
     t = (world.t[1:] + world.t[:-1]) / 2
     robot = np.abs(np.angle(np.exp(1j * np.diff(world.robot.theta)))) / dt[:, 0]
-    rows = [(t, robot, ROBOT, "robot"), (t, _mean(turn), PERSON, "mean of people")]
+    rows = [(t, robot, ROBOT, "robot"), (t, mean_of(turn), PERSON, "mean of people")]
     return world.lines(metric, "turning in rad/s", rows)
 
 
@@ -208,20 +196,7 @@ def _overtaking(world: World, metric: str) -> Figure:
     figure = world.over_time(metric, "ahead of the robot in m", -4.0, 4.0).level(
         0.0, "level with the robot"
     )
+    beside = np.where(same & (np.abs(ahead) < 4) & (np.abs(world.pair.py) < 1.5), ahead, np.nan)
     for j in range(ahead.shape[1]):
-        beside = np.where(np.abs(ahead[:, j]) < 6, ahead[:, j], np.nan)
-        figure.line(
-            world.t,
-            np.where(same[:, j], np.nan, beside),
-            QUIET,
-            "comes towards it" if j == 0 else "",
-            wide=0.8,
-        )
-        figure.line(
-            world.t,
-            np.where(same[:, j], beside, np.nan),
-            PERSON,
-            "goes its way" if j == 0 else "",
-            wide=1.8,
-        )
+        figure.line(world.t, beside[:, j], PERSON, "those who go its way", wide=1.2)
     return figure

@@ -236,3 +236,12 @@ def made_up_commands(run: crowdbot.Trajectories) -> crowdbot.Commands:
         t=t - t[0], v_user=np.round(0.5 + 0.1 * np.sin(0.9 * t), 1), w_user=np.round(late * 1.4, 1),
         v_sc=v, w_sc=w, v_max=0.65, w_max=3.14, t_end=float(t[-1] - t[0]) + 0.15,
     )  # fmt: skip
+
+
+def mean_of(values: Array) -> Array:
+    """Mean of each row over what is there."""
+    there = np.isfinite(values)
+    count = there.sum(axis=1)
+    total = np.where(there, values, 0.0).sum(axis=1)
+    mean: Array = np.divide(total, count, out=np.full(len(total), np.nan), where=count > 0)
+    return mean
