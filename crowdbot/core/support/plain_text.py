@@ -17,7 +17,7 @@ def plain_text(file: Path) -> str:
     Nobody waits for a pipe, or reads a device to its end.
 
     Raises:
-        OSError: it is no such file, or cannot be read.
+        OSError: there is another kind of thing, or it cannot be read.
         ValueError: it is not UTF-8.
     """
     with os.fdopen(os.open(file, os.O_RDONLY | os.O_NONBLOCK), "rb") as content:
