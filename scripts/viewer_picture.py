@@ -6,7 +6,8 @@ Needs node and a browser, and once
 
     npm install --ignore-scripts --legacy-peer-deps --prefix scripts/js/viewer
 
-Without a recording the scenario tests/data/short_way.yaml is run with the small planner of tests/core/live/pursuit.py.
+Without a recording it runs tests/data/short_way.yaml with the small planner of
+tests/core/live/pursuit.py.
 
     python scripts/viewer_picture.py [RUN.mcap] [--at SECONDS] [--out PICTURE.png]
 """
