@@ -32,6 +32,8 @@ LONG = (
     "tests/cli/test_campaign.py::test_failures_of_planners_in_the_workers",
     "tests/cli/test_campaign_cluster.py",
     "tests/cli/test_kills.py",
+    "tests/plugins/planners/test_outlines.py::test_a_wheelchair",
+    "tests/plugins/planners/test_outlines.py::test_pepper",
     "tests/cli/test_planner_processes.py::test_a_hostile_planner_stops_no_campaign",
     "tests/cli/test_planner_processes.py::test_a_worker_is_killed",
     "tests/cli/test_plugins.py::test_show_every_kind",
