@@ -259,7 +259,8 @@ class CrowdEngine:
         seen = robots[:, _SEEN]
         nobody = seen[:0]
         if self._router is not None:
-            self._router.find(rows, self._ticks_per_decision * TICK)
+            number = int(flat[s.TICK]) // self._ticks_per_decision
+            self._router.find(rows, self._ticks_per_decision * TICK, number)
         for group in self._groups if len(robots) else self._groups_alone:
             view = self._view(flat, rows, group.members, seen if group.sees_robot else nobody)
             decides = np.asarray(view.decides)[:, np.newaxis]
