@@ -22,6 +22,7 @@ from crowdbot.core.crowd.portals import draw_goal, enter
 from crowdbot.core.crowd.response.evasion import evade_robots
 from crowdbot.core.crowd.response.parameters import Human
 from crowdbot.core.crowd.routes import head_for
+from crowdbot.core.crowd.routing.aims import squeeze
 from crowdbot.core.crowd.routing.router import Router
 from crowdbot.core.crowd.steering.parts import parts_of, steer
 from crowdbot.core.crowd.step import tick, ticks_without_robots
@@ -271,6 +272,8 @@ class CrowdEngine:
                 relaxation = getattr(group.policy, "relaxation_time", 0.0)
                 wanted = steer(self._steering, view, relaxation, wanted)
             np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides)
+        if self._router is not None:
+            squeeze(rows, self.agents.max_acceleration)
         if self._cohesion is not None and len(self._members):
             hold_together(
                 rows, self._members, self._ends, self.agents.max_acceleration,

@@ -17,6 +17,8 @@ from crowdbot.core.crowd.state import (
     AIM_X,
     AIM_Y,
     ASIDE,
+    AX,
+    AY,
     DETOURS,
     GOAL_X,
     GOAL_Y,
@@ -46,6 +48,12 @@ _SAME_OPENING, _WIDEST_OPENING = 1.0, 3.0
 _SLOW = 0.25
 #: People look around at every so manieth decision, at each one when a corner is near, m.
 _LOOKS_EVERY, _NEAR_CORNER = 4, 1.0
+#: In place of a corner: a place to one side of who is in the way.
+_ASIDE_OF_ALL = -1.0
+#: It is so far off, m; reached when so near, m; and so many are looked at, with these draws.
+_STEP, _STEPPED, _SIDES, _SIDE_DRAWS = 1.0, 0.4, 4, 1 << 40
+#: On the way there: speed, m/s, and the time in which it is reached, s.
+_SQUEEZE, _RELAXATION = 0.4, 0.5
 #: Nearer to the goal than this nobody looks for another way, m.
 _NEAR_GOAL = 1.5
 
@@ -132,17 +140,26 @@ def _look(
     sight: Sight, wider: Sight, blocked: bool, habits: Habits,
 ) -> None:  # fmt: skip
     """Agent i looks for its goal, or for the corner on the way to it."""
+    if blocked:
+        agents[i, DETOURS] += 1.0
+    if agents[i, AIM] == _ASIDE_OF_ALL:
+        dx, dy = agents[i, AIM_X] - agents[i, X], agents[i, AIM_Y] - agents[i, Y]
+        if not blocked and math.hypot(dx, dy) > _STEPPED:
+            return
+        agents[i, AIM] = 0.0
     v = int(agents[i, AIM]) - 1
     # Who aims at a corner after which others follow does not see the goal before these.
     last = v < 0 or after[v] == TO_GOAL or not math.isfinite(left[v])
     if (last or blocked) and _sees_goal(agents, i, sight):
         _forget(agents, i)
+        if blocked:
+            _step_aside(agents, i, number, sight, habits)
         return
-    if blocked:
-        agents[i, DETOURS] += 1.0
     if blocked and v >= 0:
         _choose(agents, i, left, after, corners, sight, v, habits)
         _aim(agents, i, number, corners, sight, habits)
+        if agents[i, AIM] == v + 1.0:  # there is no other way
+            _step_aside(agents, i, number, sight, habits)
         return
     found = _follow(agents, i, number, after, left, corners, sight, wider, habits)
     w = int(agents[i, AIM]) - 1
@@ -155,6 +172,42 @@ def _look(
         _choose(agents, i, left, after, corners, wider, -1, habits)
     if not found:
         _aim(agents, i, number, corners, sight, habits)
+
+
+@kernel
+def _step_aside(agents: Array, i: int, number: int, sight: Sight, habits: Habits) -> None:
+    """Agent i, who faces somebody that it cannot pass, walks a little to one side first."""
+    dx, dy = agents[i, AIM_X] - agents[i, X], agents[i, AIM_Y] - agents[i, Y]
+    away = math.hypot(dx, dy)
+    if away == 0.0:
+        return
+    trip, draw = int(agents[i, TRIP]), int(agents[i, DETOURS])
+    for k in range(_SIDES):
+        counter = _SIDE_DRAWS + _SIDES * draw + k
+        u = counter_rng.uniform(habits.key, number, trip, counter_rng.ROUTE, counter)
+        turn = math.pi * (0.4 + 0.6 * u) if u < 0.5 else -math.pi * (0.4 + 0.6 * (u - 0.5))
+        c, t = _STEP * math.cos(turn) / away, _STEP * math.sin(turn) / away
+        x, y = agents[i, X] + c * dx - t * dy, agents[i, Y] + t * dx + c * dy
+        if is_clear(agents[i, X], agents[i, Y], x, y, sight):
+            agents[i, AIM], agents[i, AIM_X], agents[i, AIM_Y] = _ASIDE_OF_ALL, x, y
+            return
+
+
+@kernel
+def squeeze(agents: Array, max_acceleration: Array) -> None:
+    """Who steps aside does so slowly, whomever that touches: of these nobody gives way alone.
+
+    Sets the accelerations of who does; `find_aims` says who.
+    """
+    for i in range(agents.shape[0]):
+        if agents[i, AIM] != _ASIDE_OF_ALL or agents[i, WAITING] != PRESENT:
+            continue
+        dx, dy = agents[i, AIM_X] - agents[i, X], agents[i, AIM_Y] - agents[i, Y]
+        away = max(math.hypot(dx, dy), 1e-9)
+        ax = (_SQUEEZE * dx / away - agents[i, VX]) / _RELAXATION
+        ay = (_SQUEEZE * dy / away - agents[i, VY]) / _RELAXATION
+        scale = min(1.0, max_acceleration[i] / max(math.hypot(ax, ay), 1e-9))
+        agents[i, AX], agents[i, AY] = scale * ax, scale * ay
 
 
 @kernel
