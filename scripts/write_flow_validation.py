@@ -319,18 +319,19 @@ def page(found: Sequence[Measured]) -> str:
 NOTES: tuple[str, ...] = (
     "## Where they are wrong",
     "",
-    "- `calibrated` walks faster than Weidmann's people at all densities, by 7 to 23 %: it was "
+    "- `calibrated` walks faster than Weidmann's people at all densities, by 8 to 22 %: it was "
     "fitted to people who were told to walk through a corridor and who prefer more than 1.34 m/s. "
     "The shape is the same.",
     "- The challenge's mix does not slow down: up to 2 people/m² in one direction everybody keeps "
     "walking at nearly the preferred speed, twice as fast as published. A likely cause, not "
     "tested: its cost functions look at collisions, and people who walk the same way at the same "
     "pace are not going to collide. A robot in such a flow meets a crowd that is dense and fast.",
-    "- Before a bottleneck both are slower than published, most where it is narrow: 25 to 40 % at "
-    "0.8 and 1.2 m, about 15 % at 2.4 m. Likely causes, not tested: discs do not "
-    "turn their shoulders, and two of the mix's (0.66 m wide) do not fit side by side into 1.2 m. "
-    "There its two draws differ by a factor of two (1.77 and 0.92 persons/s), so take the mix's "
-    "means here as rough.",
+    "- `calibrated` is slower than published where it is narrow, by 27 % at 0.8 m and 8 % at "
+    "1.2 m, and below the range by 2 to 4 % from 1.6 m on. The challenge's mix is a third slower "
+    "at 1.2 m and within or near the range elsewhere. Likely causes, not tested: discs do not "
+    "turn their shoulders, and two of the mix's (0.66 m wide) do not fit side by side into 1.2 m.",
+    "- The table of Seyfried et al. was read in a summary of the paper, not in the paper itself. "
+    "Weidmann's curve is as it is commonly cited.",
 )
 
 

@@ -58,6 +58,8 @@ def check_robots(facts: Facts, place: Place) -> Iterator[Diagnostic]:
 def _check_robot(facts: Facts, place: Place, name: str, task: TaskSpec) -> Iterator[Diagnostic]:
     x, y = task.start[:2]
     path = ("robots", name, "task")
+    if any(facts.outside("", [(x, y)])):
+        return  # which is an error already
     if place.clearance(x, y) < 0.0:
         text = f"robot '{name}' starts in a wall, a block or a pillar, at ({x:g}, {y:g})"
         yield Diagnostic("E143", text, facts.mark(*path, "start"))
