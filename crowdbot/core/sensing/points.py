@@ -31,7 +31,7 @@ class LidarPoints:
         return len(self._beams)
 
     def __call__(
-        self, readings: Mapping[str, Reading], t: float, twist: tuple[float, float]
+        self, readings: Mapping[str, Reading], t: float, twist: tuple[float, float], vy: float = 0.0
     ) -> Array:
         """Points where something was hit.
 
@@ -41,6 +41,7 @@ class LidarPoints:
             readings: by sensor name; a lidar that has not read yet is left out.
             t: now, s.
             twist: the robot's v (m/s) and w (rad/s).
+            vy: its speed to the left, m/s.
 
         Returns:
             (P, 2) x forward, y left of base_link, m; new.
@@ -51,17 +52,20 @@ class LidarPoints:
                 ranges = readings[name].values
                 hit = np.isfinite(ranges)
                 points = rays[hit] * ranges[hit, None] + mount
-                parts.append(_moved(points, t - readings[name].stamp, twist))
+                parts.append(_moved(points, t - readings[name].stamp, twist, vy))
         return np.concatenate(parts) if parts else np.empty((0, 2))
 
 
-def _moved(points: Array, age: float, twist: tuple[float, float]) -> Array:
+def _moved(points: Array, age: float, twist: tuple[float, float], vy: float) -> Array:
     """Points seen ``age`` seconds ago, in the frame of a robot that has moved on since."""
     v, w = twist
-    if age <= 0.0 or (v == 0.0 and w == 0.0):
+    if age <= 0.0 or (v == 0.0 and w == 0.0 and vy == 0.0):
         return points
     turn = w * age
-    x, y = v * age * math.cos(turn / 2.0), v * age * math.sin(turn / 2.0)
-    c, s = math.cos(turn), math.sin(turn)
+    half, full = (math.cos(turn / 2.0), math.sin(turn / 2.0)), (math.cos(turn), math.sin(turn))
+    x, y = v * age * half[0], v * age * half[1]
+    if vy:
+        x, y = x - vy * age * half[1], y + vy * age * half[0]
+    c, s = full
     moved: Array = (points - (x, y)) @ np.array([[c, -s], [s, c]])
     return moved
