@@ -326,10 +326,11 @@ NOTES: tuple[str, ...] = (
     "walking at nearly the preferred speed, twice as fast as published. A likely cause, not "
     "tested: its cost functions look at collisions, and people who walk the same way at the same "
     "pace are not going to collide. A robot in such a flow meets a crowd that is dense and fast.",
-    "- `calibrated` is slower than published where it is narrow, by 27 % at 0.8 m and 8 % at "
-    "1.2 m, and below the range by 2 to 4 % from 1.6 m on. The challenge's mix is a third slower "
-    "at 1.2 m and within or near the range elsewhere. Likely causes, not tested: discs do not "
-    "turn their shoulders, and two of the mix's (0.66 m wide) do not fit side by side into 1.2 m.",
+    "- `calibrated` is slower than published where it is narrow, by 28 % at 0.8 m, and below the "
+    "range by 2 to 10 % from 1.2 m on. The challenge's mix is within the range at 0.8 m, 2 m and "
+    "2.4 m, and below it by 29 % at 1.2 m and by 15 % at 1.6 m. Likely causes, not tested: discs "
+    "do not turn their shoulders, and two of the mix's (0.66 m wide) do not fit side by side into "
+    "1.2 m.",
     "- The table of Seyfried et al. was read in a summary of the paper, not in the paper itself. "
     "Weidmann's curve is as it is commonly cited.",
 )
