@@ -198,8 +198,9 @@ def decisions(scenario: Scenario, seconds: float, rounds: int) -> tuple[int, flo
 
 
 # ------------------------------------------------------------------------------------ runs
-def run(scenario: Scenario) -> None:
-    """Simulate and record a scenario with dwa."""
+def run(world: str | int, seconds: float) -> None:
+    """Simulate and record a place by its name, or a corridor by its people, with dwa."""
+    scenario = _timed(place(world) if isinstance(world, str) else corridor(world), seconds)
     choice = resolve_planner("dwa", registry())
     with tempfile.TemporaryDirectory() as folder:
         setup = RunSetup(
@@ -231,10 +232,8 @@ def _timed(scenario: Scenario, seconds: float) -> Scenario:
 
 def runs(name: str, seconds: float, rounds: int) -> tuple[int, float, float]:
     """People, and CPU ms for each simulated second: in a place, in a corridor."""
-    world = place(name)
-    people = len(population(world, registry()).agents)
-    both = {"world": world, "corridor": corridor(people)}
-    jobs = {key: partial(run, _timed(one, seconds)) for key, one in both.items()}
+    people = len(population(place(name), registry()).agents)
+    jobs = {"world": partial(run, name, seconds), "corridor": partial(run, people, seconds)}
     spent = in_turns(jobs, rounds)
     each = 1e3 / (seconds - WARM_UP)
     return people, each * spent["world"], each * spent["corridor"]
