@@ -24,7 +24,7 @@ def check_inertia(
     together. No wheel has the gyration of a larger one.
 
     Args:
-        radius: of the wheel that it is, m; None: it is none.
+        radius: of the wheel that it is, m; None of all other links.
 
     Raises:
         PluginError: something that should be a number is not.

@@ -68,7 +68,7 @@ def read_published(
         the description, whose `Description.notes` tell what was simplified.
 
     Raises:
-        PluginError: it cannot be read, is no URDF, has no such joint or link, or ``shell`` is not
+        PluginError: it cannot be read, is not a URDF, has no such joint or link, or ``shell`` is not
             well-formed.
     """
     text, folder = read_text(source)
