@@ -68,8 +68,8 @@ def read_published(
         the description, whose `Description.notes` tell what was simplified.
 
     Raises:
-        PluginError: it cannot be read, is not a URDF, has no such joint or link, or ``shell`` is not
-            well-formed.
+        PluginError: it cannot be read, is not a URDF, has no such joint or link, or ``shell`` is
+            not well-formed.
     """
     text, folder = read_text(source)
     described = parse_description(text)
