@@ -23,6 +23,8 @@ from tests.core.robots.published_files import WHEELS, pepper, qolo
 
 SHELL = """<collision><origin xyz="0 0 -0.3"/>
   <geometry><cylinder radius="0.27" length="0.9"/></geometry></collision>"""
+CASTER = """<collision><origin xyz="-0.5 0 -0.12"/>
+  <geometry><sphere radius="0.08"/></geometry></collision>"""
 LIMITS = RobotLimits(v_min=-0.5, v_max=0.5, vy_max=0.5, w_max=2.0, a_max=0.5, alpha_max=3.0)
 OMNI = dict.fromkeys(WHEELS, PublishedWheel(radius=0.07))
 DRIVEN = {
@@ -66,7 +68,7 @@ def test_a_humanoid_on_three_omni_wheels() -> None:
 
 def qolo_model() -> RobotModel:
     described = read_published(
-        qolo(), wheels=DRIVEN, shell=SHELL.replace("-0.3", "0.4"), base="tf_qolo"
+        qolo(), wheels=DRIVEN, shell=SHELL.replace("-0.3", "0.4") + CASTER, base="tf_qolo"
     )
     # The names are exchanged: the left wheel is the one called right.
     drive = described.differential_drive("to_wheel_right", "to_wheel_left", base="tf_qolo")
