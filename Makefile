@@ -1,9 +1,10 @@
 # Everything from nothing but Python 3.11 or newer, pip, venv and make.
 #   make demo    set up, then run one challenge scenario
-#   make check   set up, then run what a change has to pass before each commit, in two minutes
+#   make check   set up, then run what a change has to pass before each commit, in 90 seconds
 #   make test    set up, then run every check
 #   make setup   only prepare .venv/
 #   make test-all  run every test, also the longest
+#   make durations  measure which tests are slow, into tests/durations.tsv; make check leaves them out
 #   make coverage  run all tests, then write docs/reference/coverage.md
 #   make docs    the site of the documentation, in build/site; fails on a dead link
 #   make pictures  draw the pictures of README and documents anew, with the figures beside them
@@ -21,7 +22,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 JS := scripts/js
 JS_READY := $(JS)/node_modules/.package-lock.json
 
-.PHONY: demo check test test-all lint kernels coverage docs pictures changelog check-js js-where-node-is setup lock clean
+.PHONY: demo check test test-all durations lint kernels coverage docs pictures changelog check-js js-where-node-is setup lock clean
 
 demo: setup
 	$(BIN)/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
@@ -52,6 +53,9 @@ lint: setup
 # With the longest tests too, which tests/conftest.py lists.
 test-all: setup kernels
 	CROWDBOT_ALL_TESTS=1 $(BIN)/pytest -n auto --dist worksteal
+
+durations: setup kernels
+	$(BIN)/pytest -p tests.processor_time -n auto --dist worksteal
 
 coverage: setup
 	$(BIN)/python scripts/write_coverage.py

@@ -1,4 +1,4 @@
-"""Do the intervals cover, with runs that share crowd draws?
+r"""Do the intervals cover, with runs that share crowd draws?
 
 Simulates campaigns of 18 draws with 9 scenarios each: effects of draws, of scenarios and of runs,
 in several proportions, symmetric and skewed. Prints how often 95 % intervals cover the truth, and
@@ -6,6 +6,12 @@ how often the test finds a difference that is not there (symmetric only: the tes
 planner is better more often, not about means).
 
     python benchmarks/interval_coverage.py --repetitions 1000
+    python benchmarks/interval_coverage.py --conditions --repetitions 2000
+
+``--conditions`` asks instead whether intervals cover the mean over 18 fixed conditions and all
+people: conditions differ by up to 170 standard deviations of people. Nested, each condition has
+draws of its own, as in `challenge-2026`; crossed, all conditions have the same draws, which answer
+differently in each.
 """
 
 from __future__ import annotations
@@ -23,7 +29,9 @@ from crowdbot.core.statistics.clusters import Clusters
 from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.core.statistics.signed_rank import p_value, signed_ranks
 
-DRAWS, SCENARIOS = 18, 9
+DRAWS, SCENARIOS, CONDITIONS = 18, 9, 18
+#: Means of the conditions, in standard deviations of people.
+EFFECTS = 10.0 * np.arange(CONDITIONS)
 #: Standard deviations of draw, scenario and run.
 SPREADS = ((0.0, 0.0, 1.0), (0.3, 1.0, 1.0), (1.0, 0.0, 1.0), (1.0, 1.0, 1.0), (2.0, 0.5, 0.5))
 COLUMNS = ("mean t", "mean bca", "mean bca+t", "iqm bca", "iqm bca+t", "d bca+t", "P(better) t",
@@ -78,11 +86,48 @@ def intervals(values: Floats, groups: Clusters) -> Iterator[tuple[str, str, Esti
     yield "rank r t", "rank", c.ratio(ranks, np.abs(ranks), groups)
 
 
+def conditioned(rng: np.random.Generator, draws: int, *, crossed: bool) -> Floats:
+    """Scores of 18 conditions with some draws of people each, one after the other."""
+    effects = EFFECTS[:, None]
+    people = rng.normal(size=(1 if crossed else CONDITIONS, draws))
+    own = rng.normal(size=(CONDITIONS, draws))
+    return np.asarray(effects + people + 0.5 * own).reshape(-1)
+
+
+def by_conditions(repetitions: int) -> None:
+    """Print how often the two kinds of interval of a mean cover it."""
+    truth = float(EFFECTS.mean())
+    print(f"{'draws':9}{'a condition':>12}{'mean t':>9}{'mean bca+t':>12}")
+    for crossed, draws in ((False, 2), (False, 5), (False, 9), (True, 9), (True, 18)):
+        names = [f"{'' if crossed else k} {i}" for k in range(CONDITIONS) for i in range(draws)]
+        strata = [str(k) for k in range(CONDITIONS) for _ in range(draws)]
+        groups = Clusters.of(names, strata)
+        rng, found = np.random.default_rng(11), Counter[str]()
+        for _ in range(repetitions):
+            values = conditioned(rng, draws, crossed=crossed)
+            both = {
+                "t": c.mean(values, groups),
+                "bca": c.bootstrap(c.weighted(lambda a, n: a / n, values), groups),
+            }
+            for name, x in both.items():
+                assert x.low is not None
+                assert x.high is not None
+                found[name] += x.low <= truth <= x.high
+        shares = "".join(f"{found[n] / repetitions:{w}.1%}" for n, w in (("t", 9), ("bca", 12)))
+        print(f"{'crossed' if crossed else 'nested':9}{draws:12}{shares}", flush=True)
+
+
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--conditions", action="store_true", help="fixed ones, with many draws")
     parser.add_argument("--repetitions", type=int, default=1000)
     parser.add_argument("--seeds", type=int, default=1)
     options = parser.parse_args()
+    if options.conditions:
+        by_conditions(options.repetitions)
+        return
     groups = Clusters.of(
         [f"draw {i}" for i in range(DRAWS) for _ in range(SCENARIOS * options.seeds)]
     )

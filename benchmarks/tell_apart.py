@@ -155,7 +155,9 @@ def compare(
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("suite", nargs="?", help="file or name")
     parser.add_argument("--seed", type=int, help="draws the people; not that of the suite")
     parser.add_argument("--only", action="append", help="pattern of scenario ids")

@@ -18,6 +18,7 @@
 from __future__ import annotations
 
 import difflib
+import unicodedata
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
@@ -107,3 +108,32 @@ def nearest(name: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:
 def did_you_mean(near: Sequence[str]) -> str:
     """``"; did you mean 'a' or 'b'?"``, or nothing."""
     return f"; did you mean {' or '.join(repr(n) for n in near)}?" if near else ""
+
+
+def hidden_character(text: str, allowed: str = "\t\n\r") -> str:
+    """The first character that shows nothing, or changes how others are shown, as ``U+202E``.
+
+    Control and format characters, separators of lines and paragraphs, and halves of characters;
+    but not the two joiners that some scripts need. Empty where there is none.
+    """
+    if text.isascii() and text.isprintable():
+        return ""
+    for character in text:
+        if _is_hidden(character) and character not in allowed:
+            return f"U+{ord(character):04X}"
+    return ""
+
+
+def printable(text: str) -> str:
+    """A text that can be shown and written: what is hidden in it stands there as an escape."""
+    if text.isascii() and text.isprintable():
+        return text
+    return "".join(
+        c.encode("unicode_escape").decode() if _is_hidden(c) and c not in "\t\n" else c
+        for c in text
+    )
+
+
+def _is_hidden(character: str) -> bool:
+    kinds = ("Cc", "Cf", "Cs", "Zl", "Zp")
+    return unicodedata.category(character) in kinds and character not in "\u200c\u200d"

@@ -1,4 +1,4 @@
-"""For all tests: Ctrl-C works, however the tests were started; examples are drawn alike."""
+"""For all tests: Ctrl-C works, examples are drawn alike, and what was slow is marked `slow`."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import signal
 import pytest
 from hypothesis import settings
 
+from tests import processor_time
+
 # A shell without job control starts what runs in the background with SIGINT ignored; tests that
 # interrupt, and the processes that they start, would inherit that.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -15,7 +17,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 # The same examples each time, so that a change is judged by what it changes. To look for new ones:
 # HYPOTHESIS_PROFILE=explore.
-settings.register_profile("repeat", derandomize=True, max_examples=40)
+settings.register_profile("repeat", derandomize=True, max_examples=25)
 settings.register_profile("explore", derandomize=False, max_examples=200)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeat"))
 
@@ -30,12 +32,14 @@ LONG = (
     "tests/cli/test_campaign.py::test_failures_of_planners_in_the_workers",
     "tests/cli/test_campaign_cluster.py",
     "tests/cli/test_kills.py",
+    "tests/plugins/planners/test_outlines.py::test_a_wheelchair",
+    "tests/plugins/planners/test_outlines.py::test_pepper",
     "tests/cli/test_planner_processes.py::test_a_hostile_planner_stops_no_campaign",
     "tests/cli/test_planner_processes.py::test_a_worker_is_killed",
     "tests/cli/test_plugins.py::test_show_every_kind",
     "tests/cli/test_plugins_new.py::test_the_other_scenario_runs",
     "tests/cli/test_plugins_new.py::test_the_package_keeps_its_promises",
-    "tests/cli/test_serve.py::test_roslibpy_drives_as_the_same_planner_inside[Twist]",
+    "tests/cli/test_serve.py::test_roslibpy_drives_to_the_goal_as_the_same_planner_inside[Twist]",
     "tests/cli/test_simulate.py::test_runs_at_once_are_the_same_run",
     "tests/cli/test_verify_fleet.py::test_scores_of_robots_that_do_not_fit_are_found",
     "tests/cli/test_view.py::test_runs_beside_each_other",
@@ -50,8 +54,13 @@ LONG = (
 )
 
 
+@pytest.hookimpl(tryfirst=True)  # before `-m` chooses
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave the longest tests out of a run of everything, unless they are asked for."""
+    """Mark what was slow; leave the longest out of a run of everything, unless asked for."""
+    slow = processor_time.listed()
+    for item in items:
+        if processor_time.function_of(item.nodeid) in slow:
+            item.add_marker(pytest.mark.slow)
     whole = not config.args or config.args == config.getini("testpaths")
     if os.environ.get("CROWDBOT_ALL_TESTS") or not whole:
         return

@@ -25,7 +25,7 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from crowdbot.cli._complete import offer
-from crowdbot.errors import CrowdbotError, SpecError, did_you_mean, nearest
+from crowdbot.errors import CrowdbotError, SpecError, did_you_mean, nearest, printable
 
 _SETTINGS: dict[str, Any] = {
     "add_completion": False,
@@ -210,8 +210,17 @@ def _app() -> typer.Typer:
 def _start_log() -> None:
     """Messages of crowdbot's loggers go to stderr as they are."""
     log = logging.getLogger("crowdbot")
-    log.handlers = [logging.StreamHandler()]
+    handler = logging.StreamHandler()
+    handler.setFormatter(_Printable())
+    log.handlers = [handler]
     log.setLevel(logging.INFO)
+
+
+class _Printable(logging.Formatter):
+    """Messages quote what strangers wrote."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        return printable(super().format(record))
 
 
 def _text(error: CrowdbotError) -> str:
@@ -223,7 +232,7 @@ def _text(error: CrowdbotError) -> str:
 
 
 def _say(text: str) -> None:
-    print(text, file=sys.stderr)
+    print(printable(text), file=sys.stderr)
 
 
 def _tolerate_any_encoding() -> None:

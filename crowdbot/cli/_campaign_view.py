@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from crowdbot.core.runs.outcome import ENDINGS
+
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
@@ -16,7 +18,7 @@ if TYPE_CHECKING:
     from crowdbot.core.campaign.plan import Plan
     from crowdbot.core.campaign.run import Listener, State
 
-_COLUMNS = ("arrived", "timeout", "planner_failed", "failed")
+_COLUMNS = (*ENDINGS, "failed")
 
 
 @contextmanager

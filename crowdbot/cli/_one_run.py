@@ -122,17 +122,15 @@ def print_run(run: Run, *, as_json: bool) -> None:
 
 
 def _summary(run: Run) -> str:
-    from crowdbot.core.runs.outcome import toppled
     from crowdbot.core.runs.provenance import remarks
 
     record = run.record
     ending = {
         "arrived": "arrived after {:.1f} s",
         "timeout": "did not arrive within {:.1f} s",
+        "toppled": "toppled at {:.1f} s",
         "planner_failed": "planner failed at {:.1f} s",
     }[record["status"]].format(record["goal_time"] or record["sim_time"])
-    if (fallen := record.get("toppled_time")) is not None:
-        ending += f", {toppled(fallen)}"
     speed = f"{record['real_time_factor']:.1f} times real time"
     note = "; was complete already, --force runs it again" if run.reused else f" ({speed})"
     who = f"{record['scenario']} · {record['planner']['name']} · seed {record['seed']}"

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.errors import printable
 
 
 def leaderboard(
@@ -56,7 +57,7 @@ def leaderboard(
     tables = standings(entries, by, accept or (), audits, score_scales(registry))
     write_leaderboard(out, tables, left_out, title)
     for name, why in left_out.items():
-        typer.echo(f"warning: {name} is left out: {why}", err=True)
+        typer.echo(printable(f"warning: {name} is left out: {why}"), err=True)
     if as_json:
         document = [
             {"edition": t.edition, "class": t.classed, "by": t.by, "suspicion": t.suspicion,

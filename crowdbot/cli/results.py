@@ -184,13 +184,14 @@ def _only(found: Results, planners: list[str] | None, status: str | None) -> Res
     Raises:
         UnknownNameError: no run has such a planner or status.
     """
+    from crowdbot.core.runs.outcome import ENDINGS
     from crowdbot.errors import UnknownNameError
 
     labels = {r.planner for r in found.runs} | {f.planner for f in found.failures}
     for name in planners or ():
         if name not in labels:
             raise UnknownNameError("planner", name, labels)
-    statuses = ("arrived", "timeout", "planner_failed", "failed")
+    statuses = (*ENDINGS, "failed")
     if status is not None and status not in statuses:
         raise UnknownNameError("status", status, statuses)
     runs = tuple(

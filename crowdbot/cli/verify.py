@@ -19,6 +19,7 @@ from crowdbot.cli._options import (
     installed,
     planner_place,
 )
+from crowdbot.errors import printable
 
 if TYPE_CHECKING:
     from crowdbot.core.bundle.archive import Archive
@@ -209,9 +210,9 @@ def _document(verdict: RerunVerdict, seed: int, digest: str) -> dict[str, Any]:
 def print_verdict(document: dict[str, Any]) -> None:
     """What was found, for people."""
     for finding in document["findings"]:
-        typer.echo(finding)
+        typer.echo(printable(finding))
     for name, relation in document["runs"].items():
         typer.echo(f"{name}: {relation}")
     head, outcome = f"{document['edition']}: {document['planner']}", document["outcome"]
     chosen = f", sample seed {document['seed']}" if document["runs"] else ""
-    typer.echo(f"{head}: {outcome}: {_SAYS[outcome]}{chosen}")
+    typer.echo(printable(f"{head}: {outcome}: {_SAYS[outcome]}{chosen}"))

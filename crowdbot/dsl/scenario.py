@@ -164,7 +164,7 @@ class Crowd(Spec):
     steering: SteeringSpec | None = Field(
         default=None,
         exclude_if=unset,
-        description="What people do beside any policy: time gap, personal space, walls, wander.",
+        description="Beside any policy: time gap, personal space, lanes, walls, wander.",
     )
     seed: CrowdSeed = Field(default=CrowdSeed(), description="Draws the crowd.")
 

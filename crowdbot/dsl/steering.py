@@ -57,6 +57,23 @@ class PersonalSpaceSpec(Spec):
     )
 
 
+class LanesSpec(Spec):
+    """Among people who come the other way: a step behind those who walk one's own way."""
+
+    strength: PositiveAcceleration = Field(
+        default=1.0, description="Largest acceleration to the side, m/s^2."
+    )
+    reach: PositiveLength = Field(
+        default=2.0, description="Distance ahead over which others matter e times less, m."
+    )
+    half_width: PositiveLength = Field(
+        default=0.6, description="Who is farther to the side does not count, m."
+    )
+    follow: Annotated[float, Ge(0)] = Field(
+        default=1.0, description="How much those who walk along count beside those who come."
+    )
+
+
 class WallPushSpec(Spec):
     """A push away from walls."""
 
@@ -88,6 +105,9 @@ class SteeringSpec(Spec):
     personal_space: PersonalSpaceSpec | None = Field(
         default=None, exclude_if=unset, description="Keep away from others."
     )
+    lanes: LanesSpec | None = Field(
+        default=None, exclude_if=unset, description="Walk behind those who go the same way."
+    )
     wall_push: WallPushSpec | None = Field(
         default=None, exclude_if=unset, description="Keep away from walls."
     )
@@ -96,4 +116,11 @@ class SteeringSpec(Spec):
     )
 
 
-__all__ = ["PersonalSpaceSpec", "SteeringSpec", "TimeGapSpec", "WallPushSpec", "WanderSpec"]
+__all__ = [
+    "LanesSpec",
+    "PersonalSpaceSpec",
+    "SteeringSpec",
+    "TimeGapSpec",
+    "WallPushSpec",
+    "WanderSpec",
+]

@@ -1,21 +1,27 @@
-"""One step of our crowd as the original engine makes it, from any state."""
+"""One step of our crowd as the original engine makes it, from any state.
+
+Decisions are those of our policies; contact, clamping and motion are a tick of our engine itself.
+"""
 
 from __future__ import annotations
 
-import math
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
-from numba import njit
 
+from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.agents import STOP
 from crowdbot.core.crowd.build import build_cost
-from crowdbot.core.crowd.contact.geometry import nearest_on_segment
+from crowdbot.core.crowd.engine import CrowdEngine
 from crowdbot.core.crowd.policy import CrowdView
-from crowdbot.core.crowd.velocity_search.neighbour_discs import most_discs, write_discs
-from crowdbot.core.crowd.velocity_search.neighbours import DISC_COLUMNS
+from crowdbot.core.crowd.world import CrowdWorld
 from crowdbot.core.registry.registry import discover
+from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array, Mask
 from crowdbot.plugins.crowd.policies.velocity_space_build import VelocitySpace
 from crowdbot.testing.crowd_oracle_case import Case
+from crowdbot.testing.crowd_oracle_quirks import push_out_of_reach
 
 
 class Stepper:
@@ -31,15 +37,15 @@ class Stepper:
             )
             for spec, costs in case.policies
         ]  # fmt: skip
-        agents = case.agents
-        largest = float(np.max(agents.radius, initial=0.0))
         reach = [
             max((c.range.value for c in costs), default=0.0)  # type: ignore[attr-defined]
             for _, costs in case.policies
         ]
+        agents = case.agents
         self._reach = np.array(reach)[agents.policy]
-        self._stiffness = np.array([p.contact_stiffness for p in self.policies])[agents.policy]
-        self._images = 2.0 * largest
+        stiffness = np.array([p.contact_stiffness for p in self.policies])[agents.policy]
+        self._stiffness = stiffness / agents.mass
+        self._engine, self._told = _engine(case, self._stiffness)
 
     def random(self) -> list[Array]:
         """State of all random numbers, a copy."""
@@ -65,27 +71,12 @@ class Stepper:
         )  # fmt: skip
 
     def push(self, state: Array) -> Array:
-        """Change of velocity (N, 2) by contact forces in one step."""
-        view, agents = self.view(state, 0), self.case.agents
-        bodies = np.zeros(
-            (most_discs(len(agents), 0, view.periodic_boundary is not None), DISC_COLUMNS)
-        )
-        box = np.array(
-            view.periodic_boundary if view.periodic_boundary is not None else (0.0, 0.0, 0.0, 0.0)
-        )
-        count = write_discs(
-            view.position, view.velocity, view.goal, agents.radius, agents.preferred_speed,
-            view.present, view.robot, view.pillars, box, False, self._images, bodies,
-        )  # fmt: skip
-        force = np.zeros((len(agents), 2))
-        _contact(
-            view.position, view.present, agents.radius, bodies[:count], view.walls, self._reach,
-            self._stiffness, force,
-        )  # fmt: skip
-        return force * (self.case.dt / agents.mass)[:, np.newaxis]
+        """Change of velocity (N, 2) by contact in one step: how fast one goes who stood."""
+        at_rest = np.column_stack([state[:, :2], np.zeros((len(state), 2))])
+        return self.move(at_rest, np.zeros((len(state), 2)))[:, 2:]
 
     def step(self, state: Array, who: Mask | None = None) -> Array:
-        """Velocities (N, 2) after one step; meaningless for agents that are not asked for."""
+        """States (N, 4) after one step; meaningless for agents that are not asked for."""
         acceleration = np.zeros((len(state), 2))
         for k, policy in enumerate(self.policies):
             mine = self.case.agents.policy == k
@@ -94,42 +85,57 @@ class Stepper:
         return self.move(state, acceleration)
 
     def move(self, state: Array, acceleration: Array) -> Array:
-        """Velocities (N, 2) after a step with given accelerations."""
-        moved = state[:, 2:] + acceleration * self.case.dt
-        speed = np.hypot(moved[:, 0], moved[:, 1])
-        limit = self.case.agents.max_speed
-        with np.errstate(invalid="ignore", divide="ignore"):
-            scale = np.where(speed > limit, limit / speed, 1.0)
-        return np.asarray(moved * scale[:, np.newaxis] + self.push(state))
+        """States (N, 4) after a step of the engine with given accelerations (N, 2)."""
+        case, engine = self.case, self._engine
+        present: Mask = np.all(np.isfinite(state), axis=1)
+        flat = np.zeros(s.size(len(state)))
+        _, rows = s.view(flat)
+        rows[:, s.X : s.VY + 1] = np.where(present[:, np.newaxis], state, 0.0)
+        rows[:, s.GOAL_X : s.GOAL_Y + 1] = case.goal
+        rows[:, s.WAITING] = np.where(present, s.PRESENT, s.GONE)
+        self._told.accelerations_told = np.where(present[:, np.newaxis], acceleration, 0.0)
+        engine.advance(flat, dt=case.dt)
+        moved = rows[:, s.X : s.VY + 1].copy()
+        excess = push_out_of_reach(case, state, self._reach) * self._stiffness[:, np.newaxis]
+        moved[:, 2:] -= excess * case.dt
+        moved[:, :2] -= excess * case.dt**2
+        moved[~present] = np.nan
+        return moved
 
 
-@njit(cache=True, error_model="numpy")
-def _contact(
-    position: Array,
-    present: Mask,
-    radius: Array,
-    bodies: Array,
-    walls: Array,
-    reach: Array,
-    stiffness: Array,
-    force: Array,
-) -> None:
-    """Pushes between everybody within the policy's range, which the original asks for."""
-    for i in range(position.shape[0]):
-        if not present[i]:
-            continue
-        x, y = position[i, 0], position[i, 1]
-        for b in range(bodies.shape[0]):
-            dx, dy = x - bodies[b, 0], y - bodies[b, 1]
-            distance = math.sqrt(dx * dx + dy * dy)
-            depth = radius[i] + bodies[b, 4] - distance
-            if depth > 0.0 and 0.0 < distance < reach[i]:
-                force[i, 0] += stiffness[i] * depth * dx / distance
-                force[i, 1] += stiffness[i] * depth * dy / distance
-        for s in range(walls.shape[0]):
-            nx, ny = nearest_on_segment(x, y, walls[s, 0], walls[s, 1], walls[s, 2], walls[s, 3])
-            dx, dy = x - nx, y - ny
-            distance = math.sqrt(dx * dx + dy * dy)
-            if 0.0 < distance < radius[i] and distance <= reach[i]:
-                force[i, 0] += stiffness[i] * (radius[i] - distance) * dx / distance
-                force[i, 1] += stiffness[i] * (radius[i] - distance) * dy / distance
+@dataclass(slots=True)
+class _Told:
+    """What each agent is told to want, whoever decided it.
+
+    Attributes:
+        accelerations_told: (N, 2), m/s^2.
+    """
+
+    accelerations_told: Array
+
+
+@dataclass(frozen=True, slots=True)
+class _Obedient:
+    """A policy that wants what it is told; its contacts are as stiff as its agents' (1/s^2)."""
+
+    told: _Told
+    contact_stiffness: float = field(default=0.0)
+
+    def accelerations(self, view: CrowdView) -> Array:
+        """What was told."""
+        del view
+        return self.told.accelerations_told
+
+
+def _engine(case: Case, stiffness: Array) -> tuple[CrowdEngine, _Told]:
+    """Our engine in the world of a case, which decides at every tick, and what it is to want."""
+    told = _Told(np.zeros((len(stiffness), 2)))
+    kinds, policy = np.unique(stiffness, return_inverse=True)
+    agents = replace(case.agents, policy=policy.astype(np.int64),
+                     at_goal=np.full(len(stiffness), STOP))  # fmt: skip
+    world = CrowdWorld(
+        walls=case.walls, periodic_boundary=case.periodic_boundary, parity=True,
+        decision_rate=TICKS_PER_SECOND,
+    )  # fmt: skip
+    obedient: list[Any] = [_Obedient(told, float(k)) for k in kinds]
+    return CrowdEngine(agents, world, obedient), told

@@ -43,7 +43,7 @@ def _recording(out: Path) -> Path:
     raise AssertionError("nothing was recorded")
 
 
-@pytest.mark.parametrize("which", range(5))
+@pytest.mark.parametrize("which", range(10))
 @pytest.mark.parametrize("command", ["simulate", "serve"])
 def test_killed_at_any_time(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str, which: int

@@ -32,6 +32,7 @@ def test_each_part_changes_the_hash_and_reads_back(tmp_path: Path) -> None:
     for change in (
         "crowd.steering.time_gap.time=1 s",
         "crowd.steering.personal_space.reach=0.4 m",
+        "crowd.steering.lanes.reach=1 m",
         "crowd.steering.wall_push.reach=0.1 m",
         "crowd.steering.wander.time=0.5 s",
         "crowd.body.avoided_radius=0.2 m",
@@ -42,7 +43,7 @@ def test_each_part_changes_the_hash_and_reads_back(tmp_path: Path) -> None:
         path.write_text(dump_scenario_yaml(changed))
         again = open_spec(str(path), REGISTRY).scenarios[0]
         assert content_hash(again, {}) == content_hash(changed, {})
-    assert len(found) == 6
+    assert len(found) == 7
 
 
 def test_wrong_words_and_numbers_are_refused() -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import re
 import stat
+import struct
 import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -27,6 +29,8 @@ _MOST = 100_000
 _NAME = re.compile(r"(?:[A-Za-z0-9_+.:@~=,-]+/)*[A-Za-z0-9_+.:@~=,-]+")
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the first moment that the format knows
 _CHUNK = 1 << 20
+#: What an archive ends with: a mark, 16 bytes of numbers, the length of a comment.
+_END, _END_MARK = struct.Struct("<4s16xH"), b"PK\5\6"
 
 
 # ------------------------------------------------------------------------- writing
@@ -159,6 +163,7 @@ def open_archive(path: Path) -> Iterator[Archive]:
     except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
         raise InputError(f"{path} is not a bundle: {error}") from None
     with file:
+        _check_bounds(path, file)
         _check_listing(path, file)
         try:
             text = file.read(MANIFEST).decode()
@@ -170,6 +175,18 @@ def open_archive(path: Path) -> Iterator[Archive]:
             if str(path) in str(error):
                 raise
             raise InputError(f"{path}: {error}") from None
+
+
+def _check_bounds(path: Path, file: zipfile.ZipFile) -> None:
+    """Refuse bytes before and after the archive: other programs may see another file in them."""
+    first = min((i.header_offset for i in file.infolist()), default=0)
+    with path.open("rb") as content:
+        content.seek(-_END.size, os.SEEK_END)
+        mark, comment = _END.unpack(content.read(_END.size))
+    if first > 0:
+        raise InputError(f"{path}: {first} bytes stand before the archive; a bundle has none")
+    if mark != _END_MARK or comment:
+        raise InputError(f"{path}: there is something after the archive; a bundle ends with it")
 
 
 def _check_listing(path: Path, file: zipfile.ZipFile) -> None:

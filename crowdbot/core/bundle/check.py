@@ -102,6 +102,15 @@ def _list_problems(manifest: Manifest) -> Iterator[str]:
             yield f"two runs have the same {what}"
     if len({(r.scenario, r.seed) for r in manifest.runs}) < len(manifest.runs):
         yield "a run is listed twice"
+    wanted = manifest.edition.scenarios * len(manifest.seeds)
+    if len(manifest.runs) + len(manifest.missing) != wanted:
+        yield f"{len(manifest.runs)} runs are there and {len(manifest.missing)} said to be " \
+              f"missing; {manifest.edition.scenarios} scenarios with {len(manifest.seeds)} seeds " \
+              f"are {wanted}"  # fmt: skip
+    for run in manifest.runs:
+        if run.seed not in manifest.seeds:
+            yield f"{run.scenario[:200]} seed-{run.seed} is not a run of the manifest's seeds"
+            break
 
 
 def _strangers(manifest: Manifest, names: set[str]) -> Iterator[str]:

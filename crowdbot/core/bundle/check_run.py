@@ -114,6 +114,9 @@ def _ending_problems(run: ClaimedRun) -> Iterator[str]:
     """Where status, time of arrival and success contradict each other."""
     if run.record["status"] == "arrived" and run.record["goal_time"] is None:
         yield "its status is 'arrived', but it has no time of arrival"
+    alone = not run.record.get("robots")
+    if run.record["status"] == "toppled" and alone and run.record.get("toppled_time") is None:
+        yield "its status is 'toppled', but it has no toppled_time"
     arrived = arrivals(run.record)
     for score in run.scores:
         _, _, robot = score.variant.partition(AT)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -103,10 +104,17 @@ def _entry(path: Path, registry: Registry) -> LeaderboardEntry:
 
 
 def _named_apart(entries: Sequence[LeaderboardEntry]) -> list[LeaderboardEntry]:
-    times = Counter(e.name for e in entries)
+    times = Counter(_looks(e.name) for e in entries)
     return [
-        e if times[e.name] == 1 else replace(e, name=f"{e.name} ({e.path.stem})") for e in entries
+        e if times[_looks(e.name)] == 1 else replace(e, name=f"{e.name} ({e.path.stem})")
+        for e in entries
     ]
+
+
+def _looks(name: str) -> str:
+    """Equal for names that readers take for the same one."""
+    plain = unicodedata.normalize("NFKC", name).casefold()
+    return " ".join("".join(c for c in plain if unicodedata.category(c) != "Cf").split())
 
 
 # ------------------------------------------------------------------ metrics' versions

@@ -6,9 +6,10 @@ import json
 from typing import Annotated, Any, Literal
 
 from annotated_types import Ge
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from crowdbot.errors import InputError
+from crowdbot.core.support.strict_json import parse_json
+from crowdbot.errors import InputError, hidden_character
 
 #: The version of the bundle format that this release reads and writes.
 BUNDLE = 1
@@ -24,6 +25,22 @@ RULES_TEXT = (
     "Scenarios, rates and metrics are those of the suite, unchanged.",
 )
 
+
+def _shown_alike(text: str) -> str:
+    """A name, as every reader of the leaderboard sees it.
+
+    Raises:
+        ValueError: a character in it shows nothing, or turns the text around.
+    """
+    hidden = hidden_character(text, allowed="")
+    if hidden:
+        raise ValueError(f"the character {hidden} is not one that is shown")
+    return text
+
+
+#: Of a team, or whom to ask: a line of text.
+Name = Annotated[str, Field(max_length=200), AfterValidator(_shown_alike)]
+_NAME: TypeAdapter[str] = TypeAdapter(Name)
 Class = Literal["privileged", "sensors only"]
 
 
@@ -83,8 +100,8 @@ class Manifest(_Model):
 
     bundle: Annotated[int, Ge(1)]
     crowdbot: str
-    team: str
-    contact: str
+    team: Name
+    contact: Name
     edition: Edition
     planner: dict[str, Any]
     classed: Class
@@ -111,6 +128,15 @@ class Manifest(_Model):
         return json.dumps(self.model_dump(mode="json"), indent=1, ensure_ascii=False) + "\n"
 
 
+def name_problem(text: str) -> str:
+    """Why a text is not the name of a team, or of whom to ask; empty if it is."""
+    try:
+        _NAME.validate_python(text)
+    except ValidationError as error:
+        return error.errors()[0]["msg"].removeprefix("Value error, ")
+    return ""
+
+
 def _ranges(seeds: list[int]) -> str:
     """``0-4, 7``, whatever the numbers are."""
     parts: list[list[int]] = []
@@ -129,7 +155,7 @@ def parse_manifest(text: str) -> Manifest:
         InputError: it is not a manifest, or a newer release wrote it.
     """
     try:
-        content = json.loads(text)
+        content = parse_json(text)
         version = content.get("bundle") if isinstance(content, dict) else None
         if isinstance(version, int) and version > BUNDLE:
             raise InputError(
@@ -139,6 +165,7 @@ def parse_manifest(text: str) -> Manifest:
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         place = ".".join(map(str, first["loc"]))
-        raise InputError(f"{MANIFEST} is not a manifest: {place}: {first['msg']}") from None
-    except (ValueError, RecursionError) as error:
+        said = first["msg"].removeprefix("Value error, ")
+        raise InputError(f"{MANIFEST} is not a manifest: {place}: {said}") from None
+    except ValueError as error:
         raise InputError(f"{MANIFEST} is not a manifest: {error}") from None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import metadata
@@ -12,14 +11,23 @@ from typing import Any
 
 from crowdbot.core.bundle.archive import members_of, write_archive
 from crowdbot.core.bundle.check_edition import missing_runs
-from crowdbot.core.bundle.manifest import BUNDLE, LOCK, RULES, BundledRun, Edition, Manifest
+from crowdbot.core.bundle.manifest import (
+    BUNDLE,
+    LOCK,
+    RULES,
+    BundledRun,
+    Edition,
+    Manifest,
+    name_problem,
+)
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_model import record_problems
 from crowdbot.core.scenarios.lock_check import spec_of
+from crowdbot.core.support.strict_json import parse_json
 from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.lock import LockFiles
-from crowdbot.errors import InputError, UnknownNameError
+from crowdbot.errors import InputError, UnknownNameError, printable
 
 _OF_A_RUN = (files.RECORD, files.SCENARIO, files.SCORES)
 _SHOWN = 10
@@ -73,6 +81,9 @@ def pack(
             be equal; or something cannot be read or written.
         UnknownNameError: no run of this planner is there.
     """
+    for option, text in (("--team", submission.team), ("--contact", submission.contact)):
+        if problem := name_problem(text):
+            raise InputError(f"{option} {printable(text[:60])!r}: {problem}")
     found = _runs(submission, expansion)
     missing = missing_runs(
         expansion, {(str(f.record.get("scenario")), int(f.record["seed"])) for f in found}
@@ -253,9 +264,9 @@ def read_json(text: str, what: str) -> dict[str, Any]:
         InputError: it is not a mapping.
     """
     try:
-        document = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{what} is not JSON: {error}") from None
+        document = parse_json(text)
+    except ValueError as error:
+        raise InputError(f"{what} is not a JSON document: {error}") from None
     if not isinstance(document, dict):
         raise InputError(f"{what} is not a mapping")
     return document

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from crowdbot.core.runs.run_directory import write_json
+from crowdbot.core.support.strict_json import parse_json
 from crowdbot.errors import InputError
 
 
@@ -42,7 +42,7 @@ def save_verification(bundle: Path, record: Mapping[str, Any]) -> None:
 def read_verification(bundle: Path) -> dict[str, Any] | None:
     """The record of this very bundle; None if there is none, or it is of another one."""
     try:
-        record = json.loads(record_path(bundle).read_text(encoding="utf-8"))
+        record = parse_json(record_path(bundle).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
     if not isinstance(record, dict) or record.get("sha256") != content_hash(bundle):

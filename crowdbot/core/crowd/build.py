@@ -23,7 +23,6 @@ from crowdbot.core.crowd.velocity_search.cost import (
     Neighbours,
     NumpyCost,
 )
-from crowdbot.core.registry.plugin import BUILTIN
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.support.immutable import immutable_fields
@@ -54,10 +53,8 @@ def build_policy(
         PluginError: it cannot be built, or is not a policy.
     """
     call = registry.plugin_call(spec)
-    if registry.owner(registry.find("crowd policy", spec.kind)).name != BUILTIN:
-        agents = immutable_fields(agents)
     return registry.build(
-        spec, lambda policy: CheckedPolicy(policy, call), costs, agents, call=call
+        spec, lambda policy: CheckedPolicy(policy, call), costs, immutable_fields(agents), call=call
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from crowdbot.core.crowd.policy import CrowdPolicy, CrowdView
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.candidates import VelocityCandidates
 from crowdbot.errors import PluginError
 
 
@@ -47,7 +48,7 @@ def desired_acceleration(policy: CrowdPolicy, view: CrowdView) -> Array:
         PluginError: the policy raised, its answer has a wrong shape, or is not finite for one who
             decides.
     """
-    call = policy.call if isinstance(policy, CheckedPolicy) else CheckedPolicy(policy).call
+    call = _call(policy)
     with call("decision", view.t):
         if hasattr(policy, "accelerations"):
             return _checked(policy.accelerations(view), view, call)
@@ -57,6 +58,24 @@ def desired_acceleration(policy: CrowdPolicy, view: CrowdView) -> Array:
     limit = view.agents.max_acceleration
     scale = np.minimum(1.0, limit / np.maximum(norm, limit))
     return np.asarray(acceleration * scale[:, np.newaxis])
+
+
+def candidates_of(policy: CrowdPolicy) -> VelocityCandidates | None:
+    """The fixed velocities among which a policy chooses, where it lists them.
+
+    Raises:
+        PluginError: its ``velocity_candidates`` raised, or are something else.
+    """
+    call = _call(policy)
+    with call("velocity_candidates"):
+        found = getattr(policy, "velocity_candidates", None)
+    if found is not None and not isinstance(found, VelocityCandidates):
+        call.fail(f"velocity_candidates is a {type(found).__name__}, not VelocityCandidates")
+    return found
+
+
+def _call(policy: CrowdPolicy) -> PluginCall:
+    return policy.call if isinstance(policy, CheckedPolicy) else CheckedPolicy(policy).call
 
 
 def _checked(asked: object, view: CrowdView, call: PluginCall) -> Array:

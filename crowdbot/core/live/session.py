@@ -15,7 +15,9 @@ from typing import Literal
 from crowdbot.core.types.motion import Command
 
 Request = Literal["", "reset", "next", "load"]
-State = Literal["waiting", "running", "paused", "arrived", "timeout", "planner_failed", "ended"]
+State = Literal[
+    "waiting", "running", "paused", "arrived", "timeout", "toppled", "planner_failed", "ended"
+]
 #: How often a wait looks whether the run was interrupted, s.
 _LOOK = 0.05
 #: A command whose stamp is older than the step that is asked, by more than this, answers another.

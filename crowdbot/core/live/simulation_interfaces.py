@@ -78,14 +78,11 @@ def _entities(session: LiveSession) -> dict[str, Call]:
     """Those about what is there: of the robot what it knows itself, of people nothing."""
 
     async def entities(values: Values) -> Values:
-        pattern = _inside(values, "filters").get("filter", "")
-        if not isinstance(pattern, str) or len(pattern) > _LONGEST_FILTER:
-            raise InputError("'filter' must be a text of at most 100 characters")
-        try:
-            found = [session.robot] if re.search(pattern, session.robot) else []
-        except re.error as error:
-            raise InputError(f"'filter' is not a regular expression: {error}") from error
-        return {**_result(OK), "entities": found}
+        return {**_result(OK), "entities": _found(session, values)}
+
+    async def states(values: Values) -> Values:
+        found = _found(session, values)
+        return {**_result(OK), "entities": found, "states": [_entity_state(session) for _ in found]}
 
     async def entity_state(values: Values) -> Values:
         name = values.get("entity", "")
@@ -93,11 +90,35 @@ def _entities(session: LiveSession) -> dict[str, Call]:
             return _result(NOT_FOUND, f"no entity '{str(name)[:80]}'; people are not told")
         return {**_result(OK), "state": _entity_state(session)}
 
-    async def spawn(values: Values) -> Values:
-        del values
-        return _result(UNSUPPORTED, "the scenario says who is there; nothing can be spawned")
+    return {
+        "GetEntities": entities,
+        "GetEntityState": entity_state,
+        "GetEntitiesStates": states,
+        "SpawnEntity": _never("the scenario says who is there; nothing can be spawned"),
+        "DeleteEntity": _never("the scenario says who is there; nobody can be taken away"),
+        "SetEntityState": _never("the robot is moved by commands alone, people by their policies"),
+    }
 
-    return {"GetEntities": entities, "GetEntityState": entity_state, "SpawnEntity": spawn}
+
+def _never(why: str) -> Call:
+    """A service that is there so that nobody waits for it; it says why it does nothing."""
+
+    async def answer(values: Values) -> Values:
+        del values
+        return _result(UNSUPPORTED, why)
+
+    return answer
+
+
+def _found(session: LiveSession, values: Values) -> list[str]:
+    """Names of entities that the filter of a request lets through."""
+    pattern = _inside(values, "filters").get("filter", "")
+    if not isinstance(pattern, str) or len(pattern) > _LONGEST_FILTER:
+        raise InputError("'filter' must be a text of at most 100 characters")
+    try:
+        return [session.robot] if re.search(pattern, session.robot) else []
+    except re.error as error:
+        raise InputError(f"'filter' is not a regular expression: {error}") from error
 
 
 def _worlds(session: LiveSession) -> dict[str, Call]:
@@ -123,7 +144,12 @@ def _worlds(session: LiveSession) -> dict[str, Call]:
         session.load(name)
         return {**_result(OK), "world": _world(name)}
 
-    return {"GetAvailableWorlds": available, "GetCurrentWorld": current, "LoadWorld": load}
+    return {
+        "GetAvailableWorlds": available,
+        "GetCurrentWorld": current,
+        "LoadWorld": load,
+        "UnloadWorld": _never("there always is a scenario; load another one"),
+    }
 
 
 def _snake(name: str) -> str:

@@ -46,6 +46,13 @@ SERVICES: dict[str, tuple[dict[str, str], dict[str, str]]] = {
         {"entity": "string"},
         {**_RESULT, "state": f"{PACKAGE}/EntityState"},
     ),
+    "GetEntitiesStates": (
+        {"filters": f"{PACKAGE}/EntityFilters"},
+        {**_RESULT, "entities": "string[]", "states": f"{PACKAGE}/EntityState[]"},
+    ),
+    "SetEntityState": ({"entity": "string", "state": f"{PACKAGE}/EntityState"}, _RESULT),
+    "DeleteEntity": ({"entity": "string"}, _RESULT),
+    "UnloadWorld": ({}, _RESULT),
     "GetAvailableWorlds": (
         {"additional_sources": "string[]", "filter": f"{PACKAGE}/TagsFilter",
          "offline_only": "bool", "continue_on_error": "bool"},

@@ -14,6 +14,10 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command, Pose
 from crowdbot.core.types.robot import RobotBody, RobotLimits
 from crowdbot.core.types.sensor import Reading, SensorInfo
+from crowdbot.errors import hidden_character
+
+#: Most characters of the name of a signal.
+_LONGEST_NAME = 200
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,6 +100,11 @@ def named_signal(name: str, value: float) -> tuple[str, float]:
     """
     if not isinstance(name, str) or not name:
         raise TypeError(f"log: the name of a signal is text, not {name!r}")
+    if len(name) > _LONGEST_NAME or hidden_character(name, allowed=""):
+        raise ValueError(
+            f"log: the name of a signal is at most {_LONGEST_NAME} characters that are shown, "
+            f"not {name[:40]!a}"
+        )
     return name, float(value)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from crowdbot.core.realism.tracks import NothingToCompareError, Tracks, tracks_of
+from crowdbot.core.recording.fleet import fleet_names, read_fleet
 from crowdbot.core.trajectories.bag_tables import people_topics
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError
@@ -56,7 +57,7 @@ def read_runs(files: Sequence[Path]) -> tuple[list[Tracks], list[str]]:
     without: list[str] = []
     for file in files:
         try:
-            found.append(tracks_of(Trajectories.from_mcap(file), str(file)))
+            found.append(tracks_of(_run(file), str(file)))
         except NothingToCompareError as error:
             without.append(str(error))
     if not found:
@@ -80,7 +81,14 @@ def _recording(path: Path) -> Trajectories:
     profile, library = _origin(path)
     if profile.startswith("ros") and library != "crowdbot":
         return _bag(path)
-    return Trajectories.from_mcap(path)
+    return _run(path)
+
+
+def _run(path: Path) -> Trajectories:
+    """A recording of crowdbot's; of several robots' the run of the last to end: all meet people."""
+    if not fleet_names(path):
+        return Trajectories.from_mcap(path)
+    return max((member.run for member in read_fleet(path).values()), key=lambda run: run.t[-1])
 
 
 def _origin(path: Path) -> tuple[str, str]:

@@ -38,7 +38,7 @@ from crowdbot.core.recording.motion_prediction import (
     towards,
     wanted,
 )
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array
 
@@ -68,6 +68,40 @@ class Packed(NamedTuple):
 
     gain: float
     data: bytes
+
+
+class _Samples(NamedTuple):
+    """What is packed or unpacked, as the compiled loops hand it to each other.
+
+    Attributes:
+        packs: whether to pack.
+        values, bits: (K, 4, M), the same memory.
+        scratch, scratch_bits: (1,), the same memory.
+        taken: (K, M) which predictions.
+        difference: (4, K, M) of the bits.
+    """
+
+    packs: bool
+    values: Array
+    bits: NDArray[np.int64]
+    scratch: Array
+    scratch_bits: NDArray[np.int64]
+    taken: NDArray[np.uint8]
+    difference: NDArray[np.int64]
+
+
+class _Past(NamedTuple):
+    """What is remembered of the samples before, brought up to date.
+
+    Attributes:
+        last: (2, 4, M) the sample before, and the one before that.
+        speeds: (M, SPEEDS) wanted lately, m/s.
+        oldest: (M,) which of them is replaced next.
+    """
+
+    last: Array
+    speeds: Array
+    oldest: NDArray[np.int64]
 
 
 class MotionCodec:
@@ -194,13 +228,13 @@ def _code(
     One function for both, so that they cannot predict differently.
 
     Args:
-        packs: whether to pack.
-        values, bits: (K, 4, M), the same memory.
+        packs to difference: fields of `_Samples` and `_Past`.
         steps: (K,) ticks since the sample before.
-        last, speeds, oldest, choice: what was before, brought up to date.
         goals: (K, 2, M).
-        scratch, scratch_bits: (1,), the same memory.
+        choice: (M,) the candidate that was taken last, brought up to date.
     """
+    samples = _Samples(packs, values, bits, scratch, scratch_bits, taken, difference)
+    past = _Past(last, speeds, oldest)
     for k in range(values.shape[0]):
         for i in range(values.shape[2]):
             ax, ay, follows = 0.0, 0.0, False
@@ -215,14 +249,9 @@ def _code(
                 choice[i] = (choice[i] + taken[k, i] - _CHOICE) % count
                 ex, ey = ahead(candidates, i, last[0], goals[k])
                 ax, ay = acceleration(candidates, i, choice[i], ex, ey, last[0])
-                follows = _follow(
-                    packs, k, i, steps[k], ax, ay, last, bits, scratch, scratch_bits, difference
-                )
+                follows = _follow(samples, last, k, i, steps[k], ax, ay)
             else:
-                _extrapolate(
-                    packs, k, i, steps[k], gain, values, bits, last, speeds, oldest, scratch,
-                    scratch_bits, taken, difference,
-                )  # fmt: skip
+                _extrapolate(samples, past, k, i, steps[k], gain)
             for c in range(2):
                 before, now = last[0, c + 2, i], values[k, c + 2, i]
                 scratch[0] = known(moved(last[0, c, i], before, now, steps[k]))
@@ -230,89 +259,61 @@ def _code(
                     scratch[0], _ = accelerated(
                         last[0, c, i], before, ax if c == 0 else ay, steps[k]
                     )
-                _transfer(packs, k, c, i, bits, scratch_bits[0], difference)
+                _transfer(samples, k, c, i)
             for c in range(4):
                 last[1, c, i] = last[0, c, i]
                 last[0, c, i] = values[k, c, i]
 
 
-@kernel
+@inline_kernel
 def _follow(
-    packs: bool,
-    k: int,
-    i: int,
-    ticks: int,
-    ax: float,
-    ay: float,
-    last: Array,
-    bits: NDArray[np.int64],
-    scratch: Array,
-    scratch_bits: NDArray[np.int64],
-    difference: NDArray[np.int64],
+    samples: _Samples, last: Array, k: int, i: int, ticks: int, ax: float, ay: float
 ) -> bool:
     """Velocities from an acceleration; returns whether that is how they really are."""
-    _, scratch[0] = accelerated(0.0, last[0, _VX, i], ax, ticks)
-    _transfer(packs, k, _VX, i, bits, scratch_bits[0], difference)
-    _, scratch[0] = accelerated(0.0, last[0, _VY, i], ay, ticks)
-    _transfer(packs, k, _VY, i, bits, scratch_bits[0], difference)
+    _, samples.scratch[0] = accelerated(0.0, last[0, _VX, i], ax, ticks)
+    _transfer(samples, k, _VX, i)
+    _, samples.scratch[0] = accelerated(0.0, last[0, _VY, i], ay, ticks)
+    _transfer(samples, k, _VY, i)
+    difference = samples.difference
     return bool(difference[_VX, k, i] == 0 and difference[_VY, k, i] == 0)
 
 
-@kernel
-def _extrapolate(
-    packs: bool,
-    k: int,
-    i: int,
-    ticks: int,
-    gain: float,
-    values: Array,
-    bits: NDArray[np.int64],
-    last: Array,
-    speeds: Array,
-    oldest: NDArray[np.int64],
-    scratch: Array,
-    scratch_bits: NDArray[np.int64],
-    taken: NDArray[np.uint8],
-    difference: NDArray[np.int64],
-) -> None:
+@inline_kernel
+def _extrapolate(samples: _Samples, past: _Past, k: int, i: int, ticks: int, gain: float) -> None:
     """Velocities from those of the two samples before."""
+    last, speeds, scratch = past.last, past.speeds[i], samples.scratch
+    values, taken = samples.values, samples.taken
     ux = wanted(last[1, _VX, i], last[0, _VX, i], gain)
     uy = wanted(last[1, _VY, i], last[0, _VY, i], gain)
     # The component that is the smaller one: the other follows better from it.
     p, q, up, uq = (_VX, _VY, ux, uy) if abs(ux) <= abs(uy) else (_VY, _VX, uy, ux)
     scratch[0] = known(towards(last[0, p, i], up, gain, ticks))
-    _transfer(packs, k, p, i, bits, scratch_bits[0], difference)
+    _transfer(samples, k, p, i)
     up = wanted(last[0, p, i], values[k, p, i], gain)
-    if packs:
+    if samples.packs:
         taken[k, i] = best_speed(
-            bits[k, q, i], last[0, q, i], up, uq, gain, ticks, speeds[i], scratch, scratch_bits
-        )
-    scratch[0] = predicted(taken[k, i], last[0, q, i], up, uq, gain, ticks, speeds[i])
-    _transfer(packs, k, q, i, bits, scratch_bits[0], difference)
+            samples.bits[k, q, i], last[0, q, i], up, uq, gain, ticks, speeds, scratch,
+            samples.scratch_bits,
+        )  # fmt: skip
+    scratch[0] = predicted(taken[k, i], last[0, q, i], up, uq, gain, ticks, speeds)
+    _transfer(samples, k, q, i)
     uq = wanted(last[0, q, i], values[k, q, i], gain)
     speed = math.sqrt(up * up + uq * uq)
     if taken[k, i] == 0 and math.isfinite(speed):
-        speeds[i, oldest[i]] = speed
-        oldest[i] = (oldest[i] + 1) % SPEEDS
+        speeds[past.oldest[i]] = speed
+        past.oldest[i] = (past.oldest[i] + 1) % SPEEDS
 
 
-@kernel
-def _transfer(
-    packs: bool,
-    k: int,
-    c: int,
-    i: int,
-    bits: NDArray[np.int64],
-    predicted: int,
-    difference: NDArray[np.int64],
-) -> None:
-    """Difference of a number's bits from those predicted, or the other way round.
+@inline_kernel
+def _transfer(samples: _Samples, k: int, c: int, i: int) -> None:
+    """Difference of a number's bits from those in scratch, or the other way round.
 
     Small differences of either sign become small numbers.
     """
-    if packs:
-        off = bits[k, c, i] - predicted
-        difference[c, k, i] = (off << 1) ^ (off >> 63)
+    bits, predicted_bits = samples.bits, samples.scratch_bits[0]
+    if samples.packs:
+        off = bits[k, c, i] - predicted_bits
+        samples.difference[c, k, i] = (off << 1) ^ (off >> 63)
     else:
-        off = difference[c, k, i]
-        bits[k, c, i] = predicted + (((off >> 1) & _POSITIVE) ^ -(off & 1))
+        off = samples.difference[c, k, i]
+        bits[k, c, i] = predicted_bits + (((off >> 1) & _POSITIVE) ^ -(off & 1))

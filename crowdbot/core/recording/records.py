@@ -131,12 +131,16 @@ class Records:
         try:
             yield from reader.records
             self.finished = True
+            rest = len(data) - data.tell()
         except InvalidMagic as error:
             if data.tell() <= 8:
                 raise InputError(f"{self._path}: no MCAP file") from error
         except (*_BROKEN, EndOfFile, OverflowError):
             if data.tell() < 8:
                 raise InputError(f"{self._path}: no MCAP file") from None
+        else:
+            if rest:
+                raise InputError(f"{self._path}: damaged: {rest} bytes follow its end")
 
     def _unpack(self, chunk: Chunk) -> list[McapRecord] | None:
         """The records of a chunk, or None where it is broken."""

@@ -238,7 +238,7 @@ class RecordingWriter:
         Args:
             goal_time: when the robot arrived, s, or None.
             complete: False for a run that was interrupted.
-            status: ``arrived``, ``timeout``, ``planner_failed``, …
+            status: ``arrived``, ``timeout``, ``toppled``, ``planner_failed``, …
             until: when it ended, s; by default at the last sample.
         """
         if self._closed:

@@ -8,7 +8,7 @@ from types import TracebackType
 from typing import Any, NoReturn
 
 from crowdbot.core.registry.plugin_errors import describe_error, is_user_interrupt
-from crowdbot.errors import CrowdbotError, PluginError
+from crowdbot.errors import CrowdbotError, PluginError, printable
 
 Exceptions = type[BaseException] | tuple[type[BaseException], ...]
 
@@ -80,7 +80,7 @@ class PluginCall:
         Raises:
             PluginError: always; of the class that was asked for.
         """
-        raise self._error(f"{self.who}: {what}" if self.who else what)
+        raise self._error(printable(f"{self.who}: {what}" if self.who else what))
 
     def _let_pass_or_raise(self, error: BaseException) -> None:
         if is_user_interrupt(error):
@@ -88,9 +88,9 @@ class PluginCall:
         if not isinstance(error, self._passes):
             raise self._error(self._told(describe_error(error, self._sources()))) from error
         if isinstance(error, CrowdbotError) and self.who.partition(" (")[0] not in str(error):
-            error.args = (f"{self.who}: {error}",)
+            error.args = (printable(f"{self.who}: {error}"),)
 
     def _told(self, what: str) -> str:
         """Who, in which call, at which time: what."""
         doing = self._doing if self._t is None else f"{self._doing} at t = {self._t:g} s"
-        return ": ".join(part for part in (self.who, doing, what) if part)
+        return printable(": ".join(part for part in (self.who, doing, what) if part))

@@ -10,10 +10,11 @@ from typing import Any
 from crowdbot.core.realism.crowds import lines_of
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.report.cards import cards
-from crowdbot.core.report.encode import Attempt, attempts, axes_of, status_of
+from crowdbot.core.report.encode import FAILED, Attempt, attempts, axes_of, status_of
 from crowdbot.core.report.figures import Figures, figures
 from crowdbot.core.report.series import Series, all_series
 from crowdbot.core.results.rows import Results, RunRow, named_metrics
+from crowdbot.core.runs.outcome import ENDINGS
 from crowdbot.core.scoring.score_scale import score_scales
 from crowdbot.core.statistics import (
     FloorCheck,
@@ -27,7 +28,7 @@ from crowdbot.core.statistics.audit import Audit, suspicion
 from crowdbot.core.statistics.crowds import AXIS, CrowdRanks, crowd_ranks
 from crowdbot.errors import InputError
 
-STATUSES = ("arrived", "timeout", "planner_failed", "failed")
+STATUSES = (*ENDINGS, FAILED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,6 +11,7 @@ import numpy as np
 from crowdbot.core.report.packing import deflate, pack
 from crowdbot.core.report.series import Series
 from crowdbot.core.results.rows import PLANNER_FAILED, WITHOUT_RUN, FailureRow, Results, RunRow
+from crowdbot.core.runs.outcome import ENDINGS
 
 #: Code of a score that a run does not have.
 ABSENT = 65535
@@ -89,7 +90,7 @@ def encode_runs(
     replays: Mapping[str, str],
 ) -> dict[str, Any]:
     """Columns of runs; ``replays``: run id -> address of its replay page."""
-    scenarios, statuses = Names(), Names("arrived", "timeout", PLANNER_FAILED, FAILED)
+    scenarios, statuses = Names(), Names(*ENDINGS, FAILED)
     reasons = Names("")
     labels = [a.axes for a in tried]
     runs = [a if isinstance(a, RunRow) else None for a in tried]

@@ -25,7 +25,7 @@ function drawFailed() {
 
 function failedText(rows) {
   const count = (status) => rows.filter((row) => row.status === status).length;
-  const parts = [["timeout", "timed out"], ["planner_failed", "ended by a failing planner"], ["failed", "could not be made"]];
+  const parts = [["timeout", "timed out"], ["toppled", "toppled"], ["planner_failed", "ended by a failing planner"], ["failed", "could not be made"]];
   return `${parts.filter(([s]) => count(s)).map(([s, text]) => `${count(s)} ${text}`).join(", ")}.`;
 }
 

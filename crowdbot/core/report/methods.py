@@ -54,8 +54,8 @@ def _seeds(seeds: Sequence[int]) -> str:
 def _ended(contents: Contents) -> str:
     counts = contents.counts()
     words = {
-        "timeout": "ran out of time", "planner_failed": "ended because the planner failed",
-        "failed": "could not be made",
+        "timeout": "ran out of time", "toppled": "ended because the robot toppled",
+        "planner_failed": "ended because the planner failed", "failed": "could not be made",
     }  # fmt: skip
     rest = [f"{counts[name]} {text}" for name, text in words.items() if counts[name]]
     return f"The robot arrived in {counts['arrived']} of them" + (

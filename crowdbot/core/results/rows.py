@@ -50,7 +50,8 @@ class RunRow:
             where they are not the defaults.
         axes: axis of the suite -> label, such as ``{"flow": "counter", "density": "d0250"}``,
             in the suite's order; ``draw`` among them where a condition has several.
-        status: ``arrived``, ``timeout`` or ``planner_failed``; ``reason`` says why it ended.
+        status: ``arrived``, ``timeout``, ``toppled`` or ``planner_failed``; ``reason`` says why
+            it ended.
         goal_time: s, None when the robot did not arrive.
         sim_time, wall_time: s.
         privileged: the planner was told what no sensor can tell.

@@ -6,14 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-ARRIVED, TIMEOUT, PLANNER_FAILED, INTERRUPTED = (
-    "arrived", "timeout", "planner_failed", "interrupted",
+ARRIVED, TIMEOUT, TOPPLED, PLANNER_FAILED, INTERRUPTED = (
+    "arrived", "timeout", "toppled", "planner_failed", "interrupted",
 )  # fmt: skip
-
-
-def toppled(t: float) -> str:
-    """What is said of a robot that toppled at ``t``, s."""
-    return f"toppled at {t:.1f} s"
+#: How a complete run may have ended, in the order in which tables show it.
+ENDINGS = (ARRIVED, TIMEOUT, TOPPLED, PLANNER_FAILED)
 
 
 class Progress(NamedTuple):
@@ -31,7 +28,7 @@ class Outcome:
     """How a run ended; times in s.
 
     Attributes:
-        toppled_time: when the robot toppled, or None.
+        toppled_time: when the robot toppled, which ended the run; or None.
         clamped: commands that had to be clamped to the robot's limits.
         planner_step_time: mean and largest wall time of a planner step.
         robots: how each of several robots ended; empty in a run of one.

@@ -51,7 +51,7 @@ class RobotPart(_Part):
     """One of several robots."""
 
     planner: PlannerPart
-    status: Literal["arrived", "timeout", "planner_failed"]
+    status: Literal["arrived", "timeout", "toppled", "planner_failed"]
     reason: str
     goal_time: Seconds | None
     sim_time: Seconds
@@ -82,7 +82,7 @@ class RecordModel(_Part):
     plugins: list[PluginPart]
     pinned: bool
     privileged: bool
-    status: Literal["arrived", "timeout", "planner_failed"]
+    status: Literal["arrived", "timeout", "toppled", "planner_failed"]
     goal_time: Seconds | None
     metrics: dict[str, MetricPart]
     references: dict[str, str]

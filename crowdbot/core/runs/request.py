@@ -77,7 +77,7 @@ class Run:
 
     @property
     def status(self) -> str:
-        """``arrived``, ``timeout`` or ``planner_failed``."""
+        """``arrived``, ``timeout``, ``toppled`` or ``planner_failed``."""
         return str(self.record["status"])
 
     @cached_property

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.support.strict_json import parse_json
 from crowdbot.errors import InputError
 
 RECORD, RECORDING, SCENARIO, SCORES, REPLAY = (
@@ -25,7 +26,7 @@ _NEEDED = (RECORDING, SCENARIO, SCORES)
 def read_record(directory: Path) -> dict[str, Any] | None:
     """``run.json`` of a complete run, or None."""
     try:
-        record = json.loads((directory / RECORD).read_text(encoding="utf-8"))
+        record = parse_json((directory / RECORD).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
     return record if isinstance(record, dict) else None

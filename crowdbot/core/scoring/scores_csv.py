@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main, main_first
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.types.score import Score
-from crowdbot.errors import InputError
+from crowdbot.errors import InputError, hidden_character
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -156,6 +156,9 @@ def _score(cells: Mapping[str, Any]) -> Score:
     ):
         if cells[name] not in known:
             raise ValueError(f"{name} '{cells[name]}' is not one of {', '.join(known)}")
+    for name in _TEXTS:
+        if hidden := hidden_character(cells[name]):
+            raise ValueError(f"{name} has the character {hidden}, which nobody sees")
     values: dict[str, Any] = {name: cells[name] for name in _TEXTS}
     values |= {name: float(_plain(cells[name])) if cells[name] else None for name in _NUMBERS}
     return Score(**values)

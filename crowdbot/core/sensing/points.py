@@ -39,7 +39,7 @@ class LidarPoints:
         return len(self._beams)
 
     def __call__(
-        self, readings: Mapping[str, Reading], t: float, twist: tuple[float, float]
+        self, readings: Mapping[str, Reading], t: float, twist: tuple[float, float], vy: float = 0.0
     ) -> Array:
         """Points where something was hit.
 
@@ -49,6 +49,7 @@ class LidarPoints:
             readings: by sensor name; a lidar that has not read yet is left out.
             t: now, s.
             twist: the robot's v (m/s) and w (rad/s).
+            vy: its speed to the left, m/s.
 
         Returns:
             (P, 2) x forward, y left of base_link, m; new.
@@ -61,7 +62,7 @@ class LidarPoints:
                 if name in self._longest:
                     hit &= ranges < self._longest[name]
                 points = rays[hit] * ranges[hit, None] + mount
-                parts.append(_moved(points, t - readings[name].stamp, twist))
+                parts.append(_moved(points, t - readings[name].stamp, twist, vy))
         return np.concatenate(parts) if parts else np.empty((0, 2))
 
 
@@ -69,24 +70,28 @@ def _tilted(info: SensorInfo) -> tuple[Array, Array]:
     """Beams of a tilted lidar seen from above (R, 2), and how far each goes to the floor, m.
 
     Readings from `CLEARANCE` above the floor on are the floor, not obstacles. base_link is taken
-    to lie on the floor, which it may be above by some centimetres: a little more is left out.
+    to lie on the floor; of one that is higher, less of the floor is left out.
     """
     assert info.angles is not None  # by __init__
     fan = np.column_stack([np.cos(info.angles), np.sin(info.angles), np.zeros_like(info.angles)])
     rays = fan @ rotation(*info.tilt, info.mount[3]).T
-    room, down = max(info.mount[2] - CLEARANCE, 0.0), -rays[:, 2]
+    room, down = info.mount[2] - CLEARANCE, -rays[:, 2]
     longest = np.full(len(rays), math.inf)
-    np.divide(room, down, out=longest, where=down > 0.0)
+    if room > 0.0:  # else nobody can tell where the floor is
+        np.divide(room, down, out=longest, where=down > 0.0)
     return rays[:, :2], longest
 
 
-def _moved(points: Array, age: float, twist: tuple[float, float]) -> Array:
+def _moved(points: Array, age: float, twist: tuple[float, float], vy: float) -> Array:
     """Points seen ``age`` seconds ago, in the frame of a robot that has moved on since."""
     v, w = twist
-    if age <= 0.0 or (v == 0.0 and w == 0.0):
+    if age <= 0.0 or (v == 0.0 and w == 0.0 and vy == 0.0):
         return points
     turn = w * age
-    x, y = v * age * math.cos(turn / 2.0), v * age * math.sin(turn / 2.0)
-    c, s = math.cos(turn), math.sin(turn)
+    half, full = (math.cos(turn / 2.0), math.sin(turn / 2.0)), (math.cos(turn), math.sin(turn))
+    x, y = v * age * half[0], v * age * half[1]
+    if vy:
+        x, y = x - vy * age * half[1], y + vy * age * half[0]
+    c, s = full
     moved: Array = (points - (x, y)) @ np.array([[c, -s], [s, c]])
     return moved

@@ -31,7 +31,7 @@ class Fate:
 
     @property
     def ended(self) -> bool:
-        """Whether it has arrived, failed, or run out of time."""
+        """Whether it has arrived, toppled, failed, or run out of time."""
         return bool(self.status)
 
     @property

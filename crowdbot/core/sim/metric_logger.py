@@ -15,7 +15,7 @@ from pydrake.systems.framework import Context, DiagramBuilder, EventStatus, Leaf
 from crowdbot.core.geometry.polygon import distance_to, entry_fraction, inside
 from crowdbot.core.planning.planner import Task
 from crowdbot.core.recording.run_log import RunLog
-from crowdbot.core.runs.outcome import ARRIVED, PLANNER_FAILED, TIMEOUT, toppled
+from crowdbot.core.runs.outcome import ARRIVED, PLANNER_FAILED, TIMEOUT, TOPPLED
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.clearance_cache import ClearanceCache
@@ -31,16 +31,16 @@ from crowdbot.core.types.robot import RobotState
 _ROUNDING = 1e-9  # m; of the distance to the goal zone
 _TILT = RobotState._fields.index("tilt")
 #: A robot that leans by more than this has toppled, however it comes to lie, rad.
-TOPPLED = math.radians(60.0)
+LEANS = math.radians(60.0)
 
 
 class MetricLogger(LeafSystem):
-    """Inputs: robot state, crowd state, forces. Ends the run on arrival and at the time limit.
+    """Inputs: robot state, crowd state, forces. Ends the run: arrived, toppled, out of time.
 
     Attributes:
         walls: contacts of the robot with walls.
         goal_time: when the robot arrived, s, or None.
-        toppled_time: when it toppled, s, or None; from then on it cannot arrive.
+        toppled_time: when it toppled, s, or None.
     """
 
     __slots__ = NO_ATTRIBUTES
@@ -94,7 +94,7 @@ class MetricLogger(LeafSystem):
         t = tick * TICK
         now, before = self._robot.Eval(context), self._before
         self._before = now
-        if self.toppled_time is None and now.item(_TILT) > TOPPLED:
+        if self.toppled_time is None and now.item(_TILT) > LEANS:
             self.toppled_time = t
         sampled = tick % self._ticks_per_sample == 0
         crowd = self._crowd_state(context, always=sampled)
@@ -109,14 +109,15 @@ class MetricLogger(LeafSystem):
             return self._end(context, t, ARRIVED, "centre inside the goal zone")
         if self._fate is not None and self._fate.failure:
             return self._end(context, t, PLANNER_FAILED, self._fate.failure)
-        if t >= self._task.time_limit:
-            return self._end(context, t, TIMEOUT, self.late())
+        if self.toppled_time is not None or t >= self._task.time_limit:
+            return self._end(context, t, *self.fate_without_arrival())
         return None
 
-    def late(self) -> str:
-        """Why the robot did not arrive, if no planner is to blame."""
-        reason = f"time limit of {self._task.time_limit:g} s"
-        return reason if self.toppled_time is None else f"{reason}; {toppled(self.toppled_time)}"
+    def fate_without_arrival(self) -> tuple[str, str]:
+        """Status of a robot that has not arrived, and why, if no planner is to blame."""
+        if self.toppled_time is not None:
+            return TOPPLED, f"toppled at {self.toppled_time:.1f} s"
+        return TIMEOUT, f"time limit of {self._task.time_limit:g} s"
 
     def _end(self, context: Context, t: float, status: str, reason: str) -> EventStatus | None:
         """The robot has ended, and with it the run, but for that of a fleet."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as crowd_state
+from crowdbot.core.crowd.desired_acceleration import candidates_of
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.population.realisation import Realisation
@@ -25,7 +26,6 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.outcome import INTERRUPTED, TIMEOUT, Outcome, Progress
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.crowd_only import run_crowd
-from crowdbot.core.types.candidates import VelocityCandidates
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
 
@@ -132,9 +132,9 @@ def choosers(engine: CrowdEngine | None) -> list[Choosers]:
         return []
     a, found = engine.agents, list[Choosers]()
     for number, policy in enumerate(engine.policies):
-        candidates = getattr(policy, "velocity_candidates", None)
+        candidates = candidates_of(policy)
         rows = np.flatnonzero(a.policy == number)
-        if isinstance(candidates, VelocityCandidates) and len(rows):
+        if candidates is not None and len(rows):
             found.append(
                 Choosers(
                     candidates=candidates,

@@ -1,4 +1,4 @@
-"""Runner: advances a diagram until arrival, time limit, planner failure or interruption."""
+"""Runner: advances a diagram until arrival, toppling, time limit, planner failure, interruption."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def run(
     if blocks.logger.goal_time is not None:
         status, reason = ARRIVED, "centre inside the goal zone"
     if status == TIMEOUT:
-        reason = blocks.logger.late()
+        status, reason = blocks.logger.fate_without_arrival()
     return Outcome(
         status=status,
         reason=reason,

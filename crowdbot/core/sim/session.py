@@ -183,7 +183,7 @@ class Session:
 
     @property
     def status(self) -> str:
-        """``running``, and in the end ``arrived``, ``timeout`` or ``interrupted``."""
+        """``running``, and in the end ``arrived``, ``timeout``, ``toppled`` or ``interrupted``."""
         return "running" if self._outcome is None else self._outcome.status
 
     @property

@@ -24,11 +24,12 @@ NO_ATTRIBUTES: tuple[str, ...] = ()
 
 def weak_callback(method: Callable[..., T]) -> Callable[..., T]:
     """A method as a function that does not hold its object; who calls it must hold that."""
-    held = weakref.WeakMethod(method)
+    held, function = weakref.ref(method.__self__), method.__func__  # type: ignore[attr-defined]
 
     def call(*args: Any) -> T:
         found = held()
         assert found is not None, "a system outlives its callbacks"
-        return found(*args)
+        result: T = function(found, *args)
+        return result
 
     return call

@@ -416,17 +416,20 @@ class FromRecordings:
         )
 
     @classmethod
-    def from_mcap(cls, path: Path | str) -> Self:
+    def from_mcap(cls, path: Path | str, *, robot: str | None = None) -> Self:
         """Read a recording; see `crowdbot.core.recording.reader.read_trajectories`.
 
         Args:
             path: ``run.mcap`` of a run.
+            robot: which, of several.
 
         Raises:
-            InputError: it cannot be read, or crowdbot did not write it.
+            InputError: it cannot be read, crowdbot did not write it, or there are several robots
+                and none is named.
+            UnknownNameError: there is no such robot.
         """
         read = _above("read_trajectories")
-        return cast(Self, read(Path(path)))
+        return cast(Self, read(Path(path), robot))
 
     def implausible(self) -> list[str]:
         """What in it cannot be, such as positions in millimetres, in sentences with evidence."""

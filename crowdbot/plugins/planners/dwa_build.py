@@ -31,8 +31,9 @@ from crowdbot.plugins.planners.dwa_points_build import (
 )
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.heading_by_walls_build import HeadingByWalls, compile_heading
+from crowdbot.plugins.planners.manoeuvring_build import Manoeuvring
 from crowdbot.plugins.planners.people_build import carry, people_in, with_discs
-from crowdbot.plugins.planners.robot_outline_build import disc_radius
+from crowdbot.plugins.planners.robot_outline_build import core_of, disc_radius, swept_half_width
 
 _SECTORS = 240
 #: Points farther away play no part, m.
@@ -40,8 +41,9 @@ _REACH = 6.0
 #: Apparent motion below this is sampling noise, m/s.
 _STILL = 0.3
 _ARRIVED = 0.1
-#: A direction must be wider than the margin by this, m.
-_LEEWAY = 0.05
+#: A direction must be wider than the margin by this, m; that of a robot with an outline, which is
+#: as wide only if it heads there, by this.
+_LEEWAY, _OUTLINED_LEEWAY = 0.05, 0.01
 #: The map is renewed so often while it is needed, s.
 _MAP_PERIOD = 0.5
 #: People in that map have this share of their radius.
@@ -65,7 +67,10 @@ class Dwa:
         self._spec = spec
         self._lidars = LidarPoints({})
         self._limits: RobotLimits | None = None
-        self._radius = disc_radius(spec.robot_radius, None)
+        self._core, _ = core_of(spec.robot_radius, None)
+        self._half_width = disc_radius(spec.robot_radius, None)
+        self._sideways = False
+        self._manoeuvring: Manoeuvring | None = None
         self._p: Array = np.zeros(rollout.PARAMETERS)
         self._forget()
 
@@ -73,11 +78,14 @@ class Dwa:
         self._scans: deque[tuple[float, Array, Array]] = deque(maxlen=64)
         self._map: Array = np.empty((0, 2))
         self._around = (np.empty((0, 2)), np.empty((0, 2)))
+        self._stands, self._walkers = np.empty((0, 2)), np.empty((0, 4))
         self._walking, self._flow = False, 0.0
         self._heading_by_walls = HeadingByWalls()
         self._mapped_at = -math.inf
+        if self._manoeuvring is not None:
+            self._manoeuvring.forget()
         self._way: float | None = None
-        self._last = (0.0, 0.0)
+        self._last = (0.0, 0.0, 0.0)
         self._heading: float | None = None
         self._time: float | None = None
         self._moved_at: tuple[float, float, float] | None = None
@@ -92,14 +100,21 @@ class Dwa:
         self._forget()
         self._limits = limits
         self._lidars = LidarPoints(sensors)
-        self._radius = disc_radius(self._spec.robot_radius, task.robot)
-        self._p = _parameters(self._spec, limits, self._radius)
+        self._half_width = swept_half_width(self._spec.robot_radius, task.robot)
+        self._core, rounding = core_of(self._spec.robot_radius, task.robot)
+        self._sideways = limits.vy_max > 0.0
+        self._p = _parameters(self._spec, limits, rounding)
+        self._p[rollout.REACH] = disc_radius(self._spec.robot_radius, task.robot)
+        long = len(self._core) > 0 and not self._sideways  # it does not fit in every heading
+        person = self._spec.person_radius
+        made = Manoeuvring(self._core, self._p, limits, person, _REACH) if long else None
+        self._manoeuvring = made
         self._warm_up(task, sensors)
         self._forget()
 
     def _warm_up(self, task: Task, sensors: Mapping[str, SensorInfo]) -> None:
         """Two steps in a made-up world, so that no step of the run waits for a compiler."""
-        way_out(np.ones((1, 2)), 0.0, 0.0, 9.0, 0.0, self._radius)
+        way_out(np.ones((1, 2)), 0.0, 0.0, 9.0, 0.0, self._half_width)
         apart(np.ones((1, 2)), np.ones((1, 2)), _LEGS)
         compile_heading()
         for t in (0.0, self._spec.look_back):
@@ -118,7 +133,7 @@ class Dwa:
     def step(self, obs: Observation) -> Command:
         """The next command; zero at the goal."""
         assert self._limits is not None
-        seen = self._lidars(obs.readings, obs.t, obs.twist)
+        seen = self._lidars(obs.readings, obs.t, obs.twist, obs.vy)
         obs = replace(obs, pose=self._heading_by_walls.pose(obs.pose, seen))
         distance, goal = bearing(obs.pose, obs.goal)
         period = 1.0 / 16.0 if self._time is None else max(1e-3, obs.t - self._time)
@@ -130,24 +145,42 @@ class Dwa:
         self._wait(period)
         escaping = self._is_stuck(obs)
         room = distance
-        if self._is_lost(distance):
+        lost = self._is_lost(distance)
+        if self._manoeuvring is not None and (lost or escaping or self._manoeuvring):
+            lost = True
+            found = self._manoeuvring.command(obs, self._stands, self._walkers)
+            if found is not None:
+                self._last = found
+                return Command(*found)
+        if lost:
             goal, room = self._way_out(obs, goal, distance)
         else:
             self._map, self._way = np.empty((0, 2)), None
+            if self._manoeuvring is not None:
+                self._manoeuvring.forget()
         direction, free = self._choose(obs.pose, goal, room, points, velocities, escaping)
         near = rollout.reachable(points, velocities, self._p)
         top = min(
             self._spec.speed * self._limits.v_max, braking_speed(distance, self._limits.a_max)
         )
-        candidates = self._window(obs.twist, direction, top, escaping)
-        v, w = obs.twist
-        index, _ = rollout.evaluate(
-            points[near], velocities[near], self._p, v, w, candidates, direction, self._last
-        )
-        if index >= 0:
-            self._last = (float(candidates[index, 0]), float(candidates[index, 1]))
+        if self._sideways:
+            candidates, facing = self._window_aside(obs, direction, goal, top), goal
         else:
-            self._last = (0.0, 0.0)
+            candidates, facing = self._window(obs.twist, direction, top, escaping), direction
+        now = (*obs.twist, obs.vy)
+        index, _ = rollout.evaluate(
+            points[near],
+            velocities[near],
+            self._p,
+            self._core,
+            now,
+            candidates,
+            direction,
+            facing,
+            self._last,
+        )
+        chosen = candidates[index].tolist() if index >= 0 else [0.0, 0.0]
+        self._last = (chosen[0], chosen[1], chosen[2] if len(chosen) > 2 else 0.0)
         obs.log("dwa/direction", direction)
         obs.log("dwa/free_time", free)
         return Command(*self._last)
@@ -158,6 +191,7 @@ class Dwa:
         people, rest = people_in(seen, _REACH if radius else 0.0)
         points = nearest_per_sector(with_discs(rest, people, radius), _SECTORS, _REACH)
         self._around = rest, people
+        self._stands, self._walkers = seen, np.empty((0, 4))
         c, s = math.cos(obs.pose.yaw), math.sin(obs.pose.yaw)
         to_world = np.array([[c, s], [-s, c]])  # for row vectors
         now = [p @ to_world + (obs.pose.x, obs.pose.y) for p in (points, people)]
@@ -174,6 +208,10 @@ class Dwa:
                 )
                 carry(points, velocities, people, going, radius)
                 self._stand_apart(rest, people, going)
+                if self._manoeuvring is not None:
+                    walk = np.hypot(going[:, 0], going[:, 1]) > 0.0
+                    self._stands = seen[apart(seen, people[walk], _LEGS)]
+                    self._walkers = np.column_stack([people, going])[walk]
         self._scans.append((obs.t, now[0], now[1]))
         return points, velocities
 
@@ -203,6 +241,7 @@ class Dwa:
         assert self._limits is not None
         spec = self._spec
         speed = spec.speed * self._limits.v_max
+        leeway = _OUTLINED_LEEWAY if len(self._core) else _LEEWAY
         previous = goal if self._heading is None else self._heading - pose.yaw
         direction, free = choose_direction(
             points,
@@ -210,7 +249,7 @@ class Dwa:
             goal,
             previous,
             speed,
-            self._radius + spec.margin + (_LEEWAY if self._way is None else 0.0),
+            self._half_width + spec.margin + (leeway if self._way is None else 0.0),
             min(spec.look_ahead, room / speed + 0.1),
             0.2 if escaping else 1.0,
             spec.swerve if self._walking and not escaping else math.pi,
@@ -234,6 +273,17 @@ class Dwa:
         wish = max(left, min(right, 1.5 * direction_error(direction)))
         return rollout.candidates(low, high, spec.speeds, left, right, spec.yaw_rates, wish)
 
+    def _window_aside(self, obs: Observation, direction: float, goal: float, top: float) -> Array:
+        """(C, 3) target velocities of a robot that goes sideways and looks to the goal."""
+        assert self._limits is not None
+        spec, limits, w = self._spec, self._limits, obs.twist[1]
+        dw = limits.alpha_max * spec.window
+        left, right = max(w - dw, -limits.w_max), min(w + dw, limits.w_max)
+        wish, still = (max(left, min(right, r)) for r in (1.5 * direction_error(goal), 0.0))
+        now, change = (obs.twist[0], obs.vy), limits.a_max * spec.window
+        rates = np.array([wish, still, left, right])
+        return rollout.candidates_aside(now, change, top, spec.speeds, direction, rates)
+
     def _wait(self, period: float) -> None:
         """Let time without progress count less while somebody walks nearby, who will be gone."""
         if not self._walking:
@@ -247,7 +297,9 @@ class Dwa:
     def _is_lost(self, distance: float) -> bool:
         """Whether the robot has come no nearer to the goal for long: it needs a map."""
         now = 0.0 if self._time is None else self._time
-        if self._nearest is None or distance < self._nearest[0] - 0.3:
+        # A manoeuvre is not over where the robot comes nearer, but where it is through.
+        gain = 2.0 * float(self._p[rollout.REACH]) if self._manoeuvring else 0.3
+        if self._nearest is None or distance < self._nearest[0] - gain:
             self._nearest = (distance, now)
         return now - self._nearest[1] > 2.0 * self._spec.patience
 
@@ -266,9 +318,11 @@ class Dwa:
             points = nearest_per_sector(discs, _SECTORS, _REACH)
             seen = points @ np.array([[c, s], [-s, c]]) + (x, y)
             self._map = remembered(self._map, seen, x, y, _REACH)
-            radius = self._radius + self._spec.margin + 0.02
-            found, way = way_out(self._map, x, y, *obs.goal, radius)
-            self._way = way if found else None
+            for room in (self._spec.margin + 0.02, *([0.01] if len(self._core) else [])):
+                found, way = way_out(self._map, x, y, *obs.goal, self._half_width + room)
+                self._way = way if found else None
+                if found:
+                    break
         return (goal, distance) if self._way is None else (self._way - yaw, min(AIM, distance))
 
     def _is_stuck(self, obs: Observation) -> bool:

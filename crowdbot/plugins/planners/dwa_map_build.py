@@ -20,7 +20,15 @@ _BEHIND = 0.4
 AIM = 0.7
 
 
-def remembered(memory: Array, seen: Array, x: float, y: float, reach: float) -> Array:
+def remembered(
+    memory: Array,
+    seen: Array,
+    x: float,
+    y: float,
+    reach: float,
+    near: float = 0.0,
+    cell: float = CELL,
+) -> Array:
     """The memory after another look.
 
     Args:
@@ -29,6 +37,8 @@ def remembered(memory: Array, seen: Array, x: float, y: float, reach: float) -> 
         x: of the robot, m.
         y: of the robot, m.
         reach: how far the robot sees, m.
+        near: what is nearer than this is kept whatever is seen: no lidar may see there, m.
+        cell: m.
 
     Returns:
         (N', 2) what was seen now and what is hidden, out of reach, or still there; one point in
@@ -40,10 +50,44 @@ def remembered(memory: Array, seen: Array, x: float, y: float, reach: float) -> 
     # Past the outline of a body some rays always go: only a wide gap shows that it is gone.
     view = np.min([np.roll(view, k) for k in range(-3, 4)], axis=0)
     at, gap = _polar(memory, x, y)
-    kept = memory[(gap + _BEHIND > view[at]) | (gap > reach)]
+    kept = memory[(gap + _BEHIND > view[at]) | (gap > reach) | (gap < near)]
     points: Array = np.concatenate([seen, kept])  # where both are, the new one is kept
-    _, first = np.unique(np.round(points / CELL), axis=0, return_index=True)
+    _, first = np.unique(np.round(points / cell), axis=0, return_index=True)
     return points[first]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def islands(points: Array, link: float, size: float) -> Array:
+    """Middles of what stands alone and is small: pillars, and people who stand; (K, 2).
+
+    Args:
+        points: (N, 2) m.
+        link: points that are no farther apart belong to one thing, m.
+        size: of the largest that is small, along x and y, m.
+    """
+    count = points.shape[0]
+    left, queue = np.ones(count, dtype=np.bool_), np.empty(count, dtype=np.int64)
+    out, found = np.empty((count, 2)), 0
+    for first in range(count):
+        if not left[first]:
+            continue
+        left[first], queue[0] = False, first
+        begin, end = 0, 1
+        low_x = high_x = points[first, 0]
+        low_y = high_y = points[first, 1]
+        while begin < end:
+            x, y = points[queue[begin], 0], points[queue[begin], 1]
+            low_x, high_x = min(low_x, x), max(high_x, x)
+            low_y, high_y = min(low_y, y), max(high_y, y)
+            begin += 1
+            for k in range(count):
+                if left[k] and math.hypot(points[k, 0] - x, points[k, 1] - y) <= link:
+                    left[k], queue[end] = False, k
+                    end += 1
+        if max(high_x - low_x, high_y - low_y) <= size:
+            out[found, 0], out[found, 1] = 0.5 * (low_x + high_x), 0.5 * (low_y + high_y)
+            found += 1
+    return out[:found]
 
 
 def _polar(points: Array, x: float, y: float) -> tuple[NDArray[np.int64], Array]:

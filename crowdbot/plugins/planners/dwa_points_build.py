@@ -7,7 +7,7 @@ import math
 import numba
 import numpy as np
 
-from crowdbot.core.interfaces import Array, Mask
+from crowdbot.core.interfaces import Array, Indices, Mask
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -90,18 +90,36 @@ def apparent_velocity(
     if before.shape[0] == 0 or dt <= 0.0:
         return out
     low, high = (slowest * dt) ** 2, (fastest * dt) ** 2
-    square, least = np.empty(before.shape[0]), np.empty(before.shape[0])
+    # Whoever is farther away along x alone than anything moves does not count.
+    order = np.argsort(before[:, 0])
+    far = fastest * dt + 1e-9 * (1.0 + fastest * dt)
     for i in range(now.shape[0]):
-        for j in range(before.shape[0]):
-            dx, dy = now[i, 0] - before[j, 0], now[i, 1] - before[j, 1]
-            square[j] = least[j] = dx * dx + dy * dy
-        best = minimum(least)
+        x, y = now[i, 0], now[i, 1]
+        best, nearest = math.inf, -1
+        for k in range(_first_from(before, order, x - far), before.shape[0]):
+            j = order[k]
+            dx, dy = x - before[j, 0], y - before[j, 1]
+            if dx < -far:
+                break
+            square = dx * dx + dy * dy
+            if square < best or (square == best and j < nearest):
+                best, nearest = square, j
         if low < best < high:
-            nearest = 0
-            while square[nearest] != best:
-                nearest += 1
             out[i] = (now[i] - before[nearest]) / dt
     return out
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _first_from(points: Array, order: Indices, least: float) -> int:
+    """The first place in an order of points by x whose x is not below ``least``."""
+    first, end = 0, order.shape[0]
+    while first < end:
+        middle = (first + end) // 2
+        if points[order[middle], 0] < least:
+            first = middle + 1
+        else:
+            end = middle
+    return first
 
 
 @numba.njit(cache=True, error_model="numpy")

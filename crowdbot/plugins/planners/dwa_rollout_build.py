@@ -10,14 +10,18 @@ from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Array
 from crowdbot.plugins.planners.dwa_points_build import minimum, unsigned
+from crowdbot.plugins.planners.robot_outline_build import nearest_to_core
 
 #: Steps of a rollout, s.
 STEP = 0.125
 
 #: Indices into the vector of parameters that the kernel takes.
 A_MAX, ALPHA_MAX, HORIZON, TURN_TIME, RADIUS, MARGIN, COMFORT, GROWTH, PERIOD = range(9)
-PROGRESS, HEADING, CLEARANCE, IMPACT, SMOOTHNESS, V_MAX, W_MAX = range(9, 16)
-PARAMETERS = 16
+PROGRESS, HEADING, CLEARANCE, IMPACT, SMOOTHNESS, V_MAX, W_MAX, REACH = range(9, 17)
+PARAMETERS = 17
+
+#: Directions that a robot which goes sideways tries, from the wanted one, rad.
+_ASIDE = tuple(math.radians(a) for a in (0.0, 20.0, -20.0, 45.0, -45.0, 90.0, -90.0, 180.0))
 
 #: A rollout may come this much closer to a point that is within the margin already, m.
 _SLACK = 1e-3
@@ -28,6 +32,19 @@ _ROUNDING = 1e-9
 @numba.njit(cache=True, error_model="numpy")
 def _slewed(value: float, target: float, change: float) -> float:
     return min(max(target, value - change), value + change)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _slewed_planar(
+    v: float, vy: float, vt: float, vyt: float, change: float
+) -> tuple[float, float]:
+    """A velocity whose change is limited as a vector, as the robot's is."""
+    if vy == vyt:
+        return _slewed(v, vt, change), vy
+    ahead, aside = vt - v, vyt - vy
+    length = math.hypot(ahead, aside)
+    share = min(1.0, change / length)
+    return v + ahead * share, vy + aside * share
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -43,12 +60,22 @@ def foreseen(points: Array, velocities: Array, p: Array) -> Array:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _nearest(xs: Array, ys: Array, x: float, y: float, square: Array) -> float:
-    """Distance from (x, y) to the nearest of K points; inf if there is none.
+def _nearest(
+    points: Array, core: Array, x: float, y: float, angle: float, spin: float, square: Array
+) -> float:
+    """Distance from the core of the robot's outline, at a pose, to the nearest of K points.
+
+    inf if there is none; negative inside a polygon.
 
     Args:
+        points: (2, K) m.
+        core: as `robot_outline_build.core_of`; that of a disc is its middle.
+        spin: how far the core reaches from the middle, m.
         square: (K,) scratch.
     """
+    if core.shape[0]:
+        return float(nearest_to_core(points, core, x, y, angle, spin))
+    xs, ys = points[0], points[1]
     for i in range(xs.shape[0]):
         dx, dy = xs[i] - x, ys[i] - y
         square[i] = dx * dx + dy * dy
@@ -61,7 +88,7 @@ def reachable(points: Array, velocities: Array, p: Array) -> NDArray[np.bool_]:
     out = np.empty(points.shape[0], dtype=np.bool_)
     for i in range(points.shape[0]):
         speed = p[V_MAX] + math.hypot(velocities[i, 0], velocities[i, 1]) + p[GROWTH]
-        near = p[RADIUS] + max(p[COMFORT], p[MARGIN]) + speed * p[HORIZON]
+        near = p[REACH] + max(p[COMFORT], p[MARGIN]) + speed * p[HORIZON]
         out[i] = math.hypot(points[i, 0], points[i, 1]) < near
     return out
 
@@ -70,50 +97,63 @@ def reachable(points: Array, velocities: Array, p: Array) -> NDArray[np.bool_]:
 def rollouts(ahead: Array) -> tuple[Array, Array]:
     """What rollouts among points as `foreseen` may share: known distances, and scratch.
 
-    Known is, for each step, a place x, y and its distance to the nearest point, m.
+    Known is, for each step, a pose x, y (m), angle (rad) and its distance to the nearest point, m.
     """
-    known = np.zeros((ahead.shape[0], 3))
-    known[:, 2] = -math.inf
+    known = np.zeros((ahead.shape[0], 4))
+    known[:, 3] = -math.inf
     return known, np.empty(ahead.shape[2])
 
 
 @numba.njit(cache=True, error_model="numpy")
 def roll(
-    ahead: Array, p: Array, v: float, w: float, vt: float, wt: float, known: Array, scratch: Array
+    ahead: Array,
+    p: Array,
+    core: Array,
+    now: tuple[float, float, float],
+    target: tuple[float, float, float],
+    known: Array,
+    scratch: Array,
 ) -> tuple[float, float, float, float, float]:
-    """One candidate: slew to (vt, wt), keep the arc for the turning time, then go straight.
+    """One candidate: slew to the target, keep the arc for the turning time, then go straight.
 
     The nearest point is looked for only where it may matter: it is no nearer than it was to the
-    place where another rollout was at the same time, less the way between the two places.
+    pose that another rollout had at the same time, less the way between the two poses, and less
+    what the ends of the outline swing.
 
     Args:
         ahead: points as `foreseen`.
+        core: of the robot's outline, as `robot_outline_build.core_of`.
+        now, target: velocities v, w, vy: m/s forward, rad/s, m/s to the left.
         known, scratch: of `rollouts`.
 
     Returns:
         x, y (m) at the end or at the hit; heading after the turn (rad); time of the hit
         (s, the horizon if there is none); closeness, 0 (farther than comfort) to 1 (touching).
     """
-    start = _nearest(ahead[0, 0], ahead[0, 1], 0.0, 0.0, scratch) - p[RADIUS]
+    spin = p[REACH] - p[RADIUS]
+    start = _nearest(ahead[0], core, 0.0, 0.0, 0.0, spin, scratch) - p[RADIUS]
     need = min(p[MARGIN], start - _SLACK)
+    v, w, vy = now
     x = y = angle = close = 0.0
     for k in range(1, ahead.shape[0]):
         t = k * STEP
-        goal = wt if t <= p[TURN_TIME] else 0.0
-        v_next = _slewed(v, vt, p[A_MAX] * STEP)
+        goal = target[1] if t <= p[TURN_TIME] else 0.0
+        v_next, vy_next = _slewed_planar(v, vy, target[0], target[2], p[A_MAX] * STEP)
         w_next = _slewed(w, goal, p[ALPHA_MAX] * STEP)
         middle = angle + (w + w_next) / 4.0 * STEP
-        x += (v + v_next) / 2.0 * STEP * math.cos(middle)
-        y += (v + v_next) / 2.0 * STEP * math.sin(middle)
+        c, s = math.cos(middle), math.sin(middle)
+        x += (v + v_next) / 2.0 * STEP * c - (vy + vy_next) / 2.0 * STEP * s
+        y += (v + v_next) / 2.0 * STEP * s + (vy + vy_next) / 2.0 * STEP * c
         angle += (w + w_next) / 2.0 * STEP
-        v, w = v_next, w_next
+        v, w, vy = v_next, w_next, vy_next
         dx, dy = x - known[k, 0], y - known[k, 1]
-        least = known[k, 2] - math.sqrt(dx * dx + dy * dy) - _ROUNDING - p[RADIUS]
+        least = known[k, 3] - math.sqrt(dx * dx + dy * dy) - _ROUNDING - p[RADIUS]
+        least -= spin * abs(angle - known[k, 2])
         if least >= need and _closeness(least, t, p) <= close:
             continue
-        known[k, 0], known[k, 1] = x, y
-        known[k, 2] = _nearest(ahead[k, 0], ahead[k, 1], x, y, scratch)
-        gap = known[k, 2] - p[RADIUS]
+        known[k, 0], known[k, 1], known[k, 2] = x, y, angle
+        known[k, 3] = _nearest(ahead[k], core, x, y, angle, spin, scratch)
+        gap = known[k, 3] - p[RADIUS]
         if gap < need:
             return x, y, angle, t, 1.0
         close = max(close, _closeness(gap, t, p))
@@ -166,31 +206,63 @@ def candidates(
 
 
 @numba.njit(cache=True, error_model="numpy")
+def candidates_aside(
+    now: tuple[float, float], change: float, top: float, speeds: int, direction: float, rates: Array
+) -> Array:
+    """Target velocities (C, 3), v, w and vy, of a robot that goes in every direction.
+
+    Every speed in the wanted direction, aside from it and away from it, with every yaw rate, each
+    as far as the change allows.
+
+    Args:
+        now: present v and vy, m/s.
+        change: largest change of that vector, m/s.
+        top: highest speed, m/s.
+        speeds: how many are tried, > 1; the lowest is 0.
+        direction: that is wanted, rad.
+        rates: (R,) yaw rates, rad/s.
+    """
+    out = np.empty((((speeds - 1) * len(_ASIDE) + 1) * rates.shape[0], 3))
+    count = 0
+    for k in range(speeds):
+        for j in range(len(_ASIDE) if k > 0 else 1):
+            speed, angle = top * k / (speeds - 1), direction + _ASIDE[j]
+            v, vy = speed * math.cos(angle), speed * math.sin(angle)
+            v, vy = _slewed_planar(now[0], now[1], v, vy, change)
+            for i in range(rates.shape[0]):
+                out[count, 0], out[count, 1], out[count, 2] = v, rates[i], vy
+                count += 1
+    return out
+
+
+@numba.njit(cache=True, error_model="numpy")
 def evaluate(
     points: Array,
     velocities: Array,
     p: Array,
-    v: float,
-    w: float,
+    core: Array,
+    now: tuple[float, float, float],
     candidates: Array,
     direction: float,
-    last: tuple[float, float],
+    facing: float,
+    last: tuple[float, float, float],
 ) -> tuple[int, float]:
     """The best admissible candidate.
 
     A candidate is admissible if the robot, after following it, can still stop before the first
-    predicted hit. Standing still is always a candidate's right: turning on the spot moves no
-    point of a round robot.
+    predicted hit. Standing still is always a candidate's right, and turning on the spot is that
+    of a round robot, which moves no point by it.
 
     Args:
         points: (K, 2) base frame, m.
         velocities: (K, 2) base frame, m/s.
-        p: (16,) parameters, in the order of the constants above.
-        v: present speed, m/s.
-        w: present yaw rate, rad/s.
-        candidates: (C, 2) target v and w.
+        p: (17,) parameters, in the order of the constants above.
+        core: of the robot's outline, as `robot_outline_build.core_of`.
+        now: present v, w, vy: m/s forward, rad/s, m/s to the left.
+        candidates: (C, 3) targets v, w, vy; or (C, 2), which go straight ahead.
         direction: bearing in which progress counts, rad.
-        last: last command.
+        facing: bearing to which the robot should turn, rad.
+        last: last command, v, w, vy.
 
     Returns:
         its index, -1 if none is admissible; its cost.
@@ -199,21 +271,26 @@ def evaluate(
     ahead = foreseen(points, velocities, p)
     known, scratch = rollouts(ahead)
     ux, uy = math.cos(direction), math.sin(direction)
+    going, outlined = math.hypot(now[0], now[2]), core.shape[0] > 0
     for k in range(candidates.shape[0]):
         vt, wt = candidates[k, 0], candidates[k, 1]
-        x, y, angle, hit, close = roll(ahead, p, v, w, vt, wt, known, scratch)
-        speed = max(abs(v), abs(vt))
-        if vt != 0.0 and hit < speed / p[A_MAX] + 2.0 * p[PERIOD]:
+        vyt = candidates[k, 2] if candidates.shape[1] > 2 else 0.0
+        x, y, angle, hit, close = roll(ahead, p, core, now, (vt, wt, vyt), known, scratch)
+        stop = max(going, math.hypot(vt, vyt)) / p[A_MAX]
+        if outlined:
+            stop = max(stop, max(abs(now[1]), abs(wt)) / p[ALPHA_MAX])
+        moves = vt != 0.0 or vyt != 0.0 or (outlined and wt != 0.0)
+        if moves and hit < stop + 2.0 * p[PERIOD]:
             continue
         made = (x * ux + y * uy) / (p[V_MAX] * p[HORIZON])
-        off = unsigned(angle - direction) / math.pi
+        off = unsigned(angle - facing) / math.pi
         change = abs(vt - last[0]) / p[V_MAX] + abs(wt - last[1]) / p[W_MAX]
         cost = (
             p[PROGRESS] * (1.0 - made)
             + p[HEADING] * off
             + p[CLEARANCE] * close
             + p[IMPACT] * (1.0 - hit / p[HORIZON])
-            + p[SMOOTHNESS] * change
+            + p[SMOOTHNESS] * (change + abs(vyt - last[2]) / p[V_MAX])
         )
         if cost < best:
             best, index = cost, k

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, Pose, kernel
+from crowdbot.core.interfaces import Array, Indices, Pose, kernel
 
 #: Bins of a histogram of directions of lines, over half a turn.
 BINS = 360
@@ -61,21 +61,29 @@ def directions(points: Array, out: Array) -> float:
 
 
 @kernel
-def turned(memory: Array, seen: Array, guess: float) -> float:
+def turned(memory: Array, seen: Array, guess: float, filled: Indices) -> float:
     """By how much to turn what is seen so that it fits the memory best, near a guess; rad.
 
     Args:
         memory, seen: (BINS,) histograms.
         guess: rad; the guess itself where nothing fits.
+        filled: (BINS,) scratch.
     """
     middle, wide = round(guess / math.pi * BINS), int(_WINDOW / math.pi * BINS)
     best, shift = 0.0, float("nan")
     before, after, last = 0.0, 0.0, 0.0
+    count = 0  # few bins have lines: the others are passed over once, not for each turn
+    for k in range(BINS):
+        if seen[k] > 0.0:
+            filled[count] = k
+            count += 1
     for s in range(middle - wide, middle + wide + 1):
+        turn = s % BINS
         fit = 0.0
-        for k in range(BINS):
-            if seen[k] > 0.0:
-                fit += seen[k] * memory[(k + s) % BINS]
+        for n in range(count):
+            k = filled[n]
+            at = k + turn
+            fit += seen[k] * memory[at - BINS if at >= BINS else at]
         if fit > best:
             best, shift, before, after = fit, float(s), last, -1.0
         elif after < 0.0:
@@ -107,6 +115,7 @@ class HeadingByWalls:
 
     def __init__(self) -> None:
         self._memory, self._seen = np.zeros(BINS), np.zeros(BINS)
+        self._filled = np.zeros(BINS, np.int64)
         self._odometry: Pose | None = None
         self._pose = Pose(0.0, 0.0, 0.0)
 
@@ -121,8 +130,9 @@ class HeadingByWalls:
         count = directions(points, self._seen)
         yaw = moved.yaw
         if count >= _FEW:
-            fitting = turned(self._memory, self._seen, yaw) if self._memory.any() else yaw
-            learn(self._memory, self._seen, fitting, _LEARN if self._memory.any() else 1.0)
+            knows = self._memory.any()
+            fitting = turned(self._memory, self._seen, yaw, self._filled) if knows else yaw
+            learn(self._memory, self._seen, fitting, _LEARN if knows else 1.0)
             yaw = fitting if abs(fitting - yaw) > _NOISE else yaw
         self._odometry, self._pose = odometry, Pose(moved.x, moved.y, yaw)
         return self._pose

@@ -27,7 +27,9 @@ class OracleSpec(PlannerSpec):
     needs: ClassVar[tuple[str, ...]] = ("lidar",)
 
     kind: Literal["oracle"] = "oracle"
-    robot_radius: PositiveLength = Field(default=0.178, description="Radius of the robot, m.")
+    robot_radius: PositiveLength | None = Field(
+        default=None, description="Radius of the robot, m; unset: the robot's own outline."
+    )
     speed: Annotated[float, Gt(0), Le(1)] = Field(
         default=1.0, description="Cruising speed as a fraction of the robot's largest."
     )

@@ -22,6 +22,7 @@ from crowdbot.plugins.planners.dwa_points_build import nearest_per_sector
 from crowdbot.plugins.planners.dwa_rollout_build import candidates
 from crowdbot.plugins.planners.goal_seek_build import braking_speed
 from crowdbot.plugins.planners.oracle import OracleSpec
+from crowdbot.plugins.planners.robot_outline_build import core_of
 
 #: Walls farther away play no part, m; nor people, beyond that and what they may walk.
 _REACH = 4.0
@@ -38,6 +39,7 @@ class Oracle:
         self._spec = spec
         self._lidars = LidarPoints({})
         self._limits: RobotLimits | None = None
+        self._core, _ = core_of(spec.robot_radius, None)
         self._p: Array = np.zeros(rollout.PARAMETERS)
         self._last = (0.0, 0.0)
 
@@ -48,11 +50,12 @@ class Oracle:
         del seed
         self._limits, self._last = limits, (0.0, 0.0)
         self._lidars = LidarPoints(sensors)
-        self._p = _parameters(self._spec, limits)
+        self._core, rounding = core_of(self._spec.robot_radius, task.robot)
+        self._p = _parameters(self._spec, limits, rounding)
         people, walls = np.ones((1, 5)), nearest_per_sector(np.ones((1, 2)), _SECTORS, _REACH)
         state = (*task.start, 0.0, 0.0)
-        rollout.best(people, walls, self._p, state, task.goal, self._window(0.0, 0.0, 1.0, 0.0),
-                     self._last)  # fmt: skip
+        window = self._window(0.0, 0.0, 1.0, 0.0)
+        rollout.best(people, walls, self._p, self._core, state, task.goal, window, self._last)
 
     def step(self, obs: Observation) -> Command:
         """The next command; zero at the goal."""
@@ -75,7 +78,9 @@ class Oracle:
         people = self._people(truth)
         state = (x, y, yaw, v, w)
         walls = self._walls(obs, truth)
-        index, cost = rollout.best(people, walls, self._p, state, obs.goal, found, self._last)
+        index, cost = rollout.best(
+            people, walls, self._p, self._core, state, obs.goal, found, self._last
+        )
         self._last = (float(found[index, 0]), float(found[index, 1])) if index >= 0 else (0.0, 0.0)
         obs.log("oracle/cost", min(cost, 100.0))
         return Command(*self._last)
@@ -89,7 +94,9 @@ class Oracle:
 
     def _walls(self, obs: Observation, truth: Truth) -> Array:
         """(P, 2) what the lidars show besides people, world frame, m."""
-        points = nearest_per_sector(self._lidars(obs.readings, obs.t, obs.twist), _SECTORS, _REACH)
+        points = nearest_per_sector(
+            self._lidars(obs.readings, obs.t, obs.twist, obs.vy), _SECTORS, _REACH
+        )
         c, s = math.cos(truth.pose.yaw), math.sin(truth.pose.yaw)
         found = points @ np.array([[c, s], [-s, c]]) + (truth.pose.x, truth.pose.y)
         gap = np.hypot(*(found[:, None] - truth.people).T).T - truth.people_radius
@@ -108,12 +115,12 @@ class Oracle:
         return candidates(low, high, spec.speeds, left, right, spec.yaw_rates, aim)
 
 
-def _parameters(spec: OracleSpec, limits: RobotLimits) -> Array:
+def _parameters(spec: OracleSpec, limits: RobotLimits, rounding: float) -> Array:
     p = np.zeros(rollout.PARAMETERS)
     p[rollout.A_MAX], p[rollout.ALPHA_MAX] = limits.a_max, limits.alpha_max
     p[rollout.V_MAX], p[rollout.W_MAX] = limits.v_max, limits.w_max
     p[rollout.HORIZON], p[rollout.TURN_TIME] = spec.horizon, spec.turn_time
-    p[rollout.RADIUS], p[rollout.MARGIN] = spec.robot_radius, spec.margin
+    p[rollout.RADIUS], p[rollout.MARGIN] = rounding, spec.margin
     p[rollout.COMFORT], p[rollout.PROGRESS] = spec.comfort, spec.progress
     p[rollout.CLEARANCE], p[rollout.IMPACT] = spec.clearance, spec.impact
     p[rollout.SMOOTHNESS], p[rollout.HEADING] = spec.smoothness, spec.heading

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from crowdbot.core.interfaces import Array, kernel
+from crowdbot.plugins.planners.robot_outline_build import core_gap
 
 #: Steps of a rollout, s.
 STEP = 0.125
@@ -27,9 +28,23 @@ def _slewed(value: float, target: float, change: float) -> float:
 
 
 @kernel
-def gap_at(people: Array, walls: Array, x: float, y: float, t: float) -> float:
-    """Distance from (x, y) to the nearest surface in ``t`` seconds, if all go on as they do; m."""
-    best = math.inf
+def gap_at(
+    people: Array, walls: Array, core: Array, x: float, y: float, yaw: float, t: float
+) -> float:
+    """Distance from the core of the robot's outline to the nearest surface in ``t`` seconds, m.
+
+    All go on as they do. Core as `robot_outline_build.core_of`: that of a disc is its middle.
+    """
+    best, c, s = math.inf, math.cos(yaw), math.sin(yaw)
+    if core.shape[0]:
+        for i in range(people.shape[0]):
+            dx = people[i, 0] + t * people[i, 2] - x
+            dy = people[i, 1] + t * people[i, 3] - y
+            best = min(best, core_gap(core, c * dx + s * dy, c * dy - s * dx) - people[i, 4])
+        for i in range(walls.shape[0]):
+            dx, dy = walls[i, 0] - x, walls[i, 1] - y
+            best = min(best, core_gap(core, c * dx + s * dy, c * dy - s * dx))
+        return best
     for i in range(people.shape[0]):
         dx = people[i, 0] + t * people[i, 2] - x
         dy = people[i, 1] + t * people[i, 3] - y
@@ -45,6 +60,7 @@ def roll(
     people: Array,
     walls: Array,
     p: Array,
+    core: Array,
     state: tuple[float, float, float, float, float],
     goal: tuple[float, float],
     vt: float,
@@ -55,6 +71,7 @@ def roll(
     Args:
         people: (N, 5) x, y, vx, vy, radius; world frame.
         walls: (P, 2) points, world frame, m.
+        core: of the robot's outline, as `robot_outline_build.core_of`.
         state: x, y, yaw, v, w of the robot.
 
     Returns:
@@ -63,7 +80,7 @@ def roll(
         angle between heading and goal after the arc (rad).
     """
     x, y, yaw, v, w = state
-    need = min(p[MARGIN], gap_at(people, walls, x, y, 0.0) - p[RADIUS] - _SLACK)
+    need = min(p[MARGIN], gap_at(people, walls, core, x, y, yaw, 0.0) - p[RADIUS] - _SLACK)
     close, t, target, total, aside = 0.0, 0.0, wt, 0.0, 0.0
     while t < p[HORIZON] - 0.5 * STEP:
         t += STEP
@@ -81,7 +98,7 @@ def roll(
         y += (v + v_next) / 2.0 * STEP * math.sin(middle)
         yaw += (w + w_next) / 2.0 * STEP
         v, w = v_next, w_next
-        gap = gap_at(people, walls, x, y, t) - p[RADIUS]
+        gap = gap_at(people, walls, core, x, y, yaw, t) - p[RADIUS]
         away = math.hypot(goal[0] - x, goal[1] - y)
         if gap < need:
             return (total + away * (p[HORIZON] - t + STEP)) / p[HORIZON], t, v, 1.0, aside
@@ -96,6 +113,7 @@ def best(
     people: Array,
     walls: Array,
     p: Array,
+    core: Array,
     state: tuple[float, float, float, float, float],
     goal: tuple[float, float],
     candidates: Array,
@@ -104,7 +122,9 @@ def best(
     """The best candidate after which the robot can still stop before the first hit.
 
     Args:
-        candidates: (C, 2) target v and w; those that stand are always admissible.
+        core: of the robot's outline, as `robot_outline_build.core_of`.
+        candidates: (C, 2) target v and w; those that stand are always admissible, and those that
+            turn on the spot are if the robot is round.
         last: last command.
 
     Returns:
@@ -114,8 +134,10 @@ def best(
     away = math.hypot(goal[0] - state[0], goal[1] - state[1])
     for k in range(candidates.shape[0]):
         vt, wt = candidates[k, 0], candidates[k, 1]
-        mean, hit, speed, close, aside = roll(people, walls, p, state, goal, vt, wt)
+        mean, hit, speed, close, aside = roll(people, walls, p, core, state, goal, vt, wt)
         if vt != 0.0 and hit < max(abs(state[3]), vt) / p[A_MAX] + STEP:
+            continue
+        if core.shape[0] and wt != 0.0 and hit < abs(wt) / p[ALPHA_MAX] + STEP:
             continue
         made = (away - mean) / (0.5 * p[V_MAX] * p[HORIZON])  # soon is better than late
         blow = (1.0 - hit / p[HORIZON]) * (_STANDING + speed / p[V_MAX])

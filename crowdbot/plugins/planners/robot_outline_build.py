@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from crowdbot.core.interfaces import RobotBody
+import math
+
+import numpy as np
+
+from crowdbot.core.interfaces import Array, RobotBody, kernel
 
 #: Of a TurtleBot2, m: for who tells a planner nothing of the robot.
 ROBOT_RADIUS = 0.178
@@ -26,3 +30,72 @@ def half_width_and_front(told: float | None, body: RobotBody | None) -> tuple[fl
         radius = disc_radius(told, body)
         return radius, radius
     return body.half_width, body.front
+
+
+def swept_half_width(told: float | None, body: RobotBody | None) -> float:
+    """Half of the width that the robot sweeps, m: one that only goes ahead turns where it goes.
+
+    Arguments as for `disc_radius`.
+    """
+    if told is not None or body is None:
+        return disc_radius(told, body)
+    if body.drive == "holonomic":
+        return max(body.front, body.back, body.half_width)
+    return body.half_width
+
+
+def core_of(told: float | None, body: RobotBody | None) -> tuple[Array, float]:
+    """What the outline is, but for its rounding, and the radius of that, m.
+
+    Arguments as for `disc_radius`.
+
+    Returns:
+        (K, 2) in the robot's frame: none for a disc, the segment of a capsule, or the corners of a
+        convex polygon, counter-clockwise; radius, which is 0 for a polygon.
+    """
+    if told is not None or body is None or body.footprint is None:
+        return np.zeros((0, 2)), disc_radius(told, body)
+    corners = np.array(body.footprint, dtype=np.float64)
+    if len(corners) == 2:
+        return corners, body.radius
+    x, y = corners.T
+    clockwise = float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))) < 0.0
+    return np.ascontiguousarray(corners[::-1] if clockwise else corners), 0.0
+
+
+@kernel
+def core_gap(core: Array, x: float, y: float) -> float:
+    """Distance of a point of the robot's frame from a core with corners, m; negative inside."""
+    square, inside = math.inf, core.shape[0] > 2
+    for i in range(core.shape[0] if inside else 1):
+        j = (i + 1) % core.shape[0]
+        ex, ey = core[j, 0] - core[i, 0], core[j, 1] - core[i, 1]
+        dx, dy = x - core[i, 0], y - core[i, 1]
+        if ex * dy - ey * dx < 0.0:
+            inside = False
+        length = ex * ex + ey * ey
+        along = min(1.0, max(0.0, (dx * ex + dy * ey) / length)) if length > 0.0 else 0.0
+        dx, dy = dx - along * ex, dy - along * ey
+        square = min(square, dx * dx + dy * dy)
+    return -math.sqrt(square) if inside else math.sqrt(square)
+
+
+@kernel
+def nearest_to_core(
+    points: Array, core: Array, x: float, y: float, angle: float, reach: float
+) -> float:
+    """Distance of the nearest of K points from a core with corners at a pose, m; inf for none.
+
+    Args:
+        points: (2, K) m.
+        core: as `core_of`, K > 0.
+        x, y, angle: of the robot in the frame of the points: m, rad.
+        reach: of the core's farthest corner from its origin, m.
+    """
+    best, c, s = math.inf, math.cos(angle), math.sin(angle)
+    for i in range(points.shape[1]):
+        dx, dy = points[0, i] - x, points[1, i] - y
+        far = best + reach
+        if dx * dx + dy * dy < far * far:  # any other is no nearer
+            best = min(best, core_gap(core, c * dx + s * dy, c * dy - s * dx))
+    return best

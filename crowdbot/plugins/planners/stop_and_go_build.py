@@ -72,7 +72,7 @@ class StopAndGo:
 
     def step(self, obs: Observation) -> Command:
         """Goal seek's command, slowed down or stopped."""
-        points = self._points(obs.readings, obs.t, obs.twist)
+        points = self._points(obs.readings, obs.t, obs.twist, obs.vy)
         pose = self._heading_by_walls.pose(obs.pose, points)
         v, w, _ = self._seek.step(replace(obs, pose=pose))
         most, room = self._safe_speed(obs.t, pose, points)

@@ -31,8 +31,10 @@ class WallHugSpec(PlannerSpec):
     side: Literal["left", "right"] = Field(
         default="left", description="Which border, as seen on the way from start to goal."
     )
-    gap: NonNegativeLength = Field(
-        default=0.3, description="From the border to the centre of the robot, m."
+    gap: NonNegativeLength | None = Field(
+        default=None,
+        description="From the border to the centre of the robot, m; unset: 0.3 m, or half of the "
+        "robot's width and 0.1 m where that is more.",
     )
     speed: Annotated[float, Gt(0), Le(1)] = Field(
         default=1.0, description="Cruising speed as a fraction of the robot's largest."

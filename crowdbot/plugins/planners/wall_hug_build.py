@@ -9,7 +9,11 @@ from dataclasses import replace
 from crowdbot.core.interfaces import Command, Observation, RobotLimits, SensorInfo, Task
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import GoalSeek
+from crowdbot.plugins.planners.robot_outline_build import swept_half_width
 from crowdbot.plugins.planners.wall_hug import WallHugSpec
+
+#: From the border to the middle of a robot that is not wide, and beside one that is, m.
+_GAP, _BESIDE = 0.3, 0.1
 
 
 class WallHug:
@@ -37,8 +41,13 @@ class WallHug:
         side = 1.0 if self._spec.side == "left" else -1.0
         nx, ny = -side * uy, side * ux
         reach = max(nx * (x - task.goal[0]) + ny * (y - task.goal[1]) for x, y in task.goal_zone)
-        aside = max(0.0, reach - self._spec.gap)
+        aside = max(0.0, reach - self._gap(task))
         self._origin = task.start.x + aside * nx, task.start.y + aside * ny
+
+    def _gap(self, task: Task) -> float:
+        if self._spec.gap is not None:
+            return self._spec.gap
+        return max(_GAP, swept_half_width(None, task.robot) + _BESIDE)
 
     def step(self, obs: Observation) -> Command:
         """Goal seek's command, with a point of the line for a goal."""

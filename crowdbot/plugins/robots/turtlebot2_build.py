@@ -17,6 +17,7 @@ WHEEL_RADIUS = 0.0352  # physical, m; the firmware believes in 0.035
 TRACK = 0.230
 BODY_RADIUS = 0.178
 BODY_HEIGHT = 0.42
+SKIRT, TOP = 0.0162, 0.41  # lower and upper edge of what touches things, above the floor, m
 BASE_HEIGHT = 0.0102  # base_link above the floor
 CASTER_RADIUS = 0.017
 CASTERS = {"front": 0.115, "rear": -0.135}
@@ -49,13 +50,16 @@ def build(spec: Turtlebot2Spec) -> RobotModel:
 
 def _sdf(mass: float) -> str:
     foot = CASTER_RADIUS - BASE_HEIGHT
-    middle = 0.5 * BODY_HEIGHT - BASE_HEIGHT + 0.01
+    tall = TOP - SKIRT
     return sdf.model(
         "turtlebot2",
         sdf.base_link(
             parts(mass - 2.0 * WHEEL_MASS),
             sdf.collision(
-                "body", (0.0, 0.0, middle), sdf.cylinder(BODY_RADIUS, BODY_HEIGHT - 0.04), 0.3
+                "body",
+                (0.0, 0.0, SKIRT + 0.5 * tall - BASE_HEIGHT),
+                sdf.cylinder(BODY_RADIUS, tall),
+                0.3,
             ),
             *(sdf.slider(f"{n}_caster", (x, 0.0, foot), CASTER_RADIUS) for n, x in CASTERS.items()),
         ),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import stat
 import warnings
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -98,6 +99,21 @@ def test_recordings_are_not_compressed_twice(bundle: Path) -> None:
         pytest.raises(InputError, match="not compressed again"),
         open_archive(rewrite(bundle, {}, {"runs/run.mcap": b"0" * 1000})),
     ):
+        pass
+
+
+@pytest.mark.parametrize(("change", "why"), [
+    (lambda c: b"#!/bin/sh\n" + c, "10 bytes stand before the archive"),
+    (lambda c: c + c, "bytes stand before the archive"),
+    (lambda c: c + b"<html>", "something after the archive"),
+    (lambda c: c[:-2] + b"\5\0hello", "something after the archive"),
+])  # fmt: skip
+def test_an_archive_that_is_another_file_too_is_refused(
+    bundle: Path, tmp_path: Path, change: Callable[[bytes], bytes], why: str
+) -> None:
+    path = tmp_path / "both.cbz"
+    path.write_bytes(change(bundle.read_bytes()))
+    with pytest.raises(InputError, match=why), open_archive(path):
         pass
 
 

@@ -19,6 +19,7 @@ from crowdbot.core.bundle.manifest import MANIFEST
 from crowdbot.core.runs.record_model import record_problems
 from crowdbot.core.scenarios.library import open_suite
 from crowdbot.dsl.expand import Expansion
+from crowdbot.errors import InputError
 from tests.core.bundle.made_up_runs import make_bundle, registry, rewrite, write_recording
 
 pytestmark = pytest.mark.slow
@@ -165,6 +166,73 @@ def test_two_runs_of_one_folder(bundle: Path) -> None:
     assert any("two runs have the same directory" in p for p in found)
 
 
+def in_manifest(old: bytes, new: bytes) -> Change:
+    return lambda content: content.replace(old, new, 1)
+
+
+@pytest.mark.parametrize(("change", "why"), [
+    (in_manifest(b'"team"', b'"team": "They", "team"'), "the key 'team' is there twice"),
+    (in_json(team="\ud800"), "the character U+D800"),
+    (in_json(team="\u202eabc"), "the character U+202E"),
+    (in_json(team="a\nb"), "team: the character U+000A is not one that is shown"),
+    (in_json(contact="x" * 201), "contact: String should have at most 200 characters"),
+    (in_json(versions={"crowdbot": "\x1b[2J"}), "the character U+001B"),
+    (in_json(seeds=[float("nan")]), "NaN is not a number of JSON"),
+    (in_edition(title="\u2028"), "the character U+2028"),
+])  # fmt: skip
+def test_a_manifest_that_is_shown_otherwise_than_it_is(
+    bundle: Path, change: Change, why: str
+) -> None:
+    forged = rewrite(bundle, {MANIFEST: change})
+    with pytest.raises(InputError, match=re.escape(why)), open_archive(forged):
+        pass
+
+
+@pytest.mark.parametrize("team", ["\u202eUs", "a\nb", "\x1b[31m", "x" * 201])
+def test_such_a_name_is_not_packed(tmp_path: Path, team: str) -> None:
+    with pytest.raises(InputError, match="--team"):
+        make_bundle(tmp_path, team=team)
+
+
+def test_names_that_look_alike_are_told_apart(bundle: Path, tmp_path: Path) -> None:
+    for number, team in enumerate(("Équipe", "E\u0301quipe", "équipe ", "Other")):
+        forged = rewrite(bundle, {MANIFEST: in_json(team=team)})
+        (tmp_path / f"{number}.cbz").write_bytes(forged.read_bytes())
+    entries, _ = load_entries(tmp_path, registry())
+    alike, other = entries[:3], entries[3]
+    assert [e.name.endswith(f"({n})") for n, e in enumerate(alike)] == [True] * 3
+    assert other.name == "Other · dwa"
+
+
+@pytest.mark.parametrize(("change", "why"), [
+    ({"seeds": [0, 1]}, "6 runs are there and 0 said to be missing; 6 scenarios with 2 seeds"),
+    ({"seeds": [7]}, "seed-0 is not a run of the manifest's seeds"),
+])  # fmt: skip
+def test_runs_that_a_manifest_does_not_account_for_keep_it_off_the_leaderboard(
+    bundle: Path, tmp_path: Path, change: dict[str, Any], why: str
+) -> None:
+    """Nobody has to look at the suite for that."""
+    forged = rewrite(bundle, {MANIFEST: in_json(**change)})
+    (tmp_path / "a.cbz").write_bytes(forged.read_bytes())
+    entries, left_out = load_entries(tmp_path, registry())
+    assert entries == []
+    assert why in left_out["a.cbz"]
+
+
+@pytest.mark.parametrize(("change", "why"), [
+    (in_manifest(b'"seed"', b'"seed": 1, "seed"'), "the key 'seed' is there twice"),
+    (in_json(density=float("nan")), "NaN is not a number"),
+    (in_json(reason="\ud800"), "the character U+D800"),
+    (in_manifest(b'"seed": 0', b'"seed": ' + b"9" * 5000), "has 5000 digits"),
+])  # fmt: skip
+def test_a_record_that_can_be_read_in_two_ways_is_named(
+    bundle: Path, change: Change, why: str
+) -> None:
+    name = members(bundle, "run.json")[1]
+    found = problems(rewrite(bundle, {name: change}, honest=True))
+    assert any(p.startswith(f"{name} is not a JSON document: ") and why in p for p in found), found
+
+
 # -------------------------------------------------------------------------- scores
 def change_row(content: bytes, old: bytes, new: bytes) -> bytes:
     rows = content.split(b"\r\n")
@@ -174,6 +242,7 @@ def change_row(content: bytes, old: bytes, new: bytes) -> bytes:
 @pytest.mark.parametrize(("change", "why"), [
     (lambda c: c + c.split(b"\r\n")[1] + b"\r\n", "risk.corrected is there 2 times"),
     (lambda c: change_row(c, b",dwa,", b",other,"), "scores of another planner: 'other'"),
+    (lambda c: change_row(c, b",ok,", b",ok,\xe2\x80\xae"), "reason has the character U+202E"),
     (lambda c: re.sub(rb",(lower|higher),ok", b",none,ok", c), ", none there, here "),
     (lambda c: re.sub(rb"(spl,.*,corrected),[^,]*,", rb"\1,2.5,", c), "is 2.5; it lies between 0 "),
     (lambda c: change_row(c, b",corrected,", b",better,"), "risk has no variant 'better'"),

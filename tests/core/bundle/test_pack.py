@@ -176,6 +176,7 @@ def test_a_changed_score_is_noticed(bundle: Path) -> None:
     ({"hashes": {"spec": "a"}}, "its hash is not that of the scenario that is installed here"),
     ({"hashes": 3}, "run.json: 'hashes': input should be"),
     ({"goal_time": None}, "its status is 'arrived', but it has no time of arrival"),
+    ({"status": "toppled"}, "its status is 'toppled', but it has no toppled_time"),
 ])  # fmt: skip
 def test_a_forged_record_contradicts_itself(bundle: Path, change: Any, why: str) -> None:
     name = members(bundle, "run.json")[0]

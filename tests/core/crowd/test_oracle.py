@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd import step
+from crowdbot.core.crowd.parameters import AgentParameters
 from crowdbot.core.crowd.velocity_search.sampling import Sampler
 from crowdbot.testing.crowd_oracle import main
-from crowdbot.testing.crowd_oracle_judge import CLOSE, judge
+from crowdbot.testing.crowd_oracle_judge import CLOSE, agrees, judge
 from crowdbot.testing.crowd_oracle_policy import COSTS, cost_spec, policy_spec
 from crowdbot.testing.crowd_oracle_step import Stepper
 from tests.core.crowd.oracle_cases import FOLDER, NAMES, load
@@ -45,6 +50,51 @@ def test_one_step(name: str) -> None:
         assert verdict.median < 1e-5
 
 
+def _weaker_contact(people: AgentParameters) -> AgentParameters:
+    return people._replace(push=0.8 * people.push)
+
+
+def _slower(people: AgentParameters) -> AgentParameters:
+    return people._replace(max_speed=0.5 * people.max_speed)
+
+
+@pytest.mark.parametrize(("name", "wrong"), [
+    ("ex_25to25-Formation-90Degrees_FOEAvoidance", _weaker_contact),
+    ("mech_contact_range_short", _weaker_contact),
+    ("ex_25to25-Formation-90Degrees_SocialForces", _slower),
+])  # fmt: skip
+def test_contact_and_clamping_are_those_of_the_engine(
+    name: str,
+    wrong: Callable[[AgentParameters], AgentParameters],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    right = AgentParameters.of
+    monkeypatch.setattr(AgentParameters, "of", lambda *given: wrong(right(*given)))
+    assert judge(load(name)).misses > 0
+
+
+def test_motion_is_that_of_the_engine(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Velocities are right, places are not: a millimetre beside is a miss."""
+    right = step.tick
+
+    def wrong(flat: Any, *rest: Any) -> None:
+        right(flat, *rest)
+        s.view(flat)[1][:, s.X] += 1e-3
+
+    monkeypatch.setattr("crowdbot.core.crowd.engine.tick", wrong)
+    found = judge(load("iso_RVO_sampling_cross"))
+    assert found.misses == found.samples > 0
+
+
+def test_a_place_across_the_border_is_the_same_place() -> None:
+    case = load("mech_toric_RVO")
+    assert case.periodic_boundary is not None
+    _, x1, _, _ = case.periodic_boundary
+    there = np.array([[x1 - 1e-6, 0.0, 0.5, 0.0], [0.0, 0.0, 0.5, 0.0]])
+    here = there + np.array([[-2.0 * x1 + 2e-6, 0.0, 0.0, 0.0], [1e-3, 0.0, 0.0, 0.0]])
+    assert agrees(case, here, there).tolist() == [True, False]
+
+
 def test_a_candidate_on_a_limit_may_be_forbidden_by_rounding() -> None:
     """The original forbids agent 42 a candidate at 30 degrees, and allows it a slower one there."""
     verdict = judge(load("ex_25to25-180Degrees_Karamouzas"))
@@ -60,7 +110,7 @@ def test_rounding_excuses_nothing_else() -> None:
     sampler = stepper.policies[0].minimiser
     assert isinstance(sampler, Sampler)
     slow = np.ascontiguousarray(sampler.candidates(view)[:, 5])  # of the slowest ring
-    states[1, :, 2:] = stepper.move(states[0], stepper.policies[0].towards(slow, view))
+    states[1] = stepper.move(states[0], stepper.policies[0].towards(slow, view))
     found = judge(replace(case, states=states, present=case.present[:2]))
     assert found.by_rounding == 0
     assert found.misses == found.samples == 10

@@ -9,7 +9,9 @@ import pytest
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdPolicy, CrowdView, CrowdWorld
 from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.desired_acceleration import candidates_of
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS
+from crowdbot.core.types.candidates import VelocityCandidates
 from crowdbot.errors import PluginError
 from tests.core.crowd.crowd_reference import Array
 from tests.core.crowd.crowd_worlds import TICKS, Straight, ToGoal, rows
@@ -115,3 +117,34 @@ def test_run_samples_positions() -> None:
         0,
         2,
     )
+
+
+class Lists(ToGoal):
+    def __init__(self, candidates: object) -> None:
+        self._candidates = candidates
+
+    @property
+    def velocity_candidates(self) -> object:
+        print("out of a property")
+        if isinstance(self._candidates, Exception):
+            raise self._candidates
+        return self._candidates
+
+
+@pytest.mark.parametrize(
+    ("candidates", "message"),
+    [
+        (RuntimeError("none today"), "Lists': velocity_candidates: .*none today"),
+        ([[1.0, 0.0]], "Lists': velocity_candidates is a list, not VelocityCandidates"),
+    ],
+)
+def test_candidates_that_fail_are_named(candidates: object, message: str) -> None:
+    with pytest.raises(PluginError, match=message):
+        candidates_of(Lists(candidates))
+
+
+def test_candidates_are_asked_for_inside_the_boundary(capsys: pytest.CaptureFixture[str]) -> None:
+    listed = VelocityCandidates(np.zeros((1, 2)), 0.5)
+    assert candidates_of(Lists(listed)) is listed
+    assert capsys.readouterr() == ("", "out of a property\n")
+    assert candidates_of(ToGoal()) is None

@@ -4,7 +4,7 @@
 const [folder, port] = process.argv.slice(2);
 const ROSLIB = await import(`file://${folder}/roslib/dist/RosLib.js`);
 
-const ENDED = ["arrived", "timeout", "planner_failed"];
+const ENDED = ["arrived", "timeout", "toppled", "planner_failed"];
 const ros = new ROSLIB.Ros({ url: `ws://127.0.0.1:${port}` });
 const topic = (name, messageType) => new ROSLIB.Topic({ ros, name, messageType });
 const command = topic("/cmd_vel", "geometry_msgs/msg/Twist");

@@ -16,7 +16,7 @@ import roslibpy  # type: ignore[import-untyped]
 
 from tests.core.live.pursuit import follow
 
-_ENDED = ("arrived", "timeout", "planner_failed")
+_ENDED = ("arrived", "timeout", "toppled", "planner_failed")
 
 
 def main(port: int, kind: str) -> int:

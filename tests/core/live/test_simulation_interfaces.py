@@ -87,3 +87,25 @@ def test_worlds_are_the_scenarios() -> None:
     assert session.take_request() == ""
     assert _code(_call(session, "/load_world", {"world_resource": {"uri": "two"}})) == 1
     assert (session.take_request(), session.wanted) == ("load", "two")
+
+
+def test_states_are_listed_for_who_fits_the_filter() -> None:
+    session = LiveSession(robot="robot", t=1.5, pose=(1.0, 2.0, 0.0))
+    found = _call(session, "/get_entities_states")
+    assert found["entities"] == ["robot"]
+    (state,) = found["states"]
+    assert state == _call(session, "/get_entity_state", {"entity": "robot"})["state"]
+    none = _call(session, "/get_entities_states", {"filters": {"filter": "person"}})
+    assert (none["entities"], none["states"]) == ([], [])
+    assert _code(_call(session, "/get_entities_states", {"filters": {"filter": "("}})) == 4
+
+
+@pytest.mark.parametrize(
+    "name", ["/spawn_entity", "/delete_entity", "/set_entity_state", "/unload_world"]
+)
+def test_what_a_scenario_decides_cannot_be_changed(name: str) -> None:
+    session = LiveSession(robot="robot")
+    answer = _call(session, name, {"entity": "robot"})
+    assert _code(answer) == 0
+    assert answer["result"]["error_message"]
+    assert session.take_request() == ""

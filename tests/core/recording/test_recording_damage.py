@@ -103,6 +103,17 @@ def test_a_tail_of_zeros_is_a_cut(whole: bytes, tmp_path: Path) -> None:
     assert not recording_info(path).complete
 
 
+@pytest.mark.parametrize("more", [b"x", b"\n", MCAP0_MAGIC])
+def test_bytes_behind_the_end_are_an_error(whole: bytes, tmp_path: Path, more: bytes) -> None:
+    """Two recordings in one file: each reader would see another one."""
+    path = tmp_path / "run.mcap"
+    for rest in (more, whole):
+        path.write_bytes(whole + rest)
+        for read in (read_trajectories, read_scans, recording_info):
+            with pytest.raises(InputError, match=f"{len(rest)} bytes follow its end"):
+                read(path)
+
+
 def test_damage_in_the_middle_is_an_error(whole: bytes, tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     at = chunk_ends(whole)[0] - 1000

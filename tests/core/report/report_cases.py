@@ -108,12 +108,15 @@ def _run(suite: str, named: dict[str, str], planner: str, seed: int, skill: floa
     status = "timeout" if lateness > 0 else "arrived"
     if rng.random() < 0.006 * (1 - 3 * skill):
         status = "planner_failed"
+    elif status == "timeout" and rng.random() < 0.1:
+        status = "toppled"
     goal_time = float(np.exp(rng.normal(4.1 - 0.2 * skill, 0.15))) if status == "arrived" else None
     drawn = "-".join(named[a] for a in DRAWN if a in named)
     sim_time = goal_time or (180.0 if status == "timeout" else float(rng.uniform(5, 60)))
     reasons = {
         "arrived": "the robot reached its goal",
         "timeout": "180 s are over",
+        "toppled": "toppled",
         "planner_failed": "step: ZeroDivisionError: float division by zero",
     }
     return RunRow(

@@ -3,16 +3,29 @@
 from __future__ import annotations
 
 import math
+from typing import get_args
 
 import numpy as np
 import pytest
 
 from crowdbot.core.environments.build import build_environment
-from crowdbot.core.runs.outcome import TIMEOUT, Outcome
+from crowdbot.core.live.session import State
+from crowdbot.core.report.contents import STATUSES
+from crowdbot.core.report.encode import FAILED
+from crowdbot.core.runs.outcome import (
+    ARRIVED,
+    ENDINGS,
+    PLANNER_FAILED,
+    TIMEOUT,
+    TOPPLED,
+    Outcome,
+)
 from crowdbot.core.runs.record_model import RecordModel, RobotPart
 from crowdbot.core.runs.run_record import ending
 from crowdbot.core.sim.built_run import robot_task
-from crowdbot.core.sim.metric_logger import TOPPLED
+from crowdbot.core.sim.fate import Fate
+from crowdbot.core.sim.fleet.record import _status
+from crowdbot.core.sim.metric_logger import LEANS
 from crowdbot.core.sim.runner import run
 from crowdbot.core.support.ticks import TICK
 from tests.core.sim.sim_worlds import Rig, alone, constant, person, registry, rig, scenario
@@ -44,7 +57,7 @@ def test_what_knocks_it_over(yaw: float, pushed_ticks: int, *, topples: bool) ->
     """300 N for 31 ms or 62 ms, 9.4 N s or 18.8 N s. Forwards it rolls, on its side it trips."""
     world = _pushed(25.0, yaw, 300.0, pushed_ticks, 1.5)
     robot = world.robot()
-    assert (robot.tilt > TOPPLED) == topples
+    assert (robot.tilt > LEANS) == topples
     assert (world.blocks.logger.toppled_time is not None) == topples
     if not topples:
         assert robot.tilt < math.radians(0.1)
@@ -54,27 +67,51 @@ def test_what_knocks_it_over(yaw: float, pushed_ticks: int, *, topples: bool) ->
 @pytest.mark.slow
 @pytest.mark.parametrize(("yaw", "arrives"), [(FRONT, True), (SIDE, False)])
 def test_what_has_toppled_does_not_arrive(yaw: float, *, arrives: bool) -> None:
-    """The same push takes both into the goal zone, one of them on its side."""
+    """The same push drives one into the goal zone; the other's run ends before."""
     world = _pushed(43.5, yaw, 600.0, 8, 1.0)
-    assert world.robot().x > GOAL
+    assert (world.robot().x > GOAL) == arrives
     logger = world.blocks.logger
+    ended = logger.goal_time if arrives else logger.toppled_time
+    assert world.context.get_time() == pytest.approx(ended, abs=TICK)
     assert (logger.goal_time is not None) == arrives
     assert (logger.toppled_time is None) == arrives
 
 
 @pytest.mark.slow
-def test_the_run_goes_on_and_says_so() -> None:
+def test_the_run_ends_and_says_so() -> None:
     """Somebody who takes no notice walks into its side."""
     world = scenario(START.format(20.0, SIDE), "robots.robot.task.time_limit=1")
     task = robot_task(world.robots["robot"], build_environment(registry(), world.environment))
     made = rig(world, constant(0.0), person(21.0, speed=1.5), initialize=False)
     outcome = run(made.blocks, task, made.log, stage="run", progress=None, stop=lambda: False)
-    assert outcome.status == TIMEOUT
-    assert outcome.sim_time == 1.0
+    assert outcome.status == TOPPLED
     assert outcome.toppled_time == pytest.approx(0.57, abs=0.1)
-    said = f"time limit of 1 s; toppled at {outcome.toppled_time:.1f} s"
-    assert outcome.reason == said
-    assert ending(outcome)["toppled_time"] == outcome.toppled_time
+    assert outcome.sim_time == outcome.toppled_time
+    assert outcome.reason == f"toppled at {outcome.toppled_time:.1f} s"
+    record = ending(outcome)
+    assert (record["status"], record["toppled_time"]) == (TOPPLED, outcome.toppled_time)
+
+
+def test_all_that_know_statuses_know_it() -> None:
+    allowed = get_args(RecordModel.model_fields["status"].annotation)
+    assert allowed == get_args(RobotPart.model_fields["status"].annotation) == ENDINGS
+    assert TOPPLED in ENDINGS
+    assert set(ENDINGS) <= set(get_args(State))
+    assert (*ENDINGS, FAILED) == STATUSES
+
+
+@pytest.mark.parametrize(
+    ("statuses", "said"),
+    [
+        ((ARRIVED, ARRIVED), ARRIVED),
+        ((ARRIVED, TIMEOUT), TIMEOUT),
+        ((TIMEOUT, TOPPLED), TOPPLED),
+        ((TOPPLED, PLANNER_FAILED), PLANNER_FAILED),
+    ],
+)
+def test_what_is_said_of_several_robots(statuses: tuple[str, str], said: str) -> None:
+    fates = {str(i): Fate(status=status) for i, status in enumerate(statuses)}
+    assert _status(fates) == said
 
 
 def test_the_record_of_what_stood_does_not_mention_it() -> None:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core.crowd.agents import Agents
+from crowdbot.core.crowd.build import build_policy
 from crowdbot.core.geometry.footprint import Footprint
 from crowdbot.core.sensing.other_robots import OtherRobot, OtherRobots
 from crowdbot.core.sensing.range_model import RangeModel
@@ -23,6 +24,7 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.looks import Looks
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotState
+from crowdbot.dsl.component_specs import CrowdPolicySpec
 from crowdbot.dsl.range_sensor import RangeSensorSpec
 from tests.core.sensing.sensing_worlds import REGISTRY
 
@@ -114,7 +116,12 @@ def by_noise() -> list[Any]:
 def by_policies() -> list[Any]:
     looks = Looks(height=np.zeros(1), leg_length=np.zeros(1), phase=np.zeros(1), look=("",))
     agents = Agents.of(x=np.zeros(1), y=np.zeros(1), routes=[[(9.0, 0.0)]], looks=looks)
-    return [immutable_fields(agents)]
+    spec = REGISTRY.spec_model("crowd policy", "velocity_space").model_validate(
+        {"kind": "velocity_space"}
+    )
+    assert isinstance(spec, CrowdPolicySpec)
+    built: Any = build_policy(REGISTRY, spec, [], agents)
+    return [immutable_fields(agents), built.costs.agents]
 
 
 @pytest.mark.parametrize(("given", "least"), [

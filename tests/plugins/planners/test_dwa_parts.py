@@ -54,6 +54,19 @@ def test_apparent_velocity() -> None:
 
 
 @settings(deadline=None)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.25, 1.0]))
+def test_apparent_velocity_is_that_of_the_first_nearest_neighbour(seed: int, dt: float) -> None:
+    rng = np.random.default_rng(seed)
+    now, before = (rng.integers(-9, 10, (int(n), 2)) / 8.0 for n in rng.integers(1, 60, 2))
+    square = ((now[:, None] - before) ** 2).sum(axis=2)
+    nearest = square.argmin(axis=1)  # on a grid many are equally near: the first of them
+    best = square.min(axis=1)
+    moves = (best > (0.3 * dt) ** 2) & (best < (2.5 * dt) ** 2)
+    expected = np.where(moves[:, None], (now - before[nearest]) / dt, 0.0)
+    np.testing.assert_array_equal(apparent_velocity(now, before, dt, 0.3, 2.5), expected)
+
+
+@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_apart_from_all_others(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -112,7 +125,7 @@ def parameters(**changed: float) -> Array:
         "A_MAX": 1.0, "ALPHA_MAX": 2.0, "HORIZON": 2.5, "TURN_TIME": 1.0, "RADIUS": 0.2,
         "MARGIN": 0.05, "COMFORT": 0.4, "GROWTH": 0.0, "PERIOD": 0.0625, "PROGRESS": 1.0,
         "HEADING": 0.4, "CLEARANCE": 0.5, "IMPACT": 1.0, "SMOOTHNESS": 0.0, "V_MAX": 1.0,
-        "W_MAX": 3.0, **changed,
+        "W_MAX": 3.0, "REACH": 0.2, **changed,
     }  # fmt: skip
     for name, value in values.items():
         p[getattr(rollout, name)] = value
@@ -125,7 +138,7 @@ def roll(
     ahead = rollout.foreseen(cloud, speeds, p)
     known, scratch = rollout.rollouts(ahead)
     rolled: tuple[float, float, float, float, float] = rollout.roll(
-        ahead, p, v, w, vt, wt, known, scratch
+        ahead, p, NOTHING, (v, w, 0.0), (vt, wt, 0.0), known, scratch
     )
     return rolled
 
@@ -186,7 +199,7 @@ def test_what_rollouts_know_of_each_other_changes_none(count: int, seed: int) ->
     ahead = rollout.foreseen(cloud, speeds, p)
     known, scratch = rollout.rollouts(ahead)
     for vt, wt in rng.uniform(-1.0, 1.0, (30, 2)):
-        shared = rollout.roll(ahead, p, 0.3, 0.1, vt, wt, known, scratch)
+        shared = rollout.roll(ahead, p, NOTHING, (0.3, 0.1, 0.0), (vt, wt, 0.0), known, scratch)
         assert shared == roll(cloud, speeds, p, 0.3, 0.1, vt, wt)
 
 
@@ -201,7 +214,7 @@ def test_what_is_chosen_can_stop_before_anything_still(v: float, gap: float, see
     candidates = np.column_stack([speeds.ravel(), rates.ravel()])
     p = parameters()
     index, cost = rollout.evaluate(
-        still, np.zeros_like(still), p, v, 0.0, candidates, 0.0, (v, 0.0)
+        still, np.zeros_like(still), p, NOTHING, (v, 0.0, 0.0), candidates, 0.0, 0.0, (v, 0.0, 0.0)
     )
     if index < 0:
         return
@@ -217,9 +230,10 @@ def test_no_candidate_is_admissible_before_a_wall() -> None:
     moving = np.array([[1.0, 0.0], [0.8, 0.0]])
     rest = np.zeros_like(wall)
     p = parameters()
-    assert rollout.evaluate(wall, rest, p, 1.0, 0.0, moving, 0.0, (0.0, 0.0))[0] == -1
+    zero, fast = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)
+    assert rollout.evaluate(wall, rest, p, NOTHING, fast, moving, 0.0, 0.0, zero)[0] == -1
     spot = np.array([[0.0, 1.0]])
-    assert rollout.evaluate(wall, rest, p, 0.0, 0.0, spot, 0.0, (0.0, 0.0))[0] == 0
+    assert rollout.evaluate(wall, rest, p, NOTHING, zero, spot, 0.0, 0.0, zero)[0] == 0
 
 
 def test_reachable_drops_only_what_cannot_matter() -> None:

@@ -8,7 +8,12 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core.interfaces import Array, LidarPoints, Pose
-from crowdbot.plugins.planners.heading_by_walls_build import BINS, HeadingByWalls, directions
+from crowdbot.plugins.planners.heading_by_walls_build import (
+    BINS,
+    HeadingByWalls,
+    directions,
+    turned,
+)
 from tests.plugins.planners.world import World, crowd
 
 LIDARS = LidarPoints({n: s.info() for n, s in World().sensors.items()})
@@ -21,6 +26,20 @@ def seen_from(pose: Pose, people: Array | None = None, walls: bool = True) -> Ar
         world = World(() if people is None else people, start=pose, walls=np.empty((0, 4)))
     obs = world._observe()
     return LIDARS(obs.readings, obs.t, (0.0, 0.0))
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.floats(-4.0, 4.0), st.integers(0, 40))
+def test_the_turn_is_the_one_of_the_best_fit(seed: int, guess: float, filled: int) -> None:
+    rng = np.random.default_rng(seed)
+    memory, seen = rng.random(BINS), np.zeros(BINS)
+    seen[rng.choice(BINS, filled, replace=False)] = rng.random(filled)
+    found = turned(memory, seen, guess, np.zeros(BINS, np.int64))
+    middle, wide = round(guess / math.pi * BINS), int(0.75 / math.pi * BINS)
+    turns = np.arange(middle - wide, middle + wide + 1)
+    fit = [float(seen @ np.roll(memory, -turn)) for turn in turns]
+    best = turns[int(np.argmax(fit))] if filled else guess / math.pi * BINS
+    assert abs(found / math.pi * BINS - best) <= 0.5 + 1e-9
 
 
 def off(a: float, b: float) -> float:

@@ -104,7 +104,14 @@ def test_a_hit_is_where_discs_meet(seed: int) -> None:
     ])  # fmt: skip
     p = rollout_parameters()
     mean, hit, speed, _, aside = rollout.roll(
-        people, np.empty((0, 2)), p, (0.0, 0.0, 0.0, 0.5, 0.0), (50.0, 0.0), 0.5, 0.0
+        people,
+        np.empty((0, 2)),
+        p,
+        np.empty((0, 2)),
+        (0.0, 0.0, 0.0, 0.5, 0.0),
+        (50.0, 0.0),
+        0.5,
+        0.0,
     )
     times = rollout.STEP * np.arange(0, round(p[rollout.HORIZON] / rollout.STEP) + 1)
     place = np.column_stack([0.5 * times, np.zeros(len(times))])

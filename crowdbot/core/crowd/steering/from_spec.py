@@ -6,6 +6,7 @@ from dataclasses import fields
 from typing import Any
 
 from crowdbot.core.crowd.steering.parameters import (
+    Lanes,
     PersonalSpace,
     Steering,
     TimeGap,
@@ -17,6 +18,7 @@ from crowdbot.dsl.steering import SteeringSpec
 _PARTS: dict[str, type[Any]] = {
     "time_gap": TimeGap,
     "personal_space": PersonalSpace,
+    "lanes": Lanes,
     "wall_push": WallPush,
     "wander": Wander,
 }

@@ -67,10 +67,28 @@ class Wander:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Lanes:
+    """A step aside from who comes, and behind who walks one's own way.
+
+    Attributes:
+        strength: largest acceleration to the side, m/s^2.
+        reach: distance ahead over which others matter e times less, m.
+        half_width: who is farther to the side does not count, m.
+        follow: how much those who walk along count beside those who come.
+    """
+
+    strength: float = 1.0
+    reach: float = 2.0
+    half_width: float = 0.6
+    follow: float = 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Steering:
     """The parts that a crowd has; None is off."""
 
     time_gap: TimeGap | None = None
     personal_space: PersonalSpace | None = None
+    lanes: Lanes | None = None
     wall_push: WallPush | None = None
     wander: Wander | None = None

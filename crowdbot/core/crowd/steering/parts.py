@@ -8,6 +8,7 @@ import numpy as np
 
 from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.core.crowd.steering.around import Around, around
+from crowdbot.core.crowd.steering.lanes import keep_lane
 from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.crowd.steering.personal_space import push_away
 from crowdbot.core.crowd.steering.time_gap import limit_speed
@@ -23,11 +24,13 @@ def parts_of(steering: Steering) -> list[Part]:
     """What is done to accelerations, one after the other: first limits, then pushes."""
     found: list[Part] = []
     gap, space = steering.time_gap, steering.personal_space
-    walls, drift = steering.wall_push, steering.wander
+    lanes, walls, drift = steering.lanes, steering.wall_push, steering.wander
     if gap is not None:
         found.append(lambda view, near, time, out: limit_speed(gap, view, near, time, out))
     if space is not None:
         found.append(lambda _view, near, _time, out: push_away(space, near, out))
+    if lanes is not None:
+        found.append(lambda _view, near, _time, out: keep_lane(lanes, near, out))
     if walls is not None:
         found.append(lambda view, near, _time, out: push_off_walls(walls, view, near, out))
     if drift is not None:

@@ -27,6 +27,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
+from crowdbot.core.planning.process.inspection import give_up_inspecting, set_inspectable
+
 #: Where a planner finds its descriptors: messages in, messages out, memory, as in `serving`.
 _TARGETS = (3, 4, 5)
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
@@ -42,6 +44,8 @@ def main(descriptor: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the simulator
     if _LINUX:
         _prctl(_PR_SET_CHILD_SUBREAPER, 1)
+        _prctl(_PR_SET_PDEATHSIG, signal.SIGCONT)  # whoever stopped it: it sees the line's end
+        set_inspectable(False)
     line = socket.socket(fileno=descriptor)
     server = ForkServer(line)
     try:
@@ -171,6 +175,8 @@ def _be_planner(request: Mapping[str, Any], descriptors: Sequence[int], parent: 
             _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
             if os.getppid() != parent:
                 os._exit(1)
+            give_up_inspecting()
+            set_inspectable(True)
         _limit(request["memory"])
         if request["folder"]:
             os.chdir(request["folder"])

@@ -31,12 +31,16 @@ from crowdbot.core.planning.python_file import build_of_class, check_parameters,
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotBody, RobotLimits
 from crowdbot.core.types.sensor import Pinhole, Reading, SensorInfo
-from crowdbot.errors import CrowdbotError, InputError
+from crowdbot.errors import CrowdbotError, InputError, printable
 
 _TYPES = SimpleNamespace(
     Task=Task, Pose=Pose, RobotBody=RobotBody, RobotLimits=RobotLimits, SensorInfo=SensorInfo,
     Pinhole=Pinhole, Reading=Reading, Observation=Observation, Truth=Truth,
 )  # fmt: skip
+
+
+#: The simulator keeps no more of an error, characters.
+_LONGEST_TEXT = 10_000
 
 
 class OwnSide:
@@ -96,6 +100,7 @@ class OwnSide:
             return {"type": "stop", "signals": signals}
         known = isinstance(error, CrowdbotError)
         text = str(error) if known else f"{type(error).__name__}: {error}"
+        text = printable(text[:_LONGEST_TEXT])
         kind = "input" if isinstance(error, InputError) else "planner"
         return {"type": "error", "text": text, "kind": kind, "whole": known, "signals": signals}
 

@@ -32,11 +32,13 @@ from crowdbot.core.planning.watchdog import Watchdog
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
-from crowdbot.errors import InputError, PlannerError
+from crowdbot.errors import InputError, PlannerError, printable
 
 #: Seconds that a process has to go by itself, and to be gone after it closed its line.
 _LEAVES, _DIES = 1.0, 0.3
 _GIB = 1 << 30
+#: Of what a planner says when it fails, so many characters are kept.
+_LONGEST_REASON = 2000
 #: In place of an exit code: the fork server was ended as well.
 _KILLED_ALL = -(1 << 16)
 
@@ -238,7 +240,7 @@ class ProcessPlanner:
     def _failed(self, said: Mapping[str, Any]) -> NoReturn:
         """What the planner raised, as it tells it itself."""
         self.close()
-        text = str(said.get("text", ""))[:2000]
+        text = printable(str(said.get("text", ""))[:_LONGEST_REASON])
         if "MemoryError" in text and self._plan.memory is not None:
             text += f"; the limit of its memory is {self._plan.memory / _GIB:g} GiB"
         if "BdbQuit" in text:
@@ -288,7 +290,7 @@ class ProcessPlanner:
         self._raise(what)
 
     def _raise(self, what: str) -> NoReturn:
-        raise ProcessLostError(f"{self._plan.who}: {what}")
+        raise ProcessLostError(printable(f"{self._plan.who}: {what}"))
 
     # --------------------------------------------------------------------- answers
     def _pass_on(self, said: Mapping[str, Any], obs: Observation) -> None:

@@ -8,16 +8,19 @@ import json
 import os
 import pickle
 import secrets
+import select
 import signal
 import socket
 import struct
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from crowdbot.core.planning.process.inspection import set_inspectable
 from crowdbot.core.registry.plugin_path import path_without_plugins
 from crowdbot.errors import PlannerError
 
@@ -30,8 +33,8 @@ _START = (
 _ONE_THREAD = (
     "NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS",
 )  # fmt: skip
-#: Seconds that a server has to end its planner and itself.
-_GOES = 30.0
+#: Seconds that a server has to end its planner and itself, and to import what planners need.
+_GOES, _IMPORTS = 30.0, 600.0
 #: Variable by which processes are known that came from one server.
 _MARK = "CROWDBOT_PLANNER_SERVER"
 #: What every planner of our own Python needs.
@@ -46,6 +49,7 @@ class ServerHandle:
     """One fork server. Has at most one planner."""
 
     def __init__(self) -> None:
+        set_inspectable(False)  # planners have this user's rights
         ours, theirs = socket.socketpair()
         self._mark = f"{_MARK}={secrets.token_hex(16)}"
         command = [
@@ -87,7 +91,7 @@ class ServerHandle:
             ServerGone: the server was ended.
         """
         self._send({"do": "start", **request}, descriptors)
-        return int(self._answer()["pid"])
+        return int(self._answer(_IMPORTS)["pid"])
 
     def end(self, *, grace: float, ask: bool = False) -> dict[str, Any]:
         """End the planner and all that it left; how its process ended.
@@ -95,9 +99,14 @@ class ServerHandle:
         Args:
             grace: seconds that it may take to go by itself.
             ask: afterwards, let it say where it is before it is killed.
+
+        Raises:
+            ServerGone: the server was ended, or has to be: it does not answer.
         """
         self._send({"do": "end", "grace": grace, "ask": ask})
-        return self._answer()
+        with contextlib.suppress(OSError):
+            os.kill(self._process.pid, signal.SIGCONT)  # the planner may have stopped it
+        return self._answer(grace + _GOES)
 
     def sweep(self) -> None:
         """Kill what a server left that was killed itself, as far as it can be told apart."""
@@ -111,7 +120,11 @@ class ServerHandle:
         """End the server, and with it everything below it."""
         if os.getpid() == self._owner:
             self._line.close()
-            self._process.wait(_GOES)
+            try:
+                self._process.wait(_GOES)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
 
     @property
     def is_alive(self) -> bool:
@@ -127,18 +140,22 @@ class ServerHandle:
             raise ServerGone("the process that starts planners was ended") from None
         self._unanswered += 1
 
-    def _answer(self) -> dict[str, Any]:
+    def _answer(self, limit: float) -> dict[str, Any]:
         """The answer to the latest request, after those that nobody waited for."""
         answer: dict[str, Any] = {}
+        until = time.monotonic() + limit
         while self._unanswered:
-            answer = json.loads(self._read())
+            answer = json.loads(self._read(until))
             self._unanswered -= 1
         return answer
 
-    def _read(self) -> bytes:
-        raw = b""
+    def _read(self, until: float) -> bytes:
+        raw, comes = b"", select.poll()
+        comes.register(self._line, select.POLLIN)
         while not raw.endswith(b"\n"):
             more = b""
+            if not comes.poll(1000.0 * max(0.0, until - time.monotonic())):
+                self._process.kill()
             with contextlib.suppress(OSError):
                 more = self._line.recv(1)
             if not more:

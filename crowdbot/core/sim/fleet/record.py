@@ -21,6 +21,7 @@ from crowdbot.core.runs.outcome import (
     INTERRUPTED,
     PLANNER_FAILED,
     TIMEOUT,
+    TOPPLED,
     Outcome,
     Progress,
 )
@@ -206,9 +207,9 @@ def _farthest(fleet: Sequence[FleetRobot], blocks: FleetBlocks, context: object)
 
 
 def _status(fates: Mapping[str, Fate]) -> str:
-    """Of the run: interrupted, failed if one planner did, arrived if all robots did."""
+    """Of the run: the first of these that one robot has; arrived if all robots did."""
     found = [fate.status or INTERRUPTED for fate in fates.values()]
-    for status in (INTERRUPTED, PLANNER_FAILED, TIMEOUT):
+    for status in (INTERRUPTED, PLANNER_FAILED, TOPPLED, TIMEOUT):
         if status in found:
             return status
     return ARRIVED

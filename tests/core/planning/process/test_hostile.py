@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ import pytest
 from crowdbot.core.planning.choice import PlannerPlace
 from crowdbot.core.planning.process.server_handle import POOL
 from crowdbot.core.planning.watchdog import Watchdog
-from crowdbot.errors import PlannerError
+from crowdbot.errors import PlannerError, hidden_character
 from tests.core.planning.process.process_cases import (
     LIMITS,
     below,
@@ -199,6 +200,13 @@ def _planners() -> list[int]:
     return [p for server in below(os.getpid()) for p in below(server)]
 
 
+def _parent(pid: int) -> int:
+    try:
+        return int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
+    except OSError:
+        return 0
+
+
 @pytest.mark.slow
 def test_the_one_that_started_it_may_be_killed(tmp_path: Path) -> None:
     choice = choose(tmp_path, planner_text("os.kill(os.getppid(), 9); time.sleep(1000)"))
@@ -207,6 +215,96 @@ def test_the_one_that_started_it_may_be_killed(tmp_path: Path) -> None:
     fine = choose(tmp_path, planner_text())
     with hosted(fine) as host:  # there is another one
         assert host.step(observation()).command.v == 0.3
+
+
+SIMULATOR = """
+def parent(pid):
+    return int(open(f"/proc/{pid}/stat").read().rpartition(")")[2].split()[1])
+def look_into(pid, how):
+    if how == "ptrace":  # PTRACE_SEIZE
+        return ctypes.CDLL(None).ptrace(0x4206, pid, None, None)
+    return open(f"/proc/{pid}/{how}", "r+b" if how == "mem" else "rb").read(0)
+def above(levels):
+    pid = os.getpid()
+    for _ in range(levels):
+        pid = parent(pid)
+    return pid
+"""
+
+
+@pytest.mark.parametrize("above", [1, 2], ids=["server", "simulator"])
+@pytest.mark.parametrize("how", ["mem", "ptrace"])
+def test_it_cannot_look_into_others(how: str, above: int, tmp_path: Path) -> None:
+    """Whoever can write to the simulator's memory can be as fast as it likes."""
+    look = f"print(look_into(above({above}), {how!r}), file=open({str(tmp_path / 'x')!r}, 'w'))"
+    choice = choose(tmp_path, planner_text(f"{look}; return (0.1, 0.0)", top=SIMULATOR))
+    with hosted(choice) as host:
+        if how == "mem":
+            with pytest.raises(PlannerError, match="step: PermissionError"):
+                host.step(observation())
+        else:
+            host.step(observation())
+            assert (tmp_path / "x").read_text() == "-1\n"
+
+
+def test_nothing_that_it_starts_has_the_right_to(tmp_path: Path) -> None:
+    """CAP_SYS_PTRACE is bit 19, CAP_SYS_ADMIN bit 21, of whatever set."""
+    cat = f"subprocess.check_call(['cp', '/proc/self/status', {str(tmp_path / 'status')!r}])"
+    with hosted(choose(tmp_path, planner_text(f"{cat}; return (0.1, 0.0)"))) as host:
+        host.step(observation())
+    lines = (line.split() for line in (tmp_path / "status").read_text().splitlines())
+    sets = {words[0]: int(words[1], 16) for words in lines if words[0].startswith("Cap")}
+    assert {"CapEff:", "CapPrm:", "CapInh:", "CapAmb:"} <= set(sets)
+    del sets["CapBnd:"]  # of somebody without privileges it stays as it is
+    assert not any(value & (1 << 19 | 1 << 21) for value in sets.values())
+
+
+@pytest.mark.parametrize("then", ["return (0.1, 0.0)", "os._exit(0)", "time.sleep(1000)"])
+def test_the_one_that_started_it_may_be_stopped(
+    then: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The campaign goes on, and the next planner finds the same server."""
+    stop = f"os.kill(os.getppid(), signal.SIGSTOP)\n        {then}"
+    with hosted(choose(tmp_path, planner_text(stop))) as host:
+        server = next(p for p in below(os.getpid()) if p in map(_parent, _planners()))
+        monkeypatch.setattr(Watchdog.__init__, "__defaults__", (0.3, 1.0, None))
+        with suppress(PlannerError):
+            host.step(observation())
+    with hosted(choose(tmp_path, planner_text())) as host:
+        assert host.step(observation()).command.v == 0.3
+        assert server in map(_parent, _planners())
+
+
+@pytest.mark.slow
+def test_a_server_that_stays_stopped_is_ended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whoever goes on stopping it does so until the server is killed, and it with that."""
+    monkeypatch.setattr("crowdbot.core.planning.process.server_handle._GOES", 0.5)
+    stop = "\n        while True: os.kill(os.getppid(), signal.SIGSTOP)"
+    monkeypatch.setattr(Watchdog.__init__, "__defaults__", (0.3, 1.0, None))
+    with hosted(choose(tmp_path, planner_text(stop))) as host, pytest.raises(PlannerError):
+        host.step(observation())
+    with hosted(choose(tmp_path, planner_text())) as host:
+        assert host.step(observation()).command.v == 0.3
+
+
+@pytest.mark.parametrize(("step", "reason"), [
+    (r"raise ValueError('\x1b[2J \x00 \u202e')", r"step: ValueError: \x1b[2J \x00 \u202e ("),
+    (r"raise ValueError('\ud800')", r"step: ValueError: \ud800 ("),
+    (r"raise type('A\x1b\n', (Exception,), {})('hi')", "step: A\\x1b\n: hi"),
+    ("raise ValueError('x' * 10_000_000)", "step: ValueError: xxxx"),
+    (r"obs.log('\ud800', 1.0)", "log: the name of a signal is at most 200 characters"),
+    (r"obs.log('\x1b[2J', 1.0)", "log: the name of a signal is at most 200 characters"),
+    ("obs.log('x' * 201, 1.0)", "log: the name of a signal is at most 200 characters"),
+])  # fmt: skip
+def test_reasons_can_be_shown_and_written(step: str, reason: str, tmp_path: Path) -> None:
+    with hosted(choose(tmp_path, planner_text(step))) as host, pytest.raises(PlannerError) as e:
+        host.step(observation())
+    said = str(e.value)
+    assert reason in said
+    assert hidden_character(said, allowed="\n") == ""
+    assert len(said) < 3000
 
 
 def test_a_flood_of_output_is_cut(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -10,10 +10,12 @@ import pytest
 from mcap.reader import make_reader
 
 from crowdbot.cli import main
+from crowdbot.core.realism.recordings import read_runs
 from crowdbot.core.recording import read_fleet, read_trajectories
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.runs.provenance import trajectory_hash
 from crowdbot.core.scoring.scores_csv import read_scores_csv
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError
 from tests.core.sim.fleet.fleets import PEOPLE, robot, run, scenario
 
@@ -59,6 +61,12 @@ def test_a_run_says_of_each_robot_and_of_the_fleet(tmp_path: Path) -> None:
     assert rows["success", "corrected"].value == 0.5
     with pytest.raises(InputError, match="several robots: a, b"):
         read_trajectories(one.directory / "run.mcap")
+    named = Trajectories.from_mcap(one.directory / "run.mcap", robot="a")
+    assert trajectory_hash(named) == trajectory_hash(one.robots["a"])
+    (compared,), _ = read_runs([one.directory / "run.mcap"])
+    people = one.robots["b"].agents  # b ended last
+    assert people is not None
+    assert compared.way.shape[1] == people.x.shape[1]
     table = tmp_path / "b"
     order = ["export", str(one.directory), "--to", "csv", "--robot", "b", "--out", str(table)]
     assert main(order) == 0

@@ -1,0 +1,63 @@
+"""Lanes: among people who come the other way, step behind those who walk one's own way."""
+
+from __future__ import annotations
+
+import math
+
+from crowdbot.core.crowd.steering.around import REACH, Around, first_within
+from crowdbot.core.crowd.steering.parameters import Lanes
+from crowdbot.core.crowd.velocity_search.neighbours import VX, VY, X, Y
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.arrays import Array, Indices, Mask
+
+#: Who moves slower than this along one's heading, or against it, stands, m/s.
+_STANDS = 0.2
+
+
+def keep_lane(part: Lanes, near: Around, wanted: Array) -> None:
+    """Add everybody's step aside to accelerations (N, 2), m/s^2, in place."""
+    _keep_all(*near, part.strength, part.reach, part.half_width, part.follow, wanted)
+
+
+@kernel
+def _keep_all(
+    discs: Array, row: Indices, heading: Array, decides: Mask,
+    strength: float, reach: float, half_width: float, follow: float, wanted: Array,
+) -> None:  # fmt: skip
+    for i in range(wanted.shape[0]):
+        if not decides[i]:
+            continue
+        hx, hy = heading[i, 0], heading[i, 1]
+        aside = aside_of(discs, int(row[i]), hx, hy, reach, half_width, follow)
+        wanted[i, 0] -= strength * aside * hy
+        wanted[i, 1] += strength * aside * hx
+
+
+@kernel
+def aside_of(
+    discs: Array, a: int, hx: float, hy: float, reach: float, half_width: float, follow: float
+) -> float:
+    """How much row a is drawn to its left, -1 to 1."""
+    away, towards, comers, all_ = 0.0, 0.0, 0.0, 0.0
+    for b in range(first_within(discs, a, REACH), discs.shape[0]):
+        dx, dy = discs[b, X] - discs[a, X], discs[b, Y] - discs[a, Y]
+        if dx > REACH:
+            break
+        along, left = dx * hx + dy * hy, dy * hx - dx * hy
+        if b == a or along <= 0.0 or along > REACH or abs(left) >= half_width:
+            continue
+        weight = math.exp(-along / reach)
+        pace = discs[b, VX] * hx + discs[b, VY] * hy
+        share = left / half_width
+        all_ += weight
+        if pace < -_STANDS:
+            comers += weight
+            away -= weight * math.copysign(1.0 - abs(share), share)
+        elif pace > _STANDS:
+            towards += weight * 4.0 * share * (1.0 - abs(share))
+    if comers == 0.0:
+        return 0.0
+    return math.tanh(away + follow * towards * comers / all_)
+
+
+__all__ = ["aside_of", "keep_lane"]

@@ -1,0 +1,52 @@
+"""Who may look into the memory of whom: a planner into its own only, not into the simulator's.
+
+Linux lets a process of the same user open another's ``/proc/PID/mem``, or trace it, unless that
+one says no; and root always, who has to give up the capability. See ptrace(2), section "Ptrace
+access mode checking", and capabilities(7). Knows only the standard library.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+from typing import Any
+
+_PR_SET_DUMPABLE, _PR_CAPBSET_DROP, _PR_CAP_AMBIENT, _PR_CAP_AMBIENT_CLEAR_ALL = 4, 24, 47, 4
+_VERSION_3 = 0x20080522
+#: CAP_SYS_MODULE, CAP_SYS_RAWIO, CAP_SYS_PTRACE, CAP_SYS_ADMIN, CAP_PERFMON, CAP_BPF,
+#: CAP_CHECKPOINT_RESTORE: those that lead into the memory of others.
+_INTO_OTHERS = (16, 17, 19, 21, 38, 39, 40)
+
+
+class _Header(ctypes.Structure):
+    _fields_ = (("version", ctypes.c_uint32), ("pid", ctypes.c_int))
+
+
+class _Sets(ctypes.Structure):
+    _fields_ = tuple((name, ctypes.c_uint32) for name in ("effective", "permitted", "inheritable"))
+
+
+def set_inspectable(may: bool) -> None:
+    """Say whether other processes of this user may look into this one; on Linux."""
+    if sys.platform == "linux":
+        libc: Any = ctypes.CDLL(None)
+        libc.prctl(_PR_SET_DUMPABLE, int(may), 0, 0, 0)
+
+
+def give_up_inspecting() -> None:
+    """Let neither this process nor what it starts look into others, be it root's; on Linux.
+
+    What cannot be given up is nothing that a user without privileges has.
+    """
+    libc: Any = ctypes.CDLL(None)
+    for capability in _INTO_OTHERS:
+        libc.prctl(_PR_CAPBSET_DROP, capability, 0, 0, 0)
+    libc.prctl(_PR_CAP_AMBIENT, _PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0)
+    header, sets = _Header(_VERSION_3, 0), (_Sets * 2)()
+    if libc.capget(ctypes.byref(header), sets) != 0:
+        return
+    for capability in _INTO_OTHERS:
+        half = sets[capability // 32]
+        for name in ("effective", "permitted", "inheritable"):
+            setattr(half, name, getattr(half, name) & ~(1 << capability % 32))
+    libc.capset(ctypes.byref(header), sets)

@@ -1,0 +1,136 @@
+"""A long robot that has come no farther: it plans a manoeuvre on a map of its own and drives it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crowdbot.core.interfaces import Array, Observation, Pose, RobotLimits
+from crowdbot.plugins.planners import dwa_rollout_build as rollout
+from crowdbot.plugins.planners.dwa_map_build import islands, remembered
+from crowdbot.plugins.planners.dwa_points_build import nearest_per_sector
+from crowdbot.plugins.planners.legs_build import Legs
+from crowdbot.plugins.planners.manoeuvre_build import manoeuvre
+from crowdbot.plugins.planners.people_build import carry, with_discs
+
+#: The map is renewed so often, s; its cells, and how far beside the robot it is believed whatever
+#: lidars see there, m.
+_PERIOD, _CELL, _BESIDE = 0.5, 0.03, 0.4
+#: Points of the map that are no farther apart are one thing; it is small up to this size, m.
+_LINK, _SMALL = 0.25, 0.6
+#: Clearance of a manoeuvre when it is planned, and when it is driven, m.
+_TIGHT, _TIGHTEST = 0.04, 0.02
+#: Shares of the wanted speed that are tried, if somebody is in the way.
+_SLOWER = (1.0, 0.5, 0.2)
+#: Who can do none of that for so long backs off at this speed: s, m/s.
+_HELD, _BACK_OFF = 1.0, -0.1
+_SECTORS = 240
+_NONE = np.empty((0, 2))
+
+
+class Manoeuvring:
+    """Remembers what stands around, and the legs of the manoeuvre.
+
+    Pieces of walls are as narrow as legs when they are seen askew, and in a door, somebody who is
+    not there would close the way: who stands is what stands alone in the map.
+
+    Args:
+        core: of the robot's outline, as `robot_outline_build.core_of`.
+        p: parameters of `dwa_rollout_build`.
+        limits: the robot's.
+        person_radius: disc that is kept clear around people, m.
+        reach: how far lidars are believed, m.
+    """
+
+    def __init__(
+        self, core: Array, p: Array, limits: RobotLimits, person_radius: float, reach: float
+    ) -> None:
+        self._core, self._p, self._limits = core, p, limits
+        self._person, self._reach = person_radius, reach
+        self.forget()
+        self._plan(np.ones((1, 2)), Pose(0.0, 0.0, 0.0), (9.0, 0.0))  # compiles
+        islands(np.ones((1, 2)), _LINK, _SMALL)
+
+    def forget(self) -> None:
+        """The robot is on its way again."""
+        self._map, self._alone = _NONE, _NONE
+        self._legs, self._held = Legs(), 0.0
+        self._mapped_at = -math.inf
+
+    def __bool__(self) -> bool:
+        """Whether it is in a manoeuvre."""
+        return bool(self._legs)
+
+    def command(
+        self, obs: Observation, stands: Array, walkers: Array
+    ) -> tuple[float, float, float] | None:
+        """The next v (m/s), w (rad/s) and vy, which is 0; None if there is no way.
+
+        Args:
+            stands: (P, 2) what the lidars show but for those who walk, base frame, m.
+            walkers: (K, 4) x, y, vx, vy of those, base frame.
+        """
+        if obs.t - self._mapped_at >= _PERIOD:
+            self._mapped_at = obs.t
+            self._remember(obs.pose, stands)
+            if self._legs.old(obs.t):
+                discs = with_discs(_NONE, _into(self._alone, obs.pose), self._person)
+                around = np.concatenate([self._map, _out_of(discs, obs.pose)])
+                self._legs.begin(self._plan(around, obs.pose, obs.goal), obs.t)
+        return self._drive(obs, stands, walkers) if self._legs else None
+
+    def _remember(self, pose: Pose, stands: Array) -> None:
+        x, y, _ = pose
+        seen = _out_of(nearest_per_sector(stands, _SECTORS, self._reach), pose)
+        beside = float(self._p[rollout.REACH]) + _BESIDE
+        self._map = remembered(self._map, seen, x, y, self._reach, beside, _CELL)
+        self._alone = islands(self._map, _LINK, _SMALL)
+
+    def _plan(self, around: Array, pose: Pose, goal: tuple[float, float]) -> Array:
+        """Legs of a manoeuvre among points (N, 2), world frame."""
+        rounding, reach = float(self._p[rollout.RADIUS]), float(self._p[rollout.REACH])
+        return manoeuvre(around, pose, goal, self._core, rounding, reach, _TIGHT)
+
+    def _drive(self, obs: Observation, stands: Array, walkers: Array) -> tuple[float, float, float]:
+        """On along the legs, slower or not at all where somebody is in the way."""
+        v, w = self._legs.velocity(obs.pose, self._limits)
+        wishes = [(share * v, share * w) for share in _SLOWER]
+        wishes += [(_BACK_OFF, 0.0)] if self._held > _HELD else []
+        points, velocities = self._around(obs.pose, stands, walkers)
+        tight, now = self._p.copy(), (*obs.twist, obs.vy)
+        tight[rollout.MARGIN] = _TIGHTEST
+        self._held += float(self._p[rollout.PERIOD])
+        for k, (v, w) in enumerate(wishes):
+            index, _ = rollout.evaluate(
+                points, velocities, tight, self._core, now, np.array([[v, w]]), 0.0, 0.0, now
+            )
+            if index == 0:
+                self._held = 0.0 if k < len(_SLOWER) else self._held
+                return v, w, 0.0
+        return 0.0, 0.0, 0.0
+
+    def _around(self, pose: Pose, stands: Array, walkers: Array) -> tuple[Array, Array]:
+        """Points and velocities (K, 2) of all that is there or is remembered, base frame."""
+        alone = _into(self._alone, pose)
+        people = np.concatenate([alone, walkers[:, :2]])
+        going = np.concatenate([np.zeros_like(alone), walkers[:, 2:]])
+        known = np.concatenate([stands, _into(self._map, pose)])
+        points = nearest_per_sector(with_discs(known, people, self._person), _SECTORS, self._reach)
+        velocities = np.zeros_like(points)
+        carry(points, velocities, people, going, self._person)
+        return points, velocities
+
+
+def _into(points: Array, pose: Pose) -> Array:
+    """Points (N, 2) of the world in the frame of the robot, m."""
+    c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+    turned: Array = (points - (pose.x, pose.y)) @ np.array([[c, -s], [s, c]])
+    return turned
+
+
+def _out_of(points: Array, pose: Pose) -> Array:
+    """Points (N, 2) of the robot's frame in the world, m."""
+    c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+    turned: Array = points @ np.array([[c, s], [-s, c]]) + (pose.x, pose.y)
+    return turned
