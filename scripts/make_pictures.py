@@ -1,9 +1,9 @@
 """Draws the pictures of README and documents, and writes the figures beside them, from one state.
 
-The gallery is drawn from the scenarios. One run is made for the replay in the README; the scores
-and times in the text beside it are those of the same run. The real-time factor there is that of an
-idle core. Pictures of pages need a browser, installed or of playwright; without one they are left
-as they are, which the last line says.
+Scenarios, worlds, streams and robots are drawn as they are. One run is made for the replay in the
+README; the scores and times in the text beside it are those of the same run. The real-time factor
+there is by CPU time. Another run is what metrics are drawn from. Pictures of pages need a browser,
+installed or of playwright; without one they are left as they are, which the last line says.
 
 Examples:
     .venv/bin/python scripts/make_pictures.py
@@ -39,6 +39,8 @@ GALLERY = {
     "hall": ("docs/tutorial/files/my_scenario.yaml",),
     "floor": ("docs/howto/files/my_floor.yaml", "heeded"),
 }
+#: Scripts that draw what needs no run.
+WITHOUT_RUNS = ("write_world_pictures.py", "stream_pictures.py", "draw_robots.py")
 #: Metrics that the README shows, each with its line.
 SHOWN = (
     "safe_efficiency", "contacts_per_km", "push_work", "intrusion", "effect_on_velocity",
@@ -59,10 +61,14 @@ def main() -> int:
     )
     given = parser.parse_args()
     draw_gallery(IMAGES / "gallery")
+    for name in WITHOUT_RUNS:
+        subprocess.run([sys.executable, ROOT / "scripts" / name], check=True, stdout=sys.stderr)
     if given.gallery:
         return 0
     with tempfile.TemporaryDirectory() as folder:
         kept: Path = (given.runs or Path(folder) / "runs").resolve()
+        metrics = ROOT / "scripts" / "make_metric_pictures.py"
+        subprocess.run([sys.executable, metrics, "--runs", kept], check=True, stdout=sys.stderr)
         missing = draw_pages(kept, Path(folder))
     if missing:
         print(f"no browser is installed: left as they were: {', '.join(missing)}")

@@ -1,7 +1,8 @@
 """What a shell offers for suites, scenarios, planners and metrics.
 
-Names of kinds and the ids of a suite are kept in the user's cache, so that pressing the tab key
-costs no validation: whatever is installed, or the file, having changed makes them anew.
+Names of crowdbot's own kinds are a table. Where plugins of others are installed, names of kinds are
+kept in the user's cache, and so are ids of a suite, so that pressing the tab key costs no
+validation: whatever is installed, or the file, having changed makes them anew.
 """
 
 from __future__ import annotations
@@ -84,7 +85,13 @@ def _expanded(spec: str) -> list[str]:
 
 
 def _kinds() -> dict[str, list[str]]:
-    """Names of planners, metrics and packaged suites."""
+    """Names of planners, metrics and packaged suites; only plugins of others have to be loaded."""
+    from importlib.metadata import entry_points
+
+    from crowdbot.cli._builtin_names import BUILTIN_NAMES
+
+    if all(entry.value == "crowdbot.plugins" for entry in entry_points(group="crowdbot")):
+        return BUILTIN_NAMES
     kept: dict[str, list[str]] = _kept("kinds", _state(), _discovered)
     return kept
 

@@ -52,7 +52,7 @@ def _tell_of_compiling(done: threading.Event) -> None:
     """A line at once, and one now and then with how far it is, until all is compiled."""
     if done.wait(PATIENCE):
         return
-    print(f"preparing: {_COMPILES}, about half a minute", file=sys.stderr)
+    print(f"preparing: {_COMPILES}, about a minute", file=sys.stderr)
     before = 0
     while not done.wait(_LINE_EVERY):
         now = compiled()

@@ -10,6 +10,18 @@ import typer
 
 from crowdbot.errors import InputError, UnknownNameError
 
+#: Pages at the top, and folders, as the index has them: what one learns from before what one asks.
+_ORDER = (
+    "index",
+    "tutorial",
+    "howto",
+    "examples",
+    "reference",
+    "gallery",
+    "explanation",
+    "decisions",
+)
+
 
 def docs(
     page: Annotated[
@@ -63,9 +75,14 @@ def documents() -> Path:
 
 
 def pages(folder: Path) -> list[str]:
-    """Names of all pages: the index first, then by folder."""
+    """Names of all pages: the index first, then folders in its order."""
     names = (f.relative_to(folder).with_suffix("").as_posix() for f in folder.rglob("*.md"))
-    return sorted(names, key=lambda n: (n != "index", n))
+    return sorted(names, key=_place)
+
+
+def _place(name: str) -> tuple[int, str]:
+    top = name.partition("/")[0]
+    return (_ORDER.index(top) if top in _ORDER else len(_ORDER), name)
 
 
 def _file(folder: Path, page: str) -> Path:

@@ -28,7 +28,7 @@ def export_urdf(
         str | None, typer.Option("--id", help="Id in a suite; default: its first scenario.")
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", help="File to write; default: standard output.")
+        Path | None, typer.Option(metavar="FILE", help="File to write; default: standard output.")
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

@@ -143,10 +143,12 @@ def _what(
     registry: Registry, spec: str, scenario: str | None, overrides: list[str] | None
 ) -> _What:
     from crowdbot.core.scenarios.library import open_spec, pick
+    from crowdbot.core.scenarios.one_robot import check_one_robot
 
     expansion = open_spec(spec, registry, overrides or ())
     whole = scenario is None and not expansion.single
     chosen = expansion.scenarios[0] if whole else pick(expansion, scenario)
+    check_one_robot(chosen, "'crowdbot serve'")  # before anybody is asked to connect
     first = expansion.scenarios.index(chosen)
     return _What(registry=registry, expansion=expansion, first=first)
 

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +15,11 @@ from rich.console import Console
 
 from crowdbot import cli
 from crowdbot.cli import _complete, _doctor
+from crowdbot.cli._builtin_names import BUILTIN_NAMES
 from crowdbot.core.scoring.scores_csv import scores_table
 from crowdbot.core.types.score import Score
+from scripts.write_completion_names import FILE as FILE_OF_NAMES
+from scripts.write_completion_names import text as names_text
 from tests.paths import ROOT
 
 FILE = str(ROOT / "docs" / "tutorial" / "files" / "my_scenario.yaml")
@@ -80,10 +84,36 @@ def _completed(words: list[str], cache: Path) -> list[str]:
 def test_a_shell_completes(tmp_path: Path) -> None:
     ids = _completed(["simulate", "challenge-2020", "counter-d0250-dispersed-c20"], tmp_path)
     assert ids == [f"counter-d0250-dispersed-c20-r{r}" for r in ("02", "05", "10")]
-    for _ in range(2):  # the second time from the cache
-        assert _completed(["simulate", "x", "--planner", "stop"], tmp_path) == ["stop_and_go"]
+    assert _completed(["simulate", "x", "--planner", "stop"], tmp_path) == ["stop_and_go"]
     assert "challenge-2026" in _completed(["expand", "challenge"], tmp_path)
-    assert list((tmp_path / "crowdbot" / "completion").glob("kinds-*.json"))
+
+
+def test_names_of_our_components_are_current() -> None:
+    assert FILE_OF_NAMES.read_text(encoding="utf-8") == names_text(), (
+        "run scripts/write_completion_names.py"
+    )
+
+
+@pytest.mark.parametrize("others", [False, True])
+def test_only_plugins_of_others_are_looked_for(
+    others: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ours = metadata.EntryPoint("builtin", "crowdbot.plugins", "crowdbot")
+    theirs = metadata.EntryPoint("acme", "crowdbot_acme", "crowdbot")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(metadata, "entry_points", lambda **_: [ours, theirs][: 1 + others])
+    asked: list[int] = []
+
+    def discovered() -> dict[str, list[str]]:
+        asked.append(1)
+        return {"planners": ["x"]}
+
+    monkeypatch.setattr(_complete, "_discovered", discovered)
+    complete = _complete.offer("planner")
+    assert complete is not None
+    for _ in range(2):
+        assert complete(None, None, "") == (["x"] if others else BUILTIN_NAMES["planners"])
+    assert len(asked) == others, "the second time from the cache"
 
 
 def test_ids_of_a_file_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -145,3 +145,28 @@ def test_every_category_has_a_build_row() -> None:
 
     rows = re.findall(r"^\| ([a-z ]+) \| `build\(spec", PLUGINS, re.M)
     assert set(rows) == {c.category for c in CATEGORIES}
+
+
+def _option(command: Any, name: str) -> Any:
+    return next((p for p in command.params if name in p.opts), None)
+
+
+@pytest.mark.parametrize("name", LIVE)
+def test_every_command_says_less_and_more_alike(name: str) -> None:
+    for long, short in (("--quiet", "-q"), ("--verbose", "-v")):
+        option = _option(LIVE[name], long)
+        assert option is not None
+        assert short in option.opts
+
+
+@pytest.mark.parametrize("name", LIVE)
+def test_out_is_a_file_or_a_folder_and_the_only_word_for_it(name: str) -> None:
+    command = LIVE[name]
+    words = {o for p in command.params for o in p.opts}
+    assert not words & {"-o", "--output", "--out-dir", "--output-dir", "--outfile", "--to-file"}
+    if (out := _option(command, "--out")) is not None:
+        assert re.fullmatch(r"DIR|PATH|FILE(\.[a-z]+)?", out.metavar or "")
+        rows = section(COMMANDS, f"## crowdbot {name}")
+        row = re.search(r"^\|[^|]*--out ([A-Za-z.]+)`", rows, re.M)
+        assert row is not None
+        assert row[1] == out.metavar

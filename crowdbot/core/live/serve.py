@@ -18,6 +18,7 @@ from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import prepare
 from crowdbot.core.runs.request import Request, Run
+from crowdbot.core.scenarios.one_robot import check_one_robot
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError, Interrupted
@@ -157,8 +158,7 @@ def _built(request: Request) -> BuiltRun:
     """The run of the one robot that clients drive: what they are told of is what is simulated."""
     from crowdbot.core.sim.preflight import preflight
 
-    if len(request.scenario.robots) != 1:
-        raise InputError(f"{request.scenario.id} has {len(request.scenario.robots)} robots, not 1")
+    check_one_robot(request.scenario, "'crowdbot serve'")
     (built,) = preflight(request).values()
     return built
 

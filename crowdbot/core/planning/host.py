@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from crowdbot.core.planning.guarded import GuardedPlanner, planner_title
 from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Task
 from crowdbot.core.planning.watchdog import Watchdog
+from crowdbot.core.support.compile_cache import compiled
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import Reading, SensorInfo
@@ -25,7 +26,8 @@ from crowdbot.errors import PlannerHungError
 T = TypeVar("T", bound=np.generic)
 
 STOP = Command(0.0, 0.0)
-#: Seconds that ``reset`` may take under a watchdog: models are loaded and compiled there.
+#: Seconds that ``reset`` may take under a watchdog: models are loaded there. While functions are
+#: compiled there is more time.
 RESET_LIMIT = 120.0
 #: Rounding beyond a limit that is not counted as clamping.
 _ROUNDING = 1e-9
@@ -84,7 +86,7 @@ class PlannerHost:
         self.steps = self.clamped = self.stops = 0
         task = replace(task, goal_zone=_read_only(task.goal_zone))
         sensors = MappingProxyType({n: _constant(i) for n, i in sensors.items()})
-        patience = self._watchdog.patience(RESET_LIMIT) if self._watchdog else None
+        patience = self._watchdog.patience(RESET_LIMIT, compiled) if self._watchdog else None
         with patience or contextlib.nullcontext(), self._named("reset"):
             self._guarded.reset(task, replace(self._limits), sensors, seed)
 

@@ -47,7 +47,10 @@ class Watchdog:
         on_hang: Callable[[], object] | None = None,
     ) -> None:
         self.limit, self.grace, self.on_hang = limit, grace, on_hang
+        self._progress: Callable[[], object] | None = None
+        self._seen: object = None
         self._deadline: float | None = None
+        self._extra = 0.0
         self._fired = False
         self._worker = 0
         self._thread: threading.Thread | None = None
@@ -83,6 +86,9 @@ class Watchdog:
             self.start()
         self._worker = threading.get_ident()
         self._fired = False
+        if self._progress is not None:
+            self._seen = self._progress()
+        self._extra = 0.0
         self._deadline = time.monotonic() + self.limit
         return self
 
@@ -98,26 +104,32 @@ class Watchdog:
             raise self._error() from error
 
     @contextmanager
-    def patience(self, limit: float) -> Iterator[None]:
-        """Another limit for what runs inside, s."""
-        usual, self.limit = self.limit, limit
+    def patience(
+        self, limit: float, progress: Callable[[], object] | None = None
+    ) -> Iterator[None]:
+        """Another limit for what runs inside, s.
+
+        Where ``progress()`` has changed when the time is over, there is as much time again: what
+        compiles on a busy machine does not hang.
+        """
+        usual, self.limit, self._progress = self.limit, limit, progress
         try:
             yield
         finally:
-            self.limit = usual
+            self.limit, self._progress = usual, None
 
     def _error(self) -> PlannerHungError:
         return PlannerHungError(f"did not return within {self.limit:g} s")
 
     def _late(self, by: float = 0.0) -> bool:
         deadline = self._deadline
-        return deadline is not None and time.monotonic() >= deadline + by
+        return deadline is not None and time.monotonic() >= deadline + self._extra + by
 
     def _watch(self) -> None:
         """The thread: interrupt a late step, then report it if it goes on."""
         interrupted: float | None = None  # the deadline of the step that was interrupted
         while not self._closed.wait(min(POLL, self.limit / 2.0)):
-            if not self._late():
+            if not self._late() or self._goes_on():
                 interrupted = None
             elif interrupted != self._deadline:
                 interrupted = self._deadline
@@ -125,6 +137,13 @@ class Watchdog:
             elif self._late(self.grace) and self.on_hang is not None:
                 self.on_hang()
                 return
+
+    def _goes_on(self) -> bool:
+        """Whether something was done since the time was counted, which then begins anew."""
+        if self._progress is None or (now := self._progress()) == self._seen:
+            return False
+        self._seen, self._extra = now, self._extra + self.limit
+        return True
 
     def _interrupt(self) -> None:
         if self._handles_signal and self._worker == threading.main_thread().ident:

@@ -108,7 +108,10 @@ def prepare(
             fit it any more.
     """
     if not scenario.robots:
-        raise InputError(f"{scenario.id} has no robot")
+        raise InputError(
+            f"scenario '{scenario.id}' has no robot to drive; "
+            "`crowdbot docs simulate_a_crowd` shows how to let people walk alone"
+        )
     for name in scenario.robots if len(scenario.robots) > 1 else ():
         if not _ROS_NAME.fullmatch(name):
             raise InputError(

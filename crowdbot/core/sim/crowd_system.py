@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from typing import Protocol
 
-import numpy as np
 from pydrake.systems.framework import (
     Context,
     DiagramBuilder,
@@ -23,15 +22,13 @@ from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.bodies import SEEN, rows_of
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.control.controlled import Push
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.robot import RobotModel
-
-#: Columns of a robot's row for the first six entries of its state: x, y, yaw, vx, vy, w.
-_SEEN = np.array([0, 1, 6, 2, 3, 7])
 
 #: What of the crowd's header others are told: force, events, torque.
 _NEWS = slice(s.ROBOT_FX, s.ROBOT_TORQUE + 1)
@@ -74,11 +71,9 @@ class CrowdSystem(LeafSystem):
         super().__init__()
         self._tick = tick
         self.engine, self._push = engine, push
-        body = footprint_of_model(robot)
-        self._outline = body.corners
-        self._robot = np.zeros((1, 8))
+        self._outline = footprint_of_model(robot).corners
+        self._robot = rows_of([robot], margin)
         self._row = self._robot[0]
-        self._row[4:6] = body.radius, body.reach + margin
         self._port = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         crowd = self.DeclareDiscreteState(engine.initial_state())
         force = self.DeclareDiscreteState(push.size)
@@ -91,7 +86,7 @@ class CrowdSystem(LeafSystem):
         self.DeclarePeriodicUnrestrictedUpdateEvent(tick, 0.0, self._update)
 
     def _update(self, context: Context, state: State) -> None:
-        self._row[_SEEN] = self._port.Eval(context)[:6]
+        self._row[SEEN] = self._port.Eval(context)[:6]
         values = state.get_mutable_discrete_state()
         crowd = values.get_mutable_value(self._crowd)
         before = crowd[_NEWS].tolist()

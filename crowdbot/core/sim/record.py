@@ -24,6 +24,7 @@ from crowdbot.core.sim.diagram import build_diagram
 from crowdbot.core.sim.record_crowd import RunSetup, agents, aim_of, ids, recording
 from crowdbot.core.sim.runner import run
 from crowdbot.core.sim.start_pose_check import check_start
+from crowdbot.core.support.compile_cache import compiled
 from crowdbot.core.types.robot import HolonomicDrive, RobotLimits
 from crowdbot.dsl.seeds import stream_seed
 from crowdbot.errors import PlannerError, PlannerHungError
@@ -143,7 +144,7 @@ def _build(choice: PlannerChoice, watchdog: Watchdog | None) -> Planner:
     if watchdog is None:
         return choice.build()
     try:
-        with watchdog.patience(RESET_LIMIT), watchdog:
+        with watchdog.patience(RESET_LIMIT, compiled), watchdog:
             return choice.build()
     except PlannerHungError:
         text = f"planner '{choice.name}' could not be made within {RESET_LIMIT:g} s"

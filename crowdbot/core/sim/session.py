@@ -23,6 +23,7 @@ from crowdbot.core.recording import read_trajectories
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.scenarios.lock import population
+from crowdbot.core.scenarios.one_robot import check_one_robot
 from crowdbot.core.sim.built_run import BuiltRun, build_run
 from crowdbot.core.sim.record_crowd import RunSetup
 from crowdbot.core.sim.run_thread import Exchange, own_stdout, start_run
@@ -84,8 +85,7 @@ class Session:
                 f"a session needs a scenario, not a {type(scenario).__name__}; "
                 "crowdbot.load(SUITE, ID) reads one"
             )
-        if len(scenario.robots) != 1:
-            raise InputError(f"{scenario.id} has {len(scenario.robots)} robots, not exactly one")
+        check_one_robot(scenario, "a session")
         self.scenario, self._registry = scenario, registry or discover()
         self._choice = _choice(sensors, privileged=privileged)
         self._recording = None if recording is None else Path(recording)

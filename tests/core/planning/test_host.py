@@ -406,3 +406,18 @@ def test_patience_holds_inside_only() -> None:
             time.sleep(20)
     finally:
         watchdog.close()
+
+
+@pytest.mark.slow
+def test_patience_lasts_while_something_is_done() -> None:
+    watchdog = Watchdog(limit=0.2, grace=5.0)
+    done: list[int] = []
+    try:
+        with watchdog.patience(0.4, lambda: len(done)), watchdog:
+            for _ in range(10):  # one piece of work in each 0.1 s
+                time.sleep(0.1)
+                done.append(1)
+        with pytest.raises(PlannerHungError), watchdog.patience(0.4, lambda: len(done)), watchdog:
+            time.sleep(20)
+    finally:
+        watchdog.close()

@@ -25,11 +25,11 @@ from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.robot_contact import FELT, TOUCH
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.bodies import SEEN, outlines_of, rows_of
 from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.fate import Fate
-from crowdbot.core.sim.fleet.bodies import SEEN, outlines_of, rows_of
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array

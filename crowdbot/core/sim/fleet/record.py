@@ -26,10 +26,10 @@ from crowdbot.core.runs.outcome import (
     Progress,
 )
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.bodies import outlines_of, rows_of
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.fate import Fate
-from crowdbot.core.sim.fleet.bodies import outlines_of, rows_of
 from crowdbot.core.sim.fleet.diagram import FleetBlocks, FleetRobot, build_fleet
 from crowdbot.core.sim.outline_overlap import overlap_of_robots
 from crowdbot.core.sim.record import description_of, header_of, hosted, watchdog_of

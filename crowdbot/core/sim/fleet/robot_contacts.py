@@ -37,10 +37,10 @@ from crowdbot.core.crowd.contact.robot_contact import (
 )
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.bodies import SEEN, outlines_of, rows_of
 from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.fate import Fate
-from crowdbot.core.sim.fleet.bodies import SEEN, outlines_of, rows_of
 from crowdbot.core.sim.outline_overlap import overlap_of_robots
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 from crowdbot.core.support.ticks import TICK

@@ -1,4 +1,4 @@
-"""The robots of a fleet as rows and outlines, as contacts and people take them."""
+"""Robots as rows and outlines, as contacts and people take them."""
 
 from __future__ import annotations
 

@@ -1,0 +1,94 @@
+"""Draws docs/images/metrics: what each metric measures, from one run; and the page of them all.
+
+The scenario is scripts/metric_pictures/metrics.yaml, the planner drives beside it. Equal runs give
+equal pictures, except for those of the time that planner steps take.
+
+Examples:
+    .venv/bin/python scripts/make_metric_pictures.py
+    .venv/bin/python scripts/make_metric_pictures.py --runs kept
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+import crowdbot
+from crowdbot.core.registry.registry import discover
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))  # as a script, too
+
+from scripts.metric_pictures import near, people, robot  # noqa: E402
+from scripts.metric_pictures.registry import DRAWINGS  # noqa: E402
+from scripts.metric_pictures.world import World  # noqa: E402
+
+DRAWN = (near, people, robot)
+HERE = Path(__file__).parent / "metric_pictures"
+IMAGES = ROOT / "docs" / "images" / "metrics"
+PAGES = ROOT / "docs" / "reference" / "metrics"
+GALLERY = ROOT / "docs" / "reference" / "gallery_of_metrics.md"
+_HEAD = """# Gallery of metrics
+
+What each metric measures, drawn from one run: a robot that swerves late, against a stream of \
+people in a corridor of 14 m. The number above a picture is the metric's value in that run. \
+`make pictures` draws them. What users answer and command is made up, since nobody \
+steered. [Metrics by category](metrics_by_category.md) lists symbols and directions.
+"""
+
+
+def main() -> int:
+    """Make the run, draw all pictures, write the page."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--runs", type=Path, help="folder that keeps the run")
+    given = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        draw(given.runs or Path(folder))
+    return 0
+
+
+def draw(runs: Path) -> None:
+    """Everything from a run below ``runs``, which is made if it is not there."""
+    scenario = crowdbot.load(HERE / "metrics.yaml", "metric-pictures")
+    planner = f"{HERE / 'sidestep.py'}:Sidestep"
+    made = crowdbot.simulate(scenario, planner=planner, seed=0, out=runs)
+    world = World.of(made)
+    IMAGES.mkdir(parents=True, exist_ok=True)
+    for metric, drawing in DRAWINGS.items():
+        figure = drawing.draw(world, metric)
+        (IMAGES / f"{metric}.svg").write_text(figure.svg(), encoding="utf-8")
+        page = PAGES / f"{metric}.md"
+        page.write_text(with_picture(page.read_text(encoding="utf-8"), metric), encoding="utf-8")
+    GALLERY.write_text(gallery(), encoding="utf-8")
+
+
+def with_picture(page: str, metric: str) -> str:
+    """A metric's page with its picture before the formula."""
+    line = f"![{DRAWINGS[metric].shows}](../../images/metrics/{metric}.svg)\n\n"
+    bare = re.sub(r"^!\[.*\]\(../../images/metrics/.*\)\n\n", "", page, flags=re.MULTILINE)
+    return bare.replace("## Formula\n", f"{line}## Formula\n", 1)
+
+
+def gallery() -> str:
+    """The page of all pictures, by category."""
+    groups: dict[str, list[str]] = {}
+    for name, component in discover(entry_points=False).components("metric").items():
+        if name in DRAWINGS:
+            groups.setdefault(str(component.score_category), []).append(name)  # type: ignore[attr-defined]
+    parts = [_HEAD]
+    for category in sorted(groups):
+        parts.append(f"## {category}\n")
+        parts += [_entry(metric) for metric in groups[category]]
+    return "\n".join(parts)
+
+
+def _entry(metric: str) -> str:
+    name, shows = metric.replace("_", " "), DRAWINGS[metric].shows
+    return f"[{name}](metrics/{metric}.md): {shows}\n\n![{shows}](../images/metrics/{metric}.svg)\n"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Pictures of metrics: what each measures, drawn from one run."""
