@@ -6,7 +6,8 @@ Needs node and a browser, and once
 
     npm install --ignore-scripts --legacy-peer-deps --prefix scripts/js/viewer
 
-Without a recording the scenario tests/data/short_way.yaml is run with the planner dwa.
+Without a recording it runs tests/data/short_way.yaml with the small planner of
+tests/core/live/pursuit.py.
 
     python scripts/viewer_picture.py [RUN.mcap] [--at SECONDS] [--out PICTURE.png]
 """
@@ -77,7 +78,14 @@ def main() -> int:
 
 def _run(out: Path) -> Path:
     """Make the recording."""
-    argv = [str(SPEC), "--planner", "dwa", "--record", "all", "--no-references"]
+    argv = [
+        str(SPEC),
+        "--planner",
+        f"{ROOT}/tests/core/live/pursuit.py:Pursuit",
+        "--record",
+        "all",
+        "--no-references",
+    ]
     command = [sys.executable, "-m", "crowdbot", "simulate", *argv, "--out", str(out)]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     (found,) = out.glob("*/*/*/*/run.mcap")

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from xml.etree import ElementTree as Xml
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
+import shapely  # type: ignore[import-untyped,unused-ignore]
 
 from crowdbot.core.robots.description import Description, read_description
 from crowdbot.core.robots.xml import matrix, numbers, pose_of
@@ -89,11 +89,15 @@ def _values(shape: Xml.Element, name: str) -> list[float]:
 
 
 def _hull(points: Array) -> Array:
-    try:
-        hull = ConvexHull(points)
-    except QhullError:  # no area
+    """Corners (K, 2) of the convex hull, counter-clockwise; none where it has no area.
+
+    By shapely, which is loaded anyway: scipy.spatial takes half a second to load.
+    """
+    hull = shapely.convex_hull(shapely.multipoints(points))
+    if hull.geom_type != "Polygon" or hull.area <= _LEAST:
         return np.zeros((0, 2))
-    return np.asarray(points[hull.vertices]) if hull.volume > _LEAST else np.zeros((0, 2))
+    ring = hull.exterior
+    return np.asarray(ring.coords[:-1] if ring.is_ccw else ring.coords[:0:-1])
 
 
 def _colour(visual: Xml.Element, described: Description) -> str:
