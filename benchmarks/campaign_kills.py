@@ -4,7 +4,8 @@
 
 Three times so many SIGKILLs: of the campaign itself, which is then started again; of one of its
 workers; and of a planner, which runs in a process of its own. A killed worker is replaced and loses
-nothing. A killed planner has failed, with the signal by name; such runs are made again in the end.
+nothing. A killed planner has failed, with the signal by name; such runs are made again in the
+end, by `--force`.
 Ends with 1 when a trajectory hash or a score differs, scores of wall time left out, when a run is
 missing or does not say what happened, or when a process is left.
 """
@@ -116,7 +117,8 @@ def kill_parts(
         wrong += _told(root / name, what is _planners, code)
         if left := _left(everything):
             wrong.append(f"kills of {name} left {left}")
-    if start(name).wait() != 0:  # those that failed are made again
+    again = ["--force"] if what is _planners else []  # a failed run is a complete one
+    if start(name, *again).wait() != 0:
         wrong.append(f"the last campaign of {name} failed")
     return wrong
 

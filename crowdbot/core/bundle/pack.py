@@ -24,6 +24,7 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_model import record_problems
 from crowdbot.core.scenarios.lock_check import spec_of
+from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.support.strict_json import parse_json
 from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.lock import LockFiles
@@ -148,9 +149,11 @@ def other_seeds(submission: Submission, expansion: Expansion) -> list[int]:
 
 
 def _checked(record: dict[str, Any], place: Path) -> dict[str, Any]:
-    """A record that is what a record looks like."""
+    """A record that is what a record looks like, beside a table of scores."""
     if wrong := record_problems(record):
         raise InputError(f"{place / files.RECORD}: damaged: {wrong[0]}; run it again")
+    if (place / files.SCORES).is_file():  # a missing one is told with the others
+        read_scores_csv(place / files.SCORES)
     return record
 
 

@@ -11,7 +11,7 @@ import json
 import logging
 import os
 import sqlite3
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ from crowdbot.core.results.failure import SUFFIX, read_failure
 from crowdbot.core.results.rows import DamagedRun, FailureRow, Results, RunRow, ScoreRow
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_model import record_problems
-from crowdbot.core.scoring.scores_csv import read_scores_csv
+from crowdbot.core.scoring.scores_csv import RunScore, read_scores_csv, safe_cell
 from crowdbot.errors import InputError
 
 _LOG = logging.getLogger("crowdbot")
@@ -220,6 +220,7 @@ class Store:
             return  # replaced at this very moment; the next look finds it
         try:
             columns, rows = _columns(run), read_scores_csv(run / files.SCORES)
+            _check_rows(run / files.SCORES, columns, rows)
         except InputError as error:
             reason = str(error).removeprefix(f"{run}/")
             self._damaged.append(DamagedRun(directory=directory, reason=reason))
@@ -258,8 +259,11 @@ def _scan(root: Path) -> Iterator[tuple[str, str]]:
         here = Path(folder)
         if files.RECORD in names:
             below.clear()
-            with suppress(OSError):
+            try:
                 yield here.relative_to(root).as_posix(), _stamp_of_run(here)
+            except OSError:  # replaced at this very moment, or a link that leads nowhere
+                if (here / files.RECORD).is_symlink():
+                    yield here.relative_to(root).as_posix(), ""
             continue
         if files.RECORDING in names or files.SCORES in names:
             below.clear()
@@ -297,9 +301,7 @@ def _columns(run: Path) -> dict[str, Any]:
     Raises:
         InputError: something of it is missing, cut or malformed.
     """
-    record = files.read_record(run)
-    if record is None:
-        raise InputError(f"{run / files.RECORD}: cut, or not a record of a run")
+    record = files.checked_record(run)
     if wrong := files.damage(run, record) or next(iter(record_problems(record)), ""):
         raise InputError(wrong)
     try:
@@ -316,6 +318,24 @@ def _columns(run: Path) -> dict[str, Any]:
         }
     except (KeyError, TypeError) as error:
         raise InputError(f"{run / files.RECORD}: not a record of a run: {error}") from error
+
+
+def _check_rows(file: Path, run: Mapping[str, Any], rows: Sequence[RunScore]) -> None:
+    """Whether scores are those of a run, each once.
+
+    Raises:
+        InputError: they are not.
+    """
+    own = (safe_cell(run["scenario"]), safe_cell(run["planner"]), run["seed"])
+    seen = set[tuple[str, str]]()
+    for row in rows:
+        name = row.score.metric, row.score.variant
+        if (row.scenario, row.planner, row.seed) != own:
+            other = f"{row.scenario[:100]} {row.planner[:60]} seed {row.seed}"
+            raise InputError(f"{file}: a score of another run: {other}")
+        if name in seen:
+            raise InputError(f"{file}: {'.'.join(name)[:100]} is there twice")
+        seen.add(name)
 
 
 def conditions(record: dict[str, Any]) -> dict[str, str]:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.runs.run_directory import RECORD, RECORDING
+from crowdbot.core.runs.run_directory import RECORD, RECORDING, checked_record
 from crowdbot.errors import InputError
 
 
@@ -101,13 +100,7 @@ def _record(folder: Path) -> Mapping[str, Any]:
         if folder.name.endswith(".partial"):
             return {}
         raise InputError(f"{folder}: no run directory: {RECORD} is missing")
-    try:
-        record = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        raise InputError(f"{file}: cannot be read: {error}") from error
-    if not isinstance(record, Mapping):
-        raise InputError(f"{file}: not a record of a run")
-    return record
+    return checked_record(folder)
 
 
 def _beside(folder: Path, reference: object) -> Path | None:

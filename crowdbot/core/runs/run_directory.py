@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.support.plain_text import plain_text
 from crowdbot.core.support.strict_json import parse_json
 from crowdbot.errors import InputError
 
@@ -26,10 +27,27 @@ _NEEDED = (RECORDING, SCENARIO, SCORES)
 def read_record(directory: Path) -> dict[str, Any] | None:
     """``run.json`` of a complete run, or None."""
     try:
-        record = parse_json((directory / RECORD).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        return checked_record(directory)
+    except InputError:
         return None
-    return record if isinstance(record, dict) else None
+
+
+def checked_record(directory: Path) -> dict[str, Any]:
+    """``run.json`` of a complete run.
+
+    Raises:
+        InputError: it cannot be read, or is not a mapping; says why.
+    """
+    file = directory / RECORD
+    try:
+        record = parse_json(plain_text(file))
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read: {error.strerror or error}") from None
+    except ValueError as error:
+        raise InputError(f"{file}: cut, or not a record of a run: {error}") from None
+    if not isinstance(record, dict):
+        raise InputError(f"{file}: cut, or not a record of a run: not a mapping")
+    return record
 
 
 def is_complete(directory: Path, run_id: str) -> bool:

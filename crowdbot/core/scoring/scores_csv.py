@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main, main_first
 from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.support.plain_text import plain_text
 from crowdbot.core.types.score import Score
 from crowdbot.errors import InputError, hidden_character
 
@@ -95,7 +96,7 @@ def read_scores_csv(path: str | os.PathLike[str]) -> list[RunScore]:
     """
     path = Path(path)
     try:
-        text = path.read_bytes().decode()
+        text = plain_text(path)
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -43,6 +44,25 @@ def cut(file: Path) -> None:
     file.write_bytes(file.read_bytes()[:-30])
 
 
+def replaced(file: Path, old: bytes, new: bytes) -> None:
+    """Other content, of whatever size: nobody says that the run has another one."""
+    file.write_bytes(file.read_bytes().replace(old, new, 1))
+    if file.name != "run.json":
+        record = json.loads(file.with_name("run.json").read_text())
+        sizes = {**record["files"], file.name: file.stat().st_size}
+        files.write_json(file.with_name("run.json"), {**record, "files": sizes})
+
+
+def pipe(file: Path) -> None:
+    file.unlink()
+    os.mkfifo(file)
+
+
+def linked(file: Path, target: str) -> None:
+    file.unlink()
+    file.symlink_to(target)
+
+
 DAMAGE: tuple[tuple[Callable[[Path], object], str], ...] = (
     (lambda run: (run / "run.json").unlink(), "run.json is missing"),
     (lambda run: cut(run / "run.json"), "cut, or not a record of a run"),
@@ -53,6 +73,16 @@ DAMAGE: tuple[tuple[Callable[[Path], object], str], ...] = (
     (lambda run: (run / "scores.csv").unlink(), "scores.csv is missing"),
     (lambda run: cut(run / "scores.csv"), "scores.csv has "),
     (lambda run: (run / "scenario.yaml").unlink(), "scenario.yaml is missing"),
+    (lambda run: replaced(run / "run.json", b'"seed"', b'"seed": 1, "seed"'), "the key 'seed' is"),
+    (lambda run: pipe(run / "run.json"), "cannot be read: not a plain file"),
+    (lambda run: pipe(run / "scores.csv"), "scores.csv has 0 bytes"),
+    (lambda run: linked(run / "run.json", "/dev/zero"), "cannot be read: not a plain file"),
+    (lambda run: linked(run / "run.json", "run.json"), "run.json is missing"),
+    (lambda run: replaced(run / "scores.csv", b",dwa,", b",awd,"), "a score of another run: in-"),
+    (
+        lambda run: replaced(run / "scores.csv", b",spl,", b",risk,"),
+        "risk.corrected is there twice",
+    ),
 )
 
 
@@ -79,6 +109,7 @@ def test_a_damaged_run_is_one_warning(
         assert [r.message for r in caplog.records] == [f"{run} is left out: "
                                                        f"{found.damaged[0].reason}"]  # fmt: skip
         for name, content in before.items():
+            (run / name).unlink(missing_ok=True)
             (run / name).write_bytes(content)
     assert load(root).damaged == ()
 
