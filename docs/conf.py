@@ -28,7 +28,10 @@ napoleon_use_rtype = False
 html_theme = "furo"
 html_title = "crowdbot"
 html_show_sphinx = False
+html_show_copyright = False
 html_copy_source = False
+# Search would fetch each page that it finds for an excerpt, which browsers refuse in a folder.
+html_show_search_summary = False
 # Nothing is loaded from elsewhere: the site, its search too, works from a folder.
 html_theme_options = {"navigation_with_keys": True, "top_of_page_buttons": []}
 highlight_language = "text"

@@ -33,8 +33,9 @@ PAGES = ROOT / "docs" / "reference" / "metrics"
 GALLERY = ROOT / "docs" / "reference" / "gallery_of_metrics.md"
 _HEAD = """# Gallery of metrics
 
-What each metric measures, drawn from one run: a robot that swerves late, against a stream of \
-people in a corridor of 14 m. The number above a picture is the metric's value in that run. \
+What each metric measures, drawn from one run: a robot that sways and hardly brakes, among \
+24 people who walk both ways in a corridor of 14 m. \
+The number above a picture is the metric's value in that run. \
 `make pictures` draws them. What users answer and command is made up, since nobody \
 steered. [Metrics by category](metrics_by_category.md) lists symbols and directions.
 """

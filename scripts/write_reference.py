@@ -17,7 +17,7 @@ from pydantic.fields import FieldInfo
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.dsl.areas import Area
 from crowdbot.dsl.assets import Asset
-from crowdbot.dsl.component_specs import CATEGORIES
+from crowdbot.dsl.component_specs import CATEGORIES, FloorContact
 from crowdbot.dsl.parameters import (
     AccelerationSample,
     DurationSample,
@@ -28,7 +28,7 @@ from crowdbot.dsl.parameters import (
     SpeedSample,
 )
 from crowdbot.dsl.quantities import UNITS, Quantity
-from crowdbot.dsl.spec import ComponentSpec, Mount, Range, Rectangle
+from crowdbot.dsl.spec import ComponentSpec, Mount, Range, Rectangle, TiltableMount
 from crowdbot.dsl.suite import ScenarioDocument, Seeds, SuiteDocument, SuiteHead
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "scenario.md"
@@ -49,7 +49,17 @@ as `80 cm/s`. World frame: x along the corridor, y left, z up, angles counter-cl
 """
 _COMPONENTS = ("environment", "crowd policy", "cost function", "robot", "sensor", "noise")
 _DRAWS = (LengthSample, SpeedSample, AccelerationSample, MassSample, DurationSample)
-_SHARED = (Asset, Mount, Range, Rectangle, Area, SpeedDistribution, *_DRAWS)
+_SHARED = (
+    Asset,
+    Mount,
+    TiltableMount,
+    FloorContact,
+    Range,
+    Rectangle,
+    Area,
+    SpeedDistribution,
+    *_DRAWS,
+)
 #: Fields that a document's reader checks; the models do not know their types.
 _READ = {
     "matrix": "map of maps of maps",

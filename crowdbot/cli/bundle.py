@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.errors import UsageError
 
 
 def bundle(
@@ -64,6 +65,11 @@ def bundle(
     from crowdbot.core.scenarios.library import open_suite
     from crowdbot.core.scenarios.lock_check import check_revealed
 
+    if root.is_file():
+        raise UsageError(
+            f"{root} is a file; ROOT is a folder of runs. To check a bundle that is there: "
+            f"crowdbot verify {root}"
+        )
     registry = installed(plugin, no_plugins)
     expansion, lock = open_suite(suite, registry)
     for scenario in expansion.scenarios:

@@ -46,7 +46,7 @@ from crowdbot.dsl.quantities import (
     Speed,
 )
 from crowdbot.dsl.range_sensor import MOST_RAYS, Incidence, RangeSensorSpec
-from crowdbot.dsl.spec import ComponentSpec, Mount, Range, Rectangle, Spec
+from crowdbot.dsl.spec import ComponentSpec, Mount, Range, Rectangle, Spec, TiltableMount
 
 __all__ = [
     "MOST_RAYS",
@@ -98,6 +98,7 @@ __all__ = [
     "Solid",
     "Spec",
     "Speed",
+    "TiltableMount",
     "declare_metric",
     "outlines",
 ]

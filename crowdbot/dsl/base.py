@@ -10,7 +10,7 @@ from crowdbot.dsl.component_specs import (
     RobotSpec,
     SensorSpec,
 )
-from crowdbot.dsl.spec import ComponentSpec, Mount, Range, Rectangle, Spec
+from crowdbot.dsl.spec import ComponentSpec, Mount, Range, Rectangle, Spec, TiltableMount
 
 __all__ = [
     "ComponentSpec",
@@ -26,4 +26,5 @@ __all__ = [
     "RobotSpec",
     "SensorSpec",
     "Spec",
+    "TiltableMount",
 ]

@@ -20,6 +20,17 @@ if TYPE_CHECKING:
 PlannerRole = Literal["floor", "baseline", "ceiling", "candidate"]
 
 
+class FloorContact(Spec):
+    """How wheels grip the floor. It is level: ramps do not exist."""
+
+    friction: float = Field(
+        default=1.0,
+        gt=0.0,
+        le=1.5,
+        description="Friction coefficient of a tyre on the floor, static and sliding.",
+    )
+
+
 class EnvironmentSpec(ComponentSpec):
     """Abstract: a place. Its spec has zones and portals; its walls come from the build function."""
 
@@ -27,6 +38,12 @@ class EnvironmentSpec(ComponentSpec):
     zones: dict[str, Rectangle] = Field(default={}, description="Named areas of the floor.")
     portals: dict[str, Rectangle] = Field(
         default={}, description="Named areas through which people leave and re-enter."
+    )
+
+    floor: FloorContact = Field(
+        default=FloorContact(),
+        exclude_if=lambda floor: floor == FloorContact(),
+        description="How wheels grip the floor; outside the hash while it is as usual.",
     )
 
     def place(self) -> Place | None:

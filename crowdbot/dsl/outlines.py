@@ -64,6 +64,27 @@ def distance_to_side(x: float, y: float, side: Side) -> float:
     return math.hypot(x - ax - share * ex, y - ay - share * ey)
 
 
+def distance_between(one: Side, other: Side) -> float:
+    """Distance between two segments, m; 0 where they have a point in common."""
+    if touch(one, other):
+        return 0.0
+    ends = ((one, other), (other, one))
+    return min(distance_to_side(*point, side) for side, points in ends for point in points)
+
+
+def along(line: Sequence[Point], gap: float) -> Iterator[Point]:
+    """Places on a line of straight pieces, so far from each other, from its beginning."""
+    behind = 0.0  # what of the gap lies before the piece
+    for (x0, y0), (x1, y1) in pairwise(line):
+        length = math.hypot(x1 - x0, y1 - y0)
+        at = behind
+        while at <= length + 1e-9:
+            share = at / length if length else 0.0
+            yield x0 + share * (x1 - x0), y0 + share * (y1 - y0)
+            at += gap
+        behind = at - length
+
+
 def first_crossing(outline: Sequence[Point]) -> tuple[int, int] | None:
     """Numbers of two sides that meet where they must not; None for a simple outline.
 

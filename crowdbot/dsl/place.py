@@ -16,6 +16,7 @@ from crowdbot.dsl.outlines import (
     Point,
     contains,
     counter_clockwise,
+    distance_between,
     distance_to_side,
     sides,
 )
@@ -73,9 +74,11 @@ class Pillar:
     heights: Heights
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Place:
     """All of it; what is not filled is floor.
+
+    Told apart by identity, so that what was found out about a place is remembered at no cost.
 
     Attributes:
         torus: x0, x1, y0, y1 of a floor whose opposite borders are one, m.
@@ -113,3 +116,12 @@ class Place:
         gap = -gap if inside else gap
         round_ = (math.hypot(x - p.x, y - p.y) - p.radius for p in self.pillars)
         return min(gap, *round_, math.inf)
+
+    def is_clear(self, start: Point, goal: Point, radius: float) -> bool:
+        """Whether a body of a radius (m) can walk straight from one point to another."""
+        way = (start, goal)
+        if any(distance_between(way, side) < radius for side in self.segments()):
+            return False
+        if any(distance_to_side(p.x, p.y, way) < p.radius + radius for p in self.pillars):
+            return False
+        return self.clearance(*start) >= radius

@@ -11,7 +11,8 @@ import math
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
-from crowdbot.dsl.outlines import Point, sides
+from crowdbot.dsl.areas import Area, places_in
+from crowdbot.dsl.outlines import Outline, Point, sides
 from crowdbot.dsl.place import Place
 
 #: Side of a cell, m; larger on floors that would have more than `_MOST` along one side.
@@ -22,8 +23,33 @@ _AROUND = 1.0  # m
 _HALF_DIAGONAL = 0.7072
 
 
+#: x0, x1, y0, y1, m.
+Box = tuple[float, float, float, float]
+#: A body may touch a wall by rounding, m.
+_SLACK = 1e-6
+
+
+@lru_cache(maxsize=1024)  # suites ask for the same places again and again
+def has_room(place: Place, area: Area, radius: float) -> bool:
+    """Whether a body of a radius (m) can be somewhere in an area."""
+    return any(place.clearance(*at) >= radius - _SLACK for at in places_in(area, radius))
+
+
+@lru_cache(maxsize=1024)
+def areas_connected(place: Place, radius: float, box: Box, start: Outline, goal: Outline) -> bool:
+    """Whether a way might lead a body of a radius (m) from one convex outline into another."""
+    if place.is_clear(_middle(start), _middle(goal), radius):
+        return True
+    return reach_of(place, radius, box).connects_areas(start, goal)
+
+
+def _middle(outline: Outline) -> Point:
+    xs, ys = zip(*outline, strict=True)
+    return sum(xs) / len(xs), sum(ys) / len(ys)
+
+
 @lru_cache(maxsize=64)
-def reach_of(place: Place, radius: float, box: tuple[float, float, float, float]) -> Reach:
+def reach_of(place: Place, radius: float, box: Box) -> Reach:
     """The reach of bodies of a radius (m) on what a place and a box x0, x1, y0, y1 cover."""
     return Reach(place, radius, box)
 
@@ -37,7 +63,7 @@ class Reach:
         box: x0, x1, y0, y1 that the floor covers besides, m.
     """
 
-    def __init__(self, place: Place, radius: float, box: tuple[float, float, float, float]) -> None:
+    def __init__(self, place: Place, radius: float, box: Box) -> None:
         points = [(box[0], box[2]), (box[1], box[3])]
         points += [p for side in place.segments() for p in side]
         points += [(p.x + k * p.radius, p.y + k * p.radius) for p in place.pillars for k in (-1, 1)]

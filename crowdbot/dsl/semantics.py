@@ -32,9 +32,19 @@ def check(scenario: Scenario, tree: Node) -> list[Diagnostic]:
 def _check_kinds(scenario: Scenario, tree: Node) -> Iterator[Diagnostic]:
     """A kind is always written: left out, it would mean something as long as one is installed."""
     for path, _ in components(scenario):
+        if _has_kind(tree, path):
+            continue
         place = locate(tree, path)
         if not place.rest and place.node.child("kind") is None:
             yield missing_field(tree, place, "kind")
+
+
+def _has_kind(tree: Node, path: tuple[str, ...]) -> bool:
+    """Whether a kind is written at a path: the usual case, seen without looking for anything."""
+    node: Node | None = tree
+    for name in (*path, "kind"):
+        node = None if node is None else node.child(name)
+    return node is not None
 
 
 def _check_task(facts: Facts, name: str, task: TaskSpec) -> Iterator[Diagnostic]:

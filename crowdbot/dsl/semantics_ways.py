@@ -4,32 +4,43 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
-from crowdbot.dsl.areas import Area, places_in
+from crowdbot.dsl.areas import Area
 from crowdbot.dsl.areas import Place as PlaceName
 from crowdbot.dsl.component_specs import EnvironmentSpec
 from crowdbot.dsl.diagnostics import Diagnostic
+from crowdbot.dsl.known_places import bodies_of, place_of
 from crowdbot.dsl.place import Place
-from crowdbot.dsl.reach import Reach, reach_of
+from crowdbot.dsl.reach import Box, Reach, areas_connected, has_room, reach_of
 from crowdbot.dsl.routing import MeshRouting
-from crowdbot.dsl.semantics_facts import Facts
+from crowdbot.dsl.semantics_facts import Facts, Path
+from crowdbot.dsl.semantics_robot_ways import check_robots, check_zones
 from crowdbot.dsl.spawning import Agent, Spawn
-from crowdbot.dsl.stream_kinds import StreamChoice, ThroughStream, WanderingStream
+from crowdbot.dsl.stream_kinds import QueueStream, Stream, places_of
+from crowdbot.dsl.stream_legs import begins_in, legs
 from crowdbot.errors import InputError
+
+#: Kinds of people may be as thin as this, m.
+_THINNEST = 0.1
 
 #: A body may touch a wall by rounding, m.
 _SLACK = 1e-6
 
 
 def check_ways(facts: Facts) -> Iterator[Diagnostic]:
-    """The place can be read; nobody starts in a wall; who finds ways finds one."""
+    """The place can be read; nothing starts in a wall; robots and who finds ways find one."""
     environment = facts.scenario.environment
     try:
-        place = environment.place()
+        place = place_of(environment)
     except InputError as error:
         yield Diagnostic("E144", str(error), facts.mark("environment", "file"))
         return
-    if place is None or facts.scenario.crowd is None:
+    if place is None:
+        return
+    yield from check_zones(facts)
+    yield from check_robots(facts, place)
+    if facts.scenario.crowd is None:
         return
     finds_way = isinstance(facts.crowd.routing, MeshRouting)
     if finds_way and place.torus is not None:
@@ -37,10 +48,12 @@ def check_ways(facts: Facts) -> Iterator[Diagnostic]:
         hint = "use routing 'straight', or another border"
         yield Diagnostic("E142", text, facts.mark("crowd", "routing"), hint)
         return
-    ways = _Ways(facts, place.bodies(facts.crowd.body.height), environment)
+    ways = _Ways(facts, bodies_of(place, facts.crowd.body.height), environment)
     yield from ways.check_starts()
-    yield from ways.check_streams()
+    yield from ways.check_room()
     if finds_way:
+        yield from ways.check_streams()
+        yield from ways.check_flows()
         yield from ways.check_agents()
         yield from ways.check_spawns()
 
@@ -60,26 +73,86 @@ class _Ways:
                 hint = f"at ({agent.x:g}, {agent.y:g}) there is {-gap:.3g} m too little room"
                 yield Diagnostic("E143", text, self.facts.mark("crowd", "agents", i, "x"), hint)
 
-    def check_streams(self) -> Iterator[Diagnostic]:
-        """There is room to come in where streams do."""
+    def check_room(self) -> Iterator[Diagnostic]:
+        """There is room where streams begin and come in, in queues, and in portals."""
         for name, stream in self.facts.crowd.streams.items():
-            radius = stream.body.radius or self.facts.crowd.body.radius
-            field, place = _entrance(stream)
-            area = None if place is None else self._resolve(place)
-            if area is not None and not self._has_room(area, radius):
-                text = f"nobody of stream '{name}' can come in around {_at(area)}"
-                hint = f"walls leave no room for a body of radius {radius:g} m"
-                yield Diagnostic(
-                    "E143", text, self.facts.mark("crowd", "streams", name, field), hint
-                )
+            radius = self._stream_radius(stream)
+            for field in begins_in(stream):
+                area = self._resolve(getattr(stream, field))
+                if area is not None and not has_room(self.place, area, radius):
+                    text = f"nobody of stream '{name}' can come in around {_at(area)}"
+                    yield self._no_room(text, radius, "crowd", "streams", name, field)
+            if isinstance(stream, QueueStream):
+                yield from self._check_line(name, stream, radius)
+        for path, pair, radius in self._users_of_portals():
+            for i, portal in enumerate(pair):
+                area = self._resolve(portal)
+                if area is not None and not has_room(self.place, area, radius):
+                    text = f"nobody can walk through portal '{portal}' around {_at(area)}"
+                    yield self._no_room(text, radius, *path, "portals", i)
+
+    def _no_room(self, text: str, radius: float, *path: str | int) -> Diagnostic:
+        hint = f"walls leave no room for a body of radius {radius:g} m"
+        return Diagnostic("E143", text, self.facts.mark(*path), hint)
+
+    def _check_line(self, name: str, queue: QueueStream, radius: float) -> Iterator[Diagnostic]:
+        for x, y in queue.places():
+            if self.place.clearance(x, y) < radius - _SLACK:
+                text = f"nobody can stand in the queue '{name}' at ({x:g}, {y:g})"
+                yield self._no_room(text, radius, "crowd", "streams", name, "line")
+                return
+
+    def _users_of_portals(self) -> Iterator[tuple[Path, tuple[str, str], float]]:
+        """Where each pair of portals is named, the pair, and how wide its people are, m."""
+        crowd, usual = self.facts.crowd, self._usual_radius
+        if crowd.flow is not None:
+            yield ("crowd", "flow"), crowd.flow.portals, usual
+        for i, agent in enumerate(crowd.agents):
+            if agent.portals is not None:
+                yield ("crowd", "agents", i), agent.portals, self._radius(agent)
+
+    # ----------------------------------------------------------------------------- ways
+    def check_streams(self) -> Iterator[Diagnostic]:
+        """A way leads from where each stream begins to everywhere it goes, in turn."""
+        for name, stream in self.facts.crowd.streams.items():
+            radius = self._stream_radius(stream)
+            areas = {name: one.area for name, one in self.facts.crowd.goal_areas.items()}
+            for start, goal, path in legs(stream, areas, self._resolve):
+                if not self._connects(start, goal, radius):
+                    text = f"no way leads stream '{name}' from {_at(start)} to {_at(goal)}"
+                    mark = self.facts.mark("crowd", "streams", name, *path)
+                    yield Diagnostic("E143", text, mark)
+                    break
+
+    def check_flows(self) -> Iterator[Diagnostic]:
+        """A way leads between the portals of a flow, and from where its people start."""
+        for path, pair, radius in self._users_of_portals():
+            ends = [area for area in map(self._resolve, pair) if area is not None]
+            flow = self.facts.crowd.flow
+            if path == ("crowd", "flow") and flow is not None:
+                ends = [*ends, *filter(None, [self._resolve(flow.area)])]
+            for other in ends[1:]:
+                if not self._connects(ends[0], other, radius):
+                    text = f"no way leads from portal '{pair[0]}' around {_at(ends[0])} "
+                    text += f"to {_at(other)}"
+                    yield Diagnostic("E143", text, self.facts.mark(*path, "portals"))
+                    break
+
+    def _connects(self, start: Area, goal: Area, radius: float) -> bool:
+        return areas_connected(self.place, radius, self._box, start.corners, goal.corners)
+
+    @property
+    def _usual_radius(self) -> float:
+        usual = self.facts.crowd.body.radius
+        return min(usual, _THINNEST) if self.facts.crowd.people else usual
+
+    def _stream_radius(self, stream: Stream) -> float:
+        return stream.body.radius or self._usual_radius
 
     def _resolve(self, place: PlaceName) -> Area | None:
         """A place as an area: of its own, a zone or a portal."""
         portal = self.environment.portals.get(place) if isinstance(place, str) else None
         return self.facts.resolve(place) or (Area.of(portal) if portal else None)
-
-    def _has_room(self, area: Area, radius: float) -> bool:
-        return any(self.place.clearance(*at) >= radius - _SLACK for at in places_in(area, radius))
 
     def check_agents(self) -> Iterator[Diagnostic]:
         """A way leads along the whole route of each explicit agent."""
@@ -115,30 +188,28 @@ class _Ways:
     def _leads(self, spawn: Spawn, start: Area, end: Area) -> bool:
         usual = self.facts.crowd.body.radius
         radius = spawn.radius.value - spawn.radius.spread if spawn.radius else usual
-        return self._reach(radius).connects_areas(start.corners, end.corners)
+        return self._connects(start, end, radius)
 
     def _radius(self, agent: Agent) -> float:
         return agent.radius or self.facts.crowd.body.radius
 
     def _reach(self, radius: float) -> Reach:
-        points = [(a.x, a.y) for a in self.facts.crowd.agents]
-        points += [goal for a in self.facts.crowd.agents for goal in a.goals]
+        return reach_of(self.place, radius, self._box)
+
+    @cached_property
+    def _box(self) -> Box:
+        """Around everything that is named, m."""
+        crowd = self.facts.crowd
+        points = [(a.x, a.y) for a in crowd.agents]
+        points += [goal for a in crowd.agents for goal in a.goals]
         boxes = (*self.environment.zones.values(), *self.environment.portals.values())
         points += [p for box in boxes for p in box.polygon]
-        for named in (self.facts.crowd.spawns, self.facts.crowd.goal_areas):
-            areas = (self.facts.resolve(one.area) for one in named.values())
-            points += [p for area in areas if area is not None for p in area.corners]
+        named = [one.area for group in (crowd.spawns, crowd.goal_areas) for one in group.values()]
+        named += [place for one in crowd.streams.values() for _, place in places_of(one)]
+        points += [p for place in named if isinstance(place, Area) for p in place.corners]
+        points += [p for q in crowd.streams.values() for p in getattr(q, "line", ())]
         xs, ys = [p[0] for p in points] or [0.0], [p[1] for p in points] or [0.0]
-        return reach_of(self.place, radius, (min(xs), max(xs), min(ys), max(ys)))
-
-
-def _entrance(stream: StreamChoice) -> tuple[str, PlaceName | None]:
-    """The field with the area in which people of a stream come in, if they do, and the area."""
-    if isinstance(stream, ThroughStream) and (stream.arrivals or stream.end == "return"):
-        return "origin", stream.origin
-    if isinstance(stream, WanderingStream) and stream.arrivals:
-        return "area", stream.area
-    return "", None
+        return min(xs), max(xs), min(ys), max(ys)
 
 
 def _at(area: Area) -> str:

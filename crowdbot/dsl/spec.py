@@ -85,6 +85,33 @@ class Mount(Spec):
     yaw: Angle = Field(default=0.0, description="Heading, rad, counter-clockwise.")
 
 
+class TiltableMount(Mount):
+    """Pose of a sensor that may look up, down or aslant.
+
+    Turned first by roll about x, then by pitch about y, then by yaw about z, as in URDF: with a
+    positive pitch it looks down, with a roll of half a turn it hangs upside down.
+    """
+
+    roll: Angle = Field(
+        default=0.0,
+        exclude_if=lambda value: value == 0.0,
+        description="About its own x, rad; positive: the left side goes up.",
+    )
+    pitch: Angle = Field(
+        default=0.0,
+        exclude_if=lambda value: value == 0.0,
+        description="About its y, rad; positive: it looks down.",
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _level(cls, value: Any) -> Any:
+        """A `Mount` made in Python is one without roll and pitch."""
+        if isinstance(value, Mount) and not isinstance(value, cls):
+            return {name: getattr(value, name) for name in value.model_fields_set}
+        return value
+
+
 class Rectangle(Spec):
     """An axis-aligned rectangle of the floor, world frame, m."""
 

@@ -6,12 +6,14 @@ Everything is drawn once by `crowdbot.core.population.realise`; these are its sp
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Gt, Le, MinLen
 from pydantic import Field, model_validator
 
 from crowdbot.dsl.areas import Place
+from crowdbot.dsl.outlines import along
 from crowdbot.dsl.parameters import DurationSample, SpeedChoice
 from crowdbot.dsl.quantities import (
     Angle,
@@ -228,6 +230,10 @@ class QueueStream(Stream):
         if self.groups:
             raise ValueError("a queue has no groups")
         return self
+
+    def places(self) -> tuple[Point, ...]:
+        """Where people stand at first, from the counter backwards, m; all there is room for."""
+        return tuple(islice(along(self.line, self.gap), self.count))
 
 
 class TalkingStream(Stream):

@@ -142,6 +142,8 @@ def _unknown_field(parent: TreePlace, name: str) -> Diagnostic:
     if entry and " " in name and entry.node.value is None:
         hint = "inside {} a comma ends a text; quote text that holds one"
     hint = _ELSEWHERE.get(name, hint)
+    if name in ("roll", "pitch") and parent.path[-1:] == ("mount",):
+        hint = "this sensor has no tilt: only x, y, z and yaw of its mount count"
     hint = _of_another_kind(parent, name) or hint
     where = f" in {parent.name}" if parent.path else ""
     if entry and entry.dotted:

@@ -263,6 +263,8 @@ def _assert_info(info: SensorInfo) -> None:
     assert all(isinstance(n, int) and n > 0 for n in info.shape), f"the shape is {info.shape}"
     assert len(info.mount) == 4, f"the mount is {info.mount}"
     assert all(math.isfinite(x) for x in info.mount), f"the mount is {info.mount}"
+    assert len(info.tilt) == 2, f"the tilt is {info.tilt}"
+    assert all(math.isfinite(x) for x in info.tilt), f"the tilt is {info.tilt}"
     assert 0.0 <= info.range_min <= info.range_max, f"{info.range_min} to {info.range_max} m"
     assert _ROS_TYPE.fullmatch(info.ros_type), f"'{info.ros_type}' is not a ROS type"
     assert isinstance(info.memory, int), f"memory is {info.memory}"

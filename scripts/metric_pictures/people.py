@@ -81,7 +81,7 @@ def _crowd_deviation(world: World, metric: str) -> Figure:
     return figure.line(world.t[:count], mean_of(off), PERSON, "mean of all", wide=2.2)
 
 
-@draws("evasive_acceleration", "Accelerations of people within 2 m of the robot.")
+@draws("evasive_acceleration", "The largest acceleration of people within 2 m of the robot.")
 def _evasive(world: World, metric: str) -> Figure:
     found = evasion(world.run, 2.0, JUMP)
     size = np.where(found.near, found.size, 0.0)

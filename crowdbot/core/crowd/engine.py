@@ -22,6 +22,7 @@ from crowdbot.core.crowd.portals import draw_goal, enter
 from crowdbot.core.crowd.response.evasion import evade_robots
 from crowdbot.core.crowd.response.parameters import Human
 from crowdbot.core.crowd.routes import head_for
+from crowdbot.core.crowd.routing.aims import squeeze
 from crowdbot.core.crowd.routing.router import Router
 from crowdbot.core.crowd.steering.parts import parts_of, steer
 from crowdbot.core.crowd.step import tick, ticks_without_robots
@@ -259,7 +260,8 @@ class CrowdEngine:
         seen = robots[:, _SEEN]
         nobody = seen[:0]
         if self._router is not None:
-            self._router.find(rows, self._ticks_per_decision * TICK)
+            number = int(flat[s.TICK]) // self._ticks_per_decision
+            self._router.find(rows, self._ticks_per_decision * TICK, number)
         for group in self._groups if len(robots) else self._groups_alone:
             view = self._view(flat, rows, group.members, seen if group.sees_robot else nobody)
             decides = np.asarray(view.decides)[:, np.newaxis]
@@ -270,6 +272,8 @@ class CrowdEngine:
                 relaxation = getattr(group.policy, "relaxation_time", 0.0)
                 wanted = steer(self._steering, view, relaxation, wanted)
             np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides)
+        if self._router is not None:
+            squeeze(rows, self.agents.max_acceleration)
         if self._cohesion is not None and len(self._members):
             hold_together(
                 rows, self._members, self._ends, self.agents.max_acceleration,

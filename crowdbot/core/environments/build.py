@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,9 @@ def build_environment(registry: Registry, spec: EnvironmentSpec) -> EnvironmentP
     Raises:
         PluginError: it cannot be built, or its tables do not fit each other.
     """
-    return registry.build(spec, checked_parts)
+    parts = registry.build(spec, checked_parts)
+    friction = spec.floor.friction
+    return parts if friction == 1.0 else replace(parts, floor_friction=friction)
 
 
 def checked_parts(parts: object) -> EnvironmentParts:

@@ -116,9 +116,15 @@ if TYPE_CHECKING:
         recording_info,
     )
     from crowdbot.core.robots.description import Description, read_description
+    from crowdbot.core.robots.published import PublishedWheel, read_published
     from crowdbot.core.scoring.metric import Metric, References
     from crowdbot.core.scoring.score_factory import ScoreFactory
-    from crowdbot.core.sensing.mount import mount_pose, sensor_pose_in_world
+    from crowdbot.core.sensing.mount import (
+        mount_pose,
+        mount_tilt,
+        sensor_pose_in_world,
+        sensor_rotation_in_world,
+    )
     from crowdbot.core.sensing.points import LidarPoints
     from crowdbot.core.sensing.range_model import RangeModel
     from crowdbot.core.sensing.scene import Scene
@@ -186,9 +192,12 @@ _HOMES = {
     "crowdbot.core.planning.planner": "NoValidCommand Observation Planner Task Truth",
     "crowdbot.core.recording.reader": "RecordingInfo read_scans read_trajectories recording_info",
     "crowdbot.core.robots.description": "Description read_description",
+    "crowdbot.core.robots.published": "PublishedWheel read_published",
     "crowdbot.core.scoring.metric": "Metric References",
     "crowdbot.core.scoring.score_factory": "ScoreFactory",
-    "crowdbot.core.sensing.mount": "mount_pose sensor_pose_in_world",
+    "crowdbot.core.sensing.mount": (
+        "mount_pose mount_tilt sensor_pose_in_world sensor_rotation_in_world"
+    ),
     "crowdbot.core.sensing.points": "LidarPoints",
     "crowdbot.core.sensing.range_model": "RangeModel",
     "crowdbot.core.sensing.scene": "Scene",
@@ -308,6 +317,7 @@ __all__ = [
     "Pointer",
     "PolicyFactory",
     "Pose",
+    "PublishedWheel",
     "Questionnaires",
     "RangeModel",
     "Reading",
@@ -339,17 +349,20 @@ __all__ = [
     "kernel",
     "list_obstacles",
     "mount_pose",
+    "mount_tilt",
     "near_table",
     "nearest_on_segment",
     "path_length",
     "place_parts",
     "policy_of",
     "read_description",
+    "read_published",
     "read_record",
     "read_scans",
     "read_trajectories",
     "recording_info",
     "sensor_pose_in_world",
+    "sensor_rotation_in_world",
     "soonest_disc",
     "time_to_disc",
     "time_to_segment",

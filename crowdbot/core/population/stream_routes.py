@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from crowdbot.core.types.arrays import Point
 from crowdbot.dsl.areas import Area, GoalArea
+from crowdbot.dsl.outlines import along
 from crowdbot.dsl.scenario import AtGoal
 from crowdbot.dsl.stream_kinds import Lanes
 
@@ -136,19 +136,6 @@ def stroll(
         onward = list(areas[here].next) or [n for n in begin if n != here] or [here]
         names.append(onward[int(rng.integers(len(onward)))])
     return names
-
-
-def along(line: Sequence[Point], gap: float) -> Iterator[Point]:
-    """Places on a line of straight pieces, so far from each other, from its beginning."""
-    behind = 0.0  # what of the gap lies before the piece
-    for (x0, y0), (x1, y1) in pairwise(line):
-        length = math.hypot(x1 - x0, y1 - y0)
-        at = behind
-        while at <= length + 1e-9:
-            share = at / length if length else 0.0
-            yield x0 + share * (x1 - x0), y0 + share * (y1 - y0)
-            at += gap
-        behind = at - length
 
 
 __all__ = ["Way", "along", "border_to_border", "lane_of", "straight_on", "stroll", "way_through"]

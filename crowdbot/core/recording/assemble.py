@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar
 
-from crowdbot.core.recording.header import RecordingHeader, RobotHeader
+from crowdbot.core.recording.header import RecordingHeader, RobotHeader, with_tilts
 from crowdbot.core.recording.records import Record, decode
 from crowdbot.core.recording.states import States, StatesReader, series
 from crowdbot.core.recording.topics import Topic
@@ -26,6 +27,7 @@ class Collected:
     #: Topic -> message types, newest format first.
     TOPICS: ClassVar[Mapping[str, tuple[str, ...]]] = {
         Topic.HEADER: ("crowdbot_msgs/msg/RunHeader",),
+        Topic.TILTS: ("crowdbot_msgs/msg/SensorTilts",),
         Topic.CANDIDATES: ("crowdbot_msgs/msg/VelocityCandidates",),
         Topic.PERSON_GOALS: ("crowdbot_msgs/msg/PersonGoals",),
         Topic.STATE: ("crowdbot_msgs/msg/RunStates", "crowdbot_msgs/msg/RunState"),
@@ -81,7 +83,10 @@ class Collected:
         """
         if not self._by_topic[Topic.HEADER]:
             raise InputError(f"{path}: no recording of crowdbot: {Topic.HEADER} is missing")
-        return RecordingHeader.from_message(self._by_topic[Topic.HEADER][0])
+        header = RecordingHeader.from_message(self._by_topic[Topic.HEADER][0])
+        for tilts in self._by_topic[Topic.TILTS]:
+            header = replace(header, sensors=with_tilts(header.sensors, tilts))
+        return header
 
     def trajectories(self, path: Path) -> Trajectories:
         """All of it as arrays.

@@ -10,6 +10,7 @@ DEFINITIONS = {
         "uint32[] shape\nstring ros_type\ncrowdbot_msgs/Table angles\n"
         "float64 range_min\nfloat64 range_max"
     ),
+    "SensorTilts": "string[] sensor\nfloat64[] roll\nfloat64[] pitch",
     "RobotInfo": (
         "float64 radius\nfloat64 mass\ncrowdbot_msgs/Table goal\nfloat64 goal_radius\n"
         "float64 base_height\ncrowdbot_msgs/Table limits\ncrowdbot_msgs/Table footprint"

@@ -115,6 +115,35 @@ class RecordingHeader:
             raise InputError(f"the recording's header contradicts itself: {error}") from error
 
 
+def tilts_message(sensors: Mapping[str, SensorInfo]) -> Any | None:
+    """Roll and pitch of sensors as ``crowdbot_msgs/SensorTilts``; None where all are level.
+
+    They came after the header, whose bytes stay those of runs without.
+    """
+    tilted = {name: info.tilt for name, info in sensors.items() if any(info.tilt)}
+    if not tilted:
+        return None
+    return ros.new(
+        "crowdbot_msgs/SensorTilts",
+        sensor=list(tilted),
+        roll=np.array([roll for roll, _ in tilted.values()]),
+        pitch=np.array([pitch for _, pitch in tilted.values()]),
+    )
+
+
+def with_tilts(sensors: Mapping[str, SensorInfo], message: Any) -> dict[str, SensorInfo]:
+    """The sensors of a header with what a `tilts_message` says; it may name others.
+
+    Raises:
+        InputError: its lists are of unequal length.
+    """
+    if not len(message.sensor) == len(message.roll) == len(message.pitch):
+        raise InputError("the recording lists tilts of sensors of unequal number")
+    tilts = zip(message.roll.tolist(), message.pitch.tolist(), strict=True)
+    told = dict(zip(message.sensor, tilts, strict=True))
+    return {n: replace(s, tilt=told[n]) if n in told else s for n, s in sensors.items()}
+
+
 def with_frames(header: RecordingHeader) -> RecordingHeader:
     """The header with the frames of its sensors in its namespace, if it has one."""
     if not header.namespace:

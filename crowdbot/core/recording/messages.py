@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crowdbot.core.geometry.rotation import quaternion
 from crowdbot.core.recording.typestore import definition as definition
 from crowdbot.core.recording.typestore import definition_text as definition_text
 from crowdbot.core.recording.typestore import field_types as field_types
@@ -53,9 +54,20 @@ def pose_stamped(ns: int, frame: str, pose: Pose) -> Any:
     return new("geometry_msgs/PoseStamped", header=header(ns, frame), pose=_pose(*pose))
 
 
-def transform(ns: int, parent: str, child: str, xyz: tuple[float, float, float], yaw: float) -> Any:
-    """Pose of ``child`` in ``parent``."""
-    placed = new("geometry_msgs/Transform", translation=vector(*xyz), rotation=_quaternion(yaw))
+def transform(
+    ns: int,
+    parent: str,
+    child: str,
+    xyz: tuple[float, float, float],
+    yaw: float,
+    tilt: tuple[float, float] = (0.0, 0.0),
+) -> Any:
+    """Pose of ``child`` in ``parent``; ``tilt`` is its roll and pitch, rad."""
+    turned = _quaternion(yaw)
+    if any(tilt):
+        x, y, z, w = quaternion(*tilt, yaw)
+        turned = new("geometry_msgs/Quaternion", x=x, y=y, z=z, w=w)
+    placed = new("geometry_msgs/Transform", translation=vector(*xyz), rotation=turned)
     return new(
         "geometry_msgs/TransformStamped",
         header=header(ns, parent),

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from crowdbot.core.recording.assemble import Collected
 from crowdbot.core.recording.fleet import among
-from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.header import RecordingHeader, with_tilts
 from crowdbot.core.recording.records import Record, Records, decode
 from crowdbot.core.recording.scan_reader import Choice, ScanCollector, cones, lidars
 from crowdbot.core.recording.scans import ReplayScan
@@ -108,7 +108,7 @@ def read_run(path: Path, max_rate: float) -> tuple[Trajectories, list[ReplayScan
             scans.add(record)
             continue
         collected.add_record(path, record)
-        if record.topic == Topic.HEADER:
+        if record.topic in (Topic.HEADER, Topic.TILTS):
             scans.open(collected.header(path))
     return collected.trajectories(path), scans.scans()
 
@@ -197,10 +197,13 @@ def read_cones(path: Path, max_rate: float | None = None) -> list[ReplayScan]:
 
 def _scans(path: Path, choose: Choice, max_rate: float | None) -> list[ReplayScan]:
     """What was recorded on the topics that ``choose`` finds."""
-    collector = ScanCollector(path, choose, max_rate)
+    collector, header = ScanCollector(path, choose, max_rate), RecordingHeader(scenario="")
     for record in _with_header(path):
         if record.topic == Topic.HEADER:
-            collector.open(_header(path, record))
+            header = _header(path, record)
+            collector.open(header)
+        elif record.topic == Topic.TILTS:
+            collector.open(_tilted(path, header, record))
         else:
             collector.add(record)
     return collector.scans()
@@ -219,6 +222,8 @@ def recording_info(path: Path) -> RecordingInfo:
         counts[record.topic, record.msgtype] += 1
         if record.topic == Topic.HEADER:
             header = _header(path, record)
+        elif record.topic == Topic.TILTS and header is not None:
+            header = _tilted(path, header, record)
         elif record.topic == Topic.STATE:
             last = record.ns
         elif record.topic == Topic.END:
@@ -246,6 +251,11 @@ def _with_header(path: Path, records: Records | None = None) -> Iterator[Record]
         if not first:
             return
     raise InputError(f"{path}: no recording of crowdbot: it does not begin with {Topic.HEADER}")
+
+
+def _tilted(path: Path, header: RecordingHeader, record: Record) -> RecordingHeader:
+    """The header with what the tilts of sensors are."""
+    return replace(header, sensors=with_tilts(header.sensors, decode(path, record)))
 
 
 def _header(path: Path, record: Record) -> RecordingHeader:

@@ -53,6 +53,7 @@ class ScanCollector:
         return ReplayScan(
             sensor=topic.rpartition("/")[0].removeprefix("/"),
             mount=info.mount,
+            tilt=info.tilt,
             angles=info.angles,
             range_max=info.range_max,
             t=np.array([record.ns for record in records]) / 1e9,

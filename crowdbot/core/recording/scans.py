@@ -24,6 +24,7 @@ class ReplayScan:
         range_max: how far it sees, m.
         t: (K,) stamps, increasing, s.
         ranges: (K, R), of a cone (K, 1), m; inf or NaN where nothing came back.
+        tilt: roll and pitch of the mount (rad).
         cone: whether a reading is one distance anywhere between two edges.
     """
 
@@ -34,6 +35,7 @@ class ReplayScan:
     t: Array
     ranges: Array
     cone: bool = False
+    tilt: tuple[float, float] = (0.0, 0.0)
 
 
 class Thinning:

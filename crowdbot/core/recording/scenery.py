@@ -34,9 +34,10 @@ def static_frames(header: RecordingHeader) -> list[Any]:
         return frames
     frames.append(ros.transform(0, footprint, base, (0.0, 0.0, robot.base_height), 0.0))
     own = [in_namespace(header.namespace, frame) for frame in FRAMES]
-    mounts = {s.frame: s.mount for s in header.sensors.values() if s.frame not in own}
-    for frame, (x, y, z, yaw) in mounts.items():
-        frames.append(ros.transform(0, base, frame, (x, y, z), yaw))
+    mounted = {s.frame: s for s in header.sensors.values() if s.frame not in own}
+    for frame, sensor in mounted.items():
+        *at, yaw = sensor.mount
+        frames.append(ros.transform(0, base, frame, (at[0], at[1], at[2]), yaw, sensor.tilt))
     for info in (s for s in header.sensors.values() if s.camera is not None):
         here = ros.transform(0, info.frame, optical(info.frame), (0.0, 0.0, 0.0), 0.0)
         turned = dict(zip("xyzw", OPTICAL_QUATERNION, strict=True))

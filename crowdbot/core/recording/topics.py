@@ -21,6 +21,7 @@ class Topic(StrEnum):
     """The topics that do not depend on the robot's sensors."""
 
     HEADER = "/crowdbot/header"
+    TILTS = "/crowdbot/tilts"
     CANDIDATES = "/crowdbot/candidates"
     PERSON_GOALS = "/crowdbot/person_goals"
     STATE = "/crowdbot/state"

@@ -23,7 +23,7 @@ from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.candidates import Choosers
 from crowdbot.core.recording.container import McapFile
-from crowdbot.core.recording.header import RecordingHeader, with_frames
+from crowdbot.core.recording.header import RecordingHeader, tilts_message, with_frames
 from crowdbot.core.recording.namespace import NamespacedFile
 from crowdbot.core.recording.scans import REPLAY_RATE, Thinning, whole_centimetres
 from crowdbot.core.recording.states import SeriesRows, StateSample, StatesWriter
@@ -115,6 +115,9 @@ class RecordingWriter:
         self._now = 0
         self._closed = False
         self._file.put(Topic.HEADER, 0, header.to_message(), latched=True)
+        tilts = tilts_message(header.sensors)
+        if tilts is not None:
+            self._file.put(Topic.TILTS, 0, tilts, latched=True)
         for group in known:
             self._file.put(Topic.CANDIDATES, 0, group.to_message(), latched=True)
         self._tools = ToolTopics(self._file, header, description) if record == "all" else None

@@ -47,6 +47,7 @@ def _cones(cones: Sequence[ReplayScan]) -> tuple[dict[str, Any], str]:
             {
                 "sensor": cone.sensor,
                 "mount": list(cone.mount),
+                **_tilt(cone),
                 "edges": [round(float(a), 5) for a in cone.angles],
             }
             for cone in cones
@@ -65,11 +66,17 @@ def _scan(scan: ReplayScan) -> tuple[dict[str, Any], str]:
     about = {
         "sensor": scan.sensor,
         "mount": list(scan.mount),
+        **_tilt(scan),
         "rangeMax": number(scan.range_max) or farthest,
         "angles": [round(float(a), 5) for a in scan.angles[::every]],
         "t": _stamps(scan.t[chosen]),
     }
     return about, pack_readings(_centimetres(ranges).T)
+
+
+def _tilt(scan: ReplayScan) -> dict[str, list[float]]:
+    """Roll and pitch, where a sensor is not level."""
+    return {"tilt": list(scan.tilt)} if any(scan.tilt) else {}
 
 
 def _centimetres(ranges: Array) -> NDArray[np.int16]:

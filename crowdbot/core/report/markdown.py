@@ -118,7 +118,8 @@ def _endings(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
 def _scores(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
     summary = contents.figures.headline
     places = {s.name: i for i, s in enumerate(contents.series)}
-    names = dict.fromkeys((s.metric, s.variant) for s in summary.scores)
+    told = dict.fromkeys((s.metric, s.variant) for s in summary.scores)
+    names = sorted(told, key=lambda name: places.get(name, len(places)))
     scores = {(s.metric, s.variant, s.planner): s for s in summary.scores}
     rows: list[Sequence[str]] = []
     for metric, variant in names:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping
+from functools import cache
 
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots.check import check_model
@@ -11,11 +13,18 @@ from crowdbot.dsl.component_specs import RobotSpec
 from crowdbot.dsl.scenario import Robot
 from crowdbot.errors import InputError
 
+_LOG = logging.getLogger(__name__)
 #: Drive -> control modes that fit it.
 MODES: Mapping[type, tuple[str, ...]] = {
     DifferentialDrive: ("differential_drive", "force", "kinematic"),
     HolonomicDrive: ("force", "kinematic"),
 }
+
+
+@cache
+def _tell(kind: str, note: str) -> None:
+    """Say a note once."""
+    _LOG.warning("%s: %s", kind, note)
 
 
 def build_model(registry: Registry, spec: RobotSpec) -> RobotModel:
@@ -35,6 +44,8 @@ def build_robot(registry: Registry, robot: Robot) -> RobotModel:
         InputError: its control mode does not fit its drive.
     """
     model = build_model(registry, robot.model)
+    for note in model.notes:
+        _tell(robot.model.kind, note)
     fitting = MODES[type(model.drive)]
     if robot.control not in fitting:
         raise InputError(

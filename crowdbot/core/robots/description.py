@@ -33,12 +33,14 @@ class Description:
         text: as it was read.
         model: its ``robot`` or ``model`` element.
         version: of SDFormat.
+        notes: what was simplified in reading it, for its user.
     """
 
     text: str
     format: Format
     model: Xml.Element
     version: str = "1.9"
+    notes: tuple[str, ...] = ()
 
     @cached_property
     def links(self) -> Mapping[str, Xml.Element]:
@@ -170,18 +172,37 @@ def read_description(source: str | Path | Traversable) -> Description:
     Raises:
         PluginError: it cannot be read, is not well-formed, or describes no robot.
     """
+    text, _ = read_text(source)
+    try:
+        return _checked(parse_description(text))
+    except PluginError as error:
+        if text is source:
+            raise
+        raise PluginError(f"{source}: {error}") from error
+
+
+def read_text(source: str | Path | Traversable) -> tuple[str, Path | None]:
+    """The text of a description, and the folder that it lies in; arguments as `read_description`.
+
+    Raises:
+        PluginError: it cannot be read.
+    """
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
-        return _parsed(source)
+        return source, None
     file = Path(source) if isinstance(source, str) else source
     try:
-        return _parsed(file.read_text(encoding="utf-8"))
+        text = file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise PluginError(f"robot description {file} cannot be read: {error}") from error
-    except PluginError as error:
-        raise PluginError(f"{file}: {error}") from error
+    return text, file.parent if isinstance(file, Path) else None
 
 
-def _parsed(text: str) -> Description:
+def parse_description(text: str) -> Description:
+    """A description from its text; what is in it is not looked at.
+
+    Raises:
+        PluginError: it is not well-formed, or describes no robot.
+    """
     try:
         top = Xml.fromstring(text.lstrip("\ufeff \t\r\n"))
     except Xml.ParseError as error:
@@ -189,7 +210,7 @@ def _parsed(text: str) -> Description:
     if any(isinstance(e.tag, str) and "ros.org/wiki/xacro" in e.tag for e in top.iter()):
         raise PluginError("the robot's description has xacro macros; expand them: xacro FILE")
     if top.tag == "robot":
-        return _checked(Description(text, "urdf", top))
+        return Description(text, "urdf", top)
     model = top if top.tag == "model" else top.find("model")
     if top.tag not in ("sdf", "model") or model is None:
         raise PluginError(
@@ -199,7 +220,7 @@ def _parsed(text: str) -> Description:
     for tag in ("model", "include"):
         if model.find(tag) is not None:
             raise PluginError(f"the robot's model has a <{tag}> inside; write it out")
-    return _checked(Description(text, "sdf", model, top.get("version", "1.9")))
+    return Description(text, "sdf", model, top.get("version", "1.9"))
 
 
 def _checked(described: Description) -> Description:
@@ -216,7 +237,8 @@ def _checked(described: Description) -> Description:
     for name, link in described.links.items():
         if any(shape.tag == "mesh" for shape in collisions(link)):
             raise PluginError(
-                f"link '{name}' collides as a mesh; use box, cylinder, sphere or capsule"
+                f"link '{name}' collides as a mesh; use box, cylinder, sphere or capsule, or "
+                "read the file with read_published"
             )
     return described
 

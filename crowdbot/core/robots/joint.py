@@ -43,6 +43,12 @@ def child_of(joint: Xml.Element) -> str:
     return "" if child is None else child.get("link") or (child.text or "").strip()
 
 
+def parent_of(joint: Xml.Element) -> str:
+    """Name of the link that a joint of a URDF hangs from."""
+    parent = joint.find("parent")
+    return "" if parent is None else parent.get("link", "")
+
+
 def _axis(text: str, name: str) -> Array:
     axis = np.array(numbers(text, f"the axis of joint '{name}'"))
     length = float(np.linalg.norm(axis))
@@ -54,13 +60,14 @@ def _axis(text: str, name: str) -> Array:
 def urdf_joint(joint: Xml.Element) -> Joint:
     """A joint of a URDF, whose frame is its child's."""
     name, kind = name_of(joint), joint.get("type", "")
-    parent, limit = joint.find("parent"), joint.find("limit")
-    axis = joint.find("axis")
+    limit, axis = joint.find("limit"), joint.find("axis")
+    if kind == "fixed":
+        axis = None  # it has no use for one, and files have 0 0 0 there
     effort = None if limit is None else limit.get("effort")
     return Joint(
         name=name,
         kind=kind,
-        parent="" if parent is None else parent.get("link", ""),
+        parent=parent_of(joint),
         child=child_of(joint),
         axis=_axis("1 0 0" if axis is None else axis.get("xyz", "1 0 0"), name),
         effort=None if effort is None else number(effort, f"the effort of joint '{name}'"),

@@ -28,8 +28,8 @@ def simplified(described: Description, driven: Collection[str]) -> str:
         driven: names of the joints of the driven wheels.
     """
     model = deepcopy(described.model)
-    for motor in model.findall("transmission"):
-        model.remove(motor)
+    for unused in (*model.findall("transmission"), *model.findall("material")):
+        model.remove(unused)
     for joint in model.findall("joint"):
         if not described.joints[name_of(joint)].free:
             _hold(joint)

@@ -53,7 +53,7 @@ def to_urdf(robot: RobotModel, sensors: Mapping[str, SensorInfo], name: str) -> 
             continue
         x, y, z, yaw = info.mount
         if sensor not in described.links:
-            _frame(document, BASE, sensor, f"{sensor}_joint", (x, y, z), (0.0, 0.0, yaw))
+            _frame(document, BASE, sensor, f"{sensor}_joint", (x, y, z), (*info.tilt, yaw))
         if info.camera is not None:
             eye = optical(sensor)
             _frame(document, sensor, eye, f"{eye}_joint", (0.0, 0.0, 0.0), OPTICAL_RPY)
@@ -101,7 +101,9 @@ def check_frames(robot: RobotModel, sensors: Mapping[str, SensorInfo]) -> None:
 def _check_same(sensor: str, info: SensorInfo, described: Description, base: str) -> None:
     """A link that has a sensor's name stands for it, where it is where the sensor is."""
     x, y, z, yaw = info.mount
-    if not np.allclose(described.pose(sensor, base), matrix([x, y, z, 0.0, 0.0, yaw]), atol=_SAME):
+    if not np.allclose(
+        described.pose(sensor, base), matrix([x, y, z, *info.tilt, yaw]), atol=_SAME
+    ):
         raise InputError(
             f"sensor '{sensor}' has the name of a link of the robot, and is mounted elsewhere: "
             f"give it another name, or the link's mount"

@@ -10,6 +10,7 @@ from xml.etree import ElementTree as Xml
 
 import numpy as np
 
+from crowdbot.core.geometry.rotation import rotation
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import PluginError
 
@@ -65,13 +66,6 @@ def number(text: str, what: str) -> float:
 
 def matrix(pose: list[float]) -> Array:
     """x, y, z, roll, pitch, yaw as a 4 x 4 pose."""
-    x, y, z, roll, pitch, yaw = pose
-    cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin))
-    return np.array(
-        [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, x],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr, y],
-            [-sp, cp * sr, cp * cr, z],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )
+    found = np.eye(4)
+    found[:3, :3], found[:3, 3] = rotation(*pose[3:]), pose[:3]
+    return found

@@ -136,9 +136,7 @@ def _check(info: object) -> None:
         isinstance(shape, tuple) and all(isinstance(n, Integral) and int(n) > 0 for n in shape)
     ):
         refuse(f"shape is {shape!r}; a tuple of whole numbers above 0 is wanted")
-    mount = np.asarray(info.mount, np.float64)
-    if mount.shape != (4,) or not np.all(np.isfinite(mount)):
-        refuse(f"mount is {info.mount!r}; x, y, z, yaw are wanted")
+    _check_mount(info, refuse)
     if not (isinstance(info.memory, Integral) and int(info.memory) >= 0):
         refuse(f"memory is {info.memory!r}")
     if info.angles is not None and not np.all(np.isfinite(info.angles)):
@@ -155,3 +153,12 @@ def _check_camera(info: SensorInfo, refuse: Callable[[str], None]) -> None:
         info.memory or info.shape != (info.camera.height, info.camera.width)
     ):
         refuse("a camera's shape is its height and width, and it has no memory")
+
+
+def _check_mount(info: SensorInfo, refuse: Callable[[str], None]) -> None:
+    mount = np.asarray(info.mount, np.float64)
+    if mount.shape != (4,) or not np.all(np.isfinite(mount)):
+        refuse(f"mount is {info.mount!r}; x, y, z, yaw are wanted")
+    tilt = np.asarray(info.tilt, np.float64)
+    if tilt.shape != (2,) or not np.all(np.isfinite(tilt)):
+        refuse(f"tilt is {info.tilt!r}; roll and pitch are wanted")

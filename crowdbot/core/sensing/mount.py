@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 
+from crowdbot.core.geometry.rotation import rotation
 from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
-from crowdbot.dsl.spec import Mount
+from crowdbot.dsl.spec import Mount, TiltableMount
 
 #: Height of base_link above the floor (m) where the scene does not say it: the Kobuki's.
 BASE_HEIGHT = 0.0102
@@ -17,10 +19,23 @@ def mount_pose(mount: Mount) -> tuple[float, float, float, float]:
     return mount.x, mount.y, mount.z, mount.yaw
 
 
+def mount_tilt(mount: Mount) -> tuple[float, float]:
+    """Roll and pitch, rad; 0 of a mount that cannot be tilted."""
+    return (mount.roll, mount.pitch) if isinstance(mount, TiltableMount) else (0.0, 0.0)
+
+
+def sensor_rotation_in_world(mount: Mount, pose: Pose) -> Array:
+    """The matrix (3, 3) that turns vectors of a sensor's frame into those of the world's."""
+    return rotation(*mount_tilt(mount), pose.yaw + mount.yaw)
+
+
 def sensor_pose_in_world(
     mount: Mount, scene: Scene, pose: Pose
 ) -> tuple[tuple[float, float, float], float]:
-    """Position and heading of a sensor in the world frame, m and rad."""
+    """Position and heading of a sensor in the world frame, m and rad.
+
+    The heading of one that is tilted is that of its yaw, see `sensor_rotation_in_world`.
+    """
     c, s = math.cos(pose.yaw), math.sin(pose.yaw)
     base = BASE_HEIGHT if scene.robot is None else scene.robot.z
     ahead, aside = mount.x, mount.y

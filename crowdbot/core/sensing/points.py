@@ -7,8 +7,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from crowdbot.core.geometry.rotation import rotation
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import Reading, SensorInfo
+
+#: What a tilted lidar sees lower than this, seen from base_link, is taken for the floor, m.
+CLEARANCE = 0.05
 
 
 class LidarPoints:
@@ -20,10 +24,14 @@ class LidarPoints:
 
     def __init__(self, sensors: Mapping[str, SensorInfo]) -> None:
         self._beams: dict[str, tuple[tuple[float, float], Array]] = {}
+        self._longest: dict[str, Array] = {}
         for name, info in sensors.items():
             if info.category == "lidar" and info.angles is not None and info.angles.ndim == 1:
-                angle = info.angles + info.mount[3]
-                rays = np.column_stack([np.cos(angle), np.sin(angle)])
+                if any(info.tilt):
+                    rays, self._longest[name] = _tilted(info)
+                else:
+                    angle = info.angles + info.mount[3]
+                    rays = np.column_stack([np.cos(angle), np.sin(angle)])
                 self._beams[name] = (info.mount[:2], rays)
 
     def __len__(self) -> int:
@@ -51,9 +59,27 @@ class LidarPoints:
             if name in readings:
                 ranges = readings[name].values
                 hit = np.isfinite(ranges)
+                if name in self._longest:
+                    hit &= ranges < self._longest[name]
                 points = rays[hit] * ranges[hit, None] + mount
                 parts.append(_moved(points, t - readings[name].stamp, twist, vy))
         return np.concatenate(parts) if parts else np.empty((0, 2))
+
+
+def _tilted(info: SensorInfo) -> tuple[Array, Array]:
+    """Beams of a tilted lidar seen from above (R, 2), and how far each goes to the floor, m.
+
+    Readings from `CLEARANCE` above the floor on are the floor, not obstacles. base_link is taken
+    to lie on the floor; of one that is higher, less of the floor is left out.
+    """
+    assert info.angles is not None  # by __init__
+    fan = np.column_stack([np.cos(info.angles), np.sin(info.angles), np.zeros_like(info.angles)])
+    rays = fan @ rotation(*info.tilt, info.mount[3]).T
+    room, down = info.mount[2] - CLEARANCE, -rays[:, 2]
+    longest = np.full(len(rays), math.inf)
+    if room > 0.0:  # else nobody can tell where the floor is
+        np.divide(room, down, out=longest, where=down > 0.0)
+    return rays[:, :2], longest
 
 
 def _moved(points: Array, age: float, twist: tuple[float, float], vy: float) -> Array:

@@ -12,7 +12,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.sensing.mount import mount_pose, sensor_pose_in_world
+from crowdbot.core.sensing.mount import (
+    mount_pose,
+    mount_tilt,
+    sensor_pose_in_world,
+    sensor_rotation_in_world,
+)
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sensing.sensor import NoiseGenerator
 from crowdbot.core.support.compile import kernel
@@ -30,12 +35,14 @@ class RangeModel:
     Attributes:
         drops_slanted: whether surfaces struck at a slant are not seen, so that angles are wanted.
         random: whether `measure` draws random numbers.
+        tilted: whether the mount has roll or pitch; then `cast_tilted` is what its rays meet.
     """
 
     def __init__(self, spec: RangeSensorSpec, noise: Sequence[NoiseGenerator]) -> None:
         self._spec, self._noise = spec, tuple(noise)
         self.drops_slanted = spec.max_incidence < math.pi / 2
         self.random = spec.dropout > 0.0 or any(g.random for g in noise)
+        self.tilted = mount_tilt(spec.mount) != (0.0, 0.0)
         self._step = (spec.range_max - spec.range_min) / 2.0**spec.bits if spec.bits else 0.0
 
     @property
@@ -46,6 +53,25 @@ class RangeModel:
     def pose_in_world(self, scene: Scene, pose: Pose) -> tuple[tuple[float, float, float], float]:
         """Position and heading of the sensor in the world frame, m and rad."""
         return sensor_pose_in_world(self._spec.mount, scene, pose)
+
+    @property
+    def tilt(self) -> tuple[float, float]:
+        """Roll and pitch of the mount, rad."""
+        return mount_tilt(self._spec.mount)
+
+    def cast_tilted(self, scene: Scene, pose: Pose, rays: Array) -> Array:
+        """Distances (N,) that rays of a tilted sensor go, m; inf for no return.
+
+        The floor is seen, and surfaces struck at too large an angle are not.
+
+        Args:
+            rays: (N, 3) directions of length 1, sensor frame.
+        """
+        at, _ = self.pose_in_world(scene, pose)
+        turn = sensor_rotation_in_world(self._spec.mount, pose)
+        distance, incidence, _ = scene.cast_tilted(at, turn, rays, self._spec.range_max)
+        self.drop_slanted(distance, incidence)
+        return distance
 
     def drop_slanted(self, distance: Array, incidence: Array) -> None:
         """Set to inf, in place, what is struck at too large an angle; both (N,), m and rad."""

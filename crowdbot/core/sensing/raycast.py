@@ -22,7 +22,7 @@ _OVERLAP = 1e-9
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _segment_gap(wall: Array, x: float, y: float) -> float:
+def segment_gap(wall: Array, x: float, y: float) -> float:
     """Distance from a point to a segment, m."""
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
     px, py = x - wall[0], y - wall[1]
@@ -38,7 +38,7 @@ def _near_walls(walls: Array, x: float, y: float, max_range: float, out: NDArray
     """Write the indices of the walls within range; return how many there are."""
     count = 0
     for i in range(walls.shape[0]):
-        if _segment_gap(walls[i], x, y) <= max_range:
+        if segment_gap(walls[i], x, y) <= max_range:
             out[count] = i
             count += 1
     return count
@@ -68,7 +68,7 @@ def _near_discs(
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _hit_wall(wall: Array, heights: Array, o: Array, dx: float, dy: float, dz: float) -> float:
+def hit_wall(wall: Array, heights: Array, o: Array, dx: float, dy: float, dz: float) -> float:
     """Distance of one ray to one wall; inf if it misses."""
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
     px, py = wall[0] - o[0], wall[1] - o[1]
@@ -84,14 +84,14 @@ def _hit_wall(wall: Array, heights: Array, o: Array, dx: float, dy: float, dz: f
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _wall_incidence(wall: Array, dx: float, dy: float) -> float:
+def wall_incidence(wall: Array, dx: float, dy: float) -> float:
     """Angle between a ray and the normal of a wall that it hits."""
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
     return math.acos(min(1.0, abs(dx * ey - dy * ex) / math.hypot(ex, ey)))
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _hit_cylinder(
+def hit_cylinder(
     px: float,
     py: float,
     r: float,
@@ -132,7 +132,7 @@ def _hit_cylinder(
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _cylinder_incidence(
+def cylinder_incidence(
     px: float, py: float, r: float, t: float, lateral: bool, dx: float, dy: float, dz: float
 ) -> float:
     """Angle between a ray and the normal of a cylinder that it hits at distance ``t``."""
@@ -186,7 +186,7 @@ def cast_rays(
         best, hit, side_hit = math.inf, -1, False
         for j in range(wall_count):
             i = near_wall[j]
-            t = _hit_wall(walls[i], wall_heights[i], o, dx, dy, dz)
+            t = hit_wall(walls[i], wall_heights[i], o, dx, dy, dz)
             if t < best:
                 best, hit = t, -(2 + i)
         winner = -1  # place of a cylinder among those near
@@ -198,7 +198,7 @@ def cast_rays(
             if side * side > r * r:  # quick: passes beside it
                 continue
             i = near[j]
-            t, lateral = _hit_cylinder(px, py, r, discs[i, BOTTOM], discs[i, TOP], o[2], dx, dy, dz)
+            t, lateral = hit_cylinder(px, py, r, discs[i, BOTTOM], discs[i, TOP], o[2], dx, dy, dz)
             if t < best:
                 best, winner, side_hit = t, j, lateral
         if best > max_range:
@@ -207,7 +207,7 @@ def cast_rays(
         if winner >= 0:
             px, py, r = disc[winner, 0], disc[winner, 1], disc[winner, 2]
             body[k] = owner[near[winner]]
-            incidence[k] = _cylinder_incidence(px, py, r, best, side_hit, dx, dy, dz)
+            incidence[k] = cylinder_incidence(px, py, r, best, side_hit, dx, dy, dz)
         else:
-            body[k], incidence[k] = hit, _wall_incidence(walls[-2 - hit], dx, dy)
+            body[k], incidence[k] = hit, wall_incidence(walls[-2 - hit], dx, dy)
     return distance, incidence, body

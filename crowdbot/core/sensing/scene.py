@@ -14,6 +14,7 @@ from crowdbot.core.sensing.look_model import gaits, heights, place_looks, place_
 from crowdbot.core.sensing.other_robots import OtherRobot, OtherRobots
 from crowdbot.core.sensing.raycast import cast_rays
 from crowdbot.core.sensing.raycast_columns import Obstacles, RayGrid, cast_columns
+from crowdbot.core.sensing.raycast_tilted import cast_tilted_rays
 from crowdbot.core.support.immutable import immutable, immutable_fields
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.looks import Looks
@@ -263,6 +264,29 @@ class Scene:
             there of a pillar, -1 for none.
         """
         return cast_rays(origins, directions, max_range, *self._everything)
+
+    def cast_tilted(
+        self, at: tuple[float, float, float], turn: Array, rays: Array, max_range: float
+    ) -> tuple[Array, Array, NDArray[np.int64]]:
+        """Nearest hit of each of many rays from one point; the floor z = 0 is hit too.
+
+        Args:
+            at: the point, world frame, m.
+            turn: (3, 3) turns vectors of the sensor's frame into those of the world's.
+            rays: (N, 3) directions of length 1, sensor frame.
+            max_range: m; hits beyond it do not count.
+
+        Returns:
+            distance, incidence and body (N,) as of `cast`; the body of the floor is -1.
+        """
+        distance, incidence = np.full(len(rays), np.inf), np.zeros(len(rays))
+        body = np.full(len(rays), -1, dtype=np.int64)
+        walls, heights, discs, owner = self._everything
+        cast_tilted_rays(
+            *at, turn, np.ascontiguousarray(rays), max_range, walls, heights, discs, owner,
+            distance, incidence, body,
+        )  # fmt: skip
+        return distance, incidence, body
 
     def cast_grid(
         self,

@@ -32,7 +32,6 @@ from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import DifferentialDrive, RobotModel
 from crowdbot.errors import PluginError
 
-_FLOOR = CoulombFriction(1.0, 1.0)
 _WALL = CoulombFriction(0.3, 0.3)
 _WALL_THICKNESS = 0.2  # m
 
@@ -81,8 +80,9 @@ def add_plant(
     wheels = _motorised(plant, model, described, driven)
     world = plant.world_body()
     plant.RegisterCollisionGeometry(
-        world, RigidTransform([0.0, 0.0, -1.0]), Box(1e3, 1e3, 2.0), "floor", _FLOOR
-    )
+        world, RigidTransform([0.0, 0.0, -1.0]), Box(1e3, 1e3, 2.0), "floor",
+        floor_of(parts.floor_friction),
+    )  # fmt: skip
     for s in np.flatnonzero(parts.stops_robot):
         pose, box = wall_box(parts.walls[s], parts.wall_heights[s])
         plant.RegisterCollisionGeometry(world, pose, box, f"wall{s}", _WALL)
@@ -106,6 +106,15 @@ def add_plant(
     rise = float(described.pose(robot.base, described.root)[2, 3])
     root = plant.GetBodyByName(described.root, model)
     return RobotPlant(plant, model, robot, root, rise, wheels)
+
+
+def floor_of(friction: float) -> CoulombFriction:
+    """The floor on which a tyre, whose own coefficient is 1, has a friction coefficient.
+
+    Drake joins the coefficients a and b of two surfaces as 2 a b / (a + b).
+    """
+    own = friction / (2.0 - friction)
+    return CoulombFriction(own, own)
 
 
 def _parse(

@@ -68,7 +68,11 @@ class Renderer:
     """Draws what one camera sees."""
 
     def __init__(
-        self, scene: Scene, camera: Pinhole, mount: tuple[float, float, float, float]
+        self,
+        scene: Scene,
+        camera: Pinhole,
+        mount: tuple[float, float, float, float],
+        tilt: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         """Set the stage.
 
@@ -76,12 +80,15 @@ class Renderer:
             scene: walls, pillars and sizes of people; these stay as they are.
             camera: whose pictures are wanted.
             mount: x, y, z, yaw from base_link, m and rad.
+            tilt: roll and pitch of the mount, rad.
 
         Raises:
             MissingLibraryError: this machine cannot draw.
         """
         check_egl()
-        self._mount = Mount(x=mount[0], y=mount[1], z=mount[2], yaw=mount[3])
+        x, y, z, yaw = mount
+        self._mount = Mount(x=x, y=y, z=z, yaw=yaw)
+        self._tilt = tilt
         self._graph = SceneGraph()
         self._graph.AddRenderer(_NAME, MakeRenderEngineVtk(_parameters()))
         self._source = self._graph.RegisterSource("crowdbot")
@@ -101,7 +108,7 @@ class Renderer:
         self._graph.get_source_pose_port(self._source).FixValue(self._context, poses)
         at, yaw = sensor_pose_in_world(self._mount, scene, pose)
         eye = RigidTransform(
-            RotationMatrix.MakeZRotation(yaw) @ RollPitchYaw(*OPTICAL_RPY).ToRotationMatrix(),
+            _turned(*self._tilt, yaw) @ RollPitchYaw(*OPTICAL_RPY).ToRotationMatrix(),
             list(at),
         )
         query = self._graph.get_query_output_port().Eval(self._context)
@@ -182,6 +189,12 @@ class Renderer:
         instance.set_perception_properties(looks)
         where = self._graph.world_frame_id() if frame is None else frame
         self._graph.RegisterGeometry(self._source, where, instance)
+
+
+def _turned(roll: float, pitch: float, yaw: float) -> RotationMatrix:
+    if roll == 0.0 and pitch == 0.0:
+        return RotationMatrix.MakeZRotation(yaw)
+    return RollPitchYaw(roll, pitch, yaw).ToRotationMatrix()
 
 
 def _on_the_floor(pose: Pose) -> RigidTransform:

@@ -328,4 +328,4 @@ def _renderers(infos: Mapping[str, SensorInfo], scene: Scene) -> dict[str, Colou
         return {}
     from crowdbot.core.sim.rendering import Renderer
 
-    return {n: Renderer(scene, i.camera, i.mount) for n, i in cameras.items() if i.camera}
+    return {n: Renderer(scene, i.camera, i.mount, i.tilt) for n, i in cameras.items() if i.camera}

@@ -31,6 +31,7 @@ class EnvironmentParts:
         periodic_boundary: (x0, x1, y0, y1) of a floor on which people who leave on one side come
             back on the other and see each other across the border, m; None for a floor with
             borders.
+        floor_friction: coefficient of a tyre on the floor; core takes it from the spec.
     """
 
     walls: Array
@@ -45,6 +46,7 @@ class EnvironmentParts:
     solid_heights: Array = field(default_factory=lambda: np.zeros((0, 2)))
     solids_stop_crowd: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
     periodic_boundary: tuple[float, float, float, float] | None = None
+    floor_friction: float = 1.0
 
     def __post_init__(self) -> None:
         if not len(self.solids_stop_crowd):

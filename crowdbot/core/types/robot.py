@@ -74,6 +74,7 @@ class RobotModel:
         force_height: height above the floor at which people push, m.
         skin_stiffness: of what people touch, in series with their own bodies, N/m; infinite of a
             rigid shell.
+        notes: what was simplified to make it, which whoever runs it is told.
     """
 
     description: str
@@ -87,6 +88,7 @@ class RobotModel:
     mass: float
     footprint: Array | None = None
     skin_stiffness: float = math.inf
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -39,6 +39,7 @@ class SensorInfo:
     Attributes:
         category: ``lidar``, ``odometry``, ``ultrasound``, …
         mount: x, y, z, yaw from base_link (m, rad).
+        tilt: roll and pitch of the mount (rad), before its yaw: R = Rz(yaw) Ry(pitch) Rx(roll).
         shape: shape of a reading's values.
         angles: in the sensor frame, rad: (R,) of the beams of a lidar, (L, C, 2) azimuth and
             elevation of each beam of a multi-layer lidar, (2,) edges of the zone of an ultrasound
@@ -74,6 +75,7 @@ class SensorInfo:
     camera: Pinhole | None = None
     deviations: tuple[float, ...] = ()
     privileged: bool = False
+    tilt: tuple[float, float] = (0.0, 0.0)
 
 
 class Reading(NamedTuple):

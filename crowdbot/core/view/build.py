@@ -19,6 +19,7 @@ from crowdbot.core.view.ways import ways_of
 from crowdbot.dsl.areas import Area
 from crowdbot.dsl.component_specs import SensorSpec
 from crowdbot.dsl.scenario import Crowd, Robot, Scenario
+from crowdbot.dsl.spec import Mount
 from crowdbot.dsl.stream_kinds import places_of
 
 
@@ -55,7 +56,8 @@ def _areas(crowd: Crowd) -> dict[str, dict[str, tuple[Point, ...]]]:
 
 def _robot(name: str, robot: Robot, registry: Registry) -> RobotView:
     x, y, yaw = robot.task.start
-    body = footprint_of_model(build_model(registry, robot.model))
+    model = build_model(registry, robot.model)
+    body = footprint_of_model(model)
     return RobotView(
         name=name,
         x=x,
@@ -64,18 +66,20 @@ def _robot(name: str, robot: Robot, registry: Registry) -> RobotView:
         radius=body.reach,
         outline=tuple(map(tuple, body.outline(x, y, yaw).tolist())),
         goal=robot.task.goal.zone,
-        sensors=tuple(_sectors(robot, x, y, yaw)),
+        sensors=tuple(_sectors(robot, x, y, yaw, model.base_height)),
     )
 
 
-def _sectors(robot: Robot, x: float, y: float, yaw: float) -> Iterator[Sector]:
+def _sectors(robot: Robot, x: float, y: float, yaw: float, base: float) -> Iterator[Sector]:
+    """What sensors see; ``base`` is the height of the base link above the floor, m."""
     for name, spec in robot.sensors.items():
         seen = field_of_view(spec)
         if seen is None:
             continue
         start, end, reach = seen
-        mount = getattr(spec, "mount", None)
-        mx, my, turned = (mount.x, mount.y, mount.yaw) if mount is not None else (0.0, 0.0, 0.0)
+        mount = getattr(spec, "mount", None) or Mount()
+        mx, my, turned = mount.x, mount.y, mount.yaw
+        flat = hasattr(spec, "angle_min") and not hasattr(spec, "elevation")
         c, s = math.cos(yaw), math.sin(yaw)
         yield Sector(
             name=name,
@@ -84,6 +88,9 @@ def _sectors(robot: Robot, x: float, y: float, yaw: float) -> Iterator[Sector]:
             start=yaw + turned + start,
             end=yaw + turned + end,
             reach=reach,
+            axis=yaw + turned,
+            tilt=(getattr(mount, "roll", 0.0), getattr(mount, "pitch", 0.0)),
+            height=base + mount.z if flat else None,
         )
 
 

@@ -9,8 +9,9 @@ from types import MappingProxyType
 
 import numpy as np
 
+from crowdbot.core.geometry.rotation import rotation
 from crowdbot.core.population.realisation import Realisation
-from crowdbot.core.types.arrays import Point
+from crowdbot.core.types.arrays import Array, Point
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.view.shapes import SPEEDS, Disc, Path, Shape, Text
 from crowdbot.core.view.ways import Ways
@@ -24,7 +25,13 @@ _TALL = 1.6  # an area this much taller than wide has its name turned
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sector:
-    """What a sensor sees: a sector around a place, m and rad, world frame."""
+    """What a sensor sees: a sector around a place, m and rad, world frame.
+
+    Attributes:
+        axis: direction of its axis, before roll and pitch.
+        tilt: roll and pitch of the sensor.
+        height: above the floor, of one that sees in one plane, which ends there; else None.
+    """
 
     name: str
     x: float
@@ -32,6 +39,9 @@ class Sector:
     start: float
     end: float
     reach: float
+    axis: float = 0.0
+    tilt: tuple[float, float] = (0.0, 0.0)
+    height: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -235,11 +245,27 @@ def _sector(sensor: Sector) -> list[Point]:
     width = min(sensor.end - sensor.start, math.tau)
     count = max(2, math.ceil(_ARC * width / math.tau))
     angles = np.linspace(sensor.start, sensor.start + width, count + 1).tolist()
-    arc = [
-        (sensor.x + sensor.reach * math.cos(a), sensor.y + sensor.reach * math.sin(a))
-        for a in angles
-    ]
+    if any(sensor.tilt):
+        arc = _tilted_arc(sensor, np.array(angles))
+    else:
+        arc = [
+            (sensor.x + sensor.reach * math.cos(a), sensor.y + sensor.reach * math.sin(a))
+            for a in angles
+        ]
     return arc if width >= math.tau else [(sensor.x, sensor.y), *arc]
+
+
+def _tilted_arc(sensor: Sector, angles: Array) -> list[Point]:
+    """The far ends of rays of a tilted sensor, seen from above."""
+    own = angles - sensor.axis
+    fan = np.column_stack([np.cos(own), np.sin(own), np.zeros_like(own)])
+    rays = fan @ rotation(*sensor.tilt, sensor.axis).T
+    reach = np.full(len(rays), sensor.reach)
+    if sensor.height is not None:
+        down = rays[:, 2] < 0.0
+        reach[down] = np.minimum(reach[down], sensor.height / -rays[down, 2])
+    ends = reach[:, np.newaxis] * rays[:, :2] + (sensor.x, sensor.y)
+    return [(x, y) for x, y in ends.tolist()]
 
 
 def _robots(content: MapContent, world: Map) -> Iterator[Shape]:

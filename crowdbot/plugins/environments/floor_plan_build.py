@@ -31,6 +31,8 @@ _UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
 _EARTH = 6_371_008.8
 #: More corners than this cannot be simulated.
 MOST_CORNERS = 20_000
+#: No plan is longer or wider, m; the usual cause is a wrong unit.
+MOST_SIDE = 5_000.0
 #: Coordinates are whole multiples of this, so that shapely's answers are the same everywhere, m.
 _GRID = 1e-6
 
@@ -84,12 +86,13 @@ def _place_of(
     ]
     count = sum(shapely.get_num_coordinates(p) for p in (*floor, *(s for s, _ in solids)))
     if not count:
-        raise InputError(f"{name}: there is neither a floor nor a wall in it")
+        raise InputError(f"{name}: there is neither a floor nor a wall in it{_too_small(plan)}")
     if count > MOST_CORNERS:
         raise InputError(
             f"{name}: the plan has {count} corners, more than {MOST_CORNERS}; raise 'tolerance' "
             "or 'least_area', or cut a part out of it"
         )
+    _check_size(floor, spec, name)
     heights = (0.0, spec.wall_height)
     return Place(
         faces=tuple(_face(p, heights) for p in floor),
@@ -105,6 +108,30 @@ def _place_of(
             ),
         ),
     )
+
+
+def _too_small(plan: _Plan) -> str:
+    """What there is, if it is smaller than what is left away: a wrong unit is the usual cause."""
+    shapes = [*plan.walkable, *(shape for shape, _ in plan.solids)]
+    if not shapes:
+        return ""
+    width, height = _size(shapes)
+    return f"; all of it is {width:.3g} m × {height:.3g} m and left away: see 'unit'"
+
+
+def _check_size(floor: list[Any], spec: FloorPlanSpec, name: str) -> None:
+    """Refuse a floor that is larger than any crowd is simulated on."""
+    width, height = _size(floor) if floor else (0.0, 0.0)
+    if max(width, height) > MOST_SIDE:
+        raise InputError(
+            f"{name}: the plan is {width:.6g} m × {height:.6g} m, more than {MOST_SIDE:g} m; its "
+            f"numbers count as {spec.unit}: see 'unit'"
+        )
+
+
+def _size(shapes: list[Any]) -> tuple[float, float]:
+    x0, y0, x1, y1 = shapely.total_bounds(shapes)
+    return float(x1 - x0), float(y1 - y0)
 
 
 def _read(spec: FloorPlanSpec, file: Path | None, image: Path | None, name: str) -> _Plan:

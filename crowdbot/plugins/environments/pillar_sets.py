@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+from functools import lru_cache
 from typing import Annotated
 
 from annotated_types import Ge, Le
@@ -60,7 +61,11 @@ class PillarFieldSpec(Spec):
         Raises:
             ValueError: they do not fit.
         """
-        area, found = self.area or floor, list[Pillar]()
+        return _drawn(self, self.area or floor, top)
+
+    def draw(self, area: Rectangle, top: float) -> tuple[Pillar, ...]:
+        """What `pillars` says, drawn anew."""
+        found = list[Pillar]()
         for number in range(self.count):
             radius = self._radius(number)
             for attempt in range(_ATTEMPTS):
@@ -92,6 +97,11 @@ class PillarFieldSpec(Spec):
     def _uniform(self, what: str, number: int, attempt: int) -> float:
         text = f"{self.seed}/pillars/{what}/{number}/{attempt}".encode()
         return int.from_bytes(hashlib.sha256(text).digest()[:6], "big") / 2.0**48
+
+
+@lru_cache(maxsize=64)  # a suite asks for the same field in each of its scenarios
+def _drawn(field: PillarFieldSpec, area: Rectangle, top: float) -> tuple[Pillar, ...]:
+    return field.draw(area, top)
 
 
 def _even(ends: tuple[float, float], count: int) -> list[float]:

@@ -155,15 +155,19 @@ def simple_outline(corners: tuple[Point, ...], name: str) -> tuple[Point, ...]:
     for k, point in enumerate(corners):
         if point == corners[k - 1]:
             raise ValueError(f"{name}: corner {k} at {_at(point)} is there twice in a row")
-    if abs(outlines.signed_area(corners)) < _LEAST_AREA:
-        raise ValueError(f"{name} must have an area")
-    found = outlines.first_crossing(corners)
+    flat = all(
+        abs(outlines.turn(corners[k - 2], corners[k - 1], corner)) < _LEAST_AREA
+        for k, corner in enumerate(corners)
+    )
+    found = None if flat else outlines.first_crossing(corners)
     if found is not None:
         (a, b), (c, d) = (list(outlines.sides(corners))[k] for k in found)
         raise ValueError(
             f"{name}: the side from {_at(a)} to {_at(b)} meets the one from {_at(c)} to {_at(d)}; "
             "an outline must not cross or touch itself"
         )
+    if abs(outlines.signed_area(corners)) < _LEAST_AREA:
+        raise ValueError(f"{name} must have an area")
     return outlines.counter_clockwise(corners)
 
 

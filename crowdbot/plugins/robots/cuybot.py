@@ -6,21 +6,18 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from crowdbot.dsl import (
-    Component,
-    PositiveAcceleration,
-    PositiveAngularAcceleration,
-    PositiveAngularSpeed,
-    PositiveDuration,
-    PositiveForce,
-    PositiveMass,
-    PositiveSpeed,
-    PositiveStiffness,
-    RobotSpec,
+from crowdbot.dsl import Component, PositiveForce, PositiveStiffness
+from crowdbot.plugins.robots.limits import (
+    LimitedRobotSpec,
+    Mass,
+    MaxAcceleration,
+    MaxSpeed,
+    MaxYawAcceleration,
+    MaxYawRate,
 )
 
 
-class CuybotSpec(RobotSpec):
+class CuybotSpec(LimitedRobotSpec):
     """Size and weight after the original's prefab; nothing else about it is published.
 
     It gives way: who pushes harder than `yield_force` moves it, and it brakes with that force when
@@ -29,18 +26,11 @@ class CuybotSpec(RobotSpec):
 
     controls: ClassVar[tuple[str, ...]] = ("force", "kinematic")
     kind: Literal["cuybot"] = "cuybot"
-    max_speed: PositiveSpeed = Field(default=1.5, description="Largest |v| and |vy|, m/s.")
-    max_yaw_rate: PositiveAngularSpeed = Field(default=2.0, description="Largest |w|, rad/s.")
-    max_acceleration: PositiveAcceleration = Field(
-        default=1.0, description="Slew of (v, vy), m/s^2."
-    )
-    max_yaw_acceleration: PositiveAngularAcceleration = Field(
-        default=2.0, description="Slew of w, rad/s^2."
-    )
-    command_timeout: PositiveDuration = Field(
-        default=0.6, description="Without a command for so long it stops, s."
-    )
-    mass: PositiveMass = Field(default=100.0, description="Whole robot, kg.")
+    max_speed: MaxSpeed = 1.5
+    max_yaw_rate: MaxYawRate = 2.0
+    max_acceleration: MaxAcceleration = 1.0
+    max_yaw_acceleration: MaxYawAcceleration = 2.0
+    mass: Mass = 100.0
     yield_force: PositiveForce = Field(
         default=120.0, description="Largest force of its drive, in any direction, N."
     )

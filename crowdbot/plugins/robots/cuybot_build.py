@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import HolonomicDrive, RobotLimits, RobotModel
+from crowdbot.core.interfaces import HolonomicDrive, RobotModel
 from crowdbot.plugins.robots import sdf
 from crowdbot.plugins.robots.body_part import (
     BLACK,
@@ -25,6 +25,7 @@ from crowdbot.plugins.robots.body_part import (
     scaled,
 )
 from crowdbot.plugins.robots.cuybot import CuybotSpec
+from crowdbot.plugins.robots.limits_build import limits_of
 
 LENGTH, WIDTH, HEIGHT = 0.573, 0.532, 1.29
 WHEEL_RADIUS = 0.06
@@ -61,15 +62,7 @@ def build(spec: CuybotSpec) -> RobotModel:
             wheel_radius=WHEEL_RADIUS,
             track=2.0 * _FEET[1],
         ),
-        limits=RobotLimits(
-            v_min=-spec.max_speed,
-            v_max=spec.max_speed,
-            vy_max=spec.max_speed,
-            w_max=spec.max_yaw_rate,
-            a_max=spec.max_acceleration,
-            alpha_max=spec.max_yaw_acceleration,
-            command_timeout=spec.command_timeout,
-        ),
+        limits=limits_of(spec, sideways=True),
         footprint_radius=0.5 * math.hypot(LENGTH, WIDTH),
         footprint=half * [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]],
         height=HEIGHT,

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from pydantic import Field
-
-from crowdbot.dsl import (
-    Component,
-    PositiveAcceleration,
-    PositiveAngularAcceleration,
-    PositiveAngularSpeed,
-    PositiveDuration,
-    PositiveMass,
-    PositiveSpeed,
-    RobotSpec,
+from crowdbot.dsl import Component
+from crowdbot.plugins.robots.limits import (
+    LimitedRobotSpec,
+    Mass,
+    MaxAcceleration,
+    MaxSpeed,
+    MaxYawAcceleration,
+    MaxYawRate,
 )
 
 
-class PepperSpec(RobotSpec):
+class PepperSpec(LimitedRobotSpec):
     """Goes in every direction; arms and head are held still.
 
     Mass after the published URDF; speed and acceleration as its software (NAOqi) is remembered to
@@ -27,18 +24,11 @@ class PepperSpec(RobotSpec):
 
     controls: ClassVar[tuple[str, ...]] = ("force", "kinematic")
     kind: Literal["pepper"] = "pepper"
-    max_speed: PositiveSpeed = Field(default=0.55, description="Largest |v| and |vy|, m/s.")
-    max_yaw_rate: PositiveAngularSpeed = Field(default=2.0, description="Largest |w|, rad/s.")
-    max_acceleration: PositiveAcceleration = Field(
-        default=0.55, description="Slew of (v, vy), m/s^2."
-    )
-    max_yaw_acceleration: PositiveAngularAcceleration = Field(
-        default=3.0, description="Slew of w, rad/s^2."
-    )
-    command_timeout: PositiveDuration = Field(
-        default=0.6, description="Without a command for so long it stops, s (proposed)."
-    )
-    mass: PositiveMass = Field(default=28.7, description="Whole robot, kg.")
+    max_speed: MaxSpeed = 0.55
+    max_yaw_rate: MaxYawRate = 2.0
+    max_acceleration: MaxAcceleration = 0.55
+    max_yaw_acceleration: MaxYawAcceleration = 3.0
+    mass: Mass = 28.7
 
 
 PEPPER = Component(

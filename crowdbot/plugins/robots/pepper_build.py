@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.interfaces import HolonomicDrive, RobotLimits, RobotModel
+from crowdbot.core.interfaces import HolonomicDrive, RobotModel
 from crowdbot.plugins.robots import sdf
 from crowdbot.plugins.robots.body_part import (
     BLACK,
@@ -22,6 +22,7 @@ from crowdbot.plugins.robots.body_part import (
     balance,
     scaled,
 )
+from crowdbot.plugins.robots.limits_build import limits_of
 from crowdbot.plugins.robots.pepper import PepperSpec
 
 RADIUS, HEIGHT = 0.27, 1.21
@@ -79,15 +80,7 @@ def build(spec: PepperSpec) -> RobotModel:
             wheel_radius=WHEEL_RADIUS,
             track=0.31,
         ),
-        limits=RobotLimits(
-            v_min=-spec.max_speed,
-            v_max=spec.max_speed,
-            vy_max=spec.max_speed,
-            w_max=spec.max_yaw_rate,
-            a_max=spec.max_acceleration,
-            alpha_max=spec.max_yaw_acceleration,
-            command_timeout=spec.command_timeout,
-        ),
+        limits=limits_of(spec, sideways=True),
         footprint_radius=RADIUS,
         height=HEIGHT,
         force_height=centre,

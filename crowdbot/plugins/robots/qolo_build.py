@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import DifferentialDrive, RobotLimits, RobotModel
+from crowdbot.core.interfaces import DifferentialDrive, RobotModel
 from crowdbot.plugins.robots import sdf
 from crowdbot.plugins.robots.body_part import (
     BLACK,
@@ -25,6 +25,7 @@ from crowdbot.plugins.robots.body_part import (
     balance,
     scaled,
 )
+from crowdbot.plugins.robots.limits_build import limits_of
 from crowdbot.plugins.robots.qolo import QoloSpec
 
 FRONT, REAR = 0.051, -0.515  # m, ends of the capsule's axis
@@ -73,14 +74,7 @@ def build(spec: QoloSpec) -> RobotModel:
             command_radius=WHEEL.radius,
             track=TRACK,
         ),
-        limits=RobotLimits(
-            v_min=-spec.max_speed,
-            v_max=spec.max_speed,
-            w_max=spec.max_yaw_rate,
-            a_max=spec.max_acceleration,
-            alpha_max=spec.max_yaw_acceleration,
-            command_timeout=spec.command_timeout,
-        ),
+        limits=limits_of(spec),
         footprint_radius=spec.radius,
         footprint=np.array([[FRONT, 0.0], [REAR, 0.0]]),
         height=HEIGHT,

@@ -6,33 +6,29 @@ from typing import Literal
 
 from pydantic import Field
 
-from crowdbot.dsl import (
-    Component,
-    PositiveAcceleration,
-    PositiveAngularAcceleration,
-    PositiveAngularSpeed,
-    PositiveDuration,
-    PositiveLength,
-    PositiveMass,
-    PositiveSpeed,
-    RobotSpec,
+from crowdbot.dsl import Component, PositiveLength
+from crowdbot.plugins.robots.limits import (
+    LimitedRobotSpec,
+    Mass,
+    MaxAcceleration,
+    MaxSpeed,
+    MaxYawAcceleration,
+    MaxYawRate,
 )
 
 
-class SmartWheelchairSpec(RobotSpec):
-    """Width after the real chair, which goes 2.78 m/s outdoors; all the rest is proposed."""
+class SmartWheelchairSpec(LimitedRobotSpec):
+    """Width after the real chair, which goes 2.78 m/s outdoors; all the rest is proposed.
+
+    The mass is that of the chair, 130 kg, and its driver, 75 kg; limits are for indoors.
+    """
 
     kind: Literal["smart_wheelchair"] = "smart_wheelchair"
-    max_speed: PositiveSpeed = Field(default=1.5, description="Largest |v| indoors, m/s.")
-    max_yaw_rate: PositiveAngularSpeed = Field(default=1.5, description="Largest |w|, rad/s.")
-    max_acceleration: PositiveAcceleration = Field(default=1.0, description="Slew of v, m/s^2.")
-    max_yaw_acceleration: PositiveAngularAcceleration = Field(
-        default=2.0, description="Slew of w, rad/s^2."
-    )
-    command_timeout: PositiveDuration = Field(
-        default=0.6, description="Without a command for so long it stops, s."
-    )
-    mass: PositiveMass = Field(default=205.0, description="Chair (130 kg) and driver (75 kg), kg.")
+    max_speed: MaxSpeed = 1.5
+    max_yaw_rate: MaxYawRate = 1.5
+    max_acceleration: MaxAcceleration = 1.0
+    max_yaw_acceleration: MaxYawAcceleration = 2.0
+    mass: Mass = 205.0
     length: PositiveLength = Field(
         default=1.1, ge=0.9, le=1.3, description="Foot rests included, m."
     )

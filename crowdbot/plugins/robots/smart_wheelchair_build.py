@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import DifferentialDrive, RobotLimits, RobotModel
+from crowdbot.core.interfaces import DifferentialDrive, RobotModel
 from crowdbot.plugins.robots import sdf
 from crowdbot.plugins.robots.body_part import (
     BLACK,
@@ -24,6 +24,7 @@ from crowdbot.plugins.robots.body_part import (
     balance,
     scaled,
 )
+from crowdbot.plugins.robots.limits_build import limits_of
 from crowdbot.plugins.robots.smart_wheelchair import SmartWheelchairSpec
 
 TRACK, HEIGHT = 0.52, 1.35
@@ -91,14 +92,7 @@ def build(spec: SmartWheelchairSpec) -> RobotModel:
             command_radius=WHEEL.radius,
             track=TRACK,
         ),
-        limits=RobotLimits(
-            v_min=-spec.max_speed,
-            v_max=spec.max_speed,
-            w_max=spec.max_yaw_rate,
-            a_max=spec.max_acceleration,
-            alpha_max=spec.max_yaw_acceleration,
-            command_timeout=spec.command_timeout,
-        ),
+        limits=limits_of(spec),
         footprint_radius=math.hypot(across, along),
         footprint=np.array(corners),
         height=HEIGHT,

@@ -6,9 +6,10 @@ are in `crowdbot.plugins.robots.turtlebot2_parts`.
 
 from __future__ import annotations
 
-from crowdbot.core.interfaces import DifferentialDrive, RobotLimits, RobotModel
+from crowdbot.core.interfaces import DifferentialDrive, RobotModel
 from crowdbot.plugins.robots import sdf
 from crowdbot.plugins.robots.body_part import balance
+from crowdbot.plugins.robots.limits_build import limits_of
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec
 from crowdbot.plugins.robots.turtlebot2_parts import parts
 
@@ -39,14 +40,7 @@ def build(spec: Turtlebot2Spec) -> RobotModel:
             command_radius=WHEEL_RADIUS,
             track=TRACK,
         ),
-        limits=RobotLimits(
-            v_min=-spec.max_speed,
-            v_max=spec.max_speed,
-            w_max=spec.max_yaw_rate,
-            a_max=spec.max_acceleration,
-            alpha_max=spec.max_yaw_acceleration,
-            command_timeout=spec.command_timeout,
-        ),
+        limits=limits_of(spec),
         footprint_radius=BODY_RADIUS,
         height=BODY_HEIGHT,
         force_height=centre,

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge
 from pydantic import Field
 
-from crowdbot.dsl import Component, Mount, PositiveFrequency, SensorSpec
+from crowdbot.dsl import Component, PositiveFrequency, SensorSpec, TiltableMount
 
 NotNegative = Annotated[float, Ge(0)]
 
@@ -20,7 +20,7 @@ class ImuSpec(SensorSpec):
     """
 
     kind: Literal["imu"] = "imu"
-    mount: Mount = Field(default=Mount(), description="Pose on the robot.")
+    mount: TiltableMount = Field(default=TiltableMount(), description="Pose on the robot.")
     rate: PositiveFrequency = Field(default=64.0, le=128, description="Readings per second, Hz.")
     gyro_noise: NotNegative = Field(
         default=5.2e-4, description="Density of the noise of angular rates, rad/s/sqrt(Hz)."

@@ -16,7 +16,8 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, Pose, Scene, SensorInfo, kernel, mount_pose
+from crowdbot.core.geometry.rotation import rotation
+from crowdbot.core.interfaces import Array, Pose, Scene, SensorInfo, kernel, mount_pose, mount_tilt
 from crowdbot.errors import SimulationError
 from crowdbot.plugins.sensors.imu import ImuSpec
 
@@ -53,7 +54,9 @@ class Imu:
                 math.hypot(spec.force_noise * root, spec.force_bias),
             ),
             sees=False,
+            tilt=mount_tilt(spec.mount),
         )
+        self._axes = rotation(*self._info.tilt, 0.0)
 
     def info(self) -> SensorInfo:
         """Constant description."""
@@ -74,7 +77,7 @@ class Imu:
             draws = rng.standard_normal(2 * _SIZE) if self._info.random else _NO_DRAWS
             _feel(
                 memory, t, pose.yaw, robot.vx, robot.vy, robot.w,
-                mount.x, mount.y, mount.yaw, self._noise, draws,
+                mount.x, mount.y, mount.yaw, self._axes, self._noise, draws,
             )  # fmt: skip
         return memory[READING:].copy()
 
@@ -82,11 +85,12 @@ class Imu:
 @kernel
 def _feel(
     memory: Array, t: float, yaw: float, robot_vx: float, robot_vy: float, w: float,
-    mount_x: float, mount_y: float, mount_yaw: float, noise: Array, draws: Array,
+    mount_x: float, mount_y: float, mount_yaw: float, axes: Array, noise: Array, draws: Array,
 ) -> None:  # fmt: skip
     """Bring the memory to time t.
 
     Args:
+        axes: (3, 3) those of the mount, its columns, in a frame of its yaw that is level.
         noise: (3, 6) standard deviations of white noise, of the biases at the start, and of their
             steps in one second.
         draws: (12,) normal numbers for the white noise and for the biases; none: no noise.
@@ -102,8 +106,18 @@ def _feel(
         heading -= 0.5 * _turn(yaw - memory[YAW])
     c, s = math.cos(heading + mount_yaw), math.sin(heading + mount_yaw)
     felt = (0.0, 0.0, float(w), c * ax + s * ay, c * ay - s * ax, GRAVITY)
+    level = axes[2, 2] == 1.0
     for k in range(_SIZE):
-        memory[READING + k] = felt[k]
+        along, first = k % 3, k - k % 3
+        memory[READING + k] = (
+            felt[k]
+            if level
+            else (
+                axes[0, along] * felt[first]
+                + axes[1, along] * felt[first + 1]
+                + axes[2, along] * felt[first + 2]
+            )
+        )
         if draws.shape[0]:
             bias = noise[1, k] * draws[_SIZE + k]
             if started:

@@ -8,13 +8,14 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Gt, Le
 from pydantic import Field
 
-from crowdbot.dsl import Component, Incidence, Quantity, RangeSensorSpec
+from crowdbot.dsl import Component, Incidence, Quantity, RangeSensorSpec, TiltableMount
 
 
 class InfraredSpec(RangeSensorSpec):
-    """The nearest surface that faces a narrow beam."""
+    """The nearest surface that faces a narrow beam; the floor for a tilted one alone."""
 
     kind: Literal["infrared"] = "infrared"
+    mount: TiltableMount = Field(default=TiltableMount(), description="Pose on the robot.")
     dispersion: Annotated[float, Gt(0), Le(0.5), Quantity("angle")] = Field(
         default=math.pi / 360, description="Angle from the axis to the edge of the beam, rad."
     )

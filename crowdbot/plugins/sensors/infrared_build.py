@@ -30,6 +30,7 @@ class Infrared:
             angles=np.array([-spec.dispersion, spec.dispersion]),
             range_min=spec.range_min,
             range_max=spec.range_max,
+            tilt=self._range_model.tilt,
         )
 
     def info(self) -> SensorInfo:
@@ -39,17 +40,22 @@ class Infrared:
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Distance (1,) to the nearest surface that faces the beam, m; inf if there is none."""
         del t
-        at, yaw = self._range_model.pose_in_world(scene, pose)
+        own = self._range_model
+        if own.tilted:
+            rays = self._rays(0.0, rng)
+            rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+            return own.measure(own.cast_tilted(scene, pose, rays).min(keepdims=True), rng)
+        at, yaw = own.pose_in_world(scene, pose)
         rays = self._rays(yaw, rng)
         origins = np.broadcast_to(np.array(at), rays.shape)
         distance, incidence, _ = scene.cast(
             np.ascontiguousarray(origins), rays, self._spec.range_max
         )
-        self._range_model.drop_slanted(distance, incidence)
-        return self._range_model.measure(distance.min(keepdims=True), rng)
+        own.drop_slanted(distance, incidence)
+        return own.measure(distance.min(keepdims=True), rng)
 
     def _rays(self, yaw: float, rng: np.random.Generator) -> Array:
-        """Directions (N, 3), world frame."""
+        """Directions (N, 3), turned by a yaw; 1 along the axis."""
         share, turn = rng.random((2, self._spec.rays))
         away = share * math.tan(self._spec.dispersion)
         left, up = away * np.cos(2.0 * math.pi * turn), away * np.sin(2.0 * math.pi * turn)

@@ -14,6 +14,7 @@ from crowdbot.dsl import (
     PositiveFrequency,
     PositiveLength,
     RangeSensorSpec,
+    TiltableMount,
 )
 
 _SLACK = 1e-9  # rad; 360 deg in any unit is one turn
@@ -22,6 +23,7 @@ _SLACK = 1e-9  # rad; 360 deg in any unit is one turn
 class LidarSpec(RangeSensorSpec):
     """Beams from ``angle_min`` (included) to ``angle_max`` (excluded), counter-clockwise."""
 
+    mount: TiltableMount = Field(default=TiltableMount(), description="Pose on the robot.")
     rate: PositiveFrequency = Field(default=16.0, le=128, description="Scans per second, Hz.")
     angle_min: Angle = Field(default=-2.0943951023931953, description="First beam, rad.")
     angle_max: Angle = Field(default=2.0943951023931953, description="End of the scan, rad.")

@@ -1,4 +1,4 @@
-"""Planar lidar: a fan of level rays from one point."""
+"""Planar lidar: a fan of rays from one point, level unless its mount is tilted."""
 
 from __future__ import annotations
 
@@ -8,11 +8,15 @@ import numpy as np
 
 from crowdbot.core.interfaces import Array, NoiseGenerator, Pose, RangeModel, Scene, SensorInfo
 from crowdbot.core.sensing.raycast_columns import RayGrid
+from crowdbot.core.sensing.raycast_tilted import NO_RAYS, grid_rays
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 
 
 class Lidar2d:
-    """All beams are taken at one instant, level whatever the robot's tilt."""
+    """All beams are taken at one instant, whatever the robot's tilt.
+
+    One that looks down sees the floor.
+    """
 
     def __init__(self, spec: Lidar2dSpec, noise: Sequence[NoiseGenerator] = ()) -> None:
         self._range_max, self._range_model = spec.range_max, RangeModel(spec, noise)
@@ -29,8 +33,10 @@ class Lidar2d:
             range_min=spec.range_min,
             range_max=spec.range_max,
             random=self._range_model.random,
+            tilt=self._range_model.tilt,
         )
         self._grid = RayGrid(angles, [0.0])
+        self._rays = grid_rays(self._grid) if self._range_model.tilted else NO_RAYS
 
     def info(self) -> SensorInfo:
         """Constant description; ``angles`` are in the sensor frame."""
@@ -40,6 +46,8 @@ class Lidar2d:
         """Ranges (R,) in m, inf for no return."""
         del t
         own = self._range_model
+        if own.tilted:
+            return own.measure(own.cast_tilted(scene, pose, self._rays), rng)
         distance, incidence, _ = scene.cast_grid(
             self._grid, *own.pose_in_world(scene, pose), self._range_max, details=own.drops_slanted
         )

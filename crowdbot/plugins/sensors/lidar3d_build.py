@@ -1,4 +1,4 @@
-"""Multi-layer lidar: a grid of rays from one point, level whatever the robot's tilt."""
+"""Multi-layer lidar: a grid of rays from one point, level unless its mount is tilted."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from crowdbot.core.interfaces import Array, NoiseGenerator, Pose, RangeModel, Scene, SensorInfo
 from crowdbot.core.sensing.raycast_columns import RayGrid
+from crowdbot.core.sensing.raycast_tilted import NO_RAYS, grid_rays
 from crowdbot.plugins.sensors.lidar3d import Lidar3dSpec
 
 
@@ -31,8 +32,10 @@ class Lidar3d:
             range_min=spec.range_min,
             range_max=spec.range_max,
             random=self._range_model.random,
+            tilt=self._range_model.tilt,
         )
         self._grid = RayGrid(azimuth, np.tan(elevation))
+        self._rays = grid_rays(self._grid) if self._range_model.tilted else NO_RAYS
 
     def info(self) -> SensorInfo:
         """Constant description; ``angles`` (L, C, 2) are azimuth and elevation of each beam."""
@@ -42,6 +45,9 @@ class Lidar3d:
         """Ranges (L, C) in m, lowest layer first, inf for no return."""
         del t
         own = self._range_model
+        if own.tilted:
+            distance = own.measure(own.cast_tilted(scene, pose, self._rays), rng)
+            return distance.reshape(self._info.shape)
         distance, incidence, _ = scene.cast_grid(
             self._grid,
             *own.pose_in_world(scene, pose),

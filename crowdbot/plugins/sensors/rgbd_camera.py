@@ -11,12 +11,12 @@ from pydantic import Field, model_validator
 from crowdbot.dsl import (
     Component,
     Incidence,
-    Mount,
     NonNegativeLength,
     PositiveFrequency,
     PositiveLength,
     Quantity,
     SensorSpec,
+    TiltableMount,
 )
 
 DepthRenderer = Annotated[int, Ge(2), Le(4096)]
@@ -33,7 +33,9 @@ class RgbdCameraSpec(SensorSpec):
     """
 
     kind: Literal["rgbd_camera"] = "rgbd_camera"
-    mount: Mount = Field(default=Mount(), description="Pose on the robot; it looks along x.")
+    mount: TiltableMount = Field(
+        default=TiltableMount(), description="Pose on the robot; it looks along x."
+    )
     rate: PositiveFrequency = Field(default=8.0, le=128, description="Images per second, Hz.")
     width: DepthRenderer = Field(default=320, description="Columns of an image.")
     height: DepthRenderer = Field(default=240, description="Rows of an image.")

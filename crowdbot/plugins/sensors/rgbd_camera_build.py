@@ -21,18 +21,21 @@ from crowdbot.core.interfaces import (
     SensorInfo,
     kernel,
     mount_pose,
+    mount_tilt,
     sensor_pose_in_world,
+    sensor_rotation_in_world,
 )
 from crowdbot.core.sensing.depth_mm import depth_mm
 from crowdbot.core.sensing.depth_renderer import MOST_MILLIMETRES, DepthRenderer
 from crowdbot.core.sensing.raycast_columns import RayGrid
+from crowdbot.core.sensing.raycast_tilted import NO_RAYS
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 
 Image = NDArray[np.float32]
 
 
 class RgbdCamera:
-    """A global shutter; the axis stays level whatever the robot's tilt."""
+    """A global shutter; the robot's own tilt does not move the axis."""
 
     def __init__(self, spec: RgbdCameraSpec) -> None:
         self._spec = spec
@@ -49,6 +52,7 @@ class RgbdCamera:
             range_max=spec.depth_max,
             random=spec.noise > 0.0 or spec.dropout > 0.0,
             camera=pinhole,
+            tilt=mount_tilt(spec.mount),
         )
         self._renderer = DepthRenderer(pinhole, spec.depth_min, spec.depth_max)
         self._step = (spec.depth_max - spec.depth_min) / 2.0**spec.bits if spec.bits else 0.0
@@ -57,7 +61,14 @@ class RgbdCamera:
         camera = self._renderer
         self._grid = RayGrid(np.arctan(camera.left[::-1]), camera.slope, camera.cos_azimuth[::-1])
         errors = spec.noise, spec.resolution, spec.bits, spec.dropout
-        self._exact = not any(errors) and not self._limited and spec.depth_max < MOST_MILLIMETRES
+        self._tilted = mount_tilt(spec.mount) != (0.0, 0.0)
+        self._rays, self._stretch = _pixels(camera) if self._tilted else (NO_RAYS, np.ones(0))
+        self._exact = (
+            not self._tilted
+            and not any(errors)
+            and not self._limited
+            and spec.depth_max < MOST_MILLIMETRES
+        )
 
     def info(self) -> SensorInfo:
         """Constant description."""
@@ -68,7 +79,9 @@ class RgbdCamera:
         del t
         spec = self._spec
         at, yaw = sensor_pose_in_world(spec.mount, scene, pose)
-        if self._limited:
+        if self._tilted:
+            depth = self._slanted(scene, at, pose)
+        elif self._limited:
             depth = self._facing(scene, at, yaw)
         else:
             depth = scene.render_depth(self._renderer, at, yaw)
@@ -83,6 +96,17 @@ class RgbdCamera:
         if spec.dropout > 0.0:
             depth[rng.random(self._info.shape) < spec.dropout] = np.inf
         return cast(Array, depth)
+
+    def _slanted(self, scene: Scene, at: tuple[float, float, float], pose: Pose) -> Image:
+        """Depth (H, W) seen by a camera that is not level; ray by ray."""
+        spec = self._spec
+        turn = sensor_rotation_in_world(spec.mount, pose)
+        reach = spec.depth_max * float(self._stretch.max())
+        length, incidence, _ = scene.cast_tilted(at, turn, self._rays, reach)
+        depth = length / self._stretch
+        depth[depth < spec.depth_min] = 0.0
+        depth[(incidence > spec.max_incidence) | (depth > spec.depth_max)] = np.inf
+        return depth.reshape(self._info.shape).astype(np.float32)
 
     def _facing(self, scene: Scene, at: tuple[float, float, float], yaw: float) -> Image:
         """Depth (H, W) of what is not struck at too large an angle; ray by ray."""
@@ -104,6 +128,15 @@ class RgbdCamera:
             at, yaw = sensor_pose_in_world(self._spec.mount, scene, pose)
             return scene.render_depth_mm(self._renderer, at, yaw)
         return depth_mm(self.read(scene, pose, t, rng))
+
+
+def _pixels(camera: DepthRenderer) -> tuple[Array, Array]:
+    """Directions (H * W, 3) of the pixels' rays, and their lengths (H * W,) per metre of depth."""
+    rays = np.ones((*camera.shape, 3))
+    rays[..., 1], rays[..., 2] = camera.left, camera.slope[:, np.newaxis]
+    flat = rays.reshape(-1, 3)
+    stretch = np.linalg.norm(flat, axis=1)
+    return flat / stretch[:, np.newaxis], stretch
 
 
 @kernel

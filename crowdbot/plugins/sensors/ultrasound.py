@@ -8,15 +8,20 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le
 from pydantic import Field
 
-from crowdbot.dsl import Component, PositiveLength, Quantity, RangeSensorSpec
+from crowdbot.dsl import Component, PositiveLength, Quantity, RangeSensorSpec, TiltableMount
 
 _DEGREE = math.pi / 180.0
 
 
 class UltrasoundSpec(RangeSensorSpec):
-    """The nearest thing in a drop-shaped zone, whatever its direction. The floor is not seen."""
+    """The nearest thing in a drop-shaped zone, whatever its direction.
+
+    The floor is seen by a tilted one alone, wherever the zone meets it: `max_incidence` leaves
+    out echoes that a smooth floor would throw away from the sensor.
+    """
 
     kind: Literal["ultrasound"] = "ultrasound"
+    mount: TiltableMount = Field(default=TiltableMount(), description="Pose on the robot.")
     radius: PositiveLength = Field(
         default=1.0, description="Largest radius of the zone, at three quarters of its length, m."
     )

@@ -36,6 +36,7 @@ from crowdbot.core.sensing.raycast_columns import (
     heights_of,
     meet,
 )
+from crowdbot.core.sensing.raycast_tilted import NO_RAYS, grid_rays
 from crowdbot.plugins.sensors.ultrasound import UltrasoundSpec
 
 _HALVINGS = 40
@@ -76,7 +77,9 @@ class Ultrasound:
             range_min=spec.range_min,
             range_max=spec.range_max,
             random=self._range_model.random,
+            tilt=self._range_model.tilt,
         )
+        self._rays = grid_rays(self._grid) if self._range_model.tilted else NO_RAYS
 
     def info(self) -> SensorInfo:
         """Constant description; ``angles`` are the edges of the zone at the sensor."""
@@ -89,7 +92,10 @@ class Ultrasound:
         at, yaw = own.pose_in_world(scene, pose)
         x, y, z = at
         nearest = np.empty(1)
-        if own.drops_slanted:  # a slanted surface may hide what is behind it
+        if own.tilted:
+            distance = own.cast_tilted(scene, pose, self._rays).reshape(self._reach.shape)
+            nearest[0] = _nearest(distance, self._reach)
+        elif own.drops_slanted:  # a slanted surface may hide what is behind it
             distance, incidence, _ = scene.cast_grid(grid, at, yaw, longest)
             own.drop_slanted(distance, incidence)
             nearest[0] = _nearest(distance, self._reach)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from crowdbot import cli
 from crowdbot.core.bundle import archive as a
 from crowdbot.core.bundle.archive import open_archive
 from crowdbot.core.bundle.manifest import MANIFEST
@@ -115,6 +116,17 @@ def test_an_archive_that_is_another_file_too_is_refused(
     path.write_bytes(change(bundle.read_bytes()))
     with pytest.raises(InputError, match=why), open_archive(path):
         pass
+
+
+def test_a_bundle_in_place_of_runs_is_said_to_be_one(
+    bundle: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It is packed and checked, not checked."""
+    before = bundle.read_bytes()
+    assert cli.main(["bundle", "--check", str(bundle)]) == 2
+    assert f"ROOT is a folder of runs. To check a bundle that is there: crowdbot verify {bundle}" \
+        in capsys.readouterr().err  # fmt: skip
+    assert bundle.read_bytes() == before
 
 
 @pytest.mark.parametrize("content", [b"", b"no zip", b"PK\x03\x04 but broken"])

@@ -99,3 +99,13 @@ def test_what_the_suite_names_comes_before_the_four_scores_in_its_order() -> Non
         ("safe_efficiency", "corrected", "the four scores"),
         ("risk", "literal", "collision"),
     ]
+
+
+def test_metrics_that_the_suite_names_come_first_in_its_order() -> None:
+    scores = [
+        *rows("safe_efficiency", "corrected", 1.0), *rows("a", "literal", 1.0),
+        *rows("b", "corrected", 1.0), *rows("c", "corrected", 1.0), *rows("b", "literal", 1.0),
+    ]  # fmt: skip
+    found = [s.name for s in all_series(scores, [], {}, named=("c", "b", "gone"))]
+    assert found[:3] == [("c", "corrected"), ("b", "corrected"), ("safe_efficiency", "corrected")]
+    assert sorted(found) == sorted({(s.metric, s.variant) for s in scores}), "each once"

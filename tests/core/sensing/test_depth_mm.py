@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from crowdbot.core.interfaces import DepthCamera, Pose
 from crowdbot.core.sensing.depth_mm import depth_mm
 from crowdbot.core.sensing.noise import sensor_rng
-from crowdbot.dsl import Mount
+from crowdbot.dsl import TiltableMount
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import build
 from tests.core.sensing.sensing_worlds import world
@@ -37,7 +37,7 @@ def test_a_camera_rounds_its_own_reading(
 ) -> None:
     scene, rng = world(seed), np.random.default_rng(seed)
     pose = Pose(*rng.uniform(-7, 7, 3))
-    mount = Mount(z=float(rng.uniform(0.05, 2.2)))
+    mount = TiltableMount(z=float(rng.uniform(0.05, 2.2)))
     fields = {"width": width, "height": 30, "depth_min": 0.3, "depth_max": farthest, **errors}
     camera = build(RgbdCameraSpec(mount=mount, **fields))  # type: ignore[arg-type]
     assert isinstance(camera, DepthCamera)
@@ -49,6 +49,6 @@ def test_a_camera_rounds_its_own_reading(
 
 @pytest.mark.parametrize("tall", [1, 2])
 def test_a_picture_of_nothing(tall: int) -> None:
-    camera = build(RgbdCameraSpec(width=2, height=2 * tall, mount=Mount(z=90.0)))
+    camera = build(RgbdCameraSpec(width=2, height=2 * tall, mount=TiltableMount(z=90.0)))
     image = camera.depth_mm(world(0), Pose(0.0, 0.0, 0.0), 0.0, sensor_rng(0, "r", "c", 0))
     assert image.tolist() == [[0, 0]] * 2 * tall

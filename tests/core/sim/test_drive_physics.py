@@ -7,11 +7,11 @@ import math
 
 import numpy as np
 import pytest
-from pydrake.multibody.plant import CoulombFriction
 
-from crowdbot.core.sim import plant
 from crowdbot.core.sim.control.force import moved
+from crowdbot.core.sim.plant import floor_of
 from crowdbot.core.support.ticks import TICK
+from crowdbot.dsl.canonical import canonical_bytes
 from tests.core.sim.sim_worlds import Drive, alone, constant, rig
 
 pytestmark = pytest.mark.slow
@@ -111,14 +111,12 @@ def test_pushing_at_a_wall_neither_tips_nor_tunnels(mode: str, yaw: float) -> No
     )
 
 
-def test_wheels_slip_on_a_slippery_floor(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Friction of 0.1 (Drake joins two surfaces' as 2ab/(a+b)): no more than 0.1 g of thrust.
+def test_wheels_slip_on_a_slippery_floor() -> None:
+    """Friction of 0.1: no more than 0.1 g of thrust.
 
     Wheels spin up at once; odometry counts their way; in the end the robot rolls as commanded.
     """
-    floor = 0.1 / (2.0 - 0.1)
-    monkeypatch.setattr(plant, "_FLOOR", CoulombFriction(floor, floor))
-    world = rig(alone(MIDDLE, *QUICK), constant(0.65))
+    world = rig(alone(MIDDLE, "environment.floor.friction=0.1", *QUICK), constant(0.65))
     track = world.track(2.5, TICK)
     slipping = 0
     for (_, before), (t, after) in itertools.pairwise(track):
@@ -135,3 +133,25 @@ def test_wheels_slip_on_a_slippery_floor(monkeypatch: pytest.MonkeyPatch) -> Non
     counted = world.memory.readings["odometry"][-1].values[0] - 25.0
     assert counted == pytest.approx(robot.left_angle * 0.035, abs=0.02)
     assert counted > robot.x - 25.0 + 0.3
+
+
+def test_a_holonomic_drive_pushes_no_harder_than_the_floor_holds() -> None:
+    """Pepper where friction is 0.02: v = mu g t until it is as fast as commanded."""
+    quick = "robots.robot.model={kind: pepper, max_acceleration: 5, max_yaw_acceleration: 9}"
+    odometry = "robots.robot.sensors={odometry: {kind: holonomic_odometry}}"
+    floor = "environment.floor.friction=0.02"
+    world = rig(alone(MIDDLE, quick, odometry, "robots.robot.control=force", floor), constant(0.5))
+    track = world.track(2.0, TICK)
+    for t, robot in track:
+        if 0.2 < t < 2.0:
+            late = 0.0625 + 2.0 * TICK  # one step of the planner
+            assert robot.vx <= 0.02 * 9.81 * t + 1e-6
+            assert robot.vx >= 0.02 * 9.81 * (t - late) - 1e-3
+
+
+def test_the_usual_floor_is_not_in_the_hash() -> None:
+    usual = canonical_bytes(alone(MIDDLE), {})
+    assert canonical_bytes(alone(MIDDLE, "environment.floor.friction=1"), {}) == usual
+    assert b"friction" not in usual
+    assert b'"friction":0.4' in canonical_bytes(alone(MIDDLE, "environment.floor.friction=0.4"), {})
+    assert (floor_of(1.0).static_friction(), floor_of(1.0).dynamic_friction()) == (1.0, 1.0)

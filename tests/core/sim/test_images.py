@@ -14,12 +14,12 @@ from crowdbot.core.sensing.depth_mm import depth_mm
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.images import Images, capture, view_size
-from crowdbot.dsl import Mount
+from crowdbot.dsl import TiltableMount
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import RgbdCamera
 
 Array = NDArray[np.float64]
-SPEC = RgbdCameraSpec(width=8, height=6, mount=Mount(z=0.5), noise=0.01)
+SPEC = RgbdCameraSpec(width=8, height=6, mount=TiltableMount(z=0.5), noise=0.01)
 
 
 class Counting(RgbdCamera):

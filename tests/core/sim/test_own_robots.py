@@ -26,6 +26,7 @@ from crowdbot.core.sim.planner_system import _slew_planar
 from crowdbot.core.support.ticks import TICK
 from crowdbot.errors import InputError, PluginError, SpecError
 from crowdbot.testing.commanded_motion import assert_moves, check_commanded_motion, drive
+from tests.core.robots.test_published import pepper_model, qolo_model
 from tests.core.sim import sim_worlds
 from tests.core.sim.own_robots import HOWTO, known, model
 from tests.core.sim.sim_worlds import Drive, alone, rig
@@ -301,3 +302,12 @@ def test_commands_do_not_jump() -> None:
     for before, after in itertools.pairwise(track):
         step = math.hypot(after.vx - before.vx, after.vy - before.vy)
         assert step <= 1.0 * TICK * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("kind", ["pepper", "qolo"])
+def test_robots_as_published_go_where_they_are_told(kind: str) -> None:
+    """Files with the structure of those of Pepper and Qolo, in Drake."""
+    model = pepper_model() if kind == "pepper" else qolo_model()
+    mode = "force" if kind == "pepper" else WHEELS
+    for command in (Command(0.3, 0.0), Command(0.0, 0.5)):
+        assert_moves(model, mode, command)

@@ -15,7 +15,7 @@ from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.person_mesh import leg_obj, trunk_obj
 from crowdbot.core.sim.rendering import Renderer, check_egl
-from crowdbot.dsl import Mount
+from crowdbot.dsl import TiltableMount
 from crowdbot.errors import MissingLibraryError
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import build
@@ -24,7 +24,7 @@ from tests.core.sim.sim_worlds import constant, rig, scenario
 pytestmark = pytest.mark.slow
 
 SPEC = RgbdCameraSpec(
-    mount=Mount(x=0.3, y=-0.2, z=1.0, yaw=0.4), width=160, height=120, depth_min=0.0,
+    mount=TiltableMount(x=0.3, y=-0.2, z=1.0, yaw=0.4), width=160, height=120, depth_min=0.0,
     depth_max=150.0, colour=True,
 )  # fmt: skip
 POSE = Pose(1.0, 2.0, -0.3)

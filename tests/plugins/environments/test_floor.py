@@ -103,7 +103,10 @@ def test_every_regular_polygon_is_a_block(count: int, turn: float, clockwise: bo
         ({"blocks": {"b": {"corners": [[1, 1], [2, 1]]}}}, "at least 3"),
         ({"blocks": {"b": {"corners": [[1, 1], [2, 1], [3, 1]]}}}, "must have an area"),
         ({"blocks": {"b": {"corners": [[1, 1], [1, 1], [3, 1], [2, 2]]}}}, "twice in a row"),
-        ({"blocks": {"b": {"corners": [[1, 1], [3, 3], [3, 1], [1, 3]]}}}, "must have an area"),
+        (
+            {"blocks": {"b": {"corners": [[1, 1], [3, 3], [3, 1], [1, 3]]}}},
+            "must not cross or touch",
+        ),
         ({"blocks": {"b": {"corners": [[1, 1], [3, 3], [3, 0], [1, 3]]}}}, "must not cross"),
         ({"blocks": {"b": SQUARE | {"holes": [[[5, 5], [6, 5], [6, 6]]]}}}, "outside of the out"),
         ({"blocks": {"b": SQUARE | {"holes": [[[1, 0], [2, 0], [2, 1]]]}}}, "touches the outline"),

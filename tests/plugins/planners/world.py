@@ -25,7 +25,7 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.dsl import Mount
+from crowdbot.dsl import TiltableMount
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 from crowdbot.plugins.sensors.lidar2d_build import Lidar2d
 
@@ -50,8 +50,8 @@ DT, PER_STEP = 1.0 / 128.0, 8
 def lidars() -> dict[str, Lidar2d]:
     """The two of the challenge's robot."""
     return {
-        "front_lidar": Lidar2d(Lidar2dSpec(mount=Mount(x=0.17, z=0.24))),
-        "rear_lidar": Lidar2d(Lidar2dSpec(mount=Mount(x=-0.17, z=0.24, yaw=math.pi))),
+        "front_lidar": Lidar2d(Lidar2dSpec(mount=TiltableMount(x=0.17, z=0.24))),
+        "rear_lidar": Lidar2d(Lidar2dSpec(mount=TiltableMount(x=-0.17, z=0.24, yaw=math.pi))),
     }
 
 

@@ -16,7 +16,7 @@ from crowdbot.core.interfaces import Pose, RobotState
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.dsl import Mount
+from crowdbot.dsl import TiltableMount
 from crowdbot.errors import SimulationError
 from crowdbot.plugins.sensors.imu import IMU, ImuSpec
 from crowdbot.plugins.sensors.imu_build import build
@@ -48,7 +48,7 @@ def turning(v: float, w: float) -> Motion:
 
 
 def test_info() -> None:
-    info = build(ImuSpec(mount=Mount(x=0.056, y=0.062, z=0.0202))).info()
+    info = build(ImuSpec(mount=TiltableMount(x=0.056, y=0.062, z=0.0202))).info()
     assert (info.category, info.ros_type, info.shape) == ("imu", "sensor_msgs/msg/Imu", (6,))
     assert (info.random, info.sees) == (True, False)
     assert build(quiet()).info().random is False
@@ -67,7 +67,7 @@ def test_at_rest_it_feels_the_floor() -> None:
 )  # fmt: skip
 def test_a_constant_turn(v: float, w: float, x: float, y: float, yaw: float) -> None:
     """Towards the centre of the circle: v w to the left, less w^2 r of the mount itself."""
-    rows = readings(quiet(mount=Mount(x=x, y=y, yaw=yaw)), turning(v, w))[1:]
+    rows = readings(quiet(mount=TiltableMount(x=x, y=y, yaw=yaw)), turning(v, w))[1:]
     forward, left = -w * w * x, v * w - w * w * y
     c, s = math.cos(yaw), math.sin(yaw)
     expected = [0, 0, w, c * forward + s * left, c * left - s * forward, G]
@@ -87,7 +87,9 @@ def _along(yaw: float, v: float) -> tuple[float, float]:
 
 def test_yaw_acceleration_is_felt_beside_the_axis() -> None:
     """At 0.1 m ahead, 2 rad/s^2 push 0.2 m/s^2 to the left; a small turn hardly bends it."""
-    rows = readings(quiet(mount=Mount(x=0.1)), lambda t: (t * t, 0.0, 0.0, 2.0 * t), count=5)
+    rows = readings(
+        quiet(mount=TiltableMount(x=0.1)), lambda t: (t * t, 0.0, 0.0, 2.0 * t), count=5
+    )
     np.testing.assert_allclose(rows[1:, 4], 0.2, rtol=2e-3)
 
 

@@ -17,6 +17,8 @@ from crowdbot.core.crowd.state import (
     AIM_X,
     AIM_Y,
     ASIDE,
+    AX,
+    AY,
     DETOURS,
     GOAL_X,
     GOAL_Y,
@@ -31,7 +33,7 @@ from crowdbot.core.crowd.state import (
     Y,
 )
 from crowdbot.core.crowd.velocity_search import counter_rng
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: Of the room at a corner, how much of it people spread over.
@@ -44,6 +46,14 @@ _LEAST_AHEAD = 1.0
 _SAME_OPENING, _WIDEST_OPENING = 1.0, 3.0
 #: Below this share of the preferred speed somebody makes no headway.
 _SLOW = 0.25
+#: People look around at every so manieth decision, at each one when a corner is near, m.
+_LOOKS_EVERY, _NEAR_CORNER = 4, 1.0
+#: In place of a corner: a place to one side of who is in the way.
+_ASIDE_OF_ALL = -1.0
+#: It is so far off, m; reached when so near, m; and so many are looked at, with these draws.
+_STEP, _STEPPED, _SIDES, _SIDE_DRAWS = 1.0, 0.4, 4, 1 << 40
+#: On the way there: speed, m/s, and the time in which it is reached, s.
+_SQUEEZE, _RELAXATION = 0.4, 0.5
 #: Nearer to the goal than this nobody looks for another way, m.
 _NEAR_GOAL = 1.5
 
@@ -66,43 +76,143 @@ class Habits(NamedTuple):
 
 @kernel
 def find_aims(
-    agents: Array, members: Indices, ids: Indices, preferred: Array, tree_of: Indices,
-    left: Array, after: Indices, corners: Corners, sight: Sight, wider: Sight,
-    spread: float, patience: float, detour: float, key: np.uint64, dt: float,
-) -> None:  # fmt: skip
+    agents: Array, decision: int, dt: float, members: Indices, ids: Indices, preferred: Array,
+    goals: Array, tree_of: Indices, left: Array, after: Indices,
+    table: Array, first: Indices, linked: Indices, length: Array,
+    edges: Array, start: Indices, listed: Indices, frame: Array, shape: Indices,
+    wide_edges: Array, wide_start: Indices, wide_listed: Indices, wide_frame: Array,
+    wide_shape: Indices, spread: float, patience: float, detour: float, key: np.uint64,
+) -> int:  # fmt: skip
     """Set the AIM columns of people who are in the world or will be.
 
     Args:
-        members: rows of those whose bodies these corners fit.
+        decision: number of the decision; below 0 everybody looks around.
+        dt: since the last decision, s.
+        members: (K,) rows of those whose bodies these corners fit.
         ids, preferred: (N,) numbers and preferred speeds (m/s) of all.
+        goals: (K, 2) to which ``tree_of`` leads.
         tree_of: (N,) row of ``left`` and ``after`` that leads to each one's goal.
         left, after: (T, V) see `plan_tree`.
-        sight, wider: edges at the margin of a body, and nearer to the walls.
+        table, first, linked, length: see `Corners`.
+        edges, start, listed, frame, shape: see `Sight`, at the margin of a body; likewise the
+            wide ones, nearer to the walls.
         spread, patience, detour, key: see `Habits`.
-        dt: since the last decision, s.
+
+    Returns:
+        how many of them have another goal than ``goals`` says; unless it is 0, nothing was set.
     """
+    stale = 0
+    for k in range(members.shape[0]):
+        i = members[k]
+        stale += goals[k, 0] != agents[i, GOAL_X] or goals[k, 1] != agents[i, GOAL_Y]
+    if stale:
+        return stale
+    corners = Corners(table, first, linked, length)
+    sight = Sight(edges, start, listed, frame, shape)
+    wider = Sight(wide_edges, wide_start, wide_listed, wide_frame, wide_shape)
     habits = Habits(spread, patience, detour, key)
     for i in members:
         if agents[i, WAITING] == GONE:
             continue
-        tree = tree_of[i]
         blocked = _no_headway(agents, i, preferred[i], patience, dt)
-        gx, gy = agents[i, GOAL_X], agents[i, GOAL_Y]
-        if is_clear(agents[i, X], agents[i, Y], gx, gy, sight):
-            _forget(agents, i)
-            continue
-        avoided = int(agents[i, AIM]) - 1 if blocked else -1
+        turn = decision < 0 or (decision + ids[i]) % _LOOKS_EVERY == 0
+        if turn or blocked or _looks(agents, i, table):
+            tree = tree_of[i]
+            _look(
+                agents, i, ids[i], left[tree], after[tree], corners, sight, wider, blocked, habits
+            )
+    return 0
+
+
+@kernel
+def _looks(agents: Array, i: int, table: Array) -> bool:
+    """Whether agent i looks around before its turn: it has no aim yet, or is near a corner."""
+    v = int(agents[i, AIM]) - 1
+    if v < 0:
+        return bool(agents[i, AIM_X] != agents[i, GOAL_X] or agents[i, AIM_Y] != agents[i, GOAL_Y])
+    dx, dy = table[v, CORNER_X] - agents[i, X], table[v, CORNER_Y] - agents[i, Y]
+    return bool(dx * dx + dy * dy < _NEAR_CORNER * _NEAR_CORNER)
+
+
+@inline_kernel
+def _look(
+    agents: Array, i: int, number: int, left: Array, after: Indices, corners: Corners,
+    sight: Sight, wider: Sight, blocked: bool, habits: Habits,
+) -> None:  # fmt: skip
+    """Agent i looks for its goal, or for the corner on the way to it."""
+    if blocked:
+        agents[i, DETOURS] += 1.0
+    if agents[i, AIM] == _ASIDE_OF_ALL:
+        dx, dy = agents[i, AIM_X] - agents[i, X], agents[i, AIM_Y] - agents[i, Y]
+        if not blocked and math.hypot(dx, dy) > _STEPPED:
+            return
+        agents[i, AIM] = 0.0
+    v = int(agents[i, AIM]) - 1
+    # Who aims at a corner after which others follow does not see the goal before these.
+    last = v < 0 or after[v] == TO_GOAL or not math.isfinite(left[v])
+    if (last or blocked) and _sees_goal(agents, i, sight):
+        _forget(agents, i)
         if blocked:
-            agents[i, DETOURS] += 1.0
-        if avoided >= 0:
-            _choose(agents, i, left[tree], after[tree], corners, sight, avoided, habits)
-        else:
-            _follow(agents, i, ids[i], after[tree], left[tree], corners, sight, wider, habits)
-        if agents[i, AIM] == 0.0:
-            _choose(agents, i, left[tree], after[tree], corners, sight, -1, habits)
-        if agents[i, AIM] == 0.0:
-            _choose(agents, i, left[tree], after[tree], corners, wider, -1, habits)
-        _aim(agents, i, ids[i], corners, sight, habits)
+            _step_aside(agents, i, number, sight, habits)
+        return
+    if blocked and v >= 0:
+        _choose(agents, i, left, after, corners, sight, v, habits)
+        _aim(agents, i, number, corners, sight, habits)
+        if agents[i, AIM] == v + 1.0:  # there is no other way
+            _step_aside(agents, i, number, sight, habits)
+        return
+    found = _follow(agents, i, number, after, left, corners, sight, wider, habits)
+    w = int(agents[i, AIM]) - 1
+    if w != v and (w < 0 or after[w] == TO_GOAL) and _sees_goal(agents, i, sight):
+        _forget(agents, i)
+        return
+    if w < 0:
+        _choose(agents, i, left, after, corners, sight, -1, habits)
+    if agents[i, AIM] == 0.0:
+        _choose(agents, i, left, after, corners, wider, -1, habits)
+    if not found:
+        _aim(agents, i, number, corners, sight, habits)
+
+
+@kernel
+def _step_aside(agents: Array, i: int, number: int, sight: Sight, habits: Habits) -> None:
+    """Agent i, who faces somebody that it cannot pass, walks a little to one side first."""
+    dx, dy = agents[i, AIM_X] - agents[i, X], agents[i, AIM_Y] - agents[i, Y]
+    away = math.hypot(dx, dy)
+    if away == 0.0:
+        return
+    trip, draw = int(agents[i, TRIP]), int(agents[i, DETOURS])
+    for k in range(_SIDES):
+        counter = _SIDE_DRAWS + _SIDES * draw + k
+        u = counter_rng.uniform(habits.key, number, trip, counter_rng.ROUTE, counter)
+        turn = math.pi * (0.4 + 0.6 * u) if u < 0.5 else -math.pi * (0.4 + 0.6 * (u - 0.5))
+        c, t = _STEP * math.cos(turn) / away, _STEP * math.sin(turn) / away
+        x, y = agents[i, X] + c * dx - t * dy, agents[i, Y] + t * dx + c * dy
+        if is_clear(agents[i, X], agents[i, Y], x, y, sight):
+            agents[i, AIM], agents[i, AIM_X], agents[i, AIM_Y] = _ASIDE_OF_ALL, x, y
+            return
+
+
+@kernel
+def squeeze(agents: Array, max_acceleration: Array) -> None:
+    """Who steps aside does so slowly, whomever that touches: of these nobody gives way alone.
+
+    Sets the accelerations of who does; `find_aims` says who.
+    """
+    for i in range(agents.shape[0]):
+        if agents[i, AIM] != _ASIDE_OF_ALL or agents[i, WAITING] != PRESENT:
+            continue
+        dx, dy = agents[i, AIM_X] - agents[i, X], agents[i, AIM_Y] - agents[i, Y]
+        away = max(math.hypot(dx, dy), 1e-9)
+        ax = (_SQUEEZE * dx / away - agents[i, VX]) / _RELAXATION
+        ay = (_SQUEEZE * dy / away - agents[i, VY]) / _RELAXATION
+        scale = min(1.0, max_acceleration[i] / max(math.hypot(ax, ay), 1e-9))
+        agents[i, AX], agents[i, AY] = scale * ax, scale * ay
+
+
+@kernel
+def _sees_goal(agents: Array, i: int, sight: Sight) -> bool:
+    return is_clear(agents[i, X], agents[i, Y], agents[i, GOAL_X], agents[i, GOAL_Y], sight)
 
 
 @kernel
@@ -143,28 +253,40 @@ def _beside(
 def _follow(
     agents: Array, i: int, number: int, after: Indices, left: Array, corners: Corners,
     sight: Sight, wider: Sight, habits: Habits,
-) -> None:  # fmt: skip
-    """Go on to the corner after the one aimed at, where that is seen; drop one out of sight."""
+) -> bool:  # fmt: skip
+    """Go on to the corner after the one aimed at, where that is seen; drop one out of sight.
+
+    Returns:
+        whether the point to walk to has been set.
+    """
     v = int(agents[i, AIM]) - 1
     if v < 0 or not math.isfinite(left[v]):
         agents[i, AIM] = 0.0
-        return
+        return False
     x, y = agents[i, X], agents[i, Y]
     cx, cy = corners.table[v, CORNER_X], corners.table[v, CORNER_Y]
     near = math.hypot(cx - x, cy - y) < _REACHED
     w = after[v]
     if w != TO_GOAL:
         bx, by = _beside(agents, i, number, w, 1.0, corners, habits)
-        ox, oy = corners.table[w, CORNER_X], corners.table[w, CORNER_Y]
-        if is_clear(x, y, bx, by, sight) or (near and is_clear(x, y, ox, oy, wider)):
+        if is_clear(x, y, bx, by, sight):
             agents[i, AIM], agents[i, ASIDE] = w + 1.0, 1.0
-            return
+            _head_for(agents, i, bx, by)
+            return True
+        ox, oy = corners.table[w, CORNER_X], corners.table[w, CORNER_Y]
+        if near and is_clear(x, y, ox, oy, wider):
+            agents[i, AIM], agents[i, ASIDE] = w + 1.0, 1.0
+            return False
     bx, by = _beside(agents, i, number, v, agents[i, ASIDE], corners, habits)
     if not near and math.hypot(bx - x, by - y) < _REACHED:
         agents[i, ASIDE] = 0.0  # there, and what comes after is out of sight: to the corner itself
-        return
-    if not (is_clear(x, y, bx, by, sight) or is_clear(x, y, cx, cy, wider)):
+        return False
+    if is_clear(x, y, bx, by, sight):
+        _head_for(agents, i, bx, by)
+        return True
+    if not is_clear(x, y, cx, cy, wider):
         agents[i, AIM] = 0.0
+    return False
 
 
 @kernel
@@ -224,7 +346,15 @@ def _aim(
     ax, ay = _beside(agents, i, number, v, agents[i, ASIDE], corners, habits)
     if not is_clear(x, y, ax, ay, sight):
         ax, ay = corners.table[v, CORNER_X], corners.table[v, CORNER_Y]
-    away = math.hypot(ax - x, ay - y)
+    _head_for(agents, i, ax, ay)
+
+
+@kernel
+def _head_for(agents: Array, i: int, x: float, y: float) -> None:
+    """Agent i walks to a point; towards one that is too near, beyond it."""
+    dx, dy = x - agents[i, X], y - agents[i, Y]
+    away = math.hypot(dx, dy)
     if 0.0 < away < _LEAST_AHEAD:
-        ax, ay = x + (ax - x) * _LEAST_AHEAD / away, y + (ay - y) * _LEAST_AHEAD / away
-    agents[i, AIM_X], agents[i, AIM_Y] = ax, ay
+        x = agents[i, X] + dx * _LEAST_AHEAD / away
+        y = agents[i, Y] + dy * _LEAST_AHEAD / away
+    agents[i, AIM_X], agents[i, AIM_Y] = x, y

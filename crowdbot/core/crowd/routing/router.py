@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -43,18 +45,19 @@ class Router:
             for size in np.unique(rounded(agents.radius))
         ]
 
-    def find(self, rows: Array, dt: float) -> Array:
+    def find(self, rows: Array, dt: float, decision: int = -1) -> Array:
         """Set the AIM columns of the crowd's state.
 
         Args:
             rows: (N, C) of the crowd's state.
             dt: since the last decision, s.
+            decision: its number; below 0 everybody looks around, else one after the other.
 
         Returns:
             (N, 2) where everybody walks next, m: a view of these columns.
         """
         for one in self._classes:
-            one.find(rows, self._agents, self._habits, dt)
+            one.find(rows, self._agents, self._habits, dt, decision)
         return rows[:, s.AIM_X : s.AIM_Y + 1]
 
     def way(self, row: int, start: tuple[float, float], goal: tuple[float, float]) -> Array:
@@ -75,43 +78,52 @@ class _BodyClass:
 
     def __init__(self, members: NDArray[np.int64], routes: RouteMap, people: int) -> None:
         self.members, self.routes = members, routes
+        self._map: tuple[Any, ...] = (*routes.corners, *routes.sight, *routes.wider)
         self._goal = np.full((len(members), 2), np.nan)
         self._tree_of = np.zeros(people, np.int64)
         self._rows: dict[tuple[float, float], int] = {}
+        self._free: list[int] = []
         self._left = np.zeros((0, routes.count))
         self._after = np.zeros((0, routes.count), np.int64)
 
-    def find(self, rows: Array, agents: Agents, habits: Habits, dt: float) -> None:
+    def find(self, rows: Array, agents: Agents, habits: Habits, dt: float, decision: int) -> None:
+        if self._aims(rows, agents, habits, dt, decision):
+            self._plan(rows)
+            self._aims(rows, agents, habits, dt, decision)
+
+    def _aims(self, rows: Array, agents: Agents, habits: Habits, dt: float, decision: int) -> int:
+        """How many have new goals; with none, aims are found."""
+        fixed: tuple[Any, ...] = (*self._map, *habits)
+        return find_aims(
+            rows, decision, dt, self.members, agents.id, agents.preferred_speed, self._goal,
+            self._tree_of, self._left, self._after, *fixed,
+        )  # fmt: skip
+
+    def _plan(self, rows: Array) -> None:
+        """Find the ways to new goals."""
         goal = rows[self.members, s.GOAL_X : s.GOAL_Y + 1]
         changed = np.flatnonzero((goal != self._goal).any(axis=1))
-        if len(changed):
-            self._goal = goal
-            for k, (x, y) in zip(changed.tolist(), goal[changed].tolist(), strict=True):
-                self._tree_of[self.members[k]] = self._tree(x, y)
-            rows[self.members[changed], s.AIM] = 0.0
-        find_aims(
-            rows, self.members, agents.id, agents.preferred_speed, self._tree_of,
-            self._left, self._after, self.routes.corners, self.routes.sight, self.routes.wider,
-            *habits, dt,
-        )  # fmt: skip
+        self._goal = goal
+        for k, (x, y) in zip(changed.tolist(), goal[changed].tolist(), strict=True):
+            self._tree_of[self.members[k]] = self._tree(x, y)
+        whose = self.members[changed]
+        rows[whose, s.AIM], rows[whose, s.AIM_X] = 0.0, np.nan
 
     def _tree(self, x: float, y: float) -> int:
         """The row of the ways to a goal, found or planned."""
         known = self._rows.get((x, y))
         if known is not None:
             return known
-        free = sorted(set(range(len(self._left))) - set(self._rows.values()))
-        if not free:
+        if not self._free:
             self._drop()
-            free = sorted(set(range(len(self._left))) - set(self._rows.values()))
-        if not free:
-            free = [len(self._left)]
-            more = max(8, len(self._left))
+        if not self._free:
+            count, more = len(self._left), max(8, len(self._left))
             self._left = np.concatenate([self._left, np.zeros((more, self.routes.count))])
             self._after = np.concatenate(
                 [self._after, np.zeros((more, self.routes.count), np.int64)]
             )
-        row = self._rows[x, y] = free[0]
+            self._free = list(range(count + more - 1, count - 1, -1))
+        row = self._rows[x, y] = self._free.pop()
         self.routes.plan(x, y, self._left[row], self._after[row])
         return row
 
@@ -119,4 +131,5 @@ class _BodyClass:
         """Give up trees that lead to nobody's goal, if they are many."""
         used = {(x, y) for x, y in self._goal.tolist()}
         if len(self._rows) > len(used) + _SPARE_TREES:
+            self._free = [row for goal, row in self._rows.items() if goal not in used]
             self._rows = {goal: row for goal, row in self._rows.items() if goal in used}

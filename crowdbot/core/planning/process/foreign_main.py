@@ -32,7 +32,7 @@ RobotLimits = namedtuple("RobotLimits", "v_min v_max w_max a_max alpha_max comma
 Pinhole = namedtuple("Pinhole", "width height focal colour")
 SensorInfo = namedtuple(
     "SensorInfo",
-    "category frame mount rate shape ros_type angles range_min range_max camera privileged",
+    "category frame mount tilt rate shape ros_type angles range_min range_max camera privileged",
 )
 Reading = namedtuple("Reading", "stamp values colour")
 Truth = namedtuple("Truth", "pose velocity people people_velocity people_radius people_id")

@@ -85,6 +85,7 @@ def _sensor(info: SensorInfo) -> dict[str, Any]:
     return {
         **{name: getattr(info, name) for name in _INFO},
         "mount": [float(x) for x in info.mount],
+        "tilt": [float(x) for x in info.tilt],
         "shape": [int(n) for n in info.shape],
         "angles": None if info.angles is None else _array(info.angles),
         "camera": None if info.camera is None else asdict(info.camera),

@@ -153,6 +153,7 @@ class Decoder:
         camera = sent["camera"]
         made = {
             "mount": tuple(sent["mount"]),
+            "tilt": tuple(sent["tilt"]),
             "shape": tuple(sent["shape"]),
             "angles": self.array(sent["angles"]),
             "camera": None if camera is None else self._types.Pinhole(**camera),

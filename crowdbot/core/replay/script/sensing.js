@@ -6,6 +6,13 @@ function mounted(robot, [mx, my, , yaw]) {
   return { x: robot.x + c * mx - s * my, y: robot.y + s * mx + c * my, yaw: robot.theta + yaw };
 }
 
+/** Turns a direction in the plane of a sensor with roll and pitch into what is seen from above. */
+function fromAbove([x, y], tilt) {
+  if (!tilt) return [x, y];
+  const [roll, pitch] = tilt;
+  return [Math.cos(pitch) * x + Math.sin(pitch) * Math.sin(roll) * y, Math.cos(roll) * y];
+}
+
 /** The robot that carries a sensor, at some time. */
 function carrierAt(run, sensor, time) {
   return robotAt(run, run.robots[sensor.robot ?? 0], time);
@@ -16,11 +23,14 @@ function conesAt(run, group, time) {
   const j = lastBefore(group.t, time);
   if (j < 0) return [];
   const robot = carrierAt(run, group, group.t[j]);
-  return group.sensors.flatMap(({ mount, edges }, i) => {
+  return group.sensors.flatMap(({ mount, edges, tilt }, i) => {
     const range = group.ranges[i * group.t.length + j] * 0.01;
     if (range <= 0) return [];
     const { x, y, yaw } = mounted(robot, mount);
-    return [{ x, y, range, from: yaw + Math.min(...edges), to: yaw + Math.max(...edges) }];
+    const [along] = fromAbove([range, 0], tilt);
+    const back = along < 0 ? Math.PI : 0;
+    const [from, to] = [Math.min(...edges), Math.max(...edges)].map((a) => yaw + back + a);
+    return [{ x, y, range: Math.abs(along), from, to }];
   });
 }
 
@@ -30,11 +40,12 @@ function scanAt(run, scan, time) {
   if (j < 0) return null;
   if (scan.cached?.j === j) return scan.cached;
   const { x, y, yaw } = mounted(carrierAt(run, scan, scan.t[j]), scan.mount);
+  const [c, s] = [Math.cos(yaw), Math.sin(yaw)];
   const rim = scan.angles.map((angle, i) => {
     const word = scan.ranges[i * scan.t.length + j];
     const range = word > 0 ? word * 0.01 : scan.rangeMax;
-    const along = yaw + angle;
-    return { x: x + range * Math.cos(along), y: y + range * Math.sin(along), hit: word > 0 };
+    const [ahead, left] = fromAbove([range * Math.cos(angle), range * Math.sin(angle)], scan.tilt);
+    return { x: x + c * ahead - s * left, y: y + s * ahead + c * left, hit: word > 0 };
   });
   scan.cached = { j, x, y, rim };
   return scan.cached;

@@ -21,6 +21,8 @@ from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive, RobotModel
 
+_GRAVITY = 9.81  # m/s^2, the plant's
+
 
 class ForceDrive(LeafSystem):
     """Inputs: robot state, wanted v, w and vy, push by people. Output: generalised force.
@@ -30,14 +32,14 @@ class ForceDrive(LeafSystem):
 
     __slots__ = NO_ATTRIBUTES
 
-    def __init__(self, rig: RobotPlant) -> None:
+    def __init__(self, rig: RobotPlant, friction: float = 1.0) -> None:
         super().__init__()
         size = rig.plant.num_velocities()
         self._start = push_on(rig).at or 0
         self._mass, self._inertia = moved(rig)
         self._sideways = isinstance(rig.robot.drive, HolonomicDrive)
         self._lever = _centre_above_root(rig) if self._sideways else 0.0
-        self._most, self._most_torque = strongest(rig)
+        self._most, self._most_torque = on_the_floor(strongest(rig), rig.robot.mass, friction)
         self._tick = rig.plant.time_step()
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         self._desired = self.DeclareVectorInputPort(ports.DESIRED_STATE, 3)
@@ -107,6 +109,17 @@ def strongest(rig: RobotPlant) -> tuple[float, float]:
     return force, force * 0.5 * drive.track
 
 
+def on_the_floor(drive: tuple[float, float], mass: float, friction: float) -> tuple[float, float]:
+    """What a slippery floor leaves of the force (N) and torque (N m) of a drive.
+
+    No more than the friction of the whole weight; torque shrinks as force does. On a floor of the
+    usual friction, 1, drives are taken to grip.
+    """
+    force, torque = drive
+    share = min(1.0, friction * mass * _GRAVITY / force) if friction < 1.0 else 1.0
+    return share * force, share * torque
+
+
 def add_force(
     builder: DiagramBuilder, parts: EnvironmentParts, model: RobotModel, tick: float
 ) -> ControlledRobot:
@@ -114,7 +127,7 @@ def add_force(
     rig = add_plant(builder, parts, model, None, tick)
     plant = rig.plant
     state = add_robot_state(builder, rig)
-    drive = builder.AddNamedSystem("force_drive", ForceDrive(rig))
+    drive = builder.AddNamedSystem("force_drive", ForceDrive(rig, parts.floor_friction))
     builder.Connect(state.GetOutputPort(ports.ROBOT_STATE), drive.GetInputPort(ports.ROBOT_STATE))
     builder.Connect(drive.GetOutputPort("force"), plant.get_applied_generalized_force_input_port())
 

@@ -101,7 +101,13 @@ def test_who_makes_no_headway_takes_the_other_door() -> None:
         rows[0, [s.X, s.Y, s.VX, s.VY]] = -4.0, 0.2, 0.0, 0.0
         for _ in range(8):
             stubborn.advance(flat)
-    assert rows[0, s.AIM_Y] < 0.0
+    assert rows[0, s.AIM] == -1.0  # no other way is short enough: it steps aside
+    aim = rows[0, [s.AIM_X, s.AIM_Y]]
+    assert np.hypot(*(aim - [-4.0, 0.2])) == pytest.approx(1.0)
+    rows[0, [s.X, s.Y]] = aim
+    for _ in range(32):
+        stubborn.advance(flat)
+    assert rows[0, s.AIM] > 0.0  # there: on to a door
 
 
 def test_straight_ways_are_what_they_were() -> None:

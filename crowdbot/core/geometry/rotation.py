@@ -1,0 +1,34 @@
+"""Rotations by roll, pitch and yaw about fixed axes x, y, z, as URDF and SDFormat have them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crowdbot.core.types.arrays import Array
+
+
+def rotation(roll: float, pitch: float, yaw: float) -> Array:
+    """The matrix (3, 3) that turns vectors of the turned frame into those of the fixed one; rad."""
+    angles = (roll, pitch, yaw)
+    cr, sr, cp, sp, cy, sy = (f(a) for a in angles for f in (math.cos, math.sin))
+    return np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+
+
+def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
+    """The same rotation as x, y, z, w."""
+    angles = (roll, pitch, yaw)
+    cr, sr, cp, sp, cy, sy = (f(0.5 * a) for a in angles for f in (math.cos, math.sin))
+    return (
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )

@@ -1,0 +1,62 @@
+"""The box around a mesh: of STL, binary or text, and of Wavefront OBJ."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+
+import numpy as np
+
+from crowdbot.core.robots.xml import numbers
+from crowdbot.core.types.arrays import Array
+
+_HEAD, _FACE = 84, 50  # bytes of a binary STL's head, and of each triangle
+_THINNEST = 1e-3  # m; a sheet becomes a plate
+Vector = tuple[float, float, float]
+
+
+def mesh_box(file: Path, scale: str = "1 1 1") -> tuple[Vector, Vector] | None:
+    """Sides and centre (m) of the box around a mesh, along the axes of its own frame.
+
+    Args:
+        scale: three factors, as a URDF has them.
+
+    Returns:
+        None of another format, or of a file without a vertex.
+
+    Raises:
+        PluginError: ``scale`` is not made of numbers.
+    """
+    read = {".stl": _stl, ".obj": _obj}.get(file.suffix.lower())
+    factors = numbers(scale, "the scale of a mesh")
+    points = np.zeros((0, 3)) if read is None else read(file.read_bytes())
+    if not len(points) or len(factors) != 3 or not np.all(np.isfinite(points)):
+        return None
+    ends = np.stack([points.min(axis=0), points.max(axis=0)]) * factors
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    sides, centre = np.maximum(high - low, _THINNEST).tolist(), (0.5 * (low + high)).tolist()
+    return (sides[0], sides[1], sides[2]), (centre[0], centre[1], centre[2])
+
+
+def _stl(data: bytes) -> Array:
+    """Corners of all triangles (N, 3)."""
+    if len(data) >= _HEAD:
+        (count,) = struct.unpack_from("<I", data, _HEAD - 4)
+        if len(data) == _HEAD + _FACE * count:
+            rows = np.frombuffer(data, np.uint8, offset=_HEAD).reshape(count, _FACE)
+            return np.ascontiguousarray(rows[:, 12:48]).view("<f4").reshape(-1, 3).astype(float)
+    return _lines(data, b"vertex")
+
+
+def _obj(data: bytes) -> Array:
+    return _lines(data, b"v")
+
+
+def _lines(data: bytes, word: bytes) -> Array:
+    """The three numbers after a word at the begin of lines (N, 3)."""
+    rows = (line.split() for line in data.splitlines())
+    try:
+        found = [[float(x) for x in row[1:4]] for row in rows if row[:1] == [word]]
+    except ValueError:
+        return np.zeros((0, 3))
+    return np.array([row for row in found if len(row) == 3]).reshape(-1, 3)

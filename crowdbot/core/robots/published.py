@@ -1,0 +1,297 @@
+"""Robots as their makers publish them: a URDF for viewers and planners of arms, made to drive.
+
+Such files have meshes that are elsewhere, fingers that mimic each other, joints that float and
+frames that weigh nothing. `read_published` makes a description of it that a mobile base can be
+simulated with, and keeps a note of each thing that it simplified.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from copy import deepcopy
+from dataclasses import replace
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import NamedTuple
+from xml.etree import ElementTree as Xml
+
+from crowdbot.core.robots.description import (
+    Description,
+    parse_description,
+    read_description,
+    read_text,
+)
+from crowdbot.core.robots.inertia import check_inertia, rolling
+from crowdbot.core.robots.joint import child_of, parent_of
+from crowdbot.core.robots.mesh_box import mesh_box
+from crowdbot.core.robots.xml import matrix, name_of, pose_of
+from crowdbot.errors import PluginError, did_you_mean, nearest
+
+_HELD = ("revolute", "prismatic", "floating", "planar")
+#: So many names are listed; of more, the number.
+_NAMED = 4
+
+
+class PublishedWheel(NamedTuple):
+    """What a published description says of a wheel by its mesh only, or not at all.
+
+    Attributes:
+        radius: m.
+        effort: of the motor, N m; of a driven wheel. None: the wheel slides, as omni wheels of a
+            holonomic drive do.
+    """
+
+    radius: float
+    effort: float | None = None
+
+
+def read_published(
+    source: str | Path | Traversable,
+    *,
+    wheels: Mapping[str, PublishedWheel],
+    shell: str,
+    base: str = "base_link",
+    packages: Mapping[str, Path] | None = None,
+) -> Description:
+    """A robot's description from a URDF that was not written for simulating contacts.
+
+    Args:
+        source: as of `read_description`.
+        wheels: of the joints that hold wheels, by name.
+        shell: ``<collision>`` elements, in the frame of the base, of what touches walls.
+        base: the link that sensors are mounted on.
+        packages: where the files of ``package://NAME/…`` lie; a collision mesh that is found there
+            (STL or OBJ), or beside the description, becomes the box around it, others are left
+            out.
+
+    Returns:
+        the description, whose `Description.notes` tell what was simplified.
+
+    Raises:
+        PluginError: it cannot be read, is not a URDF, has no such joint or link, or ``shell`` is
+            not well-formed.
+    """
+    text, folder = read_text(source)
+    described = parse_description(text)
+    if described.format != "urdf":
+        raise PluginError("read_published reads URDF; SDFormat is read by read_description")
+    work = _Work(deepcopy(described.model), base, dict(wheels))
+    work.check()
+    work.keep_one_tree()
+    work.hold_joints()
+    work.replace_meshes(lambda name: _find(name, folder, packages or {}))
+    work.shape_wheels()
+    work.weigh()
+    work.drop_the_rest()
+    work.add_shell(shell)
+    made = read_description(Xml.tostring(work.robot, encoding="unicode"))
+    return replace(made, notes=tuple(work.notes))
+
+
+class _Work:
+    """A description that is being changed, and the notes so far."""
+
+    def __init__(self, robot: Xml.Element, base: str, wheels: dict[str, PublishedWheel]) -> None:
+        self.robot, self.base, self.wheels = robot, base, wheels
+        self.notes: list[str] = []
+
+    @property
+    def links(self) -> dict[str, Xml.Element]:
+        return {name_of(link): link for link in self.robot.findall("link")}
+
+    @property
+    def joints(self) -> dict[str, Xml.Element]:
+        return {name_of(joint): joint for joint in self.robot.findall("joint")}
+
+    def note(self, names: Sequence[str], one: str, several: str) -> None:
+        """A note about some things, if there are any; ``{}`` stands for their number."""
+        if names:
+            listed = ", ".join(names[:_NAMED])
+            more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+            what = one if len(names) == 1 else several.format(len(names))
+            self.notes.append(f"{what}: {listed}{more}")
+
+    def check(self) -> None:
+        """Whether all that was named is there."""
+        named = [("link", self.base, self.links)]
+        named += [("joint", joint, self.joints) for joint in self.wheels]
+        for what, name, known in named:
+            if name not in known:
+                hint = did_you_mean(nearest(name, known)) or f"; there are: {', '.join(known)}"
+                raise PluginError(f"the robot's description has no {what} '{name}'{hint}")
+
+    def keep_one_tree(self) -> None:
+        """Leave out links that do not hang together with the base."""
+        hangs = {self.base}
+        pairs = [(parent_of(j), child_of(j)) for j in self.joints.values()]
+        while grown := {x for pair in pairs if hangs & set(pair) for x in pair} - hangs:
+            hangs |= grown
+        loose = [name for name in self.links if name not in hangs]
+        for name in loose:
+            self.robot.remove(self.links[name])
+        for joint in self.robot.findall("joint"):
+            if child_of(joint) in loose:
+                self.robot.remove(joint)
+        self.note(loose, "link that does not hang together with the base is left out",
+                  "{} links that do not hang together with the base are left out")  # fmt: skip
+
+    def hold_joints(self) -> None:
+        """Fix all joints but those of driven wheels and of casters."""
+        held, mimics, sliding = list[str](), list[str](), list[str]()
+        for name, joint in self.joints.items():
+            wheel, kind = self.wheels.get(name), joint.get("type", "")
+            if joint.find("mimic") is not None:
+                mimics.append(name)
+            elif wheel is not None and wheel.effort is None:
+                sliding.append(name)
+            elif kind in _HELD and wheel is None:
+                held.append(name)
+            else:
+                continue
+            _fix(joint)
+        for name, wheel in self.wheels.items():
+            if wheel.effort is not None:
+                self._drive(name, wheel.effort)
+        self.note(held, "joint is held at zero", "{} joints are held at zero")
+        self.note(mimics, "joint that mimics another is held at zero",
+                  "{} joints that mimic others are held at zero")  # fmt: skip
+        self.note(sliding, "wheel does not turn, it slides", "{} wheels do not turn, they slide")
+
+    def _drive(self, name: str, effort: float) -> None:
+        joint = self.joints[name]
+        kind, limit = joint.get("type", ""), joint.find("limit")
+        if kind != "continuous":
+            self.notes.append(f"joint that is {kind} is made to turn, as a driven wheel: {name}")
+        joint.set("type", "continuous")
+        if limit is None:
+            limit = Xml.SubElement(joint, "limit", velocity="1e9")
+            self.notes.append(f"wheel without a limit gets a torque of {effort:g} N m: {name}")
+        elif limit.get("effort") not in (None, f"{effort:g}"):
+            was = limit.get("effort")
+            self.notes.append(f"torque is {effort:g} N m, not {was} N m: {name}")
+        for end in ("lower", "upper"):
+            limit.attrib.pop(end, None)
+        limit.set("effort", f"{effort:.12g}")
+
+    def replace_meshes(self, find: Callable[[str], Path | None]) -> None:
+        """Collision meshes become boxes around them, or are left out."""
+        boxed, lost = list[str](), list[str]()
+        for link, collision, mesh in _meshes(self.robot):
+            geometry = collision.find("geometry")
+            assert geometry is not None
+            file = find(mesh.get("filename", ""))
+            box = None if file is None else mesh_box(file, mesh.get("scale", "1 1 1"))
+            if box is None:
+                link.remove(collision)
+                lost.append(mesh.get("filename", ""))
+                continue
+            size, centre = box
+            geometry.remove(mesh)
+            Xml.SubElement(geometry, "box", size=" ".join(f"{x:.9g}" for x in size))
+            _shift(collision, centre)
+            boxed.append(name_of(link))
+        self.note(boxed, "collision mesh becomes the box around it",
+                  "{} collision meshes become the boxes around them")  # fmt: skip
+        self.note(lost, "collision mesh is not there and left out",
+                  "{} collision meshes are not there and left out")  # fmt: skip
+
+    def shape_wheels(self) -> None:
+        """Each wheel touches the floor with a sphere of its radius."""
+        for name, wheel in self.wheels.items():
+            link = self.links[child_of(self.joints[name])]
+            for collision in link.findall("collision"):
+                link.remove(collision)
+            shape = Xml.SubElement(link, "collision", name=f"{name}_floor")
+            Xml.SubElement(Xml.SubElement(shape, "geometry"), "sphere", radius=f"{wheel.radius:g}")
+        self.note(list(self.wheels), "wheel touches the floor as a sphere",
+                  "{} wheels touch the floor as spheres")  # fmt: skip
+
+    def weigh(self) -> None:
+        """Replace inertias that no body has."""
+        impossible, implausible = list[str](), list[str]()
+        turned = {child_of(self.joints[n]): w for n, w in self.wheels.items()}
+        for name, link in self.links.items():
+            inertial = link.find("inertial")
+            if inertial is None:
+                continue
+            wheel = turned.get(name)
+            wrong = check_inertia(inertial, None if wheel is None else wheel.radius)
+            if wrong == "impossible" or (wrong and wheel is not None):
+                rolling(inertial, 0.1 if wheel is None else wheel.radius)
+            if wrong:
+                (impossible if wrong == "impossible" else implausible).append(name)
+        weightless = [
+            n for n, link in self.links.items()
+            if link.find("inertial") is None and link.find("collision") is not None
+        ]  # fmt: skip
+        self.note(impossible, "inertia is zero or of no body and replaced by that of a disc",
+                  "{} inertias are zero or of no body and replaced by those of discs")  # fmt: skip
+        self.note(implausible, "inertia is larger than a body of its size and mass has",
+                  "{} inertias are larger than bodies of their size and mass have")  # fmt: skip
+        self.note(weightless, "link has a shape and no mass", "{} links have shapes and no mass")
+
+    def drop_the_rest(self) -> None:
+        """What only other programs read: transmissions, Gazebo's elements, meshes that are seen."""
+        for tag, one in (("transmission", "transmission"), ("gazebo", "<gazebo> element")):
+            found = self.robot.findall(tag)
+            for element in found:
+                self.robot.remove(element)
+            if found:
+                many = "" if len(found) == 1 else "s"
+                self.notes.append(f"{len(found)} {one}{many} left out")
+        seen = 0
+        for link in self.links.values():
+            for visual in link.findall("visual"):
+                if visual.find("geometry/mesh") is not None:
+                    link.remove(visual)
+                    seen += 1
+        if seen:
+            self.notes.append(f"{seen} mesh{'' if seen == 1 else 'es'} for looks left out")
+
+    def add_shell(self, shell: str) -> None:
+        """Give the base the shapes that touch walls."""
+        try:
+            shapes = list(Xml.fromstring(f"<shell>{shell}</shell>"))
+        except Xml.ParseError as error:
+            raise PluginError(f"shell is not well-formed XML: {error}") from error
+        if any(shape.tag != "collision" for shape in shapes):
+            raise PluginError("shell holds <collision> elements, and nothing else")
+        self.links[self.base].extend(shapes)
+
+
+def _fix(joint: Xml.Element) -> None:
+    joint.set("type", "fixed")
+    for tag in ("axis", "limit", "mimic", "dynamics", "safety_controller", "calibration"):
+        for part in joint.findall(tag):
+            joint.remove(part)
+
+
+def _meshes(robot: Xml.Element) -> Iterator[tuple[Xml.Element, Xml.Element, Xml.Element]]:
+    """Link, collision and mesh of each collision mesh."""
+    for link in robot.findall("link"):
+        for collision in link.findall("collision"):
+            mesh = collision.find("geometry/mesh")
+            if mesh is not None:
+                yield link, collision, mesh
+
+
+def _shift(collision: Xml.Element, by: tuple[float, float, float]) -> None:
+    """Move a shape within its own frame: what was at the origin is at ``by``."""
+    pose = pose_of(collision)
+    place = matrix(pose) @ (*by, 1.0)
+    origin = collision.find("origin")
+    if origin is None:
+        origin = Xml.SubElement(collision, "origin")
+    origin.set("xyz", " ".join(f"{x:.9g}" for x in place[:3].tolist()))
+    origin.set("rpy", " ".join(f"{x:.12g}" for x in pose[3:]))
+
+
+def _find(name: str, folder: Path | None, packages: Mapping[str, Path]) -> Path | None:
+    """The file of a mesh, if it is there."""
+    if name.startswith("package://"):
+        package, _, rest = name.removeprefix("package://").partition("/")
+        file = packages[package] / rest if package in packages else None
+    else:
+        plain = Path(name.removeprefix("file://"))
+        file = plain if plain.is_absolute() else None if folder is None else folder / plain
+    return file if file is not None and file.is_file() else None

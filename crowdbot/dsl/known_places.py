@@ -1,0 +1,61 @@
+"""Places of environments that were made before, so that a suite makes each once.
+
+Scenarios of a suite share the environment that no axis changes; it is known by its identity, and
+kept as long as it is remembered, so that no other gets its number.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+
+from crowdbot.dsl.component_specs import EnvironmentSpec
+from crowdbot.dsl.place import Place
+
+_MOST = 64
+
+
+class _Same:
+    """An environment that equals nothing but itself."""
+
+    __slots__ = ("environment",)
+
+    def __init__(self, environment: EnvironmentSpec) -> None:
+        self.environment = environment
+
+    def __hash__(self) -> int:
+        return id(self.environment)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and self.environment is other.environment
+
+
+def place_of(environment: EnvironmentSpec) -> Place | None:
+    """What an environment is made of.
+
+    Raises:
+        InputError: as of `EnvironmentSpec.place`.
+    """
+    return _place(_Same(environment))
+
+
+@lru_cache(maxsize=_MOST)
+def _place(same: _Same) -> Place | None:
+    return same.environment.place()
+
+
+@lru_cache(maxsize=_MOST)
+def bodies_of(place: Place, height: float) -> Place:
+    """What people of a height (m) go around."""
+    return place.bodies(height)
+
+
+@lru_cache(maxsize=_MOST)
+def standing_in(place: Place) -> Place:
+    """What stops any robot: it stands on the floor, whatever its height."""
+    return replace(
+        place,
+        faces=tuple(f for f in place.faces if f.stops_robot and f.heights[0] == 0.0),
+        solids=tuple(s for s in place.solids if s.heights[0] == 0.0),
+        pillars=tuple(p for p in place.pillars if p.heights[0] == 0.0),
+    )

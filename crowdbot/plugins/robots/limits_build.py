@@ -1,0 +1,19 @@
+"""The box of limits that a robot's spec describes."""
+
+from __future__ import annotations
+
+from crowdbot.core.interfaces import RobotLimits
+from crowdbot.plugins.robots.limits import LimitedRobotSpec
+
+
+def limits_of(spec: LimitedRobotSpec, *, sideways: bool = False) -> RobotLimits:
+    """As fast back as ahead, and to either side if it goes ``sideways``."""
+    return RobotLimits(
+        v_min=-spec.max_speed,
+        v_max=spec.max_speed,
+        vy_max=spec.max_speed if sideways else 0.0,
+        w_max=spec.max_yaw_rate,
+        a_max=spec.max_acceleration,
+        alpha_max=spec.max_yaw_acceleration,
+        command_timeout=spec.command_timeout,
+    )

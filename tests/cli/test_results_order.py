@@ -1,0 +1,35 @@
+"""`crowdbot results`: the metrics that a suite names come first, in its order."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from crowdbot import cli
+from crowdbot.core.results import store
+from crowdbot.core.results.rows import named_metrics
+from tests.core.report.report_cases import campaign
+
+NAMED = ["min_clearance", "collision_count"]
+
+
+def test_named_metrics_come_first(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    axes = {"density": ("d0125", "d0250")}
+    made = campaign(axes=axes, metrics=(*NAMED, "safe_efficiency"), failures=0)
+    runs = tuple(replace(r, record={**r.record, "suite_metrics": NAMED}) for r in made.runs)
+    found = replace(made, runs=runs)
+    assert named_metrics(found.runs) == NAMED
+    shown: dict[str, list[str]] = {}
+    for how, results in (("named", found), ("open", made)):
+        monkeypatch.setattr(store, "load", lambda _, results=results: results)
+        assert cli.main(["results", "--runs", str(tmp_path), "--json"]) == 0
+        rows = json.loads(capsys.readouterr().out)
+        shown[how] = list(dict.fromkeys(row["metric"] for row in rows))
+    assert shown["named"][:2] == NAMED
+    assert shown["open"][0] == "safe_efficiency"
+    assert sorted(shown["named"]) == sorted(shown["open"])
