@@ -6,7 +6,7 @@ from dataclasses import fields
 from typing import Any
 
 from crowdbot.core.crowd.steering.parameters import (
-    Lanes,
+    LaneKeeping,
     PersonalSpace,
     Steering,
     TimeGap,
@@ -18,7 +18,7 @@ from crowdbot.dsl.steering import SteeringSpec
 _PARTS: dict[str, type[Any]] = {
     "time_gap": TimeGap,
     "personal_space": PersonalSpace,
-    "lanes": Lanes,
+    "lanes": LaneKeeping,
     "wall_push": WallPush,
     "wander": Wander,
 }

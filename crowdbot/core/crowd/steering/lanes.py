@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from crowdbot.core.crowd.steering.around import REACH, Around, first_within
-from crowdbot.core.crowd.steering.parameters import Lanes
+from crowdbot.core.crowd.steering.parameters import LaneKeeping
 from crowdbot.core.crowd.velocity_search.neighbours import VX, VY, X, Y
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices, Mask
@@ -14,7 +14,7 @@ from crowdbot.core.types.arrays import Array, Indices, Mask
 _STANDS = 0.2
 
 
-def keep_lane(part: Lanes, near: Around, wanted: Array) -> None:
+def keep_lane(part: LaneKeeping, near: Around, wanted: Array) -> None:
     """Add everybody's step aside to accelerations (N, 2), m/s^2, in place."""
     _keep_all(*near, part.strength, part.reach, part.half_width, part.follow, wanted)
 

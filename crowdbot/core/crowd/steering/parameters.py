@@ -67,7 +67,7 @@ class Wander:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Lanes:
+class LaneKeeping:
     """A step aside from who comes, and behind who walks one's own way.
 
     Attributes:
@@ -89,6 +89,6 @@ class Steering:
 
     time_gap: TimeGap | None = None
     personal_space: PersonalSpace | None = None
-    lanes: Lanes | None = None
+    lanes: LaneKeeping | None = None
     wall_push: WallPush | None = None
     wander: Wander | None = None

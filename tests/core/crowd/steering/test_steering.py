@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld, policy_of
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.steering.parameters import (
-    Lanes,
+    LaneKeeping,
     PersonalSpace,
     Steering,
     TimeGap,
@@ -27,7 +27,7 @@ from crowdbot.core.types.arrays import Array
 FULL = Steering(
     time_gap=TimeGap(),
     personal_space=PersonalSpace(),
-    lanes=Lanes(),
+    lanes=LaneKeeping(),
     wall_push=WallPush(),
     wander=Wander(),
 )
@@ -129,14 +129,14 @@ def test_personal_space_never_looks_through_somebody() -> None:
 COMES, GOES = (-1.0, 0.0), (1.0, 0.0)
 
 
-def aside(part: Lanes, *others: tuple[tuple[float, float], tuple[float, float]]) -> float:
+def aside(part: LaneKeeping, *others: tuple[tuple[float, float], tuple[float, float]]) -> float:
     """Acceleration to the left, m/s^2, of who walks along x from the origin."""
     at, v = zip(((0.0, 0.0), GOES), *others, strict=True)
     return float(steered(Steering(lanes=part), seen(list(at), list(v)))[0, 1])
 
 
 def test_lanes_by_hand() -> None:
-    part = Lanes(strength=1.0, reach=2.0, half_width=0.6, follow=0.5)
+    part = LaneKeeping(strength=1.0, reach=2.0, half_width=0.6, follow=0.5)
     near, far = math.exp(-0.5), math.exp(-1.0)
     # Away from who comes, 0.15 m to the left.
     away = -0.75 * near
@@ -148,7 +148,7 @@ def test_lanes_by_hand() -> None:
 
 
 def test_lanes_need_people_who_come() -> None:
-    part = Lanes(strength=1.0)
+    part = LaneKeeping(strength=1.0)
     assert aside(part, ((1.0, 0.3), GOES), ((2.0, -0.1), (0.0, 0.0))) == 0.0
     assert aside(part, ((1.0, 0.61), COMES)) == 0.0  # beside
     assert aside(part, ((-1.0, 0.1), COMES)) == 0.0  # behind
@@ -156,7 +156,7 @@ def test_lanes_need_people_who_come() -> None:
 
 @given(st.floats(0.1, 2.9), st.floats(0.01, 0.59), st.floats(0.1, 2.0))
 def test_lanes_are_the_same_left_and_right(along: float, side: float, speed: float) -> None:
-    part = Lanes()
+    part = LaneKeeping()
     left = aside(part, ((along, side), (-speed, 0.0)), ((1.0, -side), GOES))
     right = aside(part, ((along, -side), (-speed, 0.0)), ((1.0, side), GOES))
     assert left == pytest.approx(-right, abs=1e-12)
