@@ -25,6 +25,7 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from crowdbot.cli._complete import offer
+from crowdbot.cli._mishaps import tell_of_threads
 from crowdbot.errors import CrowdbotError, SpecError, did_you_mean, nearest, printable
 
 _SETTINGS: dict[str, Any] = {
@@ -41,6 +42,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         argv: arguments without the program's name; default: those of the process.
     """
     _tolerate_any_encoding()
+    tell_of_threads()
     try:
         return _run(argv)
     except CrowdbotError as error:
@@ -57,10 +59,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except Exception as error:
         if os.environ.get("CROWDBOT_DEBUG"):
             raise
-        _say(
-            f"internal error {type(error).__name__}: {error}; "
-            "run with CROWDBOT_DEBUG=1 for the traceback"
-        )
+        from crowdbot.cli._mishaps import internal_error
+
+        _say(internal_error(error))
         return 4
 
 

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from crowdbot.errors import printable
+
 #: Every code and its title; docs/reference/errors.md has a paragraph on each.
 CODES = {
     "E001": "file that cannot be read",
@@ -116,7 +118,7 @@ class Diagnostic:
 
     def headline(self) -> str:
         """``file:line:column: error[code] message``."""
-        return f"{self.mark}: error[{self.code}] {_clip(self.message)}"
+        return f"{self.mark}: error[{self.code}] {_shown(self.message)}"
 
     def sort_key(self) -> tuple[str, int, int, str, str]:
         """By position, then code."""
@@ -149,7 +151,7 @@ def render(diagnostics: Iterable[Diagnostic]) -> str:
 
 
 def _render_one(diagnostic: Diagnostic) -> str:
-    lines = [diagnostic.headline(), *_snippet(diagnostic.mark, _clip(diagnostic.hint))]
+    lines = [diagnostic.headline(), *_snippet(diagnostic.mark, _shown(diagnostic.hint))]
     lines += [f"  {what} {mark}" for what, mark in diagnostic.also]
     lines += [f"  included from {_place(mark)}" for mark in _includers(diagnostic.mark)]
     return "\n".join(lines)
@@ -162,11 +164,16 @@ def _snippet(mark: Mark, hint: str) -> list[str]:
     start = max(0, mark.column - _WINDOW // 2) if len(line) > _WINDOW else 0
     shown = line[start : start + _WINDOW]
     column = min(mark.column - start, len(shown))
-    carets = "^" * max(1, min(mark.width, len(shown) - column))
+    before, marked = _shown(shown[:column]), _shown(shown[column : column + max(mark.width, 1)])
     return [
-        f"{mark.line + 1:>5} | {shown}".rstrip(),
-        f"      | {' ' * column}{carets} {hint}".rstrip(),
+        f"{mark.line + 1:>5} | {_shown(shown)}".rstrip(),
+        f"      | {' ' * len(before)}{'^' * max(1, len(marked))} {hint}".rstrip(),
     ]
+
+
+def _shown(text: str) -> str:
+    """What a terminal may get: on one line, hidden characters as escapes, and not all of it."""
+    return printable(_clip(text)).replace("\n", "\\n")
 
 
 def _clip(text: str) -> str:

@@ -128,7 +128,7 @@ def parse(text: str, source: Source, problems: list[Diagnostic], shift: int = 0)
 def _explained(error: MarkedYAMLError, shift: int) -> tuple[str, str]:
     """Message and hint for an error of the YAML parser, whose own words are for its authors."""
     problem, context, start = error.problem or "", error.context or "", error.context_mark
-    if "flow" in context and start is not None:
+    if ("flow mapping" in context or "flow sequence" in context) and start is not None:
         what = "'{'" if "mapping" in context else "'['"
         column = start.column + 1 + (shift if start.line == 0 else 0)
         where = f"line {start.line + 1}, column {column}"

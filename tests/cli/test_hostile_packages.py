@@ -188,6 +188,38 @@ def test_a_failed_plugin_fails_its_check(site: Site) -> None:
     assert "SyntaxError" in done.stdout
 
 
+#: Modules that break crowdbot's process rather than themselves.
+THREAD = (
+    "\nimport threading\ndef go(): raise OSError('no bus')\nthreading.Thread(target=go).start()\n"
+)
+REPLACES = "\nimport crowdbot.dsl.expand as e\ndef no(*_, **__): raise ZeroDivisionError('mine')\n" + (
+    "e.expand_document = e.load_document = no\n"
+)
+
+
+def test_what_a_thread_of_a_plugin_raises_is_one_line(tmp_path: Path) -> None:
+    site = Site(tmp_path)
+    site.install("thread", planner("thread.go") + THREAD)
+    done = site.run("plugins")
+    assert (done.returncode, "thread.go" in done.stdout) == (0, True)
+    assert "ended: OSError: no bus (" in done.stderr
+    assert "plugin_thread.py" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert "Traceback" in site.run("plugins", CROWDBOT_DEBUG="1").stderr
+
+
+def test_an_internal_error_names_the_plugins_of_others(tmp_path: Path) -> None:
+    site = Site(tmp_path)
+    site.install("replaces", planner("replaces.go") + REPLACES)
+    done = site.run("validate", "challenge-2020")
+    assert done.returncode == 4
+    assert "internal error ZeroDivisionError: mine" in done.stderr
+    assert done.stderr.endswith(
+        "CROWDBOT_PLUGINS=builtin to see whether it is a plugin's: replaces\n"
+    )
+    assert site.run("validate", "challenge-2020", CROWDBOT_PLUGINS="builtin").returncode == 0
+
+
 # ----------------------------------------------------------------------- allow-list
 @pytest.fixture
 def two(tmp_path: Path) -> Site:

@@ -176,3 +176,11 @@ def test_shift_moves_the_first_line_only() -> None:
     parse("01", Source("--set", ("k=01",)), problems, shift=2)
     assert problems[0].mark.column == 2
     assert math.isclose(to_data(parse("1.5", Source("--set"), [], shift=2)), 1.5)
+
+
+def test_a_text_that_ends_too_early_is_not_said_to_be_a_list() -> None:
+    with pytest.raises(SpecError) as error:
+        parse("a: {b: {c: {", Source("t", ["a: {b: {c: {"]), [])
+    (found,) = error.value.diagnostics
+    assert (found.code, str(found.mark)) == ("E002", "t:1:13")
+    assert "'['" not in found.message

@@ -16,7 +16,7 @@ from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import installed
 from crowdbot.dsl.diagnostics import MAX_ERRORS, Diagnostic, render
 from crowdbot.dsl.expand import expand_document, load_document
-from crowdbot.errors import SpecError
+from crowdbot.errors import SpecError, hidden_character
 from tests.paths import DATA
 
 pytestmark = pytest.mark.slow
@@ -180,3 +180,26 @@ def test_no_heavy_imports(argv: list[str]) -> None:
         [sys.executable, "-c", code, *argv], capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stderr) == (0, "[]\n")
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "carets"),
+    [
+        (HEAD.replace("id: s", "id: 's\u202egnp'"),
+         "    2 | suite: {id: 's\\u202egnp'}", " " * 13 + "^" * 12),
+        (HEAD.replace("minimal.yaml", '"a\\0b\\ny"'),
+         '    4 |   extends: "a\\0b\\ny"', " " * 12 + "^" * 8),
+        (HEAD + "\ufeff  x: 1\n", "    5 | \\ufeff  x: 1", " " + "^" * 8),
+    ],
+)  # fmt: skip
+def test_a_terminal_gets_no_hidden_characters(
+    text: str, line: str, carets: str, file: Path
+) -> None:
+    file.write_text(text, encoding="utf-8")
+    found = errors(file)
+    shown = render(found)
+    assert not hidden_character(shown, allowed="\n")
+    assert shown.split("\n")[0] == found[0].headline()
+    lines = shown.split("\n")
+    assert lines[1] == line
+    assert lines[2].startswith(f"      |{carets}")

@@ -1,0 +1,53 @@
+"""What is said of errors that nobody foresaw, here or in a plugin's thread."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import traceback
+
+from crowdbot.errors import printable
+
+
+def internal_error(error: Exception) -> str:
+    """One line; it names the plugins of others, which run in this process and can break it."""
+    from importlib.metadata import entry_points
+
+    text = (
+        f"internal error {type(error).__name__}: {error}; "
+        "run with CROWDBOT_DEBUG=1 for the traceback"
+    )
+    allowed = os.environ.get("CROWDBOT_PLUGINS", "")
+    others = sorted(
+        {e.name for e in entry_points(group="crowdbot") if not e.value.startswith("crowdbot.")}
+    )
+    if others and allowed != "builtin":
+        text += (
+            f", or with CROWDBOT_PLUGINS=builtin to see whether it is a plugin's: {_few(others)}"
+        )
+    return text
+
+
+def tell_of_threads() -> None:
+    """An exception in a thread that a plugin started is one line, as any other is."""
+    usual = threading.excepthook is threading.__excepthook__
+    if usual and not os.environ.get("CROWDBOT_DEBUG"):
+        threading.excepthook = _tell
+
+
+def _tell(what: threading.ExceptHookArgs) -> None:
+    if what.exc_type is SystemExit:
+        return
+    where = "".join(
+        f" ({last.filename}:{last.lineno})"
+        for last in traceback.extract_tb(what.exc_traceback)[-1:]
+    )
+    said = "".join(traceback.format_exception_only(what.exc_type, what.exc_value)).strip()
+    name = what.thread.name if what.thread is not None else "?"
+    print(printable(f"warning: thread {name} ended: {said}{where}"), file=sys.stderr)
+
+
+def _few(names: list[str], limit: int = 5) -> str:
+    more = f" and {len(names) - limit} more" if len(names) > limit else ""
+    return ", ".join(names[:limit]) + more
