@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-
-from crowdbot.errors import printable
+from unicodedata import category
 
 #: Every code and its title; docs/reference/errors.md has a paragraph on each.
 CODES = {
@@ -172,8 +171,19 @@ def _snippet(mark: Mark, hint: str) -> list[str]:
 
 
 def _shown(text: str) -> str:
-    """What a terminal may get: on one line, hidden characters as escapes, and not all of it."""
-    return printable(_clip(text)).replace("\n", "\\n")
+    """What a terminal may get: on one line, hidden characters as escapes, and not all of it.
+
+    As `crowdbot.errors.printable` has it, which knows this module.
+    """
+    text = _clip(text)
+    if text.isascii() and text.isprintable():
+        return text
+    return "".join(
+        c.encode("unicode_escape").decode()
+        if category(c) in ("Cc", "Cf", "Cs", "Zl", "Zp") and c not in "\t\u200c\u200d"
+        else c
+        for c in text
+    )
 
 
 def _clip(text: str) -> str:
