@@ -35,7 +35,7 @@ def test_stands_before_a_standing_person() -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.floats(-0.6, 0.6), st.floats(0.1, 1.0))
 def test_never_touches_what_stands(y: float, speed: float) -> None:
     out = World([[5, y, 0, 0]]).run(build(StopAndGoSpec(speed=speed)), time_limit=12.0, stop_at=7.0)
