@@ -14,6 +14,7 @@ from crowdbot.dsl import (
     PlannerRole,
     PlannerSpec,
     PositiveAngle,
+    PositiveDuration,
     PositiveFrequency,
     PositiveLength,
 )
@@ -52,6 +53,10 @@ class StopAndGoSpec(PlannerSpec):
     )
     look_back: NonNegativeDuration = Field(
         default=0.3, description="Age of the scan that shows who walks; 0 takes all as still, s."
+    )
+    leaving_margin: PositiveDuration | None = Field(
+        default=0.2,
+        description="Who walks out of the box is out so much later, s; unset: waits for it.",
     )
 
 

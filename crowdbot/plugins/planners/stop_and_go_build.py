@@ -2,7 +2,9 @@
 
 The box is as long as the robot's stopping distance, and what somebody who comes towards it walks
 until it stands; it shrinks while the robot brakes. The limit below is that rule at every speed at
-once: the largest speed whose box is still empty.
+once: the largest speed whose box is still empty. Who walks out of the way to the side only has to
+be out before the robot is there: waiting until the box is empty, it stands a third of its time in
+two dense streams.
 
 People who bump into the robot turn it, which its wheels do not notice: it heads by the walls.
 """
@@ -35,6 +37,8 @@ from crowdbot.plugins.planners.stop_and_go import StopAndGoSpec
 
 #: People farther away do not matter yet, m.
 _REACH = 4.0
+#: So far ahead somebody is believed to walk on as now, s.
+_FORESIGHT = 2.0
 
 
 class StopAndGo:
@@ -96,10 +100,14 @@ class StopAndGo:
         points = with_discs(rest, people, spec.person_radius)
         velocities = np.zeros_like(points)
         carry(points, velocities, people, going, spec.person_radius)
-        inside = (np.abs(points[:, 1]) <= self._half_width + spec.side_margin) & (points[:, 0] > 0)
+        half = self._half_width + spec.side_margin
+        inside = (np.abs(points[:, 1]) <= half) & (points[:, 0] > 0)
         approach = np.maximum(0.0, -velocities[inside, 0])
         room = points[inside, 0] - self._front - spec.front_margin
         speeds = safe_speed(room, approach, self._limits.a_max, spec.reaction_time)
+        if spec.leaving_margin is not None:
+            out = time_out(points[inside, 1], velocities[inside, 1], half) + spec.leaving_margin
+            speeds = np.maximum(speeds, passing_speed(room, approach, out))
         return float(speeds.min(initial=math.inf)), float(room.min(initial=math.inf))
 
 
@@ -118,6 +126,33 @@ def safe_speed(room: Array, approach: Array, deceleration: float, reaction_time:
     lag = deceleration * reaction_time + approach
     left = np.maximum(0.0, room - approach * reaction_time)
     return np.asarray(np.sqrt(lag * lag + 2.0 * deceleration * left) - lag)
+
+
+def time_out(y: Array, sideways: Array, half_width: float) -> Array:
+    """When things that walk sideways are out of a lane around the x axis, s; inf if never.
+
+    Args:
+        y: (K,) where they are in the lane, m.
+        sideways: (K,) their speeds along y, m/s.
+        half_width: of the lane, m.
+    """
+    left = half_width - np.sign(sideways) * y
+    moving = sideways != 0.0
+    return np.where(moving, left / np.where(moving, np.abs(sideways), 1.0), math.inf)
+
+
+def passing_speed(room: Array, approach: Array, out: Array) -> Array:
+    """The largest v at which the robot is not there before things have gone; 0 without room.
+
+    That is the v with v * out + approach * out <= room.
+
+    Args:
+        room: (K,) m.
+        approach: (K,) speeds towards the robot, m/s.
+        out: (K,) when they are out of its way, s; later than is foreseen counts as never.
+    """
+    foreseen = np.minimum(out, _FORESIGHT)
+    return np.where(out <= _FORESIGHT, np.maximum(0.0, room / foreseen - approach), 0.0)
 
 
 def build(spec: StopAndGoSpec) -> StopAndGo:
