@@ -36,7 +36,7 @@ def test_stands_before_a_standing_person() -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.floats(-0.6, 0.6), st.floats(0.1, 1.0))
 def test_never_touches_what_stands(y: float, speed: float) -> None:
     spec = StopAndGoSpec(speed=speed, most_aside=0.0)
