@@ -91,7 +91,7 @@ def draw_pages(runs: Path, folder: Path) -> list[str]:
     readme = ROOT / "README.md"
     readme.write_text(with_figures(readme.read_text(encoding="utf-8"), shown), encoding="utf-8")
     _crowdbot("simulate", SUITE, ID, "--planner", "stop_and_go", "--out", str(runs), cwd=folder)
-    _crowdbot("report", str(runs), "--out", "report.html", cwd=folder)
+    _crowdbot("report", str(runs), "--suite", SUITE, "--out", "report.html", cwd=folder)
     other = run.parents[1] / "stop_and_go" / "seed-0"
     _crowdbot("view", str(run), "--out", "replay.html", cwd=folder)
     _crowdbot("view", str(run), str(other), "--out", "compare.html", cwd=folder)
