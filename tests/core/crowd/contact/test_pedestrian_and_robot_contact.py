@@ -46,7 +46,7 @@ NUMBERS = st.floats(0, 2).filter(lambda x: x == 0.0 or x > 1e-100)
 
 
 @given(st.lists(st.tuples(NUMBERS, NUMBERS), min_size=2, max_size=12))
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 def test_pushes_balance_and_match_all_pairs(position: list[tuple[float, float]]) -> None:
     found = _push(_people(position))
     assert np.sum(found, axis=0) == pytest.approx(np.zeros(2), abs=1e-9)
