@@ -184,9 +184,9 @@ def photograph(url: str, file: Path) -> bool:
 
 def _crowdbot(*words: str, cwd: Path) -> str:
     environment = {**os.environ, "COLUMNS": "80", "NO_COLOR": "1"}
-    done = subprocess.run(
-        [BIN, *words], cwd=cwd, env=environment, capture_output=True, text=True, check=True
-    )
+    done = subprocess.run([BIN, *words], cwd=cwd, env=environment, capture_output=True, text=True)
+    if done.returncode:
+        raise SystemExit(f"{done.stderr}crowdbot {' '.join(words)} failed")
     return done.stdout
 
 
