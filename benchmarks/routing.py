@@ -5,8 +5,8 @@ through an office of 24 rooms, all without a robot. The processor time of each d
 it is made: aims (`Router.find`) and velocities (the crowd policy), so that both meet the same
 machine at the same moment; of each decision the least of several rounds counts.
 
-Runs (``--runs``): the same scenarios with robot and dwa, each beside a plain corridor 6 m wide
-with as many people at the same density, who avoid each other likewise and walk both ways; they
+Runs (``--runs``): the same scenarios with robot and dwa, each beside a plain corridor with as
+many people at the same density, who avoid each other likewise and walk both ways; they
 take turns, a simulated second each, and of each second the least of several counts is taken
 (`turns.py`).
 
@@ -42,6 +42,8 @@ from crowdbot.dsl.scenario import Scenario
 
 PLACES = ("pillars", "crossing", "corner", "junction", "bottleneck", "shed", "street", "plaza")
 DENSITY, WIDTH = 0.4, 6.0  # people per m^2 of challenge-2021's densest cells; m
+#: A corridor is narrower rather than shorter: else the robot arrives within the seconds counted.
+LEAST_LENGTH = 15.0  # m
 SIDE, DOOR, ROOMS = 5.0, 1.4, (6, 4)  # of the office, m
 _CROWD = """\
   crowd:
@@ -110,12 +112,13 @@ def _opened(text: str) -> Scenario:
 
 def corridor(people: int) -> Scenario:
     """A plain corridor with so many people, half of them in each direction."""
-    length = round(people / (DENSITY * WIDTH), 3)
+    width = round(min(WIDTH, people / (DENSITY * LEAST_LENGTH)), 3)
+    length = round(people / (DENSITY * width), 3)
     one = people // 2
     return _opened(
         _CORRIDOR % {
-            "length": length, "last": length - 2.0, "beyond": length + 1.0, "width": WIDTH,
-            "half": 0.5 * WIDTH, "crowd": _CROWD, "one": one, "two": people - one,
+            "length": length, "last": length - 2.0, "beyond": length + 1.0, "width": width,
+            "half": 0.5 * width, "crowd": _CROWD, "one": one, "two": people - one,
         }
     )  # fmt: skip
 

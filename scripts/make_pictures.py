@@ -91,7 +91,7 @@ def draw_pages(runs: Path, folder: Path) -> list[str]:
     readme = ROOT / "README.md"
     readme.write_text(with_figures(readme.read_text(encoding="utf-8"), shown), encoding="utf-8")
     _crowdbot("simulate", SUITE, ID, "--planner", "stop_and_go", "--out", str(runs), cwd=folder)
-    _crowdbot("report", str(runs), "--out", "report.html", cwd=folder)
+    _crowdbot("report", str(runs), "--suite", SUITE, "--out", "report.html", cwd=folder)
     other = run.parents[1] / "stop_and_go" / "seed-0"
     _crowdbot("view", str(run), "--out", "replay.html", cwd=folder)
     _crowdbot("view", str(run), str(other), "--out", "compare.html", cwd=folder)
@@ -184,9 +184,9 @@ def photograph(url: str, file: Path) -> bool:
 
 def _crowdbot(*words: str, cwd: Path) -> str:
     environment = {**os.environ, "COLUMNS": "80", "NO_COLOR": "1"}
-    done = subprocess.run(
-        [BIN, *words], cwd=cwd, env=environment, capture_output=True, text=True, check=True
-    )
+    done = subprocess.run([BIN, *words], cwd=cwd, env=environment, capture_output=True, text=True)
+    if done.returncode:
+        raise SystemExit(f"{done.stderr}crowdbot {' '.join(words)} failed")
     return done.stdout
 
 

@@ -319,15 +319,15 @@ def page(found: Sequence[Measured]) -> str:
 NOTES: tuple[str, ...] = (
     "## Where they are wrong",
     "",
-    "- `calibrated` walks faster than Weidmann's people at all densities, by 8 to 22 %: it was "
+    "- `calibrated` walks faster than Weidmann's people at all densities, by 10 to 28 %: it was "
     "fitted to people who were told to walk through a corridor and who prefer more than 1.34 m/s. "
     "The shape is the same.",
     "- The challenge's mix does not slow down: up to 2 people/m² in one direction everybody keeps "
     "walking at nearly the preferred speed, twice as fast as published. A likely cause, not "
     "tested: its cost functions look at collisions, and people who walk the same way at the same "
     "pace are not going to collide. A robot in such a flow meets a crowd that is dense and fast.",
-    "- `calibrated` is slower than published where it is narrow, by 28 % at 0.8 m, and below the "
-    "range by 2 to 10 % from 1.2 m on. The challenge's mix is within the range at 0.8 m, 2 m and "
+    "- `calibrated` is slower than published where it is narrow, by 24 % at 0.8 m, and below the "
+    "range by 1 to 10 % from 1.2 m on. The challenge's mix is within the range at 0.8 m, 2 m and "
     "2.4 m, and below it by 29 % at 1.2 m and by 15 % at 1.6 m. Likely causes, not tested: discs "
     "do not turn their shoulders, and two of the mix's (0.66 m wide) do not fit side by side into "
     "1.2 m.",

@@ -109,8 +109,24 @@ def with_wheels(sensor: Sensor, radius: float, track: float) -> Sensor:
         sensor: any; odometry has fields ``wheel_radius`` and ``track``.
         radius, track: of the robot, m.
     """
-    wheels = {"wheel_radius": radius, "track": track}
-    missing = {n: v for n, v in wheels.items() if getattr(sensor, n, v) is None}
+    return _told(sensor, {"wheel_radius": radius, "track": track})
+
+
+def with_driver(
+    sensor: Sensor, goal: tuple[float, float], max_speed: float, max_yaw_rate: float
+) -> Sensor:
+    """A sensor with what a robot's driver knows, where it has a place for it and was told none.
+
+    Args:
+        sensor: any; a joystick has fields ``goal``, ``max_speed`` and ``max_yaw_rate``.
+        goal: of the robot's task, m.
+        max_speed, max_yaw_rate: of the robot, m/s and rad/s.
+    """
+    return _told(sensor, {"goal": goal, "max_speed": max_speed, "max_yaw_rate": max_yaw_rate})
+
+
+def _told(sensor: Sensor, numbers: Mapping[str, Any]) -> Sensor:
+    missing = {n: v for n, v in numbers.items() if getattr(sensor, n, v) is None}
     return sensor.model_copy(update=missing) if missing else sensor
 
 

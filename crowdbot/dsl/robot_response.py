@@ -49,8 +49,8 @@ class RobotResponse(Spec):
     )
     margin: NonNegativeLength = Field(
         default=0.25,
-        description="Perceived radius minus real radius of the robot, m: of the disc that crowd "
-        "policies are shown, and in which `keep_off` acts.",
+        description="Perceived radius minus real radius of the robot, m, of the disc that crowd "
+        "policies are shown; and how far around the outline `keep_off` acts.",
     )
     velocity: Literal["visible", "hidden"] = Field(
         default="visible", description="Whether people see how the robot moves."
@@ -164,9 +164,9 @@ class HumanResponse(RobotResponse):
 
 
 class KeepOffResponse(RobotResponse):
-    """A force inside the perceived disc: the response before 2026-11-22, for comparison.
+    """A force within `margin` of the outline: the response before 2026-11-22, for comparison.
 
-    `stiffness × overlap` drives people out of the perceived disc, without a limit. It throws them
+    `stiffness × overlap` drives people out of the margin, without a limit. It throws them
     aside at 8 to 10 m/s² and lets a blind robot through; see decision 0017.
     """
 

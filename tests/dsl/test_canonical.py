@@ -137,13 +137,13 @@ def respelt(data: Any, rng: random.Random) -> Any:
     return data
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.randoms(use_true_random=False))
 def test_key_order_and_number_spelling_do_not_count(rng: random.Random) -> None:
     assert hash_of(respelt(DATA, rng)) == hash_of(DATA)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(1, 10_000), st.sampled_from(["m", "cm", "mm"]))
 def test_units_do_not_count(millimetres: int, unit: str) -> None:
     number = Decimal(millimetres) / Decimal({"m": 1000, "cm": 10, "mm": 1}[unit])
@@ -154,7 +154,7 @@ def test_units_do_not_count(millimetres: int, unit: str) -> None:
     assert hash_of(written) == hash_of(other)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     st.sampled_from(SEMANTIC),
     st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=20)

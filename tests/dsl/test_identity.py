@@ -108,7 +108,7 @@ class Formatter:
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.large_base_example])
+@settings(max_examples=60, suppress_health_check=[HealthCheck.large_base_example])
 @given(st.randoms(use_true_random=False))
 def test_reformatting_does_not_move_the_hash(
     tmp_path_factory: pytest.TempPathFactory, rng: random.Random

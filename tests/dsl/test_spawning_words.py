@@ -223,7 +223,7 @@ AGENTS = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.lists(AGENTS, min_size=1, max_size=5))
 def test_what_is_written_is_read(agents: list[dict[str, Any]]) -> None:
     out = io.StringIO()
@@ -241,7 +241,7 @@ def test_what_is_written_is_read(agents: list[dict[str, Any]]) -> None:
     assert to_data(node) == [dict(sorted(agent.items())) for agent in agents]
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.text('id,xy\n"; >a.1-e\té\u2028', max_size=60) | st.text(max_size=40))
 def test_any_text_is_a_table_or_an_error_with_a_place(text: str) -> None:
     lines = text.split("\n")

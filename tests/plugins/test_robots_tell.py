@@ -26,7 +26,11 @@ from crowdbot.core.view.build import field_of_view
 from crowdbot.dsl import Mount, SensorSpec
 from crowdbot.dsl.component_specs import with_wheels
 from crowdbot.plugins.planners.robot_outline_build import disc_radius, half_width_and_front
+from crowdbot.plugins.sensors.infrared import InfraredSpec
+from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 from crowdbot.plugins.sensors.people_tracker import PeopleTrackerSpec
+from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
+from crowdbot.plugins.sensors.ultrasound import UltrasoundSpec
 from crowdbot.plugins.sensors.wheel_odometry import WheelOdometrySpec
 from tests.paths import ROOT
 
@@ -114,6 +118,21 @@ def _sensor(**fields: Any) -> SensorSpec:
     })()  # fmt: skip
     assert isinstance(made, SensorSpec)
     return made
+
+
+@pytest.mark.parametrize(
+    ("spec", "half", "reach"),
+    [
+        (UltrasoundSpec(), 0.3296, 4.5),
+        (UltrasoundSpec(radius=0.5, range_max=3.0), 0.2512, 3.0),
+        (InfraredSpec(dispersion=0.1), 0.1, 4.5),
+        (PeopleTrackerSpec(view=2.0), 1.0, 10.0),
+        (RgbdCameraSpec(horizontal_view=1.2, depth_max=6.0), 0.6, 6.0),
+        (Lidar2dSpec(), math.radians(120.0), 10.0),
+    ],
+)
+def test_our_sensors_show_their_own_opening(spec: SensorSpec, half: float, reach: float) -> None:
+    assert field_of_view(spec) == pytest.approx((-half, half, reach), abs=1e-4)
 
 
 def test_sensors_of_plugins_show_what_they_reach() -> None:

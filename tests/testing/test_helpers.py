@@ -38,7 +38,7 @@ scenario:
 @pytest.mark.parametrize("component", ALL, ids=lambda c: c.kind)
 def test_random_specs_are_valid_and_come_back(component: Component[Any]) -> None:
     @given(spec=specs(component, BUILT_IN))
-    @settings(max_examples=5, deadline=None, derandomize=True, database=None)
+    @settings(max_examples=5, derandomize=True, database=None)
     def holds(spec: Any) -> None:
         again = type(spec).model_validate(spec.model_dump(mode="json"))
         assert again == spec
@@ -50,7 +50,7 @@ def test_random_specs_differ() -> None:
     found = set()
 
     @given(spec=specs(BUILT_IN.find("planner", "dwa"), BUILT_IN), _=st.integers())
-    @settings(max_examples=30, deadline=None, derandomize=True, database=None)
+    @settings(max_examples=30, derandomize=True, database=None)
     def gather(spec: Any, _: int) -> None:
         found.add(spec.model_dump_json())
 

@@ -135,7 +135,7 @@ def _advance(
     if agents[i, BESIDE] != 0.0:
         ax, ay = stop_short(agents, i, people.radius, robots, outlines, world.response)
     elif world.response[KIND] == KEEP_OFF and people.heeds_robot[i]:
-        ax, ay = keep_off(agents, i, people.radius, robots, world.response)
+        ax, ay = keep_off(agents, i, people.radius, robots, outlines, world.response)
     ax += agents[i, PUSH_X] + reaction[i, 0] / people.mass[i]
     ay += agents[i, PUSH_Y] + reaction[i, 1] / people.mass[i]
     _move(agents, i, people.max_speed[i], ax, ay, dt)

@@ -188,6 +188,11 @@ def wrench(ns: int, frame: str, values: Array) -> Any:
     return new("geometry_msgs/WrenchStamped", header=header(ns, frame), wrench=pushed)
 
 
+def twist_stamped(ns: int, frame: str, v: float, w: float) -> Any:
+    """Velocity ahead (m/s) and yaw rate (rad/s)."""
+    return new("geometry_msgs/TwistStamped", header=header(ns, frame), twist=twist(v, 0.0, w))
+
+
 def numbers(values: Array) -> Any:
     """The values of a sensor of unknown category, flattened row by row."""
     dims, stride = [], values.size

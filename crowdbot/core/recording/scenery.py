@@ -26,12 +26,15 @@ _OCCUPIED = 100
 
 
 def static_frames(header: RecordingHeader) -> list[Any]:
-    """Transforms ``map`` to ``odom``, ``base_footprint`` to ``base_link``, and to all sensors."""
-    odom, footprint, base = (in_namespace(header.namespace, f) for f in ("odom", BASE, "base_link"))
-    frames = [ros.transform(0, "map", odom, (0.0, 0.0, 0.0), 0.0)]
+    """Transforms ``map`` to ``odom``, ``base_footprint`` to ``base_link``, and to all sensors.
+
+    None without a robot, as what people of a fleet are recorded with: nobody's odometry.
+    """
     robot = header.robot
     if robot is None:
-        return frames
+        return []
+    odom, footprint, base = (in_namespace(header.namespace, f) for f in ("odom", BASE, "base_link"))
+    frames = [ros.transform(0, "map", odom, (0.0, 0.0, 0.0), 0.0)]
     frames.append(ros.transform(0, footprint, base, (0.0, 0.0, robot.base_height), 0.0))
     own = [in_namespace(header.namespace, frame) for frame in FRAMES]
     mounted = {s.frame: s for s in header.sensors.values() if s.frame not in own}

@@ -93,8 +93,9 @@ class ToolTopics:
             self._file.put(Topic.PATH, ns, self._way.path(ns))
 
     def _scenery(self, header: RecordingHeader, description: str) -> None:
-        frames = ros.transforms(scenery.static_frames(header))
-        self._file.put(Topic.TF_STATIC, 0, frames, latched=True)
+        frames = scenery.static_frames(header)
+        if frames:
+            self._file.put(Topic.TF_STATIC, 0, ros.transforms(frames), latched=True)
         if description:
             text = ros.new("std_msgs/String", data=description)
             self._file.put(Topic.DESCRIPTION, 0, text, latched=True)

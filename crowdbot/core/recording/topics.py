@@ -78,6 +78,8 @@ def sensor_topics(sensors: Mapping[str, SensorInfo], namespace: str = "") -> dic
             topics[name] = _imu(f"/{name}/imu", info)
         elif info.ros_type == "geometry_msgs/msg/WrenchStamped" and info.shape == (3,):
             topics[name] = _wrench(f"/{name}/wrench", info)
+        elif info.ros_type == "geometry_msgs/msg/TwistStamped" and info.shape == (2,):
+            topics[name] = _wanted(f"/{name}/cmd_vel", info)
         else:
             topics[name] = _numbers(f"/{name}", info)
     return topics
@@ -200,6 +202,16 @@ def _wrench(topic: str, info: SensorInfo) -> SensorTopic:
     def message(ns: int, values: Array) -> bytes:
         data = np.asarray(values, np.float64)
         return blank.fill(template.stamp(ns), data[:2].tobytes(), data[2:].tobytes())
+
+    return SensorTopic(topic, blank.msgtype, message)
+
+
+def _wanted(topic: str, info: SensorInfo) -> SensorTopic:
+    blank = template.twist_stamped(info.frame)
+
+    def message(ns: int, values: Array) -> bytes:
+        data = np.asarray(values, np.float64)
+        return blank.fill(template.stamp(ns), data[:1].tobytes(), data[1:].tobytes())
 
     return SensorTopic(topic, blank.msgtype, message)
 

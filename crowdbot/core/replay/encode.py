@@ -62,7 +62,12 @@ def _scenery(shown: ShownRun) -> dict[str, Any]:
         scene = Scenery(walls=walls, stops_robot=everybody, stops_crowd=everybody)
     whom = scene.stops_robot.astype(int) + 2 * scene.stops_crowd
     walls = np.column_stack((scene.walls, whom))
-    return {"walls": nested(walls), "pillars": nested(scene.pillars)}
+    return {
+        "walls": nested(walls),
+        "pillars": nested(scene.pillars),
+        "blocks": [nested(outline) for outline in scene.blocks],
+        "steps": [nested(outline) for outline in scene.steps],
+    }
 
 
 def _people(t: Array, agents: AgentTracks) -> tuple[dict[str, Any], str]:

@@ -24,12 +24,16 @@ class Scenery:
         walls: (S, 4) segments x0, y0, x1, y1, m.
         stops_robot, stops_crowd: (S,) whom each stops.
         pillars: (P, 3) x, y, radius, m.
+        blocks: convex outlines (K, 2) of what stops robots as a whole, m.
+        steps: the same of what robots touch and people step over, m.
     """
 
     walls: Array
     stops_robot: NDArray[np.bool_]
     stops_crowd: NDArray[np.bool_]
     pillars: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    blocks: tuple[Array, ...] = ()
+    steps: tuple[Array, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -49,12 +49,22 @@ def replay_facts(record: Mapping[str, Any]) -> dict[str, str]:
 
 def scenery(parts: EnvironmentParts, height: float) -> Scenery:
     """What stands in the way of a robot of some height, m, and of people."""
-    low = parts.wall_heights[:, 0] < height
+    low = (parts.wall_heights[:, 0] < height) & ~parts.sides()
+    stops = parts.solids_stop_crowd.tolist()
+    solids = [
+        (outline, crowd)
+        for outline, (bottom, _), crowd in zip(
+            parts.solids, parts.solid_heights.tolist(), stops, strict=True
+        )
+        if bottom < height
+    ]
     return Scenery(
         walls=parts.walls[low],
         stops_robot=parts.stops_robot[low],
         stops_crowd=parts.stops_crowd[low],
         pillars=parts.pillars[parts.pillar_heights[:, 0] < height],
+        blocks=tuple(outline for outline, crowd in solids if crowd),
+        steps=tuple(outline for outline, crowd in solids if not crowd),
     )
 
 

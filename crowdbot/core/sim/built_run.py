@@ -18,7 +18,7 @@ from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotModel, robot_body, wheels_of
 from crowdbot.core.types.sensor import SensorInfo
-from crowdbot.dsl.component_specs import with_wheels
+from crowdbot.dsl.component_specs import with_driver, with_wheels
 from crowdbot.dsl.scenario import Robot, Scenario
 
 
@@ -102,8 +102,12 @@ def build_run(
     robot = scenario.robots[name]
     parts = parts or build_environment(registry, scenario.environment)
     model = build_robot(registry, robot)
-    wheels = wheels_of(model.drive)
-    sensors = {n: build_sensor(registry, with_wheels(x, *wheels)) for n, x in robot.sensors.items()}
+    task = replace(robot_task(robot, parts), robot=robot_body(model))
+    wheels, driver = wheels_of(model.drive), (task.goal, model.limits.v_max, model.limits.w_max)
+    sensors = {
+        n: build_sensor(registry, with_driver(with_wheels(x, *wheels), *driver))
+        for n, x in robot.sensors.items()
+    }
     infos = {n: _with_frame(n, sensor.info()) for n, sensor in sensors.items()}
     check_frames(model, infos)
     visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
@@ -118,7 +122,7 @@ def build_run(
         robot=robot,
         parts=parts,
         model=model,
-        task=replace(robot_task(robot, parts), robot=robot_body(model)),
+        task=task,
         sensors={n: sensors[n] for n in chosen},
         infos={n: infos[n] for n in chosen},
         visible=visible,

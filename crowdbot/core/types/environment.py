@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -52,6 +52,17 @@ class EnvironmentParts:
         if not len(self.solids_stop_crowd):
             object.__setattr__(self, "solids_stop_crowd", np.ones(len(self.solids), np.bool_))
 
+    def sides(self) -> NDArray[np.bool_]:
+        """(S,) which walls are a side of a solid: the robot meets the solid in their place."""
+        corners = {_rounded(p) for outline in self.solids for p in outline.tolist()}
+        return np.array(
+            [
+                not stops and _rounded(row[:2]) in corners and _rounded(row[2:]) in corners
+                for row, stops in zip(self.walls.tolist(), self.stops_robot, strict=True)
+            ],
+            np.bool_,
+        )
+
     def in_the_way(self, height: float) -> tuple[Array, Array, tuple[Array, ...]]:
         """What people of a height (m) go around: walls (S, 4), pillars (P, 3) and solids."""
         low = self.stops_crowd & (self.wall_heights[:, 0] < height)
@@ -61,3 +72,7 @@ class EnvironmentParts:
             self.pillars[self.pillar_heights[:, 0] < height],
             tuple(s for s, stops, bottom in solids if stops and bottom < height),
         )
+
+
+def _rounded(point: Sequence[float]) -> tuple[float, float]:
+    return round(point[0], 6), round(point[1], 6)

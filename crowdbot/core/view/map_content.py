@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
@@ -142,13 +142,13 @@ def _places(content: MapContent, world: Map) -> Iterator[Shape]:
 
 def _walls(parts: EnvironmentParts, world: Map) -> Iterator[Shape]:
     """Solids as areas, walls that are not a side of one as lines, pillars as discs."""
-    corners = {_rounded(p) for outline in parts.solids for p in outline.tolist()}
     for outline, heights in zip(parts.solids, parts.solid_heights.tolist(), strict=True):
         yield world.path(outline.tolist(), solid_role(*heights), closed=True)
-    rows = zip(parts.walls.tolist(), parts.stops_robot, parts.stops_crowd, strict=True)
+    alone = ~parts.sides()
+    rows = zip(
+        parts.walls[alone].tolist(), parts.stops_robot[alone], parts.stops_crowd[alone], strict=True
+    )
     for (x0, y0, x1, y1), robot, crowd in rows:
-        if not robot and _rounded((x0, y0)) in corners and _rounded((x1, y1)) in corners:
-            continue
         role = "wall" if robot and crowd else "wall-robot" if robot else "wall-crowd"
         yield world.path([(x0, y0), (x1, y1)], role)
     for x, y, r in parts.pillars.tolist():
@@ -158,10 +158,6 @@ def _walls(parts: EnvironmentParts, world: Map) -> Iterator[Shape]:
 def solid_role(bottom: float, top: float) -> str:
     """How something is drawn: by whether it is raised, low, or neither."""
     return "solid-raised" if bottom > 0.0 else "solid-low" if top <= LOW else "solid"
-
-
-def _rounded(point: Sequence[float]) -> tuple[float, float]:
-    return round(point[0], 6), round(point[1], 6)
 
 
 def _mesh(ways: Ways, world: Map) -> Iterator[Shape]:

@@ -118,8 +118,9 @@ def _wall_entries(parts: EnvironmentParts) -> Iterator[tuple[str, str]]:
     ):
         if role in solids:
             yield role, label
-    pairs = list(zip(parts.stops_robot.tolist(), parts.stops_crowd.tolist(), strict=True))
-    pairs = [pair for pair in pairs if pair[0] or not len(parts.solids)]  # the rest are sides
+    alone = ~parts.sides()
+    stops = parts.stops_robot[alone].tolist(), parts.stops_crowd[alone].tolist()
+    pairs = list(zip(*stops, strict=True))
     for role, pair, label in (
         ("wall", (True, True), "wall"),
         ("wall-robot", (True, False), "wall for robots only"),

@@ -1,10 +1,10 @@
-"""Stop and go: straight to the goal, waiting while somebody is in the way."""
+"""Stop and go: towards the goal, waiting while somebody is in the way and beside it no room."""
 
 from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal
 
-from annotated_types import Gt, Le
+from annotated_types import Ge, Gt, Le
 from pydantic import Field
 
 from crowdbot.dsl import (
@@ -53,10 +53,16 @@ class StopAndGoSpec(PlannerSpec):
     look_back: NonNegativeDuration = Field(
         default=0.3, description="Age of the scan that shows who walks; 0 takes all as still, s."
     )
+    most_aside: Annotated[float, Ge(0), Le(1.2)] = Field(
+        default=0.785, description="Looks so far to either side for room, rad; 0: goes straight."
+    )
+    aside_reach: NonNegativeLength = Field(
+        default=1.0, description="Nearer to the goal than this it goes straight, m."
+    )
 
 
 STOP_AND_GO = Component(
     spec=StopAndGoSpec,
     build="crowdbot.plugins.planners.stop_and_go_build:build",
-    summary="straight to the goal, stands while something is in the way",
+    summary="to the goal where there is room, stands while something is in the way",
 )

@@ -4,6 +4,7 @@ from crowdbot.plugins.sensors.bumper import BUMPER
 from crowdbot.plugins.sensors.contact_force import CONTACT_FORCE
 from crowdbot.plugins.sensors.imu import IMU
 from crowdbot.plugins.sensors.infrared import INFRARED
+from crowdbot.plugins.sensors.joystick import JOYSTICK
 from crowdbot.plugins.sensors.lidar2d import LIDAR2D
 from crowdbot.plugins.sensors.lidar3d import LIDAR3D
 from crowdbot.plugins.sensors.people_tracker import PEOPLE_TRACKER
@@ -22,5 +23,6 @@ COMPONENTS = (
     IMU,
     BUMPER,
     CONTACT_FORCE,
+    JOYSTICK,
     PEOPLE_TRACKER,
 )

@@ -27,6 +27,10 @@ class InfraredSpec(RangeSensorSpec):
         description="Surfaces struck at a larger angle to their normal return nothing, rad.",
     )
 
+    def field_of_view(self) -> tuple[float, float, float]:
+        """First and last angle, rad, and reach, m, for drawings."""
+        return -self.dispersion, self.dispersion, self.range_max
+
 
 INFRARED = Component(
     spec=InfraredSpec,

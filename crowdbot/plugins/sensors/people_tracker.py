@@ -54,6 +54,10 @@ class PeopleTrackerSpec(SensorSpec):
         default=0.0, description="Standard deviation along each axis, m/s."
     )
 
+    def field_of_view(self) -> tuple[float, float, float]:
+        """First and last angle, rad, and reach, m, for drawings."""
+        return -0.5 * self.view, 0.5 * self.view, self.range_max
+
 
 PEOPLE_TRACKER = Component(
     spec=PeopleTrackerSpec,

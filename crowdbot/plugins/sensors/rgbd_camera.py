@@ -66,6 +66,10 @@ class RgbdCameraSpec(SensorSpec):
         default=False, description="Whether it takes colour images too; they need EGL."
     )
 
+    def field_of_view(self) -> tuple[float, float, float]:
+        """First and last angle, rad, and reach, m, for drawings."""
+        return -0.5 * self.horizontal_view, 0.5 * self.horizontal_view, self.depth_max
+
     @model_validator(mode="after")
     def _sensible(self) -> RgbdCameraSpec:
         if not self.depth_min < self.depth_max:

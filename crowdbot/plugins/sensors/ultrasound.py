@@ -34,6 +34,10 @@ class UltrasoundSpec(RangeSensorSpec):
         """Opening of the zone to one side, rad."""
         return math.atan(8.0 * self.radius / (3.0 * math.sqrt(3.0) * self.range_max))
 
+    def field_of_view(self) -> tuple[float, float, float]:
+        """First and last angle, rad, and reach, m, for drawings."""
+        return -self.half_angle, self.half_angle, self.range_max
+
 
 ULTRASOUND = Component(
     spec=UltrasoundSpec,

@@ -58,7 +58,7 @@ def by_hand(places: list[tuple[float, float]], i: int, v: tuple[float, float]) -
     st.lists(st.tuples(st.floats(-2, 2), st.floats(-2, 2)), min_size=2, max_size=5, unique=True),
     st.tuples(st.floats(0.1, 2), st.floats(-2, 2)),
 )
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 def test_forces_are_those_of_the_paper(
     places: list[tuple[float, float]], velocity: tuple[float, float]
 ) -> None:

@@ -33,7 +33,7 @@ def _toric(agents: Agents, **changes: object) -> CrowdEngine:
 
 
 @given(st.integers(0, 2**32 - 1), st.floats(0.1, 9.0))
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 def test_images_are_everything_within_reach_of_the_floor(seed: int, reach: float) -> None:
     """Against the endless plane, tiled by hand."""
     rng = np.random.default_rng(seed)

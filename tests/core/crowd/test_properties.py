@@ -75,7 +75,7 @@ def _share(check: object, count: int = 25) -> float:
 
 @pytest.mark.slow
 @given(SEEDS)
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 def test_permutation(seed: int) -> None:
     crowd = Draw(seed)
     order = np.random.default_rng(seed).permutation(len(crowd.at))
@@ -133,7 +133,7 @@ def test_deciding_twice_as_often_changes_little() -> None:
 
 
 @given(st.data())
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 def test_awkward_crowds_stay_finite(data: st.DataObject) -> None:
     """Coincident people, no speed, goals at hand and far off, any size, walls through people."""
     count = data.draw(st.integers(0, 8))

@@ -54,7 +54,6 @@ def _record(agents: Agents, seconds: float, world: CrowdWorld | None = None) -> 
     return trips
 
 
-@settings(deadline=None)  # the first call loads a kernel
 @given(st.tuples(*[st.floats(-3, 3)] * 4), st.floats(0.05, 1.0))
 def test_reach_fraction_is_the_first_moment_within_the_radius(
     ends: tuple[float, float, float, float], radius: float
@@ -270,7 +269,7 @@ def test_what_makes_no_sense_is_refused() -> None:
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(deadline=None, max_examples=15)
+@settings(max_examples=15)
 def test_every_trip_begins_when_the_last_one_ended(seed: int) -> None:
     """Random routes and start times: trips of an agent are a chain within its presence."""
     rng = np.random.default_rng(seed)

@@ -50,7 +50,6 @@ def states(crowd: CrowdEngine, seconds: float) -> list[Array]:
 
 
 @given(_SIDES, _UNIT, _UNIT, st.floats(0.0, 1.0))
-@settings(deadline=None)
 def test_points_of_an_area_lie_in_it(
     sides: tuple[float, float, float], u: float, v: float, margin: float
 ) -> None:
@@ -64,7 +63,7 @@ def test_points_of_an_area_lie_in_it(
 
 
 @given(_SIDES, st.floats(-6.0, 6.0), st.floats(-6.0, 6.0), st.floats(-6.0, 6.0))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_where_an_area_is_entered(
     sides: tuple[float, float, float], x0: float, y0: float, x1: float
 ) -> None:

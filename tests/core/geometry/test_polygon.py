@@ -55,7 +55,7 @@ def test_entry_is_where_the_way_crosses_the_border() -> None:
 
 @pytest.mark.parametrize("name", list(POLYGONS))
 @given(a=POINT, b=POINT)
-@settings(deadline=None, max_examples=100)
+@settings(max_examples=100)
 def test_entry_matches_sampling(name: str, a: tuple[float, float], b: tuple[float, float]) -> None:
     zone = POLYGONS[name] - (np.array([42.0, 0.0]) if name == "zone" else 0.0)
     assume(not inside(zone, *a) and math.dist(a, b) > 0.01)
@@ -73,7 +73,7 @@ def test_entry_matches_sampling(name: str, a: tuple[float, float], b: tuple[floa
 @pytest.mark.slow
 @pytest.mark.parametrize("name", list(POLYGONS))
 @given(p=POINT)
-@settings(deadline=None, max_examples=100)
+@settings(max_examples=100)
 def test_distance_matches_sampling(name: str, p: tuple[float, float]) -> None:
     zone = POLYGONS[name] - (np.array([42.0, 0.0]) if name == "zone" else 0.0)
     found = distance_to(zone, *p)

@@ -24,7 +24,7 @@ from crowdbot.dsl.semantics_spawns import most_points
 from tests.core.population.spawning_cases import AREAS, LINKS, STANDING, drawn, gaps, groups, hall
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.tuples(st.floats(10, 30), st.floats(-8, 8)),
     st.tuples(st.floats(4, 10), st.floats(4, 10)),  # people placed at random must fit
@@ -80,7 +80,7 @@ def test_density_counts_people_on_the_area() -> None:
     assert len(drawn(s={"area": area, "density": 0.25, "standing": True})) == 10
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(1, 30), st.lists(st.integers(1, 6), min_size=1, max_size=3), st.integers(0, 99))
 def test_groups_are_near_and_go_to_goals_beside_each_other(
     count: int, sizes: list[int], seed: int
@@ -149,7 +149,7 @@ def test_larger_groups_choose_first() -> None:
     assert [size[row["x"]] for row in rows] != came
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.floats(0.5, 2.0), st.floats(0.0, 0.4), st.integers(0, 99))
 def test_spread_is_a_bound_and_is_used(value: float, spread: float, seed: int) -> None:
     draw = {"value": value, "spread": spread}
@@ -211,7 +211,7 @@ def test_random_goals_are_any() -> None:
     assert any(r[0] == r[1] for r in found)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(2, 9), st.integers(0, 10**6))
 def test_linked_goals_follow_links_and_do_not_turn_back(count: int, seed: int) -> None:
     for route in routes(seed, areas=["n", "s"], order="linked", count=count):
@@ -272,7 +272,7 @@ def test_a_policy_is_drawn_evenly() -> None:
 
 
 # ------------------------------------------------------------------------------- bounds
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.lists(st.tuples(st.integers(0, 40), st.integers(0, 40), st.integers(1, 5)), max_size=25))
 def test_overlaps_are_found(found: list[tuple[int, int, int]]) -> None:
     discs = [(x / 8, y / 8, r / 8) for x, y, r in found]
@@ -289,7 +289,7 @@ def test_overlaps_are_found(found: list[tuple[int, int, int]]) -> None:
     assert all(i < k for i, k in pairs)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.floats(0.5, 20), st.floats(0.5, 20), st.floats(0.2, 2.0), st.floats(0.0, 0.2))
 def test_the_bound_on_people_holds_for_the_densest_rows(
     a: float, b: float, spacing: float, margin: float

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.core.crowd.policy import PORTAL
@@ -222,7 +222,6 @@ def test_a_lock_knows_which_robots_move_people(start: tuple[float, float], count
         assert realise(met).hash == realise(alone).hash
 
 
-@settings(deadline=None)
 @given(st.floats(-30, 30), st.floats(-30, 30), st.floats(-7, 7))
 def test_the_distance_to_an_area_is_that_to_its_nearest_point(
     x: float, y: float, rotation: float

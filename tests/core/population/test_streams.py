@@ -80,7 +80,7 @@ def test_arrivals_come_in_order_and_leave() -> None:
 
 
 @given(st.floats(0.05, 5.0), st.floats(1.0, 60.0), st.integers(0, 2**31))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_a_later_end_adds_arrivals_and_moves_none(rate: float, until: float, seed: int) -> None:
     short = arrival_times(Arrivals(rate=rate, until=until), np.random.default_rng(seed))
     longer = arrival_times(Arrivals(rate=rate, until=until + 9), np.random.default_rng(seed))
@@ -117,7 +117,7 @@ def test_everybody_has_a_direction_of_his_own() -> None:
 
 
 @given(st.floats(-3.0, 3.0), st.floats(-1.0, 1.0), st.floats(-3.1, 3.1), st.integers(0, 10**6))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_walks_from_border_to_border_stay_inside(
     u: float, v: float, turn: float, seed: int
 ) -> None:
@@ -148,7 +148,6 @@ def test_who_joins_a_queue_comes_to_its_end() -> None:
 
 
 @given(st.lists(st.tuples(st.floats(-9, 9), st.floats(-9, 9)), min_size=2, max_size=5))
-@settings(deadline=None)
 def test_places_on_a_line_are_on_it(line: list[tuple[float, float]]) -> None:
     length = sum(math.dist(a, b) for a, b in itertools.pairwise(line))
     places = list(along(line, 0.7))

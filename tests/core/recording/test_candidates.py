@@ -118,7 +118,7 @@ def test_too_many_candidates_are_not_used(tmp_path: Path) -> None:
     assert read_trajectories(path).agents is not None
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(
     goals=arrays(np.float64, (9, 2, 3), elements=st.sampled_from([0.0, -0.0, 1.5, np.nan, 40.25])),
     block=st.integers(1, 9),

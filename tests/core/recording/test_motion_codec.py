@@ -87,7 +87,7 @@ def walkers(samples: int, people: int, ticks: int = 8) -> tuple[Array, Array]:
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     data=st.data(),
     n=st.integers(1, 6),
@@ -142,7 +142,7 @@ def test_wrong_goals_and_pushes_cost_bytes_and_no_bits() -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(data=st.data(), n=st.integers(1, 5), block=st.integers(1, 5))
 def test_any_numbers_come_back_whatever_the_goals(data: st.DataObject, n: int, block: int) -> None:
     _, _, _, group = deciders(1, 4)

@@ -104,7 +104,7 @@ FLOATS = st.floats(width=64, allow_nan=True, allow_infinity=True, allow_subnorma
 
 
 @pytest.mark.slow
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(data=st.data(), n=st.integers(1, 4), m=st.integers(0, 3))
 def test_any_numbers_come_back_bit_by_bit(
     data: st.DataObject, n: int, m: int, tmp_path_factory: pytest.TempPathFactory

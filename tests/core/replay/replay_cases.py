@@ -61,6 +61,8 @@ def passing(label: str = "dwa", speed: float = 0.5, aside: float = 0.55) -> Show
             stops_robot=np.array([True, True, True]),
             stops_crowd=np.array([True, True, False]),
             pillars=np.array([[0.0, 1.2, 0.2]]),
+            blocks=(np.array([[5.0, -1.8], [5.8, -1.8], [5.8, -1.2], [5.0, -1.2]]),),
+            steps=(np.array([[0.0, -1.9], [1.0, -1.9], [1.0, -1.7], [0.0, -1.7]]),),
         ),
     )
 

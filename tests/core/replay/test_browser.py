@@ -372,7 +372,8 @@ def test_keys_and_playing(browser: Browser, one: Path) -> None:
 def test_legend_names_what_stands_there(browser: Browser, one: Path) -> None:
     with Visit(browser, one, "#paused") as page:
         legend = page.inner_text("#legend")
-        for words in ("robot", "its path", "wall for robots only", "pillar", "contact", "goal"):
+        stands = ("wall for robots only", "block", "block that people step over", "pillar", "goal")
+        for words in ("robot", "its path", "contact", *stands):
             assert words in legend
         assert "wall for people only" not in legend
         assert "other run" not in legend

@@ -23,7 +23,7 @@ from crowdbot.core.scoring.scores_csv import (
     write_scores_csv,
 )
 from crowdbot.core.types.score import Score
-from crowdbot.errors import InputError
+from crowdbot.errors import InputError, hidden_character
 
 HEADER = (
     "scenario,planner,seed,category,metric,symbol,variant,"
@@ -103,10 +103,10 @@ TEXT = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=2
 
 @given(
     value=st.floats(allow_nan=False, allow_infinity=False),
-    texts=st.tuples(TEXT, TEXT, TEXT),
+    texts=st.tuples(TEXT, TEXT, TEXT.filter(lambda text: not hidden_character(text))),
     seed=st.integers(),
 )
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_bit_for_bit(value: float, texts: tuple[str, str, str], seed: int, tmp_path: Path) -> None:
     scenario, planner, metric = texts
     file = tmp_path / "scores.csv"

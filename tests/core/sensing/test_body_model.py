@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -35,7 +35,6 @@ def walker(speed: float, walked: float, radius: float = 0.33) -> Array:
     return body
 
 
-@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1), st.floats(1.0, 2.1), st.floats(0.1, 0.6))
 def test_equals_the_formula(seed: int, height: float, radius: float) -> None:
     crowd = crowd_of(seed, 5)
@@ -44,7 +43,6 @@ def test_equals_the_formula(seed: int, height: float, radius: float) -> None:
     np.testing.assert_allclose(got, expected, atol=1e-12)
 
 
-@settings(deadline=None)
 @given(st.floats(0.0, 2.0), st.floats(0.0, 20.0), st.floats(0.1, 0.5))
 def test_everything_stays_inside_the_disc_that_touches(
     speed: float, walked: float, radius: float

@@ -25,7 +25,7 @@ def test_rounded_to_even_and_zero_where_nothing_was_measured() -> None:
     assert depth_mm(depth).tolist() == [[0, 400, 0, 1234, 65535, 0, 0]]
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(
     st.integers(0, 2**32 - 1),
     st.integers(2, 40),

@@ -30,7 +30,7 @@ def by_rays(scene: Scene, renderer: DepthRenderer, at: At, yaw: float) -> Array:
 
 
 @pytest.mark.slow
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=500)
 @given(
     st.integers(0, 2**32 - 1), st.integers(1, 40), st.integers(1, 40), st.floats(0.2, 3.0),
     st.booleans(),

@@ -43,7 +43,7 @@ def still(looks: Looks | None, x: float = 3.0) -> Scene:
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 8))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_adults_of_usual_size_look_as_ever(seed: int, count: int) -> None:
     crowd = crowd_of(seed, count)
     plain, dressed = scene_of(None, *crowd), scene_of(looks_of(*["adult"] * count), *crowd)

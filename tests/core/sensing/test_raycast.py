@@ -83,7 +83,7 @@ def reference(
 
 
 @pytest.mark.slow
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.integers(0, 2**32 - 1), st.booleans())
 def test_equals_brute_force(seed: int, flat: bool) -> None:
     rng = np.random.default_rng(seed)
@@ -110,7 +110,7 @@ def test_equals_brute_force(seed: int, flat: bool) -> None:
     np.testing.assert_allclose(incidence, a, rtol=1e-6, atol=1e-4)  # acos is blunt at 0
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32 - 1))
 def test_permutation_of_people_changes_no_scan(seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -11,7 +11,7 @@ from crowdbot.core.sensing.raycast_columns import DEEPEST, RayGrid
 from tests.core.sensing.sensing_worlds import scene_of, world
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.integers(0, 2**32 - 1), st.booleans(), st.booleans(), st.floats(0.5, 12.0))
 def test_a_grid_is_its_rays(seed: int, floor: bool, leaning: bool, reach: float) -> None:
     rng = np.random.default_rng(seed)

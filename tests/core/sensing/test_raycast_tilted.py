@@ -24,7 +24,7 @@ def _rays(rng: np.random.Generator, count: int) -> Array:
 
 
 @given(seed=st.integers(0, 10_000), height=st.floats(0.0, 2.4), reach=st.floats(1.0, 20.0))
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 def test_the_same_as_ray_by_ray(seed: int, height: float, reach: float) -> None:
     """Random walls, people and pillars, the sensor among them or inside; and the floor by hand."""
     rng = np.random.default_rng(seed)

@@ -28,7 +28,6 @@ NO_PILLARS = np.zeros((0, 3))
 
 
 @given(shape=SHAPES, x=PLACE, y=PLACE)
-@settings(deadline=None)
 def test_the_nearest_point_of_an_outline(shape: str, x: float, y: float) -> None:
     """Distance as the metrics have it; the point lies on the outline, that far along the normal."""
     corners, _ = OUTLINES[shape]
@@ -82,7 +81,7 @@ class Bump:
     shape=SHAPES, yaw=st.floats(-3.0, 3.0), w=st.floats(-3.0, 3.0), bearing=st.floats(-3.1, 3.1),
     speed=st.floats(0.2, 2.0), across=st.floats(-0.5, 0.5),
 )  # fmt: skip
-@settings(deadline=None, max_examples=80)
+@settings(max_examples=80)
 def test_linear_and_angular_momentum_balance(
     shape: str, yaw: float, w: float, bearing: float, speed: float, across: float
 ) -> None:
@@ -123,7 +122,6 @@ WALL = np.array([[1.0, -5.0, 1.0, 5.0]])
 
 
 @given(shape=SHAPES, x=st.floats(-1.0, 0.0), y=PLACE, yaw=st.floats(-3.0, 3.0))
-@settings(deadline=None)
 def test_the_gap_to_a_wall_is_that_of_the_farthest_corner(
     shape: str, x: float, y: float, yaw: float
 ) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Collection
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.core.sim import ports
@@ -140,7 +140,6 @@ def _times(timetable: Timetable, name: str, until: int) -> list[float]:
     return [k * TICK for k in range(until) if name in timetable(k)]
 
 
-@settings(deadline=None)
 @given(st.lists(st.one_of(st.sampled_from([1, 2, 8, 16, 64, 128]), st.floats(0.7, 128.0)),
                 min_size=1, max_size=4))  # fmt: skip
 def test_a_timetable_says_who_is_due(rates: list[float]) -> None:

@@ -130,7 +130,7 @@ def test_the_first_of_the_primary_scores_that_there_is_decides() -> None:
     assert (found.metric, found.beats_all) == ("safe_efficiency", True)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 2**32 - 1))
 def test_exchanging_the_planners_turns_the_lead(seed: int) -> None:
     rng = np.random.default_rng(seed)

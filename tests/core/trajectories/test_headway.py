@@ -17,7 +17,7 @@ JUMP = 10.0
 
 
 @given(gap=st.floats(0.05, 5.0), speed=st.floats(0.1, 2.0), own=st.floats(-2.0, 2.0))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_it_is_gap_over_speed_whatever_the_person_does(
     gap: float, speed: float, own: float
 ) -> None:

@@ -194,9 +194,7 @@ FULL = st.builds(
         st.tuples(points(4.0), points(4.0)).filter(lambda w: abs(w[0] - w[1]) > 0.1), max_size=3
     ),
 )
-QUICK = settings(
-    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True
-)
+QUICK = settings(max_examples=150, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
 
 
 def same(a: float, b: float) -> bool:

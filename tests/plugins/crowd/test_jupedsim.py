@@ -57,7 +57,7 @@ def test_who_has_arrived_stands_and_who_is_absent_does_not_count() -> None:
 
 
 @given(st.lists(st.tuples(st.floats(-1, 1), st.floats(-1, 1)), min_size=1, max_size=12))
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 def test_overlapping_people_are_no_error(at: list[tuple[float, float]]) -> None:
     """The library refuses bodies that overlap; ours do, now and then, even with equal centres."""
     view = _view(np.array(at))

@@ -176,7 +176,7 @@ def test_a_teleport_is_no_acceleration() -> None:
 
 
 @given(seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_work_is_never_negative_and_needs_advance(seed: int) -> None:
     run = random_scene(seed)
     found = scores_of("push_work", run)

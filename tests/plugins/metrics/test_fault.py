@@ -176,7 +176,7 @@ def test_what_is_needed() -> None:
 
 
 @given(seed=st.integers(0, 2**32 - 1), slower=st.floats(1.0, 5.0))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_slowness_never_helps(seed: int, slower: float) -> None:
     """The same run on a slower clock is worth as much less as it is slower, or nothing."""
     run = random_scene(seed)
@@ -236,7 +236,7 @@ def test_half_braking_is_not_the_proper_response() -> None:
 
 
 @given(speed=st.floats(0.2, 1.5), walks=st.floats(0.0, 2.0), aside=st.floats(-0.3, 0.3))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_the_blind_are_always_at_fault_for_who_comes_straight(
     speed: float, walks: float, aside: float
 ) -> None:

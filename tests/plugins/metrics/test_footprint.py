@@ -85,7 +85,7 @@ def test_tunnelling_through_a_polygon() -> None:
 
 @pytest.mark.parametrize("radius", [ROBOT_RADIUS, 0.3])
 @given(seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_a_capsule_without_length_is_a_disc(radius: float, seed: int) -> None:
     run = random_scene(seed)
     assert run.robot is not None
@@ -105,7 +105,7 @@ def test_a_capsule_without_length_is_a_disc(radius: float, seed: int) -> None:
     step=st.tuples(st.floats(-3, 3), st.floats(-3, 3)),
     reach=st.floats(0.05, 1),
 )
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_first_touch_is_where_the_gap_is_the_reach(
     start: tuple[float, float], step: tuple[float, float], reach: float
 ) -> None:

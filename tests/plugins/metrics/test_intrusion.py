@@ -61,7 +61,7 @@ def test_it_is_per_person_met() -> None:
 
 
 @given(speed=st.floats(0.1, 2.0))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_it_is_a_way_and_no_time(speed: float) -> None:
     assert intrusion(following(0.3, speed)) == pytest.approx(10 * speed)
 

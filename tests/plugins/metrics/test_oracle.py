@@ -17,7 +17,7 @@ from tests.plugins.metrics import oracle
 from tests.plugins.metrics.scenes import random_scene, scores_of
 
 SEEDS = st.integers(0, 2**32 - 1)
-some = settings(max_examples=40, deadline=None)
+some = settings(max_examples=40)
 
 
 def crowded(seed: int) -> Trajectories:

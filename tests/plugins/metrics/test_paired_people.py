@@ -178,13 +178,13 @@ def test_what_happens_after_the_meeting_is_not_the_robots_doing() -> None:
 
 
 @given(wait=st.floats(0.0, 5.0), who=st.integers(0, 39))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_every_wait_is_recovered(wait: float, who: int) -> None:
     assert value_of(delays(crowd(one(wait, who), NOBODY))) * 40 == pytest.approx(wait, abs=0.05)
 
 
 @given(bow=st.floats(-3.0, 3.0), who=st.integers(0, 39))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_every_bow_is_recovered(bow: float, who: int) -> None:
     found = scores("displacement", crowd(NOBODY, one(bow, who)))
     assert value_of(found) * 40 == pytest.approx(abs(bow), abs=0.02)

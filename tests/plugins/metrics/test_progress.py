@@ -81,7 +81,7 @@ def brute_force(a: Array, b: Array) -> float:
 
 
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(1, 12), m=st.integers(1, 12))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_the_diagonals_are_the_table(seed: int, n: int, m: int) -> None:
     rng = np.random.default_rng(seed)
     a, b = rng.normal(size=(n, 2)), rng.normal(size=(m, 2))

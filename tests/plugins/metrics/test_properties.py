@@ -18,7 +18,7 @@ from crowdbot.testing.symmetries import move, with_people
 from crowdbot.testing.worlds import World, random_world, straight_world
 
 SEEDS = st.integers(0, 2**32 - 1)
-many = settings(max_examples=40, deadline=None)
+many = settings(max_examples=40)
 
 
 #: Metrics that have a rate, and what it is the rate of.
@@ -259,7 +259,7 @@ def test_entropy_sees_only_what_was_not_expected(seed: int, shift: float, trend:
     name=st.sampled_from(["x", "y", "vx", "vy"]),
     bad=st.sampled_from([np.inf, -np.inf]),
 )
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_infinite_entries_are_unknown_ones(seed: int, name: str, bad: float) -> None:
     world, rng = random_world(seed), np.random.default_rng(seed)
     agents = world.run.agents

@@ -116,7 +116,7 @@ def test_dropout_rate(share: float) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(1, 16), st.floats(0.0, 1.0), st.floats(1.5, 20.0), st.floats(0.0, 1.0))
 def test_readings_are_whole_steps(bits: int, low: float, high: float, share: float) -> None:
     lidar = sensor("lidar2d", bits=bits, range_min=low, range_max=high)

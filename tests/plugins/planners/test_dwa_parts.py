@@ -28,7 +28,6 @@ def points(*where: tuple[float, float]) -> Array:
 
 
 # ---------------------------------------------------------------------------- points
-@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_thinning_keeps_the_nearest_of_each_sector(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -53,7 +52,6 @@ def test_apparent_velocity() -> None:
     assert not apparent_velocity(now, NOTHING, 0.25, 0.3, 2.5).any()
 
 
-@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.25, 1.0]))
 def test_apparent_velocity_is_that_of_the_first_nearest_neighbour(seed: int, dt: float) -> None:
     rng = np.random.default_rng(seed)
@@ -66,7 +64,6 @@ def test_apparent_velocity_is_that_of_the_first_nearest_neighbour(seed: int, dt:
     np.testing.assert_array_equal(apparent_velocity(now, before, dt, 0.3, 2.5), expected)
 
 
-@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_apart_from_all_others(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -171,7 +168,7 @@ def test_hits_still_and_moving_points() -> None:
     assert roll(ahead, points((1.0, 0.0)), p, 1.0, 0.0, 1.0, 0.0)[3] == 2.5
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.floats(-0.3, 1.0), st.floats(0.0, 1.0), st.integers(2, 9), st.integers(3, 9))
 def test_candidates_are_every_speed_with_every_rate(
     low: float, more: float, speeds: int, rates: int
@@ -184,13 +181,12 @@ def test_candidates_are_every_speed_with_every_rate(
     np.testing.assert_array_equal(found[:, 1], np.tile(w, len(v)))
 
 
-@settings(deadline=None)
 @given(st.lists(st.floats(allow_nan=False)))
 def test_minimum(values: list[float]) -> None:
     assert minimum(np.array(values, dtype=np.float64)) == min(values, default=math.inf)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 40), st.integers(0, 2**32 - 1))
 def test_what_rollouts_know_of_each_other_changes_none(count: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -203,7 +199,7 @@ def test_what_rollouts_know_of_each_other_changes_none(count: int, seed: int) ->
         assert shared == roll(cloud, speeds, p, 0.3, 0.1, vt, wt)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.floats(0.0, 1.0), st.floats(0.3, 3.0), st.integers(0, 2**32 - 1))
 def test_what_is_chosen_can_stop_before_anything_still(v: float, gap: float, seed: int) -> None:
     """After one period of the chosen command and full braking no still point is touched."""

@@ -28,7 +28,7 @@ def seen_from(pose: Pose, people: Array | None = None, walls: bool = True) -> Ar
     return LIDARS(obs.readings, obs.t, (0.0, 0.0))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(0, 2**32 - 1), st.floats(-4.0, 4.0), st.integers(0, 40))
 def test_the_turn_is_the_one_of_the_best_fit(seed: int, guess: float, filled: int) -> None:
     rng = np.random.default_rng(seed)
@@ -46,7 +46,7 @@ def off(a: float, b: float) -> float:
     return abs(math.remainder(a - b, 2.0 * math.pi))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.floats(-3.0, 3.0), st.floats(-0.65, 0.65), st.floats(5.0, 40.0), st.floats(-3.5, 3.5))
 @example(0.0, 0.5, 20.0, 0.0)
 def test_a_turn_that_nobody_told_is_noticed(yaw: float, push: float, x: float, y: float) -> None:

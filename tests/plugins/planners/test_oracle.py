@@ -94,7 +94,7 @@ def test_it_turns_to_the_goal_before_it_drives() -> None:
     assert min(p.x for p in out.path) > 9.5
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32 - 1))
 def test_a_hit_is_where_discs_meet(seed: int) -> None:
     """A rollout straight on against a plain loop in numpy: the first step in which discs touch."""

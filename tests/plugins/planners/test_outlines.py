@@ -54,7 +54,6 @@ def test_what_a_robot_says_becomes_its_core() -> None:
     assert swept_half_width(None, body(BOX, REACH, "holonomic")) == 0.55
 
 
-@settings(deadline=None)
 @given(st.booleans(), st.lists(st.tuples(*[st.floats(-2.0, 2.0)] * 2), min_size=1, max_size=20),
        st.tuples(*[st.floats(-1.0, 1.0)] * 2), st.floats(-7.0, 7.0))  # fmt: skip
 def test_gaps_are_those_of_shapely(
@@ -82,7 +81,7 @@ def parameters() -> Array:
     return p
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 40), st.integers(0, 2**32 - 1))
 def test_what_rollouts_of_a_box_know_of_each_other_changes_none(count: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -105,7 +104,6 @@ def test_a_long_robot_does_not_turn_into_what_stands_beside_it() -> None:
         assert found[0] == index
 
 
-@settings(deadline=None)
 @given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(0.0, 1.5), st.floats(-4.0, 4.0))
 def test_ways_aside_keep_to_what_the_drive_can(
     v: float, vy: float, top: float, direction: float

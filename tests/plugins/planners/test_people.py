@@ -38,7 +38,7 @@ def seen(
     return LidarPoints({n: s.info() for n, s in sensors.items()})(readings, 0.0, (0.0, 0.0))
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(
     st.floats(1.4, 5.5),
     st.floats(-math.pi, math.pi),
@@ -95,7 +95,6 @@ def test_very_near_legs_stay_as_well() -> None:
     assert len(rest) > 0
 
 
-@settings(deadline=None)
 @given(st.floats(0.5, 6.0), st.floats(-3.0, 3.0))
 def test_discs_are_what_a_lidar_would_see(away: float, bearing: float) -> None:
     people = np.array([[away * math.cos(bearing), away * math.sin(bearing)]])

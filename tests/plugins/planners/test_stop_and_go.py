@@ -11,6 +11,7 @@ from crowdbot.plugins.planners.stop_and_go_build import build, safe_speed
 from tests.plugins.planners.world import LIMITS, PERSON, RADIUS, Outcome, World
 
 SPEC = StopAndGoSpec()
+STRAIGHT = StopAndGoSpec(most_aside=0.0)
 
 
 def test_component() -> None:
@@ -27,7 +28,7 @@ def test_alone_it_is_goal_seek() -> None:
 
 def test_stands_before_a_standing_person() -> None:
     world = World([[20, 0.1, 0, 0]])
-    out = world.run(build(SPEC), time_limit=40.0)
+    out = world.run(build(STRAIGHT), time_limit=40.0)
     assert not out.contacts
     assert world.twist[0] == pytest.approx(0.0, abs=1e-3)
     # The nearest point of the person before the robot is PERSON before its centre line.
@@ -35,16 +36,39 @@ def test_stands_before_a_standing_person() -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.floats(-0.6, 0.6), st.floats(0.1, 1.0))
 def test_never_touches_what_stands(y: float, speed: float) -> None:
-    out = World([[5, y, 0, 0]]).run(build(StopAndGoSpec(speed=speed)), time_limit=12.0, stop_at=7.0)
+    spec = StopAndGoSpec(speed=speed, most_aside=0.0)
+    out = World([[5, y, 0, 0]]).run(build(spec), time_limit=12.0, stop_at=7.0)
     assert not out.contacts
     assert out.arrived == (abs(y) > RADIUS + SPEC.side_margin + PERSON) or speed < 0.7
 
 
+def test_steps_aside_where_there_is_room() -> None:
+    """Somebody who does not look passes; who waits for him in the way is walked into."""
+    aside, straight = (
+        World([[8.0, 0.5, -1.0, 0.0]]).run(build(spec), time_limit=12.0, stop_at=6.0)
+        for spec in (SPEC, STRAIGHT)
+    )
+    assert aside.arrived
+    assert not aside.contacts
+    assert max(abs(p.y) for p in aside.path) > 0.1
+    assert straight.contacts
+    assert aside.t < straight.t - 1.0
+
+
+def test_waits_where_there_is_no_room_beside() -> None:
+    row = [[5.0, y, 0, 0] for y in np.arange(-4.8, 4.9, 0.8)]
+    world = World(row)
+    out = world.run(build(SPEC), time_limit=20.0)
+    assert not out.contacts
+    assert world.pose.x < 5.0
+    assert world.twist[0] == pytest.approx(0.0, abs=1e-3)
+
+
 def test_brakes_smoothly() -> None:
-    out = World([[10, 0, 0, 0]]).run(build(SPEC), time_limit=20.0)
+    out = World([[10, 0, 0, 0]]).run(build(STRAIGHT), time_limit=20.0)
     assert commanded_jerks(out) <= LIMITS.a_max / 16 + 0.03
 
 
@@ -56,7 +80,7 @@ def commanded_jerks(out: Outcome) -> float:
 
 def test_goes_on_when_the_way_is_free() -> None:
     """Somebody walks across, slowly, and does not look."""
-    out = World([[8.0, -2.0, 0.0, 0.25]]).run(build(SPEC), time_limit=40.0, stop_at=12.0)
+    out = World([[8.0, -2.0, 0.0, 0.25]]).run(build(STRAIGHT), time_limit=40.0, stop_at=12.0)
     speed = np.diff([p.x for p in out.path]) * 128
     assert not out.contacts
     assert out.arrived

@@ -55,7 +55,7 @@ def test_somebody_presses_the_sector_that_faces_them(bearing: float, sectors: li
         assert pressed(BumperSpec(), people=[at]) == felt
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.floats(-math.pi, math.pi), st.floats(-math.pi, math.pi), st.floats(-math.pi, math.pi))
 def test_only_the_bearing_from_the_robot_counts(bearing: float, yaw: float, turn: float) -> None:
     away, pose = 0.5, Pose(3.0, -2.0, yaw)

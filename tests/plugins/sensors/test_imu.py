@@ -60,7 +60,7 @@ def test_at_rest_it_feels_the_floor() -> None:
     np.testing.assert_array_equal(rows, np.broadcast_to([0, 0, 0, 0, 0, G], rows.shape))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     st.floats(-0.65, 0.65), st.floats(-3.0, 3.0), st.floats(-0.2, 0.2), st.floats(-0.2, 0.2),
     st.floats(-3.1, 3.1),

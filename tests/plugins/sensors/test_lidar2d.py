@@ -119,7 +119,7 @@ def test_one_gaussian_is_one_normal_number_for_each_beam() -> None:
     np.testing.assert_array_equal(scan[inner], (clean + 0.001 * errors)[inner])
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32 - 1), st.integers(1, 40))
 def test_sees_everybody_in_line_of_sight(seed: int, count: int) -> None:
     """Half a degree between beams finds every leg within 10 m that nothing hides."""

@@ -35,7 +35,7 @@ def _empty(name: str, values: Array, height: float) -> bool:
 
 
 @given(x=st.floats(-40.0, 40.0), y=st.floats(-4.0, 4.0), yaw=st.floats(-math.pi, math.pi))
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 def test_alone_in_the_world_nothing_is_seen(x: float, y: float, yaw: float) -> None:
     scene = scene_of()
     assert len(BUILT) >= 15
@@ -45,7 +45,7 @@ def test_alone_in_the_world_nothing_is_seen(x: float, y: float, yaw: float) -> N
 
 
 @given(yaw=st.floats(-math.pi, math.pi))
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 def test_four_walls_are_all_that_is_seen(yaw: float) -> None:
     """A room of 6 m: every beam of a lidar ends on a wall, at the distance of the nearest line."""
     corners = np.array([[3.0, 3.0], [-3.0, 3.0], [-3.0, -3.0], [3.0, -3.0]])

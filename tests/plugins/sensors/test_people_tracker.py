@@ -63,7 +63,7 @@ def test_nearest_first_padded_and_cut() -> None:
     assert ids(read(PeopleTrackerSpec(), scene_of([(5, 0), (1, 1)], absent=(1,)))) == [0]
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.floats(-5, 5), st.floats(-5, 5), st.floats(-3.1, 3.1), st.floats(-1, 1), st.floats(-1, 1))
 def test_in_the_axes_of_the_robot(x: float, y: float, yaw: float, vx: float, vy: float) -> None:
     """Turned back, it is the truth."""

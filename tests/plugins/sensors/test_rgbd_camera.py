@@ -69,7 +69,7 @@ def test_info_of_the_challenge() -> None:
     assert load_build(RGBD_CAMERA) is build
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.floats(-1.2, 1.2), st.floats(0.5, 6.0), st.integers(2, 40), st.integers(2, 40))
 def test_a_wall_at_an_angle(yaw: float, ahead: float, width: int, height: int) -> None:
     """Depth along the axis: x = ahead, seen by a camera that looks along ``yaw``."""
@@ -194,7 +194,7 @@ def test_pixels_are_lost() -> None:
     assert np.array_equal(depths[2], read(camera, scene, tick=2))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.floats(-0.9, 0.9), st.floats(0.3, 1.4))
 def test_what_is_struck_at_a_slant_is_not_seen(yaw: float, limit: float) -> None:
     """A wall x = 3 and the floor, each with the angle of its own normal to the ray."""

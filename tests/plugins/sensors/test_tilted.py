@@ -88,7 +88,7 @@ def test_hardly_tilted_is_as_level(kind: str) -> None:
 
 
 @given(roll=TILT, pitch=TILT, yaw=st.floats(-3.0, 3.0), height=st.floats(0.2, 2.0))
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=30)
 def test_a_cloud_lies_on_what_it_sees(roll: float, pitch: float, yaw: float, height: float) -> None:
     """Turned back into the world, every point is on the floor or on a wall of the room."""
     lidar = sensor("lidar3d", layers=3, angle_step=0.3, range_max=40.0,
@@ -165,7 +165,7 @@ def test_a_smooth_floor_throws_a_slanted_echo_away() -> None:
 
 
 @given(roll=st.floats(-3.0, 3.0), pitch=TILT, yaw=st.floats(-3.0, 3.0))
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=30)
 def test_an_imu_feels_gravity_where_up_is(roll: float, pitch: float, yaw: float) -> None:
     """At rest g (-sin p, cos p sin r, cos p cos r); a turn about the vertical likewise."""
     imu: Any = sensor("imu", gyro_noise=0.0, force_noise=0.0, rate=64.0,
@@ -180,7 +180,6 @@ def test_an_imu_feels_gravity_where_up_is(roll: float, pitch: float, yaw: float)
 
 
 @given(roll=st.floats(-3.0, 3.0), pitch=st.floats(-3.0, 3.0), yaw=st.floats(-3.0, 3.0))
-@settings(deadline=None)
 def test_quaternion_and_matrix_are_one_rotation(roll: float, pitch: float, yaw: float) -> None:
     """And the one of `scipy`, by fixed axes x, y, z."""
     expected = Rotation.from_euler("xyz", [roll, pitch, yaw])

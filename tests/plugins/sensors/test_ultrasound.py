@@ -44,7 +44,7 @@ def test_info() -> None:
     assert not info.random
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(st.floats(-0.6, 0.6), st.floats(0.3, 5.0), st.floats(-3.0, 3.0))
 def test_a_thin_post_is_seen_inside_the_zone_only(bearing: float, away: float, yaw: float) -> None:
     """A post as thin as the gap between rays; nothing is claimed about the very edge."""
@@ -97,7 +97,7 @@ def _nearest_in_zone(hit: Array, angle: Array, length: float, radius: float) -> 
 
 
 @pytest.mark.slow
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @example((2.0, 1.5), 1.0, 2.0, 0.0, 1.0)
 @given(SHAPES, st.floats(-1.5, 1.5), st.floats(0.3, 4.6), st.floats(-3.0, 3.0), st.floats(0, 3))
 def test_a_slanted_wall_is_measured_exactly(
@@ -126,7 +126,7 @@ def test_a_slanted_wall_is_measured_exactly(
         assert got == pytest.approx(max(best, 0.2), rel=3e-3)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.floats(-0.3, 0.3), st.floats(0.5, 4.6), st.floats(0.005, 0.5))
 def test_what_faces_the_sensor_is_measured_exactly(
     bearing: float, away: float, radius: float

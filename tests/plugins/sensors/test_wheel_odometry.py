@@ -59,7 +59,7 @@ def test_encoder_constants_of_the_kobuki() -> None:
     assert 2 * math.pi / SPEC.ticks_per_turn == pytest.approx(0.002436917, rel=1e-5)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.floats(-0.65, 0.65), st.floats(-3.0, 3.0), st.floats(-50.0, 50.0))
 def test_straight_lines_and_circles(v: float, w: float, offset: float) -> None:
     seconds = 2.0

@@ -75,7 +75,7 @@ class Human:
 
 @dataclass(frozen=True, slots=True)
 class KeepOff:
-    """A one-sided steering force inside the perceived disc: the response before 2026-11-22.
+    """A one-sided steering force near the outline: the response before 2026-11-22.
 
     Attributes:
         stiffness_moving, stiffness_stopped: beside a moving and beside a stopped robot, 1/s^2.

@@ -54,7 +54,7 @@ function clearanceOf(run, robot) {
   return gaps.map((gap) => (gap === Infinity ? NaN : gap));
 }
 
-/** Rectangle that shows all: walls, goal and robots; people too where there are no walls. */
+/** Rectangle that shows all: walls, blocks, goal and robots; people too where nothing stands. */
 function boundsOf(runs) {
   const box = { x0: Infinity, y0: Infinity, x1: -Infinity, y1: -Infinity };
   const grow = (x, y) => {
@@ -74,9 +74,10 @@ function growByRun(run, grow) {
     grow(x0, y0);
     grow(x1, y1);
   }
+  for (const [x, y] of [...run.blocks, ...run.steps].flat()) grow(x, y);
   for (const [x, y] of run.zone) grow(x, y);
   for (const robot of run.robots) robot.x.forEach((x, k) => grow(x, robot.y[k]));
-  if (!run.people || run.walls.length) return;
+  if (!run.people || run.walls.length || run.blocks.length) return;
   const { x: xs, y: ys, scale } = run.people;
   xs.forEach((x, i) => { if (x !== ABSENT) grow(x * scale, ys[i] * scale); });
 }

@@ -17,6 +17,8 @@ function legendEntries() {
     [any((run) => run.contacts.length), "contact", "contact"],
     [any((run) => run.zone.length || run.robots.some(({ goal }) => goal)), "goal", "goal"],
     ...kinds.map(({ whom, text }) => [true, `wall wall-${whom}`, text]),
+    [any((run) => run.blocks.length), "block", "block"],
+    [any((run) => run.steps.length), "block step", "block that people step over"],
     [any((run) => run.pillars.length), "pillar", "pillar"],
   ];
   return entries.filter(([seen, mark]) => seen && mark).map(([, mark, text]) => [mark, text]);

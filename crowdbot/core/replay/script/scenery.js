@@ -1,4 +1,4 @@
-// What does not move: floor, goal, walls, pillars, and the scale.
+// What does not move: floor, goal, walls, blocks, pillars, and the scale.
 
 // Whom a wall stops: 1 robots, 2 people, 3 everybody, 0 nobody.
 const WALLS = [
@@ -72,11 +72,25 @@ function drawWalls(g, run, px) {
   }
   g.setLineDash([]);
   g.fillStyle = colours.wall;
+  fillOutlines(g, run.blocks);
+  g.globalAlpha = 0.35;
+  fillOutlines(g, run.steps);
+  g.globalAlpha = 1;
   for (const [x, y, radius] of run.pillars) {
     g.beginPath();
     g.arc(x, y, radius, 0, 7);
     g.fill();
   }
+}
+
+// All at once: pieces that touch show no seam.
+function fillOutlines(g, outlines) {
+  g.beginPath();
+  for (const outline of outlines) {
+    outline.forEach(([x, y], i) => g[i ? "lineTo" : "moveTo"](x, y));
+    g.closePath();
+  }
+  g.fill();
 }
 
 function drawScaleBar(g, view, height) {

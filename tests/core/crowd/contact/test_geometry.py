@@ -24,7 +24,7 @@ def _distance_to_segment(px: float, py: float, ax: float, ay: float, bx: float, 
 
 
 @given(COORDINATE, COORDINATE, COORDINATE, COORDINATE, COORDINATE, COORDINATE)
-@settings(deadline=None, max_examples=200)
+@settings(max_examples=200)
 def test_nearest_on_segment(
     px: float, py: float, ax: float, ay: float, bx: float, by: float
 ) -> None:
@@ -47,7 +47,7 @@ def _first_below(distance: np.ndarray[tuple[int], np.dtype[np.float64]], reach: 
 
 
 @given(COORDINATE, COORDINATE, SPEED, SPEED, RADIUS)
-@settings(deadline=None, max_examples=300)
+@settings(max_examples=300)
 def test_time_to_disc(rx: float, ry: float, vx: float, vy: float, reach: float) -> None:
     gap2 = rx * rx + ry * ry - reach * reach
     assume(gap2 > 1e-6)
@@ -67,7 +67,7 @@ def test_time_to_disc(rx: float, ry: float, vx: float, vy: float, reach: float) 
 
 @pytest.mark.slow
 @given(COORDINATE, COORDINATE, COORDINATE, COORDINATE, SPEED, SPEED, st.floats(0.05, 0.5))
-@settings(deadline=None, max_examples=400)
+@settings(max_examples=400)
 def test_time_to_segment(
     ax: float, ay: float, bx: float, by: float, vx: float, vy: float, radius: float
 ) -> None:

@@ -18,6 +18,7 @@ from tests.core.crowd.crowd_reference import Array, agents_of
 from tests.core.crowd.crowd_worlds import TICKS, rows, straight, walkers
 
 DT = 1.0 / TICKS
+DISC = np.zeros((1, 0, 2))
 NO_WALLS, NO_DISCS = np.zeros((0, 4)), np.zeros((0, 3))
 
 
@@ -45,7 +46,7 @@ NUMBERS = st.floats(0, 2).filter(lambda x: x == 0.0 or x > 1e-100)
 
 
 @given(st.lists(st.tuples(NUMBERS, NUMBERS), min_size=2, max_size=12))
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 def test_pushes_balance_and_match_all_pairs(position: list[tuple[float, float]]) -> None:
     found = _push(_people(position))
     assert np.sum(found, axis=0) == pytest.approx(np.zeros(2), abs=1e-9)
@@ -170,7 +171,55 @@ def test_coincident_centres_are_finite() -> None:
 def test_people_keep_off_the_robot(speed: float, stiffness: float) -> None:
     people = _people([(0.5, 0.0)])
     robots = _robot(0.0, 0.0, speed)
-    ax, ay = keep_off(people, 0, np.array([0.33]), robots, KeepOff().by_tick)
+    ax, ay = _kept_off(people, robots)
     assert (ax, ay) == pytest.approx((stiffness * (0.428 + 0.33 - 0.5), 0.0))
     far = _people([(0.76, 0.0)])
-    assert keep_off(far, 0, np.array([0.33]), robots, KeepOff().by_tick) == (0.0, 0.0)
+    assert _kept_off(far, robots) == (0.0, 0.0)
+
+
+WHEELCHAIR = np.array([[[0.55, 0.305], [-0.55, 0.305], [-0.55, -0.305], [0.55, -0.305]]])
+CAPSULE = np.array([[[0.051, 0.0], [-0.515, 0.0], [math.nan, math.nan]]])
+
+
+@given(
+    st.sampled_from([(WHEELCHAIR, 0.0), (CAPSULE, 0.4)]),
+    st.floats(-math.pi, math.pi),
+    st.floats(-math.pi, math.pi),
+    st.floats(0.01, 1.5),
+)
+@settings(deadline=None, max_examples=100)
+def test_people_keep_off_the_outline(
+    shape: tuple[Array, float], yaw: float, side: float, away: float
+) -> None:
+    """Against the nearest of many points of the outline: straight away from it, by its depth."""
+    outlines, rounding = shape
+    corners = outlines[0][~np.isnan(outlines[0][:, 0])]
+    extent = float(np.hypot(*corners.T).max())
+    c, s_ = math.cos(yaw), math.sin(yaw)
+    ends = np.roll(corners, -1, axis=0)
+    share = np.linspace(0.0, 1.0, 4001)[:, np.newaxis, np.newaxis]
+    points = (corners + share * (ends - corners)).reshape(-1, 2) @ np.array([[c, s_], [-s_, c]])
+    at = (extent + away) * np.array([math.cos(side), math.sin(side)])
+    robots = np.array([[0.0, 0.0, 1.0, 0.0, rounding, extent + rounding + 0.25, yaw, 0.0]])
+    found = np.array(_kept_off(_people([(at[0], at[1])]), robots, outlines))
+    offset = at - points[np.argmin(np.hypot(*(at - points).T))]
+    gap = float(np.hypot(*offset))
+    depth = max(0.0, 0.25 + rounding + 0.33 - gap)
+    assert found == pytest.approx(62.5 * depth * offset / gap, abs=0.1)
+
+
+def test_beside_a_wheelchair_there_is_more_room_than_ahead() -> None:
+    """Half a metre beside its side nobody is driven away, as a disc around it would."""
+    robots = np.array([[0.0, 0.0, 1.0, 0.0, 0.0, math.hypot(0.55, 0.305) + 0.25, 0.0, 0.0]])
+    beside, ahead = _people([(0.0, 0.305 + 0.59)]), _people([(0.55 + 0.5, 0.0)])
+    assert math.hypot(0.0, 0.895) < robots[0, 5] + 0.33
+    assert _kept_off(beside, robots, WHEELCHAIR) == (0.0, 0.0)
+    assert _kept_off(ahead, robots, WHEELCHAIR) == pytest.approx((62.5 * 0.08, 0.0))
+    inside = _people([(0.0, 0.2)])
+    assert _kept_off(inside, robots, WHEELCHAIR) == pytest.approx((0.0, 62.5 * (0.58 + 0.105)))
+
+
+def _kept_off(people: Array, robots: Array, outlines: Array = DISC) -> tuple[float, float]:
+    response = KeepOff().by_tick
+    ax, ay = keep_off(people, 0, np.array([0.33]), robots, outlines, response)
+    return ax, ay

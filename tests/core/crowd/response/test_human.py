@@ -29,7 +29,7 @@ def _turn(place: Place, angle: float) -> Place:
     way=st.floats(-math.pi, math.pi), pace=st.floats(0.0, 0.65),
     own=st.floats(0.3, 1.8), miss=st.floats(-0.4, 0.4),
 )  # fmt: skip
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 def test_nobody_walks_into_a_robot_that_he_sees_and_that_keeps_its_course(
     way: float, pace: float, own: float, miss: float
 ) -> None:
@@ -49,7 +49,7 @@ def test_nobody_walks_into_a_robot_that_he_sees_and_that_keeps_its_course(
     at=st.tuples(st.floats(-6, 6), st.floats(-3, 3)), v=st.tuples(*[st.floats(-1.5, 1.5)] * 2),
     pace=st.tuples(*[st.floats(-0.7, 0.7)] * 2), late=st.booleans(),
 )  # fmt: skip
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 def test_will_and_evasion_together_keep_within_the_cap(
     at: Place, v: Place, pace: Place, late: bool
 ) -> None:
@@ -104,7 +104,7 @@ def test_a_segment_without_length_is_a_disc() -> None:
     pace=st.tuples(st.floats(-0.6, 0.6), st.floats(-0.6, 0.6)), late=st.booleans(),
     angle=st.floats(-3, 3), by=st.tuples(st.floats(-9, 9), st.floats(-9, 9)), flip=st.booleans(),
 )  # fmt: skip
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 def test_no_place_direction_or_side_is_preferred(
     at: Place, v: Place, pace: Place, late: bool, angle: float, by: Place, flip: bool
 ) -> None:

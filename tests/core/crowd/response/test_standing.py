@@ -18,7 +18,7 @@ from tests.core.crowd.response.test_human import CAPSULE, SQUARE
 @given(
     y=st.floats(-0.6, 0.6), speed=st.floats(0.1, 1.8), late=st.booleans(), gap=st.floats(0.15, 4.0)
 )
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 def test_nobody_walks_into_a_robot_that_stands(
     y: float, speed: float, late: bool, gap: float
 ) -> None:

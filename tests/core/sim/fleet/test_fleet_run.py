@@ -136,6 +136,7 @@ def test_topics_and_frames_are_those_of_each_robot(tmp_path: Path) -> None:
             found = {f for f in ("a/lidar", "b/lidar", "a/base_footprint", "b/base_link", "map")
                      if f"{f}\0" in text}  # fmt: skip
             frames.setdefault(channel.topic, set()).update(found)
+            assert "\x05\0\0\0odom\0" not in text  # a frame of nobody
     assert frames["/a/lidar/scan"] == {"a/lidar"}
     assert frames["/b/lidar/scan"] == {"b/lidar"}
     assert {"a/base_footprint", "map"} <= frames["/tf"]

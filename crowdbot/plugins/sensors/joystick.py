@@ -1,0 +1,100 @@
+"""Joystick: what the robot's driver asks for."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Le, MinLen
+from pydantic import Field, field_validator, model_validator
+
+from crowdbot.dsl import (
+    Component,
+    Length,
+    NonNegativeDuration,
+    PositiveAngularSpeed,
+    PositiveDuration,
+    PositiveFrequency,
+    PositiveLength,
+    PositiveSpeed,
+    Quantity,
+    SensorSpec,
+    Speed,
+)
+
+#: From when on a command holds, s; speed, m/s; yaw rate, rad/s.
+RecordedCommand = Annotated[
+    tuple[NonNegativeDuration, Speed, Annotated[float, Quantity("angular speed")]],
+    Field(strict=False),
+]
+#: x, y, m.
+Place = Annotated[tuple[Length, Length], Field(strict=False)]
+
+
+class JoystickSpec(SensorSpec):
+    """Reading: v (m/s), w (rad/s), the velocity that the driver asks for.
+
+    The driver steers straight for the goal, whatever stands in between, or as in `recorded`. All
+    defaults are proposed.
+    """
+
+    kind: Literal["joystick"] = "joystick"
+    rate: PositiveFrequency = Field(default=16.0, le=128, description="Readings per second, Hz.")
+    goal: Place | None = Field(
+        default=None, description="Where the driver wants to go, m; unset: the task's goal."
+    )
+    max_speed: PositiveSpeed | None = Field(
+        default=None, description="Speed of the stick fully ahead, m/s; unset: the robot's."
+    )
+    max_yaw_rate: PositiveAngularSpeed | None = Field(
+        default=None, description="Yaw rate of the stick fully aside, rad/s; unset: the robot's."
+    )
+    steering: Annotated[float, Ge(0)] = Field(
+        default=1.5, description="Yaw rate for each radian that the goal is off the heading, 1/s."
+    )
+    slow_distance: PositiveLength = Field(
+        default=1.5, description="Nearer to the goal the driver slows down, m."
+    )
+    noise: Annotated[float, Ge(0), Le(1)] = Field(
+        default=0.1, description="Standard deviation of the hand, a fraction of full deflection."
+    )
+    noise_time: PositiveDuration = Field(
+        default=0.5, description="Time after which the hand's error is another one, s."
+    )
+    recorded: Annotated[tuple[RecordedCommand, ...], MinLen(1)] | None = Field(
+        default=None,
+        strict=False,
+        description="Commands of a real driver in place of the scripted one, without noise: "
+        "[t, v, w], each from t on, s, m/s, rad/s.",
+    )
+
+    @field_validator("recorded")
+    @classmethod
+    def _in_order(
+        cls, value: tuple[RecordedCommand, ...] | None
+    ) -> tuple[RecordedCommand, ...] | None:
+        times = [t for t, _, _ in value or ()]
+        for k, (one, two) in enumerate(pairwise(times)):
+            if two <= one:
+                raise ValueError(
+                    f"times must rise; command {k + 2} is at {two:g} s, not after {one:g} s"
+                )
+        return value
+
+    @model_validator(mode="after")
+    def _one_driver(self) -> JoystickSpec:
+        if self.recorded is not None and self.goal is not None:
+            raise ValueError("a recorded driver has no goal; leave one of 'recorded', 'goal' out")
+        return self
+
+
+JOYSTICK = Component(
+    spec=JoystickSpec,
+    build="crowdbot.plugins.sensors.joystick_build:build",
+    summary="velocity that the robot's driver asks for: scripted, or recorded",
+    examples=(
+        {},
+        {"goal": (8.0, 1.0), "noise": 0.0, "rate": 32.0},
+        {"recorded": ((0.0, 0.5, 0.0), (0.2, 0.5, -0.3))},
+    ),
+)

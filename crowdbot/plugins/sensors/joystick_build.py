@@ -1,0 +1,96 @@
+"""Joystick: a driver who points the stick at the goal with an shaky hand, or a recorded one.
+
+The stick goes aside in proportion to the angle between heading and goal, ahead as far as the goal
+is ahead (the cosine of that angle), and back to the middle near the goal. The hand's error is an
+Ornstein-Uhlenbeck process, exact at any step (Gillespie, Physical Review E 54, 1996, p. 2084).
+"""
+
+from __future__ import annotations
+
+import bisect
+import math
+
+import numpy as np
+
+from crowdbot.core.interfaces import Array, Pose, Scene, SensorInfo
+from crowdbot.plugins.sensors.joystick import JoystickSpec
+
+#: Layout of the memory: whether there was a reading, its time, the error of the hand ahead and
+#: aside, in standard deviations.
+STARTED, TIME, AHEAD, ASIDE = range(4)
+#: Of a stick without a robot, as in a test of the sensor alone: m/s, rad/s.
+_MAX_SPEED, _MAX_YAW_RATE = 1.0, 1.0
+
+
+class Joystick:
+    """Reading: (2,) v (m/s), w (rad/s)."""
+
+    def __init__(self, spec: JoystickSpec) -> None:
+        self._spec = spec
+        self._most = spec.max_speed or _MAX_SPEED, spec.max_yaw_rate or _MAX_YAW_RATE
+        self._recorded = spec.recorded or ()
+        self._from = [t for t, _, _ in self._recorded]
+        self._info = SensorInfo(
+            category="joystick",
+            frame="joystick",
+            mount=(0.0, 0.0, 0.0, 0.0),
+            rate=spec.rate,
+            shape=(2,),
+            ros_type="geometry_msgs/msg/TwistStamped",
+            memory=4,
+            random=spec.noise > 0.0 and not self._recorded,
+            sees=False,
+        )
+
+    def info(self) -> SensorInfo:
+        """Constant description."""
+        return self._info
+
+    def read(
+        self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator, memory: Array
+    ) -> Array:
+        """What the driver asks for; reading twice at one instant gives the same."""
+        del scene  # the driver knows where the robot is, and looks at nobody
+        if self._recorded:
+            return self._played(t)
+        if self._info.random and (memory[STARTED] == 0.0 or t > memory[TIME]):
+            self._tremble(memory, t, rng)
+        ahead, aside = self._deflection(pose)
+        noise, (v, w) = self._spec.noise, self._most
+        return np.array(
+            [v * _full(ahead + noise * memory[AHEAD]), w * _full(aside + noise * memory[ASIDE])]
+        )
+
+    def _played(self, t: float) -> Array:
+        """The recorded command that holds; before the first one the stick is in the middle."""
+        k = bisect.bisect_right(self._from, t) - 1
+        return np.array(self._recorded[k][1:]) if k >= 0 else np.zeros(2)
+
+    def _deflection(self, pose: Pose) -> tuple[float, float]:
+        """Of the stick by a steady hand, ahead and to the left, from -1 to 1."""
+        if self._spec.goal is None:
+            return 1.0, 0.0
+        x, y = self._spec.goal[0] - pose.x, self._spec.goal[1] - pose.y
+        off = math.remainder(math.atan2(y, x) - pose.yaw, 2.0 * math.pi)
+        near = min(1.0, math.hypot(x, y) / self._spec.slow_distance)
+        aside = self._spec.steering * off / self._most[1]
+        return near * max(0.0, math.cos(off)), near * _full(aside)
+
+    def _tremble(self, memory: Array, t: float, rng: np.random.Generator) -> None:
+        """Bring the hand's error to time t."""
+        stays = 0.0
+        if memory[STARTED] != 0.0:
+            stays = math.exp((memory[TIME] - t) / self._spec.noise_time)
+        fresh = math.sqrt(1.0 - stays * stays) * rng.standard_normal(2)
+        memory[AHEAD : ASIDE + 1] = stays * memory[AHEAD : ASIDE + 1] + fresh
+        memory[STARTED], memory[TIME] = 1.0, t
+
+
+def _full(deflection: float) -> float:
+    """A stick goes no farther than fully ahead, back or aside."""
+    return min(1.0, max(-1.0, deflection))
+
+
+def build(spec: JoystickSpec) -> Joystick:
+    """A joystick from its spec."""
+    return Joystick(spec)
