@@ -27,7 +27,7 @@ class FloorContact(Spec):
         default=1.0,
         gt=0.0,
         le=1.5,
-        description="Friction coefficient of a tyre on the floor, static and sliding.",
+        description="Friction of a tyre on the floor, static and sliding: a ratio of forces.",
     )
 
 
