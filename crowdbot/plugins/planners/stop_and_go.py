@@ -54,7 +54,8 @@ class StopAndGoSpec(PlannerSpec):
         default=0.3, description="Age of the scan that shows who walks; 0 takes all as still, s."
     )
     most_aside: Annotated[float, Ge(0), Le(1.2)] = Field(
-        default=0.785, description="How far to either side it looks for room (0 goes straight), rad."
+        default=0.785,
+        description="How far to either side it looks for room (0 goes straight), rad.",
     )
     aside_reach: NonNegativeLength = Field(
         default=1.0, description="Nearer to the goal than this it goes straight, m."
