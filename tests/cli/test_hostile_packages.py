@@ -192,7 +192,9 @@ def test_a_failed_plugin_fails_its_check(site: Site) -> None:
 THREAD = (
     "\nimport threading\ndef go(): raise OSError('no bus')\nthreading.Thread(target=go).start()\n"
 )
-REPLACES = "\nimport crowdbot.dsl.expand as e\ndef no(*_, **__): raise ZeroDivisionError('mine')\n" + (
+REPLACES = (
+    "\nimport crowdbot.dsl.expand as e\n"
+    "def no(*_, **__): raise ZeroDivisionError('mine')\n"
     "e.expand_document = e.load_document = no\n"
 )
 
