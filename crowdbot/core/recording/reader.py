@@ -153,7 +153,8 @@ def _of_robot(
         return robots[name], shared.people(path) if shared is not None and name else None
     if len(robots) > 1 and "" not in robots:
         raise InputError(
-            f"{path}: the recording holds several robots: {', '.join(sorted(robots))}; name one"
+            f"{path}: the recording holds several robots: {', '.join(sorted(robots))}; name one, "
+            "with --robot on the command line"
         )
     mine = robots.get("") or next(iter(robots.values()), [])
     return mine, None if shared is None else shared.people(path)
