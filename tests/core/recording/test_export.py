@@ -200,3 +200,12 @@ def test_what_exists_is_not_written_over(
 def test_a_message_without_a_stamp_stays_as_it_is() -> None:
     assert moved(b"anything", "std_msgs/msg/String", 5) == b"anything"
     assert moved(b"anything", "none/msg/None", 5) == b"anything"
+
+
+def test_any_format_may_have_any_name(recording: Path) -> None:
+    for to in ("rosbag1", "rosbag2", "csv", "geojson", "trajnet"):
+        out = recording.parent / f"v1.0 {to}"
+        assert cli.main(["export", str(recording), "--to", to, "--out", str(out)]) == 0, to
+        assert out.exists()
+    head = (recording.parent / "v1.0 rosbag1").read_bytes()[:13]
+    assert head == b"#ROSBAG V2.0\n"

@@ -85,11 +85,14 @@ def write_ros1(path: Path, out: Path, options: BagOptions) -> int:
     from rosbags.convert.converter import convert
 
     folder = out.with_name(f".{out.name}.ros2")
+    bag = folder / "ros1.bag"  # the converter goes by the ending
     shutil.rmtree(folder, ignore_errors=True)
     try:
-        count = write_ros2(path, folder, options)
+        folder.mkdir(parents=True)
+        count = write_ros2(path, folder / "ros2", options)
         store = ros.ros1_store()
-        convert([folder], out, "", 0, None, "", None, store, [], [], [], [])
+        convert([folder / "ros2"], bag, "", 0, None, "", None, store, [], [], [], [])
+        bag.rename(out)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     return count
