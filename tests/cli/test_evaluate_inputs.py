@@ -188,7 +188,7 @@ def test_a_bad_run_stops_no_other(jobs: str, campaign: Path, capsys: Captured) -
     assert "seed-2" in found[2]["error"]
     lines = said.err.splitlines()  # on a slow machine progress is among them
     (error,) = [line for line in lines if line.startswith("error: ")]
-    assert "no MCAP file" in error
+    assert "not an MCAP file" in error
     assert lines[-1] == "scored 3 of 4 runs, 1 failed"
 
 

@@ -65,7 +65,7 @@ def contents(path: Path) -> RecordingContents:
     """Look through a file.
 
     Raises:
-        InputError: no MCAP file, damaged, or it unpacks to more than a recording may.
+        InputError: not an MCAP file, damaged, or it unpacks to more than a recording may.
     """
     topics: dict[tuple[str, str], TopicContents] = {}
     end: Any = None

@@ -69,7 +69,7 @@ def fleet_names(path: Path) -> tuple[str, ...]:
     """Names of the robots of a recording of several; empty of any other.
 
     Raises:
-        InputError: no MCAP file, or damaged.
+        InputError: not an MCAP file, or damaged.
     """
     names: list[str] = []
     for record in Records(path):

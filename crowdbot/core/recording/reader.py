@@ -117,7 +117,7 @@ def holds_run(path: Path) -> bool:
     """Whether a file has a header of crowdbot, for one robot or another.
 
     Raises:
-        InputError: no MCAP file, or damaged.
+        InputError: not an MCAP file, or damaged.
     """
     return any(
         record.topic.endswith(Topic.HEADER) and record.msgtype in Collected.TOPICS[Topic.HEADER]

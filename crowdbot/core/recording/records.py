@@ -94,7 +94,7 @@ class Records:
         """Messages in the order they were written.
 
         Raises:
-            InputError: no MCAP file, damaged before its end, or unreasonably large when unpacked.
+            InputError: not an MCAP file, damaged before its end, or unreasonably large when unpacked.
         """
         try:
             with self._path.open("rb") as file, _mapped(file.fileno()) as data:
@@ -134,10 +134,10 @@ class Records:
             rest = len(data) - data.tell()
         except InvalidMagic as error:
             if data.tell() <= 8:
-                raise InputError(f"{self._path}: no MCAP file") from error
+                raise InputError(f"{self._path}: not an MCAP file") from error
         except (*_BROKEN, EndOfFile, OverflowError):
             if data.tell() < 8:
-                raise InputError(f"{self._path}: no MCAP file") from None
+                raise InputError(f"{self._path}: not an MCAP file") from None
         else:
             if rest:
                 raise InputError(f"{self._path}: damaged: {rest} bytes follow its end")

@@ -170,7 +170,7 @@ def test_an_interrupted_run_is_not_complete(tmp_path: Path) -> None:
 def test_other_files_are_refused(content: bytes, tmp_path: Path) -> None:
     path = tmp_path / "x.mcap"
     path.write_bytes(content)
-    with pytest.raises(InputError, match="no MCAP file"):
+    with pytest.raises(InputError, match="not an MCAP file"):
         read_trajectories(path)
 
 
