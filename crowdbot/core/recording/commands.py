@@ -39,7 +39,8 @@ def read_commands(
         w_max: largest yaw rate, rad/s; likewise.
 
     Raises:
-        InputError: not an MCAP file, a topic holds something else or nothing, or no limits are known.
+        InputError: not an MCAP file, a topic holds something else or nothing, or limits are
+            unknown.
         UnknownNameError: there is no such topic.
     """
     said: dict[str, list[tuple[int, float, float]]] = {user_topic: [], command_topic: []}

@@ -94,7 +94,8 @@ class Records:
         """Messages in the order they were written.
 
         Raises:
-            InputError: not an MCAP file, damaged before its end, or unreasonably large when unpacked.
+            InputError: not an MCAP file, damaged before its end, or unreasonably large when
+                unpacked.
         """
         try:
             with self._path.open("rb") as file, _mapped(file.fileno()) as data:
