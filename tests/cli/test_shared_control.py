@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -56,5 +57,5 @@ def _velocities(run: Path, topic: str) -> np.ndarray[tuple[int, int], np.dtype[n
         (connection,) = [c for c in reader.connections if c.topic == topic]
         messages = [reader.deserialize(raw, connection.msgtype)
                     for _, _, raw in reader.messages([connection])]  # fmt: skip
-    twists = [getattr(m, "twist", m) for m in messages]
+    twists: list[Any] = [getattr(m, "twist", m) for m in messages]
     return np.array([(twist.linear.x, twist.angular.z) for twist in twists])
