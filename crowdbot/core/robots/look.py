@@ -37,7 +37,7 @@ class SeenPart(NamedTuple):
     top: float
 
 
-class Solid(NamedTuple):
+class VisualPart(NamedTuple):
     """A part as cameras see it.
 
     Attributes:
@@ -49,34 +49,34 @@ class Solid(NamedTuple):
     colour: str
 
 
-def solids_of(robot: RobotModel) -> list[Solid]:
+def visual_parts(robot: RobotModel) -> list[VisualPart]:
     """The parts that are seen; meshes are left out."""
     described = read_description(robot.description)
     return [
-        solid
+        part
         for name, link in described.links.items()
-        for solid in _solids(link, described.pose(name, robot.base), described)
+        for part in _visual_parts(link, described.pose(name, robot.base), described)
     ]
 
 
 def seen_from_above(robot: RobotModel) -> list[SeenPart]:
     """The parts that are seen, the lowest first; meshes are left out."""
     found = []
-    for corners, colour in solids_of(robot):
+    for corners, colour in visual_parts(robot):
         outline = _hull(corners[:, :2])
         if len(outline):
             found.append(SeenPart(outline, colour, float(corners[:, 2].max())))
     return sorted(found, key=lambda part: part.top)
 
 
-def _solids(link: Xml.Element, at: Array, described: Description) -> Iterator[Solid]:
+def _visual_parts(link: Xml.Element, at: Array, described: Description) -> Iterator[VisualPart]:
     for visual in link.findall("visual"):
         for shape in visual.findall("geometry/*"):
             cloud = _cloud(shape)
             if len(cloud):
                 pose = at @ matrix(pose_of(visual))
                 placed = cloud @ pose[:3, :3].T + pose[:3, 3]
-                yield Solid(placed, _colour(visual, described))
+                yield VisualPart(placed, _colour(visual, described))
 
 
 def _cloud(shape: Xml.Element) -> Array:

@@ -41,7 +41,7 @@ from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 from pydrake.systems.sensors import CameraInfo
 
 from crowdbot.core.geometry.optical_frame import OPTICAL_RPY
-from crowdbot.core.robots.look import solids_of
+from crowdbot.core.robots.look import visual_parts
 from crowdbot.core.sensing.body_model import PARTS, TRUNK
 from crowdbot.core.sensing.mount import sensor_pose_in_world
 from crowdbot.core.sensing.other_robots import OtherRobot
@@ -144,7 +144,7 @@ class Renderer:
         for k, robot in enumerate(scene.others.robots):
             frame = self._graph.RegisterFrame(self._source, GeometryFrame(f"robot{k}"))
             frames.append(frame)
-            solids = solids_of(models[k]) if k < len(models) else []
+            solids = visual_parts(models[k]) if k < len(models) else []
             for part, (corners, colour) in enumerate(solids):
                 shape = Convex(points=corners.T, label=f"robot{k}_{part}")
                 lift = RigidTransform([0.0, 0.0, models[k].base_height])
