@@ -122,6 +122,21 @@ def expand_document(
     return _Expander(suite, scenario_model, overrides).run()
 
 
+class Expanding:
+    """A document's scenarios by their place in the `Expansion`, each expanded when asked for."""
+
+    def __init__(self, suite: ParsedSuite, scenario_model: type[Scenario]) -> None:
+        self._expander = _Expander(suite, scenario_model, ())
+
+    def scenario(self, index: int) -> Scenario:
+        """One scenario.
+
+        Raises:
+            SpecError: with the errors of those that were asked for.
+        """
+        return self._expander.one(index)
+
+
 @dataclass
 class _Folded:
     """An error, and the scenarios that have it."""
@@ -162,6 +177,7 @@ class _Expander:
         self._parts = ValidParts()
         self._assets = AssetFiles(suite.finder) if suite.finder else None
         self._validated: dict[tuple[tuple[str, int], ...], Scenario] = {}
+        self._bare: list[_Bare] | None = None
         self._total = self._noted = 0
 
     def run(self) -> Expansion:
@@ -169,25 +185,13 @@ class _Expander:
         for bare in self._trees():
             if self._noted > _ENOUGH:
                 break
-            self._total += 1
-            if bare.name != self._suite.scenario_id and (why := path_problem(bare.name)):
-                self._note(
-                    Diagnostic("E116", f"the id {why}", self._suite.base.mark), bare.name, ""
-                )
-                continue
             tree = self._complete(bare)
-            scenario = self._validate(bare.name, tree)
-            references = {
-                reference: self._validate(bare.name, self._complete(bare, over), reference)
-                for reference, over in self._suite.references.items()
-            }
+            scenario = self._scenario(bare, tree)
             if scenario is not None:
-                scenarios.append(scenario.model_copy(update={"references": references}))
+                scenarios.append(scenario)
                 trees[bare.name] = tree
                 axes[bare.name] = bare.labels
-        problems = [*self._problems, *self._folded()]
-        if problems:
-            raise SpecError(_sorted(problems))
+        self._raise_problems()
         suite = self._suite
         return Expansion(
             suite.id,
@@ -200,6 +204,32 @@ class _Expander:
             suite.run_seeds,
             axis_words(suite.base, suite.axes, self._set),
         )
+
+    def one(self, index: int) -> Scenario:
+        if self._bare is None:
+            self._bare = list(self._trees())
+        scenario = self._scenario(self._bare[index], self._complete(self._bare[index]))
+        self._raise_problems()
+        assert scenario is not None
+        return scenario
+
+    def _scenario(self, bare: _Bare, tree: Node) -> Scenario | None:
+        """A combination with its references; None if something is wrong, which is noted."""
+        self._total += 1
+        if bare.name != self._suite.scenario_id and (why := path_problem(bare.name)):
+            mark = self._suite.base.mark
+            self._note(Diagnostic("E116", f"the id {why}", mark), bare.name, "")
+            return None
+        scenario = self._validate(bare.name, tree)
+        references = {
+            reference: self._validate(bare.name, self._complete(bare, over), reference)
+            for reference, over in self._suite.references.items()
+        }
+        return scenario and scenario.model_copy(update={"references": references})
+
+    def _raise_problems(self) -> None:
+        if problems := [*self._problems, *self._folded()]:
+            raise SpecError(_sorted(problems))
 
     def _trees(self) -> Iterator[_Bare]:
         """The combinations that stay, as trees."""

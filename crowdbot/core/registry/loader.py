@@ -7,6 +7,7 @@ import re
 import traceback
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from importlib import metadata
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -239,7 +240,7 @@ def _check_models(components: Sequence[Component[Any]]) -> None:
     of a category are tried at once, which is quick, and one after the other only if that fails.
     """
     try:
-        _try_models([c.spec for c in components])
+        _try_models(tuple(c.spec for c in components))
     except Exception:
         for component in components:
             _check_model(component)
@@ -249,7 +250,7 @@ def _check_models(components: Sequence[Component[Any]]) -> None:
 def _check_model(component: Component[Any]) -> None:
     try:
         component.spec.model_rebuild(raise_errors=True)
-        _try_models([component.spec])
+        _try_models((component.spec,))
     except Exception as error:
         first = str(error).strip().partition("\n")[0]
         raise PluginError(
@@ -258,7 +259,8 @@ def _check_model(component: Component[Any]) -> None:
         ) from error
 
 
-def _try_models(specs: Sequence[type[ComponentSpec]]) -> None:
+@lru_cache(maxsize=64)  # a process that looks again finds the same classes
+def _try_models(specs: tuple[type[ComponentSpec], ...]) -> None:
     members: Any = (*specs, _Probe)
     adapter: TypeAdapter[Any] = TypeAdapter(
         Annotated[Union[members], Field(discriminator="kind")]  # noqa: UP007

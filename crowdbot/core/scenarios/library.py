@@ -10,13 +10,13 @@ import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
-from functools import cache, cached_property, partial
+from functools import cache, partial
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from crowdbot.core.registry.registry import Registry
 from crowdbot.dsl.diagnostics import Diagnostic
-from crowdbot.dsl.expand import Expansion, expand_document, load_document
+from crowdbot.dsl.expand import Expanding, Expansion, expand_document, load_document
 from crowdbot.dsl.installed import Installed
 from crowdbot.dsl.lock import LockFiles
 from crowdbot.dsl.scenario import Locked, Scenario
@@ -114,7 +114,7 @@ def check_writable(files: LockFiles) -> None:
 
 
 class _Origins:
-    """The scenarios as the suite has them, without ``--set``; expanded when somebody asks."""
+    """The scenarios as the suite has them, without ``--set``; each expanded when asked for."""
 
     def __init__(
         self,
@@ -123,15 +123,11 @@ class _Origins:
         expansion: Expansion,
         overrides: Sequence[str],
     ) -> None:
-        self._suite, self._registry = suite, registry
         self._given = None if overrides else expansion.scenarios
+        self._expanding = Expanding(suite, registry.scenario_model)
 
     def scenario(self, index: int) -> Scenario:
-        return self._scenarios[index]
-
-    @cached_property
-    def _scenarios(self) -> list[Scenario]:
-        return self._given or expand_document(self._suite, self._registry.scenario_model).scenarios
+        return self._given[index] if self._given else self._expanding.scenario(index)
 
 
 def _attach(expansion: Expansion, files: LockFiles, origins: _Origins) -> None:
