@@ -63,8 +63,8 @@ def tick(
     entry_order: Indices, heeds_robot: Mask, push: Array, goal_area: Array, pause: Array,
     ahead: Indices, origin: Array, guide: Indices, abreast: Array, stays_at: Mask,
     walls: Array, entrance: Array, out: Array, keep_offset: bool, goal_ahead: bool,
-    boundary: Array, goals_wrap: bool, response: Array, stiffness: float, dissipation: float, goal_key: np.uint64,
-    solids: Array,
+    boundary: Array, goals_wrap: bool, response: Array, stiffness: float, dissipation: float,
+    goal_key: np.uint64, solids: Array,
     reaction: Array, placed: Array, order: Indices,
 ) -> None:  # fmt: skip
     """Advance from tick k to k + 1.

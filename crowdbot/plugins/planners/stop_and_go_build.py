@@ -146,9 +146,7 @@ class StopAndGo:
             last = heading if self._chosen is None else self._chosen
             free = min(self._safe_speed(scene, error + aside)[0] / cruise, 1.0)
             if spec.look_ahead > 0.0:
-                away = time_to_contact(
-                    scene.points, scene.velocities, cruise, error + aside, clear
-                )
+                away = time_to_contact(scene.points, scene.velocities, cruise, error + aside, clear)
                 free = min(free, away / spec.look_ahead)
             change = abs(math.remainder(heading - last, 2.0 * math.pi))
             value = cruise * free * math.cos(aside) - _ASIDE * abs(aside) - _CHANGE * change

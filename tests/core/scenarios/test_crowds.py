@@ -19,7 +19,7 @@ REGISTRY = discover(allow=())
 
 def test_crowds_by_name_by_file_and_by_kind(tmp_path: Path) -> None:
     parts = crowd_parts(REGISTRY)
-    assert {"calibrated", "orca", "challenge_2026"} <= set(parts)
+    assert {"calibrated", "orca", "challenge_2020"} <= set(parts)
     copied = tmp_path / "mine.yaml"
     copied.write_text(parts["power_law"].read_text())
     same = open_crowd("power_law", REGISTRY)

@@ -135,9 +135,7 @@ def test_gets_out_of_the_way_of_somebody_who_does_not_look() -> None:
     assert early.t < late.t or late.contacts
 
 
-@given(
-    st.floats(-5, 5), st.floats(-5, 5), st.floats(-2, 2), st.floats(-2, 2), st.floats(-1.5, 1.5)
-)
+@given(st.floats(-5, 5), st.floats(-5, 5), st.floats(-2, 2), st.floats(-2, 2), st.floats(-1.5, 1.5))
 def test_time_to_contact_is_when_discs_first_touch(
     x: float, y: float, vx: float, vy: float, heading: float
 ) -> None:
