@@ -85,7 +85,8 @@ def page(rows: Sequence[dict[str, Any]], reference: RealismReference) -> str:
         "0.2 m radius who prefer 1.5 m/s. `challenge mix` is `challenge_2020` with people "
         "of 0.33 m who prefer 1.34 ± 0.26 m/s, `challenge-2026` is the crowd of that suite: "
         "`calibrated`, with a larger spread of speeds and accelerations up to 3 m/s². "
-        "`demo_2` equals `social_forces`: they differ only in ranges beyond which nobody is felt ([named policies](named_policies.md)).",
+        "`demo_2` equals `social_forces`: they differ only in ranges beyond which nobody is felt "
+        "([named policies](named_policies.md)).",
         "",
         *_table(
             ["crowd", "index", "score", "speed", "acceleration", "turning", "nearest",

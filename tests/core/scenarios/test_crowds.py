@@ -52,7 +52,7 @@ def test_wrong_names_fields_and_files_are_told(tmp_path: Path) -> None:
 
 
 def test_scenarios_with_other_crowds() -> None:
-    plain = open_spec("challenge-2026", REGISTRY)
+    plain = open_spec("challenge-2026", REGISTRY, ["crowd.body.radius=0.3 m"])
     found = with_crowds(plain, ["orca", "calibrated"], REGISTRY)
     assert len(found.scenarios) == 2 * len(plain.scenarios)
     first, own = found.scenarios[0], plain.scenarios[0]
@@ -61,6 +61,7 @@ def test_scenarios_with_other_crowds() -> None:
     assert first.crowd is not None
     assert own.crowd is not None
     assert first.crowd.policy != own.crowd.policy
+    assert first.crowd.steering is None
     assert (first.crowd.flow, first.crowd.speed) == (own.crowd.flow, own.crowd.speed)
     assert first.crowd.robot_response == own.crowd.robot_response
     calibrated = found.scenarios[len(plain.scenarios)]
