@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from crowdbot.dsl import semantics
 from crowdbot.dsl.asset_files import AssetFiles
 from crowdbot.dsl.axis_words import AxisWords, axis_words
 from crowdbot.dsl.diagnostics import MAX_ERRORS, Diagnostic, Mark, Source
@@ -20,6 +19,7 @@ from crowdbot.dsl.merge import Merged, merge, nest, undot
 from crowdbot.dsl.nodes import Entry, Node, parse, to_data
 from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.semantics import Checks
 from crowdbot.dsl.suite import ParsedSuite, read_suite
 from crowdbot.dsl.validation import locate, validate
 from crowdbot.dsl.validation_cache import ValidParts
@@ -174,7 +174,7 @@ class _Expander:
         self._merged: Merged = {}
         self._data: dict[Node, Any] = {}
         self._seeds: dict[str, Node] = {}
-        self._parts = ValidParts()
+        self._parts, self._checks = ValidParts(), Checks()
         self._assets = AssetFiles(suite.finder) if suite.finder else None
         self._validated: dict[tuple[tuple[str, int], ...], Scenario] = {}
         self._bare: list[_Bare] | None = None
@@ -276,7 +276,7 @@ class _Expander:
                 del parts["root"]
             seed = Node(mark, {k: Entry(mark, node) for k, node in parts.items()}, implied=True)
             self._seeds[key] = nest(("seed",), seed, mark)
-        node = merge(self._seeds[key], crowd.node)
+        node = merge(self._seeds[key], crowd.node, self._merged)
         own = locate(crowd.node, ("seed", "key"))
         if draw and not own.rest and isinstance(own.node.value, str):
             joined = replace(own.node, value=f"{own.node.value}-{draw}".lstrip("-"))
@@ -294,7 +294,7 @@ class _Expander:
         scenario, found = self._with_assets(tree, data)
         if scenario is not None and not found:
             self._parts.add(tree, scenario)
-            found = semantics.check(scenario, tree)
+            found = self._checks.of(scenario, tree)
         for diagnostic in found:
             self._note(diagnostic, name, reference)
         if found or scenario is None:

@@ -21,6 +21,7 @@ from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.registry.entry_points import ALLOW, find_plugins
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
+from crowdbot.core.support.seldom_collected import seldom_collected
 from crowdbot.dsl.component import Component
 from crowdbot.dsl.component_specs import CATEGORIES
 from crowdbot.dsl.components import components
@@ -259,6 +260,7 @@ def _sources(plugin: Plugin, component: Component[Any]) -> frozenset[str]:
     return frozenset(f for f in (plugin.file, *files) if f)
 
 
+@seldom_collected()
 def discover(
     *, extra: Sequence[Path] = (), allow: Iterable[str] | None = None, entry_points: bool = True
 ) -> Registry:

@@ -15,6 +15,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.support.seldom_collected import seldom_collected
 from crowdbot.dsl.diagnostics import Diagnostic
 from crowdbot.dsl.expand import Expanding, Expansion, expand_document, load_document
 from crowdbot.dsl.installed import Installed
@@ -38,6 +39,7 @@ class OpenDocument:
     suite: ParsedSuite
 
 
+@seldom_collected()
 def open_document(spec: str, registry: Registry) -> OpenDocument:
     """Read a suite or scenario with all it extends; nothing is expanded.
 
@@ -72,6 +74,7 @@ def open_spec(spec: str, registry: Registry, overrides: Sequence[str] = ()) -> E
     return expansion
 
 
+@seldom_collected()
 def open_suite(
     spec: str, registry: Registry, overrides: Sequence[str] = ()
 ) -> tuple[Expansion, LockFiles]:

@@ -1,0 +1,71 @@
+"""Tests that `make test` leaves out: ids, or how they begin."""
+
+from __future__ import annotations
+
+#: The longest tests, 7 minutes of processor time together: `make test-all` runs them too, so that
+#: `make test` ends within 15 minutes on two cores.
+LONG = (
+    "tests/cli/test_audit.py::test_a_suite_without_people_tells_nothing",
+    "tests/cli/test_audit.py::test_floors_are_reused_like_any_other_run",
+    "tests/cli/test_campaign.py::test_ctrl_c_ends_workers_and_keeps_what_is_finished",
+    "tests/cli/test_campaign.py::test_failures_are_on_record_and_stop_nobody",
+    "tests/cli/test_campaign.py::test_references_are_shared_and_replays_left_out",
+    "tests/cli/test_campaign.py::test_failures_of_planners_in_the_workers",
+    "tests/cli/test_campaign_cluster.py",
+    "tests/cli/test_kills.py",
+    "tests/plugins/planners/test_outlines.py::test_a_wheelchair",
+    "tests/plugins/planners/test_outlines.py::test_pepper",
+    "tests/cli/test_planner_processes.py::test_a_hostile_planner_stops_no_campaign",
+    "tests/cli/test_planner_processes.py::test_a_worker_is_killed",
+    "tests/cli/test_plugins.py::test_show_every_kind",
+    "tests/cli/test_plugins_new.py::test_the_other_scenario_runs",
+    "tests/cli/test_plugins_new.py::test_the_package_keeps_its_promises",
+    "tests/cli/test_serve.py::test_roslibpy_drives_to_the_goal_as_the_same_planner_inside[Twist]",
+    "tests/cli/test_simulate.py::test_runs_at_once_are_the_same_run",
+    "tests/cli/test_verify_fleet.py::test_scores_of_robots_that_do_not_fit_are_found",
+    "tests/cli/test_view.py::test_runs_beside_each_other",
+    "tests/core/planning/process/test_same_trajectory.py::test_another_language_drives",
+    "tests/core/replay/test_browser.py::test_axe_finds_nothing[dark]",
+    "tests/core/replay/test_browser.py::test_pictures_and_clips_are_saved",
+    "tests/core/live/test_rosbridge.py::test_two_thousand_come_and_go",
+    "tests/docs/test_example_package.py",
+    "tests/dsl/test_mutations.py::test_refused_or_understood",
+    "tests/dsl/test_safety.py::test_document",
+    "tests/dsl/test_schema.py::test_what_the_schema_refuses_validate_refuses",
+)
+
+#: More cases of what `make test` tries with a few: `make test-all` runs them too. 100 s.
+VARIANTS = (
+    "tests/cli/test_planner_safety.py::test_a_planner_that_fails[file_options-",
+    "tests/cli/test_simulate_failures.py::test_a_failing_planner_leaves_a_complete_run[exits in",
+    "tests/cli/test_simulate_failures.py::test_a_failing_planner_leaves_a_complete_run[raises l",
+    "tests/cli/test_simulate_failures.py::test_a_failing_planner_leaves_a_complete_run[returns N",
+    "tests/cli/test_simulate_failures.py::test_a_failing_planner_leaves_a_complete_run[returns f",
+    "tests/cli/test_simulate_failures.py::test_a_failing_planner_leaves_a_complete_run[returns i",
+    "tests/cli/test_simulate_failures.py::test_a_failing_planner_leaves_a_complete_run[returns t",
+    "tests/cli/test_simulate_failures.py::test_prints_of_a_planner_keep_off_stdout[init",
+    "tests/cli/test_simulate_failures.py::test_prints_of_a_planner_keep_off_stdout[reset",
+    "tests/cli/test_verify_command.py::test_two_processors[libraries1]",
+    "tests/core/crowd/test_engine.py::test_a_minute_in_the_corridor[counter-d0500-slow-c01-r10]",
+    "tests/core/crowd/test_engine.py::test_a_minute_in_the_corridor[in-d0500-fast-c50-r10]",
+    "tests/core/crowd/test_properties.py::test_rotation[1.57",
+    "tests/core/crowd/test_properties.py::test_rotation[3.14",
+    "tests/core/report/test_browser.py::test_axe_finds_nothing[1920-light]",
+    "tests/core/report/test_browser.py::test_numbers_that_differ_by_rounding_alone_are_drawn[1.0]",
+    "tests/core/report/test_browser.py::test_numbers_that_differ_by_rounding_alone_are_drawn[1000",
+    "tests/core/sim/test_contact_diagram.py::test_one_contact_is_that_of_the_reference[128-speeds1]",
+    "tests/core/sim/test_contact_diagram.py::test_one_contact_is_that_of_the_reference[128-speeds2]",
+    "tests/core/sim/test_contact_diagram.py::test_one_contact_is_that_of_the_reference[256-speeds1]",
+    "tests/core/sim/test_contact_diagram.py::test_one_contact_is_that_of_the_reference[256-speeds3]",
+    "tests/core/support/test_compile_cache.py::test_a_plugins_changed_callee_is_compiled_again[lone",
+    "tests/core/support/test_compile_cache.py::test_a_plugins_changed_callee_is_compiled_again"
+    "[package.deep",
+    "tests/plugins/planners/test_dwa.py::test_it_does_not_flee_from_those_who_come_towards_it[1]",
+    "tests/plugins/planners/test_dwa.py::test_it_does_not_flee_from_those_who_come_towards_it[2]",
+    "tests/plugins/planners/test_dwa.py::test_standing_crowd[0-50]",
+    "tests/plugins/planners/test_dwa.py::test_standing_crowd[1-50]",
+    "tests/plugins/planners/test_dwa.py::test_standing_crowd[2-",
+    "tests/plugins/planners/test_dwa.py::test_through_fifty_who_avoid_nobody[1]",
+    "tests/plugins/planners/test_dwa.py::test_through_fifty_who_avoid_nobody[2]",
+    "tests/plugins/sensors/test_infrared.py::test_a_wall_ahead_whatever_the_heading[1.0]",
+)
