@@ -1,9 +1,8 @@
-"""Tests that `make test` leaves out: ids, or how they begin."""
+"""Tests that `make test` leaves out and `make test-all` runs: ids, or how they begin."""
 
 from __future__ import annotations
 
-#: The longest tests, 7 minutes of processor time together: `make test-all` runs them too, so that
-#: `make test` ends within 15 minutes on two cores.
+#: The longest tests, 7 minutes of processor time together.
 LONG = (
     "tests/cli/test_audit.py::test_a_suite_without_people_tells_nothing",
     "tests/cli/test_audit.py::test_floors_are_reused_like_any_other_run",
@@ -34,7 +33,7 @@ LONG = (
     "tests/dsl/test_schema.py::test_what_the_schema_refuses_validate_refuses",
 )
 
-#: More cases of what `make test` tries with a few: `make test-all` runs them too. 100 s.
+#: More cases of what `make test` tries with a few: 55 s of processor time.
 VARIANTS = (
     "tests/cli/test_planner_safety.py::test_a_planner_that_fails[file_options-",
     "tests/cli/test_simulate_failures.py::test_a_failing_planner_leaves_a_complete_run[exits in",
