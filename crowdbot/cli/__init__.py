@@ -27,6 +27,7 @@ from typer.main import get_command
 from crowdbot.cli._complete import offer
 from crowdbot.cli._mishaps import tell_of_threads
 from crowdbot.core.support.quick_exit import end_without_collecting
+from crowdbot.core.support.seldom_collected import collect_seldom
 from crowdbot.errors import CrowdbotError, SpecError, did_you_mean, nearest, printable
 
 _SETTINGS: dict[str, Any] = {
@@ -70,6 +71,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(argv: Sequence[str] | None) -> int:
     words = sys.argv[1:] if argv is None else list(argv)
+    if argv is None and not _READING.isdisjoint(words[:1]):
+        collect_seldom()
     try:
         with _silence() if _wants_silence(words) else nullcontext():
             get_command(_app())(words, prog_name="crowdbot")
@@ -79,6 +82,9 @@ def _run(argv: Sequence[str] | None) -> int:
         return done.code if isinstance(done.code, int) else int(done.code is not None)
     return 0
 
+
+#: Commands that read documents, tell about them, and are over: a process of theirs is short.
+_READING = frozenset(("expand", "plugins", "validate"))
 
 #: Commands whose output only tells what they did; with ``-q`` they say only what went wrong.
 _TELLING = frozenset(
