@@ -18,7 +18,12 @@ class MinClearanceSpec(MetricSpec):
 
 
 MIN_CLEARANCE = declare(
-    MinClearanceSpec, symbol="CD_min", unit="m", better="higher", more_people="down"
+    MinClearanceSpec,
+    symbol="CD_min",
+    unit="m",
+    better="higher",
+    more_people="down",
+    variants=("corrected", "disc"),
 )
 
 

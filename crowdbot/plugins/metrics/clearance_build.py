@@ -17,6 +17,7 @@ from crowdbot.core.interfaces import (
     time_weights,
     truncate_at_arrival,
 )
+from crowdbot.core.trajectories.disc_around_robot import as_disc
 from crowdbot.core.trajectories.encounters import encounter
 from crowdbot.plugins.metrics.clearance import (
     AVG_CLEARANCE,
@@ -44,14 +45,14 @@ class MinClearance:
     spec: MinClearanceSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Least gap at any sample."""
+        """Least gap at any sample, of the outline and of the disc around it."""
         del refs
-        gap = nearest_gap(ScoreFactory(MIN_CLEARANCE), run)
-        return (
-            gap
-            if isinstance(gap, list)
-            else [ScoreFactory(MIN_CLEARANCE).ok("corrected", gap.min())]
-        )
+        factory = ScoreFactory(MIN_CLEARANCE)
+        gap, of_disc = nearest_gap(factory, run), nearest_gap(factory, as_disc(run))
+        if isinstance(gap, list):
+            return gap
+        assert not isinstance(of_disc, list), "the same people, the same time"
+        return [factory.ok("corrected", gap.min()), factory.ok("disc", of_disc.min())]
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,11 @@ PROXIMITY = declare(
     better="lower",
     minimum=0.0,
     more_people="up",
-    variants={"literal": {"refinement": "double"}, "corrected": {"maximum": 10.0}},
+    variants={
+        "literal": {"refinement": "double"},
+        "corrected": {"maximum": 10.0},
+        "outline": {"maximum": 10.0},
+    },
 )
 
 

@@ -1,4 +1,4 @@
-"""How near the robot comes to people, computed; distances are between centres."""
+"""How near the robot comes to people, computed; between centres where nothing else is said."""
 
 from __future__ import annotations
 
@@ -40,35 +40,38 @@ class Proximity:
     spec: ProximitySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``: sum over samples; ``corrected``: mean over time, with a floor."""
+        """``literal``: sum over samples; ``corrected``, ``outline``: mean over time, floored."""
         del refs
         factory = ScoreFactory(PROXIMITY)
         if run.robot is None:
             return factory.all_undefined("invalid_no_robot")
         run = truncate_at_arrival(run)
-        distance = encounter(run, np.inf).distance
-        nearest = np.where(np.isfinite(distance), distance, np.inf).min(axis=1, initial=np.inf)
-        shortest = float(nearest.min())
-        if not np.isfinite(shortest):
+        pair = encounter(run, np.inf)
+        nearest, gap = (
+            np.where(np.isfinite(apart), apart, np.inf).min(axis=1, initial=np.inf)
+            for apart in (pair.distance, pair.gap)
+        )
+        if not np.isfinite(nearest.min()):
             return factory.all_undefined("no_agents")
-        return [self._literal(nearest), self._corrected(run.t, nearest, shortest)]
+        means = (self._mean(v, run.t, d) for v, d in (("corrected", nearest), ("outline", gap)))
+        return [self._literal(nearest), *means]
 
     def _literal(self, nearest: Array) -> Score:
         if nearest.min() <= self.spec.length_tol:
             return ScoreFactory(PROXIMITY).undefined("literal", "zero_distance")
         return ScoreFactory(PROXIMITY).ok("literal", (1.0 / nearest).sum())
 
-    def _corrected(self, t: Array, nearest: Array, shortest: float) -> Score:
+    def _mean(self, variant: str, t: Array, nearest: Array) -> Score:
         factory = ScoreFactory(PROXIMITY)
         if (span := duration(t)) <= 0:
-            return factory.undefined("corrected", "too_few_samples")
+            return factory.undefined(variant, "too_few_samples")
         mean = (
             float(time_weights(t) @ (1.0 / np.maximum(nearest, self.spec.proximity_floor))) / span
         )
-        extras = {"shortest_distance": shortest}
+        extras = {"shortest_distance": float(nearest.min())}
         if mean > 0:
             extras["harmonic_mean_distance"] = 1.0 / mean
-        return factory.ok("corrected", mean, extras)
+        return factory.ok(variant, mean, extras)
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,6 +33,7 @@ RISK = declare(
         "corrected": {"better": "none", "more_people": "up"},
         "exposed_time": {"better": "none", "more_people": "up"},
         "rate": {"unit": "1", "maximum": 1.0, "more_people": "up"},
+        "disc": {"unit": "1", "maximum": 1.0, "more_people": "up"},
     },
 )
 
@@ -123,6 +124,7 @@ MIN_TIME_TO_COLLISION = declare(
     experimental=True,
     minimum=0.0,
     more_people="down",
+    variants=("corrected", "disc"),
 )
 
 COMPONENTS = (

@@ -17,6 +17,7 @@ from crowdbot.core.interfaces import (
     time_weights,
     truncate_at_arrival,
 )
+from crowdbot.core.trajectories.disc_around_robot import as_disc
 from crowdbot.core.trajectories.encounters import approach
 from crowdbot.plugins.metrics.risk import (
     EXPECTED_SEVERITY,
@@ -42,7 +43,7 @@ class Risk:
     spec: RiskSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``; ``corrected`` and ``exposed_time``, which grow with time; ``rate``."""
+        """``literal``, ``corrected`` and ``exposed_time`` grow with time; ``rate``, ``disc``."""
         del refs
         factory = ScoreFactory(RISK)
         if run.robot is None:
@@ -53,12 +54,16 @@ class Risk:
         if (span := duration(run.t)) <= 0:
             return [literal, *factory.all_undefined("too_few_samples", factory.variants[1:])]
         weights, horizon = time_weights(run.t), self.spec.risk_horizon
-        imminence = float(weights @ np.maximum(0.0, 1.0 - tau / horizon))
+        of_disc = first_contact(as_disc(run), self.spec)
+        imminence, round_one = (
+            float(weights @ np.maximum(0.0, 1.0 - near / horizon)) for near in (tau, of_disc)
+        )
         return [
             literal,
             factory.ok("corrected", imminence, {"mean": imminence / span}),
             factory.ok("exposed_time", weights @ (tau < horizon)),
             factory.ok("rate", min(1.0, imminence / span)),
+            factory.ok("disc", min(1.0, round_one / span)),
         ]
 
 
@@ -134,10 +139,15 @@ class MinTimeToCollision:
         factory = ScoreFactory(MIN_TIME_TO_COLLISION)
         if run.robot is None:
             return factory.all_undefined("invalid_no_robot")
-        least = float(first_contact(truncate_at_arrival(run), self.spec).min())
+        run = truncate_at_arrival(run)
+        read = {"corrected": run, "disc": as_disc(run)}
+        return [self._least(factory, variant, one) for variant, one in read.items()]
+
+    def _least(self, factory: ScoreFactory, variant: str, run: Trajectories) -> Score:
+        least = float(first_contact(run, self.spec).min())
         if not np.isfinite(least):
-            return factory.all_undefined("no_neighbours")
-        return [factory.ok("corrected", least)]
+            return factory.undefined(variant, "no_neighbours")
+        return factory.ok(variant, least)
 
 
 _Spec = (

@@ -57,6 +57,42 @@ def test_gaps(footprint: Any, angle: float, agent: tuple[float, float], gap: flo
     assert value_of(scores_of("min_clearance", run)) == pytest.approx(gap - AGENT_RADIUS)
 
 
+@pytest.mark.parametrize(
+    ("footprint", "reach"), [(BOX, np.hypot(0.6, 0.2)), (CAPSULE, 0.5 + ROBOT_RADIUS)]
+)
+def test_the_reading_of_a_disc_stays_as_a_variant(footprint: Any, reach: float) -> None:
+    """Somebody stands beside a long robot, 0.9 m from its middle."""
+    run = facing(0.0, (0.0, 0.9), footprint)
+    half = 0.2 if footprint is BOX else ROBOT_RADIUS
+    gaps = {"outline": 0.9 - half - AGENT_RADIUS, "disc": 0.9 - reach - AGENT_RADIUS}
+    assert values(scores_of("min_clearance", run)) == pytest.approx(
+        {"corrected": gaps["outline"], "disc": gaps["disc"]}
+    )
+    near = values(scores_of("proximity", run))
+    assert near["corrected"] == pytest.approx(1 / 0.9)  # of centres
+    assert near["outline"] == pytest.approx(1 / gaps["outline"])
+
+
+def test_times_to_contact_of_a_disc() -> None:
+    """Somebody comes from the side: the disc would be touched earlier."""
+    run = scene(T, line(T, (0, 0), (0, 0)), [line(T, (0.0, 9.0), (0.0, -0.5))], robot_footprint=BOX)
+    least = values(scores_of("min_time_to_collision", run))
+    apart = 9.0 - 0.5 * 10 - AGENT_RADIUS
+    assert least == pytest.approx(
+        {"corrected": (apart - 0.2) / 0.5, "disc": (apart - np.hypot(0.6, 0.2)) / 0.5}
+    )
+    assert least["corrected"] is not None
+    risk = values(scores_of("risk", run, risk_horizon="9 s"))
+    assert risk["disc"] > risk["rate"] > 0
+
+
+def test_a_round_robot_reads_alike_either_way() -> None:
+    run = random_scene(3)
+    for metric, outline in (("min_clearance", "corrected"), ("risk", "rate")):
+        found = values(scores_of(metric, run))
+        assert found["disc"] == found[outline]
+
+
 def test_contact_is_with_the_outline() -> None:
     """Somebody comes from the front; the disc would be touched later, at the side earlier."""
     for start, velocity, onset in (

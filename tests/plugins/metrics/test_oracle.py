@@ -63,7 +63,7 @@ def test_risk_and_severity(seed: int) -> None:
     expected = oracle.risk(oracle.World(run))
     times = oracle.World(run).t
     span = times[-1] - times[0]
-    expected |= {"rate": expected["corrected"] / span}
+    expected |= dict.fromkeys(("rate", "disc"), expected["corrected"] / span)
     expected |= {"severity_rate": expected["severity_corrected"] / span}
     for variant, s in scores_of("risk", run).items():
         assert s.value == pytest.approx(expected[variant], rel=1e-6, abs=1e-6)

@@ -64,6 +64,12 @@ def test_gaps_and_the_least_clearance(seed: int) -> None:
     found = scores_of("min_clearance", run)["corrected"]
     if found.value is not None:
         assert value_of({"corrected": found}) == pytest.approx(np.nanmin(wanted), abs=1e-6)
+    mean = scores_of("proximity", run)["outline"]
+    if mean.value is not None:
+        nearest = np.where(np.isfinite(wanted), wanted, np.inf).min(axis=1)
+        inverse = 1.0 / np.maximum(nearest, 0.1)
+        area = np.trapezoid(inverse, run.t)
+        assert mean.value == pytest.approx(area / (run.t[-1] - run.t[0]), abs=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -34,7 +34,9 @@ def test_constant_distance() -> None:  # b06, f03
     ring = [(2 * math.cos(a), 2 * math.sin(a)) for a in np.arange(6) * math.pi / 3]
     for run in (around((2, 0)), around(*ring)):
         found = scores_of("proximity", run)
-        assert values(found) == pytest.approx({"literal": 101 * 0.5, "corrected": 0.5})
+        assert values(found) == pytest.approx(
+            {"literal": 101 * 0.5, "corrected": 0.5, "outline": 1 / (2 - REACH)}
+        )
         assert found["corrected"].extras == pytest.approx(
             {"shortest_distance": 2, "harmonic_mean_distance": 2}
         )
@@ -51,7 +53,7 @@ def test_passing() -> None:  # f05, b02, e12
 def test_the_nearest_counts_by_its_centre_not_below_the_floor() -> None:
     run = around((0.05, 0), (4, 0))
     assert values(scores_of("proximity", run)) == pytest.approx(
-        {"literal": 101 * 20, "corrected": 10}
+        {"literal": 101 * 20, "corrected": 10, "outline": 10}
     )
     found = scores_of("proximity", around((0, 0), (4, 0)))
     assert found["literal"].reason == "zero_distance"
@@ -62,7 +64,9 @@ def test_the_nearest_counts_by_its_centre_not_below_the_floor() -> None:
 def test_moments_with_nobody_add_nothing() -> None:
     half = present_during(line(T, (2, 0), (0, 0)), T <= 5 + 1e-9)
     found = scores_of("proximity", scene(T, STILL, [half]))
-    assert values(found) == pytest.approx({"literal": 51 * 0.5, "corrected": 0.5 * 5.05 / 10})
+    assert values(found) == pytest.approx(
+        {"literal": 51 * 0.5, "corrected": 0.505 * 0.5, "outline": 0.505 / (2 - REACH)}
+    )
     never = present_during(line(T, (2, 0), (0, 0)), T < 0)
     for run in (scene(T, STILL), scene(T, STILL, [never])):
         assert why(scores_of("proximity", run)) == {("undefined", "no_agents")}

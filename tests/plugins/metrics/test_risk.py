@@ -44,7 +44,7 @@ def expected(tau0: float, contact: int, *, dt: float = 0.1) -> dict[str, float]:
 
 def check(run: Trajectories, values: dict[str, float]) -> None:
     found = scores_of("risk", run)
-    values |= {"rate": values["corrected"] / float(run.t[-1] - run.t[0])}
+    values |= dict.fromkeys(("rate", "disc"), values["corrected"] / float(run.t[-1] - run.t[0]))
     assert {name: s.value for name, s in found.items()} == pytest.approx(values)
     extras = found["corrected"].extras
     assert extras["mean"] == pytest.approx(values["corrected"] / (run.t[-1] - run.t[0]))
@@ -148,7 +148,7 @@ def test_overlap_counts_in_full_even_when_parting_or_unmoved() -> None:
     for velocity in ((0.0, 0.0), (0.01, 0.0)):
         run = scene(t, line(t, (0, 0), (0, 0)), [line(t, (0.2, 0), velocity)])
         found = scores_of("risk", run)
-        assert [s.value for s in found.values()] == pytest.approx([0, 10, 10, 1])
+        assert [s.value for s in found.values()] == pytest.approx([0, 10, 10, 1, 1])
         assert found["corrected"].extras["mean"] == pytest.approx(1)
 
 
@@ -228,7 +228,7 @@ def test_no_people_no_risk() -> None:
     run = scene(T, line(T, (0, 0), (1, 0)))
     for nobody in (run, with_columns(head_on(), [])):
         found = scores_of("risk", nobody)
-        assert [(s.status, s.value) for s in found.values()] == [("ok", 0.0)] * 4
+        assert [(s.status, s.value) for s in found.values()] == [("ok", 0.0)] * 5
         assert found["corrected"].extras["mean"] == 0
 
 
@@ -241,11 +241,12 @@ def test_reasons() -> None:
     assert {found[v].reason for v in ("corrected", "exposed_time", "rate")} == {"too_few_samples"}
 
 
-def test_only_the_rate_has_a_good_direction() -> None:
+def test_only_rates_have_a_good_direction() -> None:
     """What is summed over a run is smaller where the run is shorter, whoever drives."""
     assert {s.variant: s.better for s in scores_of("risk", head_on()).values()} == {
         "literal": "none",
         "corrected": "none",
         "exposed_time": "none",
         "rate": "lower",
+        "disc": "lower",
     }
