@@ -50,7 +50,7 @@ lint: setup
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-# With the longest tests too, which tests/conftest.py lists.
+# With the longest tests too, which tests/long_tests.py lists, and all examples of properties.
 test-all: setup kernels
 	CROWDBOT_ALL_TESTS=1 $(BIN)/pytest -n auto --dist worksteal
 

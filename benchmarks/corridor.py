@@ -62,7 +62,7 @@ def measure(engine: CrowdEngine, seconds: float) -> Flow:
         x = people[here, s.X]
         inside.append(int(np.sum((ZONE[0] < x) & (x < ZONE[1]))))
         through += int(np.sum(np.abs(people[here, s.Y]) >= HALF_WIDTH))
-        overlap = max(overlap, _overlap(people[here, s.X : s.Y + 1], a.radius[here]))
+        overlap = max(overlap, overlap_of(people[here, s.X : s.Y + 1], a.radius[here]))
         if tick > last // 2:
             moved += np.where(here, share, 0.0)
             seen += here
@@ -71,7 +71,7 @@ def measure(engine: CrowdEngine, seconds: float) -> Flow:
     return Flow(float(np.mean(pace)), density, overlap, through, float(np.min(moved / seen)), gone)
 
 
-def _overlap(at: NDArray[np.float64], radius: NDArray[np.float64]) -> float:
+def overlap_of(at: NDArray[np.float64], radius: NDArray[np.float64]) -> float:
     """Depth of the deepest overlap of two discs, m."""
     order = np.argsort(at[:, 0])
     at, radius, deepest = at[order], radius[order], 0.0

@@ -27,6 +27,7 @@ from typer.main import get_command
 from crowdbot.cli._complete import offer
 from crowdbot.cli._mishaps import left_by, tell_of_threads
 from crowdbot.core.registry.plugin_errors import telling_interrupts
+from crowdbot.core.support.quick_exit import end_without_collecting
 from crowdbot.errors import CrowdbotError, PluginError, SpecError, did_you_mean, nearest, printable
 
 _SETTINGS: dict[str, Any] = {
@@ -42,6 +43,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     Args:
         argv: arguments without the program's name; default: those of the process.
     """
+    if argv is None:
+        end_without_collecting()
     _tolerate_any_encoding()
     tell_of_threads()
     try:

@@ -76,7 +76,7 @@ def installed(
         InputError: there is nothing at a path.
         PluginError: a plugin given by hand failed.
     """
-    from crowdbot.core.registry.registry import discover
+    from crowdbot.core.support.seldom_collected import seldom_collected
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
     from crowdbot.errors import InputError, PluginError
 
@@ -84,7 +84,9 @@ def installed(
     for path in paths:
         if not path.exists():
             raise InputError(f"--plugin {path}: no such file or folder")
-    with stdout_to_stderr():
+    with seldom_collected(), stdout_to_stderr():
+        from crowdbot.core.registry.registry import discover
+
         registry = discover(extra=paths, allow=() if no_plugins else None)
     log = logging.getLogger("crowdbot")
     for line in registry.unknown_allowed():

@@ -59,6 +59,13 @@ def validate(
 
 def _check(spec: str, registry: Registry) -> tuple[int, list[Diagnostic]]:
     """Number of scenarios, errors."""
+    from crowdbot.core.support.seldom_collected import seldom_collected
+
+    with seldom_collected():
+        return _check_all(spec, registry)
+
+
+def _check_all(spec: str, registry: Registry) -> tuple[int, list[Diagnostic]]:
     from crowdbot.core.scenarios.library import open_suite
     from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
 
@@ -78,9 +85,10 @@ def _lock_problems(files: LockFiles) -> Iterator[Diagnostic]:
 
     if not files.lock_path.exists():
         return
-    for path, what in ((files.lock_path, "lock"), (files.agents_path, "tables")):
+    checks = ((files.lock_path, lambda: files.lock), (files.agents_path, files.check_tables))
+    for path, check in checks:
         try:
-            getattr(files, what)
+            check()
         except InputError as error:
             yield Diagnostic("E001", str(error), Mark(Source(str(path))))
 

@@ -1,8 +1,8 @@
 """The scenario language: specs, YAML, matrices, hashes, diagnostics.
 
 Its names here are what the spec side of a plugin imports; the build side is in
-`crowdbot.core.interfaces`. The language imports the standard library, pydantic and ruamel.yaml
-only.
+`crowdbot.core.interfaces`. The language imports the standard library, pydantic, PyYAML
+and ruamel.yaml only.
 """
 
 from crowdbot.dsl import outlines

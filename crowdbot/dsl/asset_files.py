@@ -22,6 +22,7 @@ class AssetFiles:
     def __init__(self, finder: Finder) -> None:
         self._finder = finder
         self._known: dict[Path, str] = {}
+        self._complete: dict[int, ComponentSpec] = {}
 
     def fill(
         self, scenario: Scenario, tree: Node, data: dict[str, Any], problems: list[Diagnostic]
@@ -34,7 +35,7 @@ class AssetFiles:
             data: of the tree; it stays as it is.
             problems: errors are added.
         """
-        for path, asset, spec in _waiting(scenario):
+        for path, asset, spec in self._waiting(scenario):
             mark = _mark(tree, path)
             found = self._found(asset, mark, problems)
             if found is None:
@@ -45,6 +46,19 @@ class AssetFiles:
                 other = self._found(beside, mark, problems)
                 data = data if other is None else _replaced(data, (*path[:-1], name), other)
         return data
+
+    def _waiting(
+        self, scenario: Scenario
+    ) -> Iterator[tuple[tuple[str, ...], Asset, ComponentSpec]]:
+        """Assets to find. Scenarios share components: one that waits for none is seen once."""
+        for path, spec in components(scenario):
+            if id(spec) in self._complete:
+                continue
+            names = [n for n, v in vars(spec).items() if isinstance(v, Asset) and not v.is_found]
+            if not names:
+                self._complete[id(spec)] = spec  # kept, so that no other gets its number
+            for name in names:
+                yield (*path, name), getattr(spec, name), spec
 
     def _found(self, asset: Asset, mark: Mark, problems: list[Diagnostic]) -> Asset | None:
         """None: there is none, or a resolved scenario that was moved names it by its content."""
@@ -65,13 +79,6 @@ class AssetFiles:
             problems.append(Diagnostic("E213", text, mark, f"its sha256 is {digest}"))
             return None
         return Asset.at(file, self._finder.name_of(file), digest)
-
-
-def _waiting(scenario: Scenario) -> Iterator[tuple[tuple[str, ...], Asset, ComponentSpec]]:
-    for path, spec in components(scenario):
-        for name, value in vars(spec).items():
-            if isinstance(value, Asset) and not value.is_found:
-                yield (*path, name), value, spec
 
 
 def _mark(tree: Node, path: tuple[str, ...]) -> Mark:

@@ -12,8 +12,6 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from ruamel.yaml import YAML
-
 from crowdbot.dsl.scenario import OUTSIDE_HASH, Scenario
 
 PREFIX = "cb1-sha256:"
@@ -65,6 +63,8 @@ def dump_scenario_yaml(scenario: Scenario, kinds: Mapping[str, int] | None = Non
 
 def to_yaml(document: Any) -> str:
     """Plain data as YAML, in the given order, innermost lists and maps on one line."""
+    from ruamel.yaml import YAML  # slow to import, and few commands write documents
+
     yaml = YAML(typ="safe", pure=True)
     yaml.default_flow_style = None
     yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]

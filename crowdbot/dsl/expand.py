@@ -9,7 +9,6 @@ from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
-from crowdbot.dsl import semantics
 from crowdbot.dsl.asset_files import AssetFiles
 from crowdbot.dsl.axis_words import AxisWords, axis_words
 from crowdbot.dsl.diagnostics import MAX_ERRORS, Diagnostic, Mark, Source
@@ -21,6 +20,7 @@ from crowdbot.dsl.merge import Merged, merge, nest, undot
 from crowdbot.dsl.nodes import Entry, Node, parse, to_data
 from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.semantics import Checks
 from crowdbot.dsl.suite import ParsedSuite, read_suite
 from crowdbot.dsl.validation import locate, validate
 from crowdbot.dsl.validation_cache import ValidParts
@@ -123,6 +123,21 @@ def expand_document(
     return _Expander(suite, scenario_model, overrides).run()
 
 
+class Expanding:
+    """A document's scenarios by their place in the `Expansion`, each expanded when asked for."""
+
+    def __init__(self, suite: ParsedSuite, scenario_model: type[Scenario]) -> None:
+        self._expander = _Expander(suite, scenario_model, ())
+
+    def scenario(self, index: int) -> Scenario:
+        """One scenario.
+
+        Raises:
+            SpecError: with the errors of those that were asked for.
+        """
+        return self._expander.one(index)
+
+
 @dataclass
 class _Folded:
     """An error, and the scenarios that have it."""
@@ -161,9 +176,10 @@ class _Expander:
         self._data: dict[Node, Any] = {}
         self._seeds: dict[str, Node] = {}
         self._folders: dict[str, str] = {}
-        self._parts = ValidParts()
+        self._parts, self._checks = ValidParts(), Checks()
         self._assets = AssetFiles(suite.finder) if suite.finder else None
         self._validated: dict[tuple[tuple[str, int], ...], Scenario] = {}
+        self._bare: list[_Bare] | None = None
         self._total = self._noted = 0
 
     def run(self) -> Expansion:
@@ -171,23 +187,13 @@ class _Expander:
         for bare in self._trees():
             if self._noted > _ENOUGH:
                 break
-            self._total += 1
-            if why := self._unusable(bare):
-                self._note(Diagnostic("E116", f"the id {why}", self._longest(bare)), bare.name, "")
-                continue
             tree = self._complete(bare)
-            scenario = self._validate(bare.name, tree)
-            references = {
-                reference: self._validate(bare.name, self._complete(bare, over), reference)
-                for reference, over in self._suite.references.items()
-            }
+            scenario = self._scenario(bare, tree)
             if scenario is not None:
-                scenarios.append(scenario.model_copy(update={"references": references}))
+                scenarios.append(scenario)
                 trees[bare.name] = tree
                 axes[bare.name] = bare.labels
-        problems = [*self._problems, *self._folded()]
-        if problems:
-            raise SpecError(_sorted(problems))
+        self._raise_problems()
         suite = self._suite
         return Expansion(
             suite.id,
@@ -219,6 +225,31 @@ class _Expander:
             if label in keys[axis]
         ]
         return max(marks, key=itemgetter(0), default=(0, self._suite.base.mark))[1]
+
+    def one(self, index: int) -> Scenario:
+        if self._bare is None:
+            self._bare = list(self._trees())
+        scenario = self._scenario(self._bare[index], self._complete(self._bare[index]))
+        self._raise_problems()
+        assert scenario is not None
+        return scenario
+
+    def _scenario(self, bare: _Bare, tree: Node) -> Scenario | None:
+        """A combination with its references; None if something is wrong, which is noted."""
+        self._total += 1
+        if why := self._unusable(bare):
+            self._note(Diagnostic("E116", f"the id {why}", self._longest(bare)), bare.name, "")
+            return None
+        scenario = self._validate(bare.name, tree)
+        references = {
+            reference: self._validate(bare.name, self._complete(bare, over), reference)
+            for reference, over in self._suite.references.items()
+        }
+        return scenario and scenario.model_copy(update={"references": references})
+
+    def _raise_problems(self) -> None:
+        if problems := [*self._problems, *self._folded()]:
+            raise SpecError(_sorted(problems))
 
     def _trees(self) -> Iterator[_Bare]:
         """The combinations that stay, as trees."""
@@ -265,7 +296,7 @@ class _Expander:
                 del parts["root"]
             seed = Node(mark, {k: Entry(mark, node) for k, node in parts.items()}, implied=True)
             self._seeds[key] = nest(("seed",), seed, mark)
-        node = merge(self._seeds[key], crowd.node)
+        node = merge(self._seeds[key], crowd.node, self._merged)
         own = locate(crowd.node, ("seed", "key"))
         if draw and not own.rest and isinstance(own.node.value, str):
             joined = replace(own.node, value=f"{own.node.value}-{draw}".lstrip("-"))
@@ -283,7 +314,7 @@ class _Expander:
         scenario, found = self._with_assets(tree, data)
         if scenario is not None and not found:
             self._parts.add(tree, scenario)
-            found = semantics.check(scenario, tree)
+            found = self._checks.of(scenario, tree)
         for diagnostic in found:
             self._note(diagnostic, name, reference)
         if found or scenario is None:

@@ -11,6 +11,7 @@ from functools import lru_cache
 
 from crowdbot.dsl.component_specs import EnvironmentSpec
 from crowdbot.dsl.place import Place
+from crowdbot.errors import InputError
 
 _MOST = 64
 
@@ -37,6 +38,14 @@ def place_of(environment: EnvironmentSpec) -> Place | None:
         InputError: as of `EnvironmentSpec.place`.
     """
     return _place(_Same(environment))
+
+
+def known_place(environment: EnvironmentSpec) -> Place | None:
+    """As `place_of`; None also where it cannot be read."""
+    try:
+        return place_of(environment)
+    except InputError:
+        return None
 
 
 @lru_cache(maxsize=_MOST)

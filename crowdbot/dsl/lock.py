@@ -116,6 +116,15 @@ class LockFiles:
         """
         return split_tables(_read(self.agents_path), self.agents_path.name)
 
+    def check_tables(self) -> None:
+        """Whether the file of the tables is such a file; nothing is made of it if that is seen.
+
+        Raises:
+            InputError: as of `tables`.
+        """
+        if "tables" not in self.__dict__ and not _is_plain(_read(self.agents_path)):
+            _ = self.tables
+
     def table(self, name: str) -> str:
         """One table as text; its hash is the one of the lock.
 
@@ -186,6 +195,14 @@ def split_tables(text: str, name: str) -> dict[str, str]:
     for row in rows[1:]:
         grouped.setdefault(row[0], [rows[0][1:]]).append(row[1:])
     return {key: _to_csv(_used_columns(table)) for key, table in grouped.items()}
+
+
+def _is_plain(text: str) -> bool:
+    """Whether a text without quotes, as `join_tables` writes it, can only be a file of tables."""
+    if '"' in text or "\r" in text or "\0" in text or not text.startswith("draw,"):
+        return False
+    lines = text.removesuffix("\n").split("\n")
+    return all(lines) and max(map(len, lines)) < csv.field_size_limit()
 
 
 def join_tables(tables: Mapping[str, str]) -> str:

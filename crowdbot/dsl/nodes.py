@@ -1,6 +1,6 @@
 """YAML text -> nodes that remember where they were written.
 
-YAML 1.2 core schema with our own small resolver over ruamel.yaml's events: ``no``, ``on``,
+YAML 1.2 core schema with our own small resolver over a parser's events: ``no``, ``on``,
 ``12:30`` and dates stay text, ``1e-3`` is a number. ruamel's own ``compose`` expands aliases
 and merges keys; a document that means something else than it says is refused here instead.
 """
@@ -13,21 +13,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from ruamel.yaml import YAML
-from ruamel.yaml.error import MarkedYAMLError
-from ruamel.yaml.events import (
-    AliasEvent,
-    CollectionStartEvent,
-    DocumentStartEvent,
-    Event,
-    MappingEndEvent,
-    MappingStartEvent,
-    ScalarEvent,
-    SequenceEndEvent,
-    StreamEndEvent,
-)
-
 from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
+from crowdbot.dsl.yaml_events import events_of
 from crowdbot.errors import SpecError
 
 MAX_DEPTH = 32
@@ -125,7 +112,7 @@ def parse(text: str, source: Source, problems: list[Diagnostic], shift: int = 0)
     return _Builder(text, source, problems, shift).document()
 
 
-def _explained(error: MarkedYAMLError, shift: int) -> tuple[str, str]:
+def _explained(error: Any, shift: int) -> tuple[str, str]:
     """Message and hint for an error of the YAML parser, whose own words are for its authors."""
     problem, context, start = error.problem or "", error.context or "", error.context_mark
     if ("flow mapping" in context or "flow sequence" in context) and start is not None:
@@ -141,14 +128,19 @@ def _explained(error: MarkedYAMLError, shift: int) -> tuple[str, str]:
     return " ".join(filter(None, (problem, context))), ""
 
 
+def _kind(event: Any) -> str:
+    """What an event is; the same for both parsers."""
+    return type(event).__name__
+
+
 class _Builder:
-    """Recursive descent over ruamel's events."""
+    """Recursive descent over events, which are known by the names of their classes."""
 
     def __init__(
         self, text: str, source: Source, problems: list[Diagnostic], shift: int = 0
     ) -> None:
         self._text, self._source, self._problems, self._shift = text, source, problems, shift
-        self._events: Iterator[Event] = YAML(typ="safe", pure=True).parse(text)
+        self._events: Iterator[Any] = events_of(text)
         self._last = Mark(source, 0, shift)
 
     def document(self) -> Node:
@@ -159,26 +151,28 @@ class _Builder:
             self._stop("E002", text, "", line, column)
         self._next()
         start = self._next()
-        if isinstance(start, StreamEndEvent):
+        if _kind(start) == "StreamEndEvent":
             return Node(self._last, None)
-        if isinstance(start, DocumentStartEvent) and (start.version or start.tags):
+        if _kind(start) == "DocumentStartEvent" and (start.version or start.tags):
             self._add("E007", "directives (%YAML, %TAG) are not allowed", self._mark(start))
         root = self._node(self._next(), 0)
         self._next()
         after = self._next()
-        if not isinstance(after, StreamEndEvent):
+        if _kind(after) != "StreamEndEvent":
             self._add("E007", "a file holds one document", self._mark(after))
         return root
 
-    def _next(self) -> Event:
+    def _next(self) -> Any:
         try:
-            event: Event = next(self._events)
-        except MarkedYAMLError as error:
-            mark = error.problem_mark or error.context_mark
-            line, column = (mark.line, mark.column) if mark else (0, 0)
-            self._stop("E002", *_explained(error, self._shift), line, column)
+            event = next(self._events)
         except Exception as error:  # ruamel lets ValueError and OverflowError of escapes through
-            self._stop("E002", str(error), "", self._last.line, self._last.column - self._shift)
+            if not hasattr(error, "problem_mark"):
+                column = self._last.column - self._shift
+                self._stop("E002", str(error), "", self._last.line, column)
+            marked: Any = error  # a MarkedYAMLError
+            mark = marked.problem_mark or marked.context_mark
+            line, column = (mark.line, mark.column) if mark else (0, 0)
+            self._stop("E002", *_explained(marked, self._shift), line, column)
         self._last = self._mark(event)
         return event
 
@@ -190,28 +184,29 @@ class _Builder:
     def _add(self, code: str, message: str, mark: Mark, hint: str = "") -> None:
         self._problems.append(Diagnostic(code, message, mark, hint))
 
-    def _mark(self, event: Event) -> Mark:
+    def _mark(self, event: Any) -> Mark:
         start, end = event.start_mark, event.end_mark
         width = end.column - start.column if end.line == start.line else 1
         column = start.column + (self._shift if start.line == 0 else 0)
         return Mark(self._source, start.line, column, max(1, width))
 
-    def _node(self, event: Event, depth: int) -> Node:
+    def _node(self, event: Any, depth: int) -> Node:
         mark = self._mark(event)
         if depth > MAX_DEPTH:
             text = f"nested deeper than {MAX_DEPTH} levels"
             self._stop("E009", text, "", mark.line, mark.column)
         self._refuse_indirection(event, mark)
-        if isinstance(event, ScalarEvent):
+        kind = _kind(event)
+        if kind == "ScalarEvent":
             return Node(mark, self._scalar(event, mark))
-        if isinstance(event, MappingStartEvent):
+        if kind == "MappingStartEvent":
             return Node(mark, self._map(depth))
-        if isinstance(event, CollectionStartEvent):
+        if kind == "SequenceStartEvent":
             return Node(mark, self._list(depth))
         return Node(mark, None)
 
     def _refuse_indirection(self, event: Any, mark: Mark) -> None:
-        what = "alias" if isinstance(event, AliasEvent) else "anchor"
+        what = "alias" if _kind(event) == "AliasEvent" else "anchor"
         if getattr(event, "anchor", None):
             self._add("E004", f"{what} '{event.anchor}' is not allowed", mark, "use 'extends'")
         if getattr(event, "ctag", None):
@@ -219,15 +214,15 @@ class _Builder:
 
     def _list(self, depth: int) -> tuple[Node, ...]:
         items = []
-        while not isinstance(event := self._next(), SequenceEndEvent):
+        while _kind(event := self._next()) != "SequenceEndEvent":
             items.append(self._node(event, depth + 1))
         return tuple(items)
 
     def _map(self, depth: int) -> dict[str, Entry]:
         entries: dict[str, Entry] = {}
-        while not isinstance(event := self._next(), MappingEndEvent):
+        while _kind(event := self._next()) != "MappingEndEvent":
             mark = self._mark(event)
-            key = event.value if isinstance(event, ScalarEvent) else None
+            key = event.value if _kind(event) == "ScalarEvent" else None
             if key is None:
                 self._node(event, depth + 1)
             else:
@@ -249,7 +244,7 @@ class _Builder:
             return True
         return False
 
-    def _scalar(self, event: ScalarEvent, mark: Mark) -> Scalar:
+    def _scalar(self, event: Any, mark: Mark) -> Scalar:
         text: str = event.value
         if not event.implicit[0]:
             return text

@@ -18,6 +18,8 @@ from crowdbot.dsl.place import Place
 #: Side of a cell, m; larger on floors that would have more than `_MOST` along one side.
 _CELL = 0.1
 _MOST = 2000
+#: Side of a cell of the quick look, m.
+_WIDE_CELL = 0.2
 _AROUND = 1.0  # m
 #: From the middle of a cell to its corner, by its side.
 _HALF_DIAGONAL = 0.7072
@@ -40,6 +42,8 @@ def areas_connected(place: Place, radius: float, box: Box, start: Outline, goal:
     """Whether a way might lead a body of a radius (m) from one convex outline into another."""
     if place.is_clear(_middle(start), _middle(goal), radius):
         return True
+    if wide_reach_of(place, radius, box).connects_areas(start, goal):
+        return True
     return reach_of(place, radius, box).connects_areas(start, goal)
 
 
@@ -54,6 +58,15 @@ def reach_of(place: Place, radius: float, box: Box) -> Reach:
     return Reach(place, radius, box)
 
 
+@lru_cache(maxsize=64)
+def wide_reach_of(place: Place, radius: float, box: Box) -> Reach:
+    """A quick look first: a way in it there certainly is; where it has none, there may be one.
+
+    Its cells are large, and those that are only partly within reach are taken, too.
+    """
+    return Reach(place, radius, box, cell=_WIDE_CELL, surely=True)
+
+
 class Reach:
     """Cells that a body's centre can be in, and which of them hang together.
 
@@ -61,20 +74,25 @@ class Reach:
         place: what the body goes around.
         radius: of the body, m.
         box: x0, x1, y0, y1 that the floor covers besides, m.
+        cell: largest side of a cell, m; default: a quarter of the radius, and not more than 0.1 m.
+        surely: leave only cells that are wholly within reach, instead of all that partly are.
     """
 
-    def __init__(self, place: Place, radius: float, box: Box) -> None:
+    def __init__(
+        self, place: Place, radius: float, box: Box, *, cell: float = 0.0, surely: bool = False
+    ) -> None:
         points = [(box[0], box[2]), (box[1], box[3])]
         points += [p for side in place.segments() for p in side]
         points += [(p.x + k * p.radius, p.y + k * p.radius) for p in place.pillars for k in (-1, 1)]
         xs, ys = [p[0] for p in points], [p[1] for p in points]
         size = max(max(xs) - min(xs), max(ys) - min(ys)) + 2.0 * _AROUND
-        self._cell = max(min(_CELL, 0.25 * radius), size / _MOST)
+        self._cell = max(cell or min(_CELL, 0.25 * radius), size / _MOST)
         self._x0, self._y0 = min(xs) - _AROUND, min(ys) - _AROUND
         self._columns = math.ceil((max(xs) + _AROUND - self._x0) / self._cell)
         count = math.ceil((max(ys) + _AROUND - self._y0) / self._cell)
         self._free = [(1 << self._columns) - 1] * count
-        self._take(place, radius - _HALF_DIAGONAL * self._cell)
+        margin = _HALF_DIAGONAL * self._cell
+        self._take(place, radius + margin if surely else radius - margin)
         self._floods: dict[tuple[int, int], list[int]] = {}
 
     def is_free(self, x: float, y: float) -> bool:
@@ -157,10 +175,13 @@ class Reach:
         nx, ny = (0.0, 0.0) if length == 0.0 else (-(by - ay) / length, (bx - ax) / length)
         nx, ny = nx * margin, ny * margin
         corners = ((ax + nx, ay + ny), (bx + nx, by + ny), (bx - nx, by - ny), (ax - nx, ay - ny))
+        # A side along x is crossed by no row; of a wall along an axis two are left, or none.
+        upright = [side for side in sides(corners) if side[0][1] != side[1][1]]
+        ends = ((ax, ay), (bx, by)) if length else ((ax, ay),)
         for row in self._rows_between(min(ay, by) - margin, max(ay, by) + margin):
             y = self._y0 + (row + 0.5) * self._cell
-            xs = [x for side in sides(corners) for x in _crossing(side, y)]
-            for cx, cy in ((ax, ay), (bx, by)):
+            xs = [x for side in upright for x in _crossing(side, y)]
+            for cx, cy in ends:
                 if abs(y - cy) <= margin:
                     half = math.sqrt(margin * margin - (y - cy) ** 2)
                     xs += [cx - half, cx + half]

@@ -2,37 +2,53 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 
 from crowdbot.dsl.components import components
 from crowdbot.dsl.diagnostics import Diagnostic
 from crowdbot.dsl.nodes import Node
-from crowdbot.dsl.scenario import Scenario, TaskSpec
+from crowdbot.dsl.scenario import Scenario
 from crowdbot.dsl.semantics_agents import check_agents
 from crowdbot.dsl.semantics_crowd import check_crowd
 from crowdbot.dsl.semantics_facts import Facts
+from crowdbot.dsl.semantics_robot_ways import check_robots
 from crowdbot.dsl.semantics_spawns import check_spawns
 from crowdbot.dsl.semantics_streams import check_streams
-from crowdbot.dsl.semantics_ways import check_ways
+from crowdbot.dsl.semantics_ways import check_place, check_ways
 from crowdbot.dsl.validation import locate, missing_field
 
-
-def check(scenario: Scenario, tree: Node) -> list[Diagnostic]:
-    """All contradictions of a scenario, each with its place in the tree it came from."""
-    found, facts = list(_check_kinds(scenario, tree)), Facts(scenario, tree)
-    if scenario.crowd is not None:
-        found += [*check_crowd(facts), *check_streams(facts), *check_spawns(facts)]
-        found += check_agents(facts)
-    found += check_ways(facts)
-    for name, robot in scenario.robots.items():
-        found += _check_task(facts, name, robot.task)
-    return found
+Check = Callable[[Facts], Iterator[Diagnostic]]
 
 
-def _check_kinds(scenario: Scenario, tree: Node) -> Iterator[Diagnostic]:
+class Checks:
+    """The checks of a document's scenarios; what was in order is not looked at again.
+
+    Each check says on which parts of a scenario it depends. A part is known by its node, which
+    scenarios share as far as no axis touches it; the caller keeps the nodes alive.
+    """
+
+    def __init__(self) -> None:
+        self._passed: set[tuple[object, ...]] = set()
+
+    def of(self, scenario: Scenario, tree: Node) -> list[Diagnostic]:
+        """All contradictions of a scenario, each with its place in the tree it came from."""
+        found, facts = list[Diagnostic](), Facts(scenario, tree)
+        for check, parts in _CHECKS:
+            key = (check, *(id(tree.child(part)) for part in parts))
+            if key not in self._passed:
+                wrong = list(check(facts))
+                found += wrong
+                if not wrong:
+                    self._passed.add(key)
+        return found
+
+
+def _check_kinds(part: str, facts: Facts) -> Iterator[Diagnostic]:
     """A kind is always written: left out, it would mean something as long as one is installed."""
-    for path, _ in components(scenario):
-        if _has_kind(tree, path):
+    tree = facts.tree
+    for path, _ in components(facts.scenario):
+        if path[0] != part or _has_kind(tree, path):
             continue
         place = locate(tree, path)
         if not place.rest and place.node.child("kind") is None:
@@ -47,10 +63,32 @@ def _has_kind(tree: Node, path: tuple[str, ...]) -> bool:
     return node is not None
 
 
-def _check_task(facts: Facts, name: str, task: TaskSpec) -> Iterator[Diagnostic]:
-    zones, path = facts.scenario.environment.zones, ("robots", name, "task")
-    if task.goal.zone not in zones:
-        yield facts.unknown("zone", task.goal.zone, zones, *path, "goal", "zone")
-    yield from facts.outside(
-        f"the start {{at}} of robot '{name}'", [task.start[:2]], *path, "start"
-    )
+def _check_tasks(facts: Facts) -> Iterator[Diagnostic]:
+    zones = facts.scenario.environment.zones
+    for name, robot in facts.scenario.robots.items():
+        task, path = robot.task, ("robots", name, "task")
+        if task.goal.zone not in zones:
+            yield facts.unknown("zone", task.goal.zone, zones, *path, "goal", "zone")
+        yield from facts.outside(
+            f"the start {{at}} of robot '{name}'", [task.start[:2]], *path, "start"
+        )
+
+
+def _of_crowd(check: Check) -> Check:
+    """A check of scenarios that have people."""
+    return lambda facts: check(facts) if facts.scenario.crowd is not None else iter(())
+
+
+_PLACE, _PEOPLE, _ROBOTS = ("environment",), ("environment", "crowd"), ("environment", "robots")
+#: Each check, and the parts of a scenario that it looks at.
+_CHECKS: tuple[tuple[Check, tuple[str, ...]], ...] = (
+    *((partial(_check_kinds, part), (part,)) for part in ("environment", "crowd", "robots")),
+    (_of_crowd(check_crowd), _PEOPLE),
+    (_of_crowd(check_streams), _PEOPLE),
+    (_of_crowd(check_spawns), _PEOPLE),
+    (_of_crowd(check_agents), (*_PEOPLE, "robots")),
+    (check_place, _PLACE),
+    (check_robots, _ROBOTS),
+    (_of_crowd(check_ways), _PEOPLE),
+    (_check_tasks, _ROBOTS),
+)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from crowdbot.dsl.areas import Area
 from crowdbot.dsl.diagnostics import Diagnostic
-from crowdbot.dsl.known_places import standing_in
+from crowdbot.dsl.known_places import known_place, standing_in
 from crowdbot.dsl.place import Place
 from crowdbot.dsl.reach import areas_connected
 from crowdbot.dsl.scenario import TaskSpec
@@ -43,12 +43,13 @@ def _overlap(one: Rectangle, other: Rectangle) -> bool:
     return all(a[0] < b[1] and b[0] < a[1] for a, b in pairs)
 
 
-def check_robots(facts: Facts, place: Place) -> Iterator[Diagnostic]:
+def check_robots(facts: Facts) -> Iterator[Diagnostic]:
     """No robot starts in something, and a way leads to its goal.
 
     Only what stands on the floor counts: how tall a robot is is not known here.
     """
-    if place.torus is not None:
+    place = known_place(facts.scenario.environment)
+    if place is None or place.torus is not None:
         return
     standing = standing_in(place)
     for name, robot in facts.scenario.robots.items():

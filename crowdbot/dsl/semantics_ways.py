@@ -10,12 +10,12 @@ from crowdbot.dsl.areas import Area
 from crowdbot.dsl.areas import Place as PlaceName
 from crowdbot.dsl.component_specs import EnvironmentSpec
 from crowdbot.dsl.diagnostics import Diagnostic
-from crowdbot.dsl.known_places import bodies_of, place_of
+from crowdbot.dsl.known_places import bodies_of, known_place, place_of
 from crowdbot.dsl.place import Place
 from crowdbot.dsl.reach import Box, Reach, areas_connected, has_room, reach_of
 from crowdbot.dsl.routing import MeshRouting
 from crowdbot.dsl.semantics_facts import Facts, Path
-from crowdbot.dsl.semantics_robot_ways import check_robots, check_zones
+from crowdbot.dsl.semantics_robot_ways import check_zones
 from crowdbot.dsl.spawning import Agent, Spawn
 from crowdbot.dsl.stream_kinds import QueueStream, Stream, places_of
 from crowdbot.dsl.stream_legs import begins_in, legs
@@ -28,19 +28,21 @@ _THINNEST = 0.1
 _SLACK = 1e-6
 
 
-def check_ways(facts: Facts) -> Iterator[Diagnostic]:
-    """The place can be read; nothing starts in a wall; robots and who finds ways find one."""
-    environment = facts.scenario.environment
+def check_place(facts: Facts) -> Iterator[Diagnostic]:
+    """The place can be read, and its zones lie in it."""
     try:
-        place = place_of(environment)
+        place = place_of(facts.scenario.environment)
     except InputError as error:
         yield Diagnostic("E144", str(error), facts.mark("environment", "file"))
         return
+    if place is not None:
+        yield from check_zones(facts)
+
+
+def check_ways(facts: Facts) -> Iterator[Diagnostic]:
+    """Nobody of a crowd starts in a wall; who finds ways finds one."""
+    place = known_place(facts.scenario.environment)
     if place is None:
-        return
-    yield from check_zones(facts)
-    yield from check_robots(facts, place)
-    if facts.scenario.crowd is None:
         return
     finds_way = isinstance(facts.crowd.routing, MeshRouting)
     if finds_way and place.torus is not None:
@@ -48,7 +50,8 @@ def check_ways(facts: Facts) -> Iterator[Diagnostic]:
         hint = "use routing 'straight', or another border"
         yield Diagnostic("E142", text, facts.mark("crowd", "routing"), hint)
         return
-    ways = _Ways(facts, bodies_of(place, facts.crowd.body.height), environment)
+    bodies = bodies_of(place, facts.crowd.body.height)
+    ways = _Ways(facts, bodies, facts.scenario.environment)
     yield from ways.check_starts()
     yield from ways.check_room()
     if finds_way:

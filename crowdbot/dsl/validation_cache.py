@@ -34,12 +34,14 @@ class ValidParts:
 
     def _add(self, node: Node, validated: object, depth: int) -> None:
         for key, entry in node.entries.items():
+            if id(entry.node) in self._known:
+                continue
             part = validated.get(key) if isinstance(validated, dict) else None
             part = getattr(validated, key, None) if isinstance(validated, BaseModel) else part
             if not isinstance(part, BaseModel | dict):
                 continue
             if isinstance(part, BaseModel):
-                self._known.setdefault(id(entry.node), part)
+                self._known[id(entry.node)] = part
             if depth + 1 < _DEPTH:
                 self._add(entry.node, part, depth + 1)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from crowdbot.testing.symmetries import with_people
 from crowdbot.testing.worlds import World, random_world
 
 
+@cache
 def worlds() -> Mapping[str, World]:
     """Name -> world in which something that metrics like to take for granted is missing."""
     world = random_world(7)
@@ -50,6 +52,7 @@ def worlds() -> Mapping[str, World]:
     }
 
 
+@cache
 def on_thresholds() -> Mapping[str, World]:
     """Name -> world where a comparison would be decided by the last digit."""
     t = np.arange(101) / 16.0

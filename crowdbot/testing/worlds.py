@@ -6,6 +6,7 @@ Everything is made from a seed, so that a failing example is one number.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
@@ -43,6 +44,7 @@ class World:
         }
 
 
+@lru_cache(maxsize=64)  # none can be written to; what metrics derive from one is kept with it
 def random_world(seed: int) -> World:
     """A robot among up to five people, who come and go; both calibration runs."""
     rng = np.random.default_rng(seed)
@@ -68,6 +70,7 @@ def random_world(seed: int) -> World:
     )
 
 
+@lru_cache(maxsize=64)
 def straight_world(seed: int, rate: float) -> World:
     """Everybody keeps a velocity for 8 s, the robot through the midst of the people.
 

@@ -68,8 +68,10 @@ def _engine(name: str) -> tuple[CrowdEngine, EnvironmentParts]:
 
 
 def test_every_world_has_an_example() -> None:
-    kinds = {f"world_{c.kind}" for c in COMPONENTS} - {"world_floor", "world_floor_plan"}
-    assert set(WORLDS) == kinds
+    kinds = {f"world_{c.kind}" for c in COMPONENTS}
+    assert set(WORLDS) == kinds | {"world_floor_plan_grid", "world_floor_plan_wkt"}
+    pictures = ROOT / "docs" / "images" / "worlds"
+    assert {file.stem for file in pictures.glob("*.svg")} == set(WORLDS)
 
 
 @pytest.mark.slow

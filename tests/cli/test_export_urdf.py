@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from crowdbot.core.interfaces import RobotModel
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.robots import build_model
 from crowdbot.core.robots.urdf_export import to_urdf
+from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import CrowdbotError, InputError
 
@@ -21,6 +23,7 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")
     from urdf_parser_py.urdf import URDF  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
+SEEN_FROM = {"lidar2d", "ultrasound", "rgbd_camera"}
 CHALLENGE = ["export-urdf", "robot", "--spec", "challenge-2020"]
 
 
@@ -51,6 +54,39 @@ def test_an_independent_parser_agrees(capsys: pytest.CaptureFixture[str]) -> Non
         assert mounted.origin.xyz == pytest.approx([x, 0.0, 0.24])
         assert mounted.origin.rpy == pytest.approx([0.0, 0.0, yaw])
     assert "odometry" not in links
+
+
+@pytest.mark.parametrize("kind", ["pepper", "qolo", "cuybot", "smart_wheelchair"])
+def test_every_robot_is_read_with_its_sensors_where_they_are(
+    kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "one.yaml"
+    file.write_text(f"""crowdbot: 1
+scenario:
+  id: one
+  extends: ["builtin:parts/corridor_50x10.yaml", "builtin:parts/{kind}.yaml"]
+  robots.robot.task: {{start: [2.5, 0, 0], goal: {{zone: robot_goal}}, time_limit: 9 s}}
+""")
+    registry = discover(allow=())
+    told = open_spec(str(file), registry, ()).scenarios[0].robots["robot"]
+    model: RobotModel = build_model(registry, told.model)
+    robot: Any = _exported(capsys, "export-urdf", "robot", "--spec", str(file))
+    links = {link.name: link for link in robot.links}
+    joints = {joint.child: joint for joint in robot.joints}
+    assert robot.get_root() == "base_footprint"
+    assert sum(x.inertial.mass for x in links.values() if x.inertial) == pytest.approx(model.mass)
+    assert sum(len(x.visuals) for x in links.values()) > 8
+    assert joints["base_link"].origin.xyz == pytest.approx([0.0, 0.0, model.base_height])
+    driven = [j for j in robot.joints if j.type == "continuous" and j.limit is not None]
+    assert len(driven) == (0 if model.limits.vy_max > 0.0 else 2)
+    placed = [n for n, sensor in told.sensors.items() if sensor.kind in SEEN_FROM]
+    assert len(placed) == {"pepper": 5, "qolo": 3, "cuybot": 3, "smart_wheelchair": 15}[kind]
+    for name in placed:
+        sensor: Any = told.sensors[name]
+        mount, joint = sensor.mount, joints[name]
+        assert joint.parent == "base_link"
+        assert joint.origin.xyz == pytest.approx([mount.x, mount.y, mount.z])
+        assert joint.origin.rpy == pytest.approx([0.0, 0.0, mount.yaw])
 
 
 def test_masses_are_those_of_the_plant(capsys: pytest.CaptureFixture[str]) -> None:

@@ -125,7 +125,7 @@ FAILING = {
 @pytest.mark.parametrize("case", list(FAILING))
 def test_a_failing_planner_leaves_a_complete_run(case: str, shell: Shell, tmp_path: Path) -> None:
     code, text = FAILING[case]
-    answer = shell("--planner", planner_file(tmp_path, **code), "--json")
+    answer = shell("--planner", planner_file(tmp_path, **code), "--no-references", "--json")
     assert answer.code == 3
     record = answer.json
     assert record["status"] == "planner_failed"
@@ -160,7 +160,7 @@ def test_a_planner_file_that_cannot_be_imported(shell: Shell, tmp_path: Path) ->
 def test_prints_of_a_planner_keep_off_stdout(place: str, shell: Shell, tmp_path: Path) -> None:
     noise = "print('thinking')"
     code = {place: f"{noise}; return (0.1, 0.0)" if place == "step" else noise}
-    answer = shell("--planner", planner_file(tmp_path, **code), "--json")
+    answer = shell("--planner", planner_file(tmp_path, **code), "--no-references", "--json")
     assert answer.code == 0
     assert answer.json["status"] == "timeout"
     assert "thinking" in answer.err

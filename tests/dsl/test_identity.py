@@ -19,6 +19,7 @@ from crowdbot.dsl.expand import expand_document, load_document
 from crowdbot.dsl.lock import flatten
 from crowdbot.dsl.scenario import OUTSIDE_HASH, Scenario
 from crowdbot.errors import SpecError
+from tests.examples import costly
 
 REGISTRY = discover(allow=())
 ONE = open_spec("challenge-2020", REGISTRY).scenarios[0]
@@ -108,7 +109,7 @@ class Formatter:
 
 
 @pytest.mark.slow
-@settings(max_examples=60, suppress_health_check=[HealthCheck.large_base_example])
+@settings(costly(60), suppress_health_check=[HealthCheck.large_base_example])
 @given(st.randoms(use_true_random=False))
 def test_reformatting_does_not_move_the_hash(
     tmp_path_factory: pytest.TempPathFactory, rng: random.Random

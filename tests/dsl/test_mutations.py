@@ -28,13 +28,14 @@ from crowdbot.dsl.expand import Expansion, expand_document, load_document
 from crowdbot.dsl.nodes import parse, to_data
 from crowdbot.dsl.quantities import UNITS
 from crowdbot.errors import SpecError
+from tests.examples import THOROUGH
 from tests.paths import DATA
 
 pytestmark = pytest.mark.slow
 
 REGISTRY = discover(allow=())
 INSTALLED = installed(REGISTRY)
-COUNT = int(os.environ.get("CROWDBOT_MUTATIONS", "1000"))
+COUNT = int(os.environ.get("CROWDBOT_MUTATIONS", "1000" if THOROUGH else "300"))
 SEED = os.environ.get("CROWDBOT_MUTATIONS_SEED", "")
 PARTS = DATA / "diagnostics" / "parts"
 BODY = to_data(parse((PARTS / "minimal.yaml").read_text(), Source("minimal"), []))

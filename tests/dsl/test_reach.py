@@ -10,7 +10,7 @@ import pytest
 from crowdbot.core.crowd.routing.free_space import FreeSpace
 from crowdbot.dsl import Face, Pillar, Place, Solid
 from crowdbot.dsl.outlines import contains, first_crossing, is_convex, signed_area
-from crowdbot.dsl.reach import Reach
+from crowdbot.dsl.reach import Reach, wide_reach_of
 
 HEIGHTS = (0.0, 2.5)
 BOX = (0.0, 12.0, 0.0, 8.0)
@@ -59,18 +59,39 @@ def test_what_is_inside_of_something_is_not_free() -> None:
     assert place.clearance(11.0, 4.0) == pytest.approx(-0.5)
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_no_way_that_there_is_is_refused(seed: int) -> None:
-    rng = np.random.default_rng(seed)
+def _strewn(rng: np.random.Generator) -> tuple[Place, FreeSpace]:
+    """A room with walls at random places, and what is exactly free in it."""
     solids = []
     for x, y, turn in rng.uniform((0, 0, 0), (12, 8, math.pi), (14, 3)).tolist():
         c, s = 1.5 * math.cos(turn), 1.5 * math.sin(turn)
         outline = ((x, y), (x + c, y + s), (x + c - 0.1 * s, y + s + 0.1 * c))
         solids.append(Solid(outline=outline, heights=HEIGHTS))
     place = Place(faces=(_closed(*BOX),), solids=tuple(solids))
-    reach = Reach(place, 0.3, BOX)
     walls = np.array([[*a, *b] for a, b in place.segments()])
-    space = FreeSpace.of(walls, np.zeros((0, 3)), 0.3, np.zeros((0, 2)))
+    return place, FreeSpace.of(walls, np.zeros((0, 3)), 0.3, np.zeros((0, 2)))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_no_way_that_there_is_not_is_seen_at_a_quick_look(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    place, space = _strewn(rng)
+    quick = wide_reach_of(place, 0.3, BOX)
+    points = rng.uniform((0, 0), (12, 8), (60, 2))
+    parts = space.part_of(points).tolist()
+    seen = [quick.is_free(*point) for point in points.tolist()]
+    assert any(seen)
+    for point, part, free in zip(points.tolist(), parts, seen, strict=True):
+        assert not free or (part >= 0 and place.clearance(*point) >= 0.3)
+    joined = [quick.connects(tuple(points[i]), tuple(points[i + 30])) for i in range(30)]
+    assert any(joined)
+    assert all(parts[i] == parts[i + 30] for i in range(30) if joined[i])
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_no_way_that_there_is_is_refused(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    place, space = _strewn(rng)
+    reach = Reach(place, 0.3, BOX)
     points = rng.uniform((0, 0), (12, 8), (60, 2))
     parts = space.part_of(points)
     free = np.array([place.clearance(x, y) >= 0.3 for x, y in points.tolist()])

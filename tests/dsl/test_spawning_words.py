@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.core.population.realise import realise
@@ -24,6 +24,7 @@ from crowdbot.dsl.nodes import to_data
 from crowdbot.dsl.scenario import Crowd, Scenario
 from crowdbot.dsl.spawning import Agent
 from crowdbot.errors import SpecError
+from tests.examples import costly
 from tests.paths import ROOT
 
 ROOT = ROOT
@@ -223,7 +224,7 @@ AGENTS = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=100)
+@costly(100)
 @given(st.lists(AGENTS, min_size=1, max_size=5))
 def test_what_is_written_is_read(agents: list[dict[str, Any]]) -> None:
     out = io.StringIO()
@@ -241,7 +242,7 @@ def test_what_is_written_is_read(agents: list[dict[str, Any]]) -> None:
     assert to_data(node) == [dict(sorted(agent.items())) for agent in agents]
 
 
-@settings(max_examples=300)
+@costly(300)
 @given(st.text('id,xy\n"; >a.1-e\té\u2028', max_size=60) | st.text(max_size=40))
 def test_any_text_is_a_table_or_an_error_with_a_place(text: str) -> None:
     lines = text.split("\n")

@@ -143,22 +143,22 @@ def test_a_nan_of_a_vectorised_cost() -> None:
 
 
 # ---------------------------------------------------------------------- compiled costs
-@njit(types.float64(types.float64, types.float64))
+@njit(types.float64(types.float64, types.float64), cache=True)
 def _too_few(ux: float, uy: float) -> float:
     return ux + uy
 
 
-@njit(BASE, error_model="numpy")
+@njit(BASE, cache=True, error_model="numpy")
 def _nan_base(ux: float, uy: float, preferred: float, max_speed: float, params: Any) -> float:
     return math.sqrt(ux)
 
 
-@njit(BASE, error_model="numpy")
+@njit(BASE, cache=True, error_model="numpy")
 def _no_base(ux: float, uy: float, preferred: float, max_speed: float, params: Any) -> float:
     return 0.0
 
 
-@njit(PREPARE, error_model="numpy")
+@njit(PREPARE, cache=True, error_model="numpy")
 def _count(
     agent: Any, near: Any, near_count: int, walls: Any, wall_count: int, params: Any, work: Any
 ) -> int:
@@ -166,50 +166,50 @@ def _count(
     return 1
 
 
-@njit(EXCESS, error_model="numpy")
+@njit(EXCESS, cache=True, error_model="numpy")
 def _negative(ux: float, uy: float, budget: float, agent: Any, work: Any, params: Any) -> float:
     return -1.0 - ux * ux
 
 
-@njit(EXCESS, error_model="numpy")
+@njit(EXCESS, cache=True, error_model="numpy")
 def _impatient(ux: float, uy: float, budget: float, agent: Any, work: Any, params: Any) -> float:
     cost = 1.0 + math.hypot(ux, uy)
     return cost if cost < 2.0 * budget else 0.5 * budget
 
 
-@njit(EXCESS, error_model="numpy")
+@njit(EXCESS, cache=True, error_model="numpy")
 def _counting(ux: float, uy: float, budget: float, agent: Any, work: Any, params: Any) -> float:
     table = work_table(work)
     table[0, 0] += 1.0
     return float(table[0, 0])
 
 
-@njit(PREPARE, error_model="numpy")
+@njit(PREPARE, cache=True, error_model="numpy")
 def _writes_nothing(
     agent: Any, near: Any, near_count: int, walls: Any, wall_count: int, params: Any, work: Any
 ) -> int:
     return 1
 
 
-@njit(EXCESS, error_model="numpy")
+@njit(EXCESS, cache=True, error_model="numpy")
 def _what_is_there(
     ux: float, uy: float, budget: float, agent: Any, work: Any, params: Any
 ) -> float:
     return float(work_table(work)[0, 0])
 
 
-@njit(EXCESS, error_model="numpy")
+@njit(EXCESS, cache=True, error_model="numpy")
 def _square(ux: float, uy: float, budget: float, agent: Any, work: Any, params: Any) -> float:
     return ux * ux + uy * uy
 
 
-@njit(GRADIENT, error_model="numpy")
+@njit(GRADIENT, cache=True, error_model="numpy")
 def _half(ux: float, uy: float, agent: Any, work: Any, params: Any, out: Any) -> int:
     out[0], out[1] = ux, uy  # the gradient of _square is twice as steep
     return 1
 
 
-@njit(LOWER_BOUND, error_model="numpy")
+@njit(LOWER_BOUND, cache=True, error_model="numpy")
 def _lofty(count: int, ux: Any, uy: Any, agent: Any, work: Any, params: Any, out: Any) -> int:
     for c in range(count):
         out[c] = 1.1 * (ux[c] ** 2 + uy[c] ** 2)  # of _square

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from crowdbot.core.campaign.job import SuiteSource
 from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
+from crowdbot.core.planning.fleet_choice import planners_by_robot
 from crowdbot.core.planning.resolve import PlannerChoice, kinds_of_role, resolve_planner
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.request import Recorded
@@ -181,6 +182,10 @@ def _absolute(spec: str) -> str:
 
 
 def _planner(text: str) -> str:
+    """A planner whose files are found from another working directory."""
+    by_robot = planners_by_robot(text)
+    if by_robot:
+        return ",".join(f"{robot}={_planner(planner)}" for robot, planner in by_robot.items())
     path, colon, name = text.rpartition(":")
     if colon and path.endswith(".py"):
         return f"{Path(path).resolve()}:{name}"

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 
 from crowdbot.core.campaign.job import Done, Job
 from crowdbot.core.runs.outcome import Progress
+from crowdbot.core.support.quick_exit import end_without_collecting
 
 #: Seconds between beats.
 BEAT = 1.0
@@ -44,6 +45,7 @@ def main(handle: int, parent: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent
     _die_with(parent)
     faulthandler.enable()
+    end_without_collecting()
     line = _Line(Connection(handle))
     threading.Thread(target=line.beat, daemon=True).start()
     from crowdbot.core.campaign.execute import execute

@@ -75,6 +75,20 @@ def candidates_of(policy: CrowdPolicy) -> VelocityCandidates | None:
     return found
 
 
+def relaxation_time_of(policy: CrowdPolicy) -> float:
+    """How long a policy takes to approach the velocity that it chooses, s; 0 where it says nothing.
+
+    Raises:
+        PluginError: its ``relaxation_time`` raised, or is not a time.
+    """
+    call = _call(policy)
+    with call("relaxation_time"):
+        found = float(getattr(policy, "relaxation_time", 0.0))
+    if not 0.0 <= found < math.inf:
+        call.fail(f"relaxation_time is {found} s")
+    return found
+
+
 def _call(policy: CrowdPolicy) -> PluginCall:
     return policy.call if isinstance(policy, CheckedPolicy) else CheckedPolicy(policy).call
 

@@ -13,7 +13,7 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.agents import ONWARD, PORTAL, Agents
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS
 from crowdbot.core.crowd.contact.robot_contact import DISC, FELT, R_W, RVX, RVY, TOUCH
-from crowdbot.core.crowd.desired_acceleration import desired_acceleration
+from crowdbot.core.crowd.desired_acceleration import desired_acceleration, relaxation_time_of
 from crowdbot.core.crowd.groups import groups_of, hold_together
 from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
 from crowdbot.core.crowd.periodic_boundary import images
@@ -269,7 +269,7 @@ class CrowdEngine:
                 view = immutable_fields(replace(view, **self._kept))
             wanted = desired_acceleration(group.policy, view)
             if self._steering:
-                relaxation = getattr(group.policy, "relaxation_time", 0.0)
+                relaxation = relaxation_time_of(group.policy)
                 wanted = steer(self._steering, view, relaxation, wanted)
             np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides)
         if self._router is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -36,12 +36,15 @@ class FleetMember:
     until: float
 
 
-def read_fleet(path: Path, max_rate: float | None = None) -> Mapping[str, FleetMember]:
+def read_fleet(
+    path: Path, max_rate: float | None = None, also: Callable[[Record], None] | None = None
+) -> Mapping[str, FleetMember]:
     """The robots of a recording of several, by name.
 
     Args:
         path: a recording.
         max_rate: leave out scans so that at most this many per second remain, Hz.
+        also: is given each record.
 
     Raises:
         InputError: no recording of several robots, or damaged.
@@ -50,6 +53,8 @@ def read_fleet(path: Path, max_rate: float | None = None) -> Mapping[str, FleetM
     topics: dict[str, tuple[str, str]] = {}
     by_name: dict[str, list[Record]] = {}
     for record in records:
+        if also is not None:
+            also(record)
         if record.topic not in topics:
             topics[record.topic] = _split(record.topic)
         name, topic = topics[record.topic]

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.recording.records import Record, Records, decode
+from crowdbot.core.recording.records import Record, decode
 from crowdbot.core.recording.scans import Thinning
 from crowdbot.errors import InputError
 
@@ -35,25 +35,40 @@ class ReplayImages:
     pixels: NDArray[Any]
 
 
-def read_images(path: Path, max_rate: float, width: int) -> list[ReplayImages]:
-    """What cameras saw.
+class ImageCollector:
+    """What cameras saw, among the records of a recording that somebody else reads.
 
     Args:
-        path: a recording.
+        path: the recording.
         max_rate: leave out images so that at most this many per second remain, Hz.
         width: leave out rows and columns of larger images, so that at most this many remain.
-
-    Raises:
-        InputError: no recording of crowdbot, or damaged.
     """
-    found: dict[str, list[tuple[int, NDArray[Any]]]] = {}
-    thinning: dict[str, Thinning] = {}
-    for record in Records(path):
+
+    def __init__(self, path: Path, max_rate: float, width: int) -> None:
+        self._path, self._max_rate, self._width = path, max_rate, width
+        self._found: dict[str, list[tuple[int, NDArray[Any]]]] = {}
+        self._thinning: dict[str, Thinning] = {}
+
+    def add(self, record: Record) -> None:
+        """Keep a record if it is an image that the page shows.
+
+        Raises:
+            InputError: it is damaged.
+        """
         if record.msgtype != "sensor_msgs/msg/Image" or _leaf(record.topic) is None:
-            continue
-        if thinning.setdefault(record.topic, Thinning(max_rate)).keeps(record.ns):
-            found.setdefault(record.topic, []).append((record.ns, _pixels(path, record, width)))
-    return [_images(path, topic, rows) for topic, rows in found.items()]
+            return
+        thinning = self._thinning.setdefault(record.topic, Thinning(self._max_rate))
+        if thinning.keeps(record.ns):
+            pixels = _pixels(self._path, record, self._width)
+            self._found.setdefault(record.topic, []).append((record.ns, pixels))
+
+    def images(self) -> list[ReplayImages]:
+        """Those of all cameras so far.
+
+        Raises:
+            InputError: those of one differ in size.
+        """
+        return [_images(self._path, topic, rows) for topic, rows in self._found.items()]
 
 
 def _leaf(topic: str) -> str | None:

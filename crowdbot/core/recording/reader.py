@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -91,12 +91,15 @@ def read_whole(path: Path, robot: str | None = None) -> WholeRecording:
     )
 
 
-def read_run(path: Path, max_rate: float) -> tuple[Trajectories, list[ReplayScan]]:
+def read_run(
+    path: Path, max_rate: float, also: Callable[[Record], None] | None = None
+) -> tuple[Trajectories, list[ReplayScan]]:
     """Trajectories and what sensors of distances saw, in one pass over a run's own recording.
 
     Args:
         path: a recording of one robot.
         max_rate: leave out scans so that at most this many per second remain, Hz.
+        also: is given each record but those of the trajectories.
 
     Raises:
         InputError: as `read_trajectories`.
@@ -106,6 +109,8 @@ def read_run(path: Path, max_rate: float) -> tuple[Trajectories, list[ReplayScan
     for record in Records(path):
         if record.topic not in Collected.TOPICS:
             scans.add(record)
+            if also is not None:
+                also(record)
             continue
         collected.add_record(path, record)
         if record.topic in (Topic.HEADER, Topic.TILTS):

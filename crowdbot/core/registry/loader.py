@@ -7,6 +7,7 @@ import re
 import traceback
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from importlib import metadata
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -123,8 +124,9 @@ def _ask(plugin: Plugin, module: Any) -> Plugin:
             _check_component(plugin, hook, category, item)
             components.append(item)
     _check_twice(components)
-    for category in dict.fromkeys(c.category for c in components):
-        _check_models([c for c in components if c.category == category])
+    if plugin.name != BUILTIN:  # whose models the tests build
+        for category in dict.fromkeys(c.category for c in components):
+            _check_models([c for c in components if c.category == category])
     dirs = tuple(_returned(manager, _DIRS))
     for folder in dirs:
         if not (hasattr(folder, "is_dir") and hasattr(folder, "iterdir")):
@@ -239,7 +241,7 @@ def _check_models(components: Sequence[Component[Any]]) -> None:
     of a category are tried at once, which is quick, and one after the other only if that fails.
     """
     try:
-        _try_models([c.spec for c in components])
+        _try_models(tuple(c.spec for c in components))
     except Exception:
         for component in components:
             _check_model(component)
@@ -249,7 +251,7 @@ def _check_models(components: Sequence[Component[Any]]) -> None:
 def _check_model(component: Component[Any]) -> None:
     try:
         component.spec.model_rebuild(raise_errors=True)
-        _try_models([component.spec])
+        _try_models((component.spec,))
     except Exception as error:
         first = str(error).strip().partition("\n")[0]
         raise PluginError(
@@ -258,7 +260,8 @@ def _check_model(component: Component[Any]) -> None:
         ) from error
 
 
-def _try_models(specs: Sequence[type[ComponentSpec]]) -> None:
+@lru_cache(maxsize=64)  # a process that looks again finds the same classes
+def _try_models(specs: tuple[type[ComponentSpec], ...]) -> None:
     members: Any = (*specs, _Probe)
     adapter: TypeAdapter[Any] = TypeAdapter(
         Annotated[Union[members], Field(discriminator="kind")]  # noqa: UP007

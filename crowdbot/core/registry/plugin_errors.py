@@ -7,6 +7,7 @@ import sysconfig
 import traceback
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
+from functools import cache
 from importlib.metadata import entry_points
 from importlib.resources import files
 from pathlib import Path
@@ -15,6 +16,8 @@ from crowdbot.errors import Interrupted, PlannerHungError
 
 #: Frames of crowdbot's machinery are not where somebody else's error is.
 _PACKAGE = str(files("crowdbot"))
+#: Modules whose frames every command has.
+_NO_PLUGINS = frozenset(("crowdbot", "click", "typer"))
 _MACHINERY = tuple(f"{_PACKAGE}/{part}/" for part in ("core", "dsl", "cli"))
 
 
@@ -35,14 +38,20 @@ def error_text(error: BaseException) -> str:
     return f"{kind}{f': {text}' if text else ''}"
 
 
+@cache
+def _plugin_roots() -> frozenset[str]:
+    """First names of the modules of installed plugins; looking for them takes milliseconds."""
+    found = entry_points(group="crowdbot")
+    return frozenset(e.value.partition(":")[0].partition(".")[0] for e in found)
+
+
 def culprit(error: BaseException) -> str:
     """`` (file:line)`` of the innermost frame that is in a plugin; empty where none is."""
-    roots = {e.value.partition(":")[0].partition(".")[0] for e in entry_points(group="crowdbot")}
     found = ""
     for frame, line in traceback.walk_tb(error.__traceback__):
         root = str(frame.f_globals.get("__name__")).partition(".")[0]
         file = frame.f_code.co_filename
-        if root != "crowdbot" and (root in roots or not _is_a_library(file)):
+        if root not in _NO_PLUGINS and (not _is_a_library(file) or root in _plugin_roots()):
             found = f" ({file}:{line})"
     return found
 

@@ -21,6 +21,7 @@ from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.registry.entry_points import ALLOW, find_plugins
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
+from crowdbot.core.support.seldom_collected import seldom_collected
 from crowdbot.dsl.component import Component
 from crowdbot.dsl.component_specs import CATEGORIES
 from crowdbot.dsl.components import components
@@ -33,6 +34,11 @@ __all__ = ["Plugin", "Registry", "assemble", "discover"]
 
 
 Built = TypeVar("Built")
+
+#: Specs by category -> what `Registry.scenario_model` made of them, the latest last: pydantic
+#: takes a fifth of a second for it, and a program that looks for plugins again finds the same.
+_scenario_models: dict[tuple[tuple[str, type[ComponentSpec]], ...], type[Scenario]] = {}
+_MODELS_KEPT = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +169,19 @@ class Registry:
 
     @cached_property
     def scenario_model(self) -> type[Scenario]:
-        """`Scenario`, narrowed to the installed components."""
+        """`Scenario`, narrowed to the installed components; one for all registries with these."""
+        specs = tuple(
+            (category, component.spec)
+            for category, kinds in self._by_category.items()
+            for component in kinds.values()
+        )
+        if specs not in _scenario_models:
+            if len(_scenario_models) == _MODELS_KEPT:
+                del _scenario_models[next(iter(_scenario_models))]
+            _scenario_models[specs] = self._narrowed_scenario()
+        return _scenario_models[specs]
+
+    def _narrowed_scenario(self) -> type[Scenario]:
         policy: Any = (self._union("crowd policy"), ...)
         costs = self._named(Crowd, "costs", self._union("cost function"))
         named: Any = create_model(
@@ -242,6 +260,7 @@ def _sources(plugin: Plugin, component: Component[Any]) -> frozenset[str]:
     return frozenset(f for f in (plugin.file, *files) if f)
 
 
+@seldom_collected()
 def discover(
     *, extra: Sequence[Path] = (), allow: Iterable[str] | None = None, entry_points: bool = True
 ) -> Registry:

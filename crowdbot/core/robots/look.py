@@ -1,6 +1,6 @@
-"""What a robot looks like from above: the shapes of its description that are seen.
+"""What a robot looks like: the shapes of its description that are seen.
 
-Of each shape the outline of its projection on the floor, in the frame of the robot's base.
+Cameras draw each as a solid; from above it is the outline of its projection on the floor.
 """
 
 from __future__ import annotations
@@ -37,28 +37,46 @@ class SeenPart(NamedTuple):
     top: float
 
 
-def seen_from_above(robot: RobotModel) -> list[SeenPart]:
-    """The parts that are seen, the lowest first; meshes are left out."""
+class VisualPart(NamedTuple):
+    """A part as cameras see it.
+
+    Attributes:
+        corners: (N, 3) whose convex hull it is, base frame, m.
+        colour: ``#rrggbb``.
+    """
+
+    corners: Array
+    colour: str
+
+
+def visual_parts(robot: RobotModel) -> list[VisualPart]:
+    """The parts that are seen; meshes are left out."""
     described = read_description(robot.description)
-    found = [
+    return [
         part
         for name, link in described.links.items()
-        for part in _parts(link, described.pose(name, robot.base), described)
+        for part in _visual_parts(link, described.pose(name, robot.base), described)
     ]
+
+
+def seen_from_above(robot: RobotModel) -> list[SeenPart]:
+    """The parts that are seen, the lowest first; meshes are left out."""
+    found = []
+    for corners, colour in visual_parts(robot):
+        outline = _hull(corners[:, :2])
+        if len(outline):
+            found.append(SeenPart(outline, colour, float(corners[:, 2].max())))
     return sorted(found, key=lambda part: part.top)
 
 
-def _parts(link: Xml.Element, at: Array, described: Description) -> Iterator[SeenPart]:
+def _visual_parts(link: Xml.Element, at: Array, described: Description) -> Iterator[VisualPart]:
     for visual in link.findall("visual"):
         for shape in visual.findall("geometry/*"):
             cloud = _cloud(shape)
-            if not len(cloud):
-                continue
-            pose = at @ matrix(pose_of(visual))
-            placed = cloud @ pose[:3, :3].T + pose[:3, 3]
-            outline = _hull(placed[:, :2])
-            if len(outline):
-                yield SeenPart(outline, _colour(visual, described), float(placed[:, 2].max()))
+            if len(cloud):
+                pose = at @ matrix(pose_of(visual))
+                placed = cloud @ pose[:3, :3].T + pose[:3, 3]
+                yield VisualPart(placed, _colour(visual, described))
 
 
 def _cloud(shape: Xml.Element) -> Array:

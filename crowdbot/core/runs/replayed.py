@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.environments.build import build_environment
-from crowdbot.core.recording.images import ReplayImages, read_images
+from crowdbot.core.recording.images import ImageCollector, ReplayImages
 from crowdbot.core.recording.scans import REPLAY_RATE
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.replay import OtherTrack, Scenery, ShownRun
@@ -68,13 +68,9 @@ def scenery(parts: EnvironmentParts, height: float) -> Scenery:
     )
 
 
-def read_replay_images(recording: Path) -> list[ReplayImages]:
-    """What the page shows of cameras.
-
-    Raises:
-        InputError: no recording of crowdbot, or damaged.
-    """
-    return read_images(recording, _IMAGE_RATE, _IMAGE_WIDTH)
+def images_of_replay(recording: Path) -> ImageCollector:
+    """Collects what the page shows of cameras."""
+    return ImageCollector(recording, _IMAGE_RATE, _IMAGE_WIDTH)
 
 
 def replayed_runs(folders: Sequence[Path], registry: Registry) -> list[ShownRun]:
@@ -182,15 +178,16 @@ def shown_run(
 
 
 def _replayed(folder: Path, record: Mapping[str, Any], label: str, registry: Registry) -> ShownRun:
-    scenario = _scenario(folder, registry)
+    scenario, recording = _scenario(folder, registry), folder / files.RECORDING
+    images = images_of_replay(recording)
     shown = shown_run(
         scenario,
-        read_robots(folder / files.RECORDING, tuple(scenario.robots), REPLAY_RATE),
+        read_robots(recording, tuple(scenario.robots), REPLAY_RATE, images),
         {name: build_robot(registry, robot) for name, robot in scenario.robots.items()},
         build_environment(registry, scenario.environment),
         record,
         [row.score for row in read_scores_csv(folder / files.SCORES)],
-        read_replay_images(folder / files.RECORDING),
+        images.images(),
     )
     return replace(shown, label=label)
 

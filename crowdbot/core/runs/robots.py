@@ -14,6 +14,7 @@ from crowdbot.core.recording import (
     read_run,
     read_whole,
 )
+from crowdbot.core.recording.images import ImageCollector
 from crowdbot.core.recording.scans import ReplayScan
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
@@ -51,20 +52,27 @@ class RecordedRun:
     until: float
 
 
-def read_robots(path: Path, robots: Sequence[str], max_rate: float) -> dict[str, SeenRun]:
+def read_robots(
+    path: Path,
+    robots: Sequence[str],
+    max_rate: float,
+    images: ImageCollector | None = None,
+) -> dict[str, SeenRun]:
     """The runs of all robots of a recording.
 
     Args:
         path: a recording.
         robots: their names, in the scenario's order.
         max_rate: of scans, Hz.
+        images: collects what cameras saw, in the same pass.
 
     Raises:
         InputError: it cannot be read, or one is not in it.
     """
+    also = None if images is None else images.add
     if len(robots) == 1:
-        return {robots[0]: SeenRun(*read_run(path, max_rate))}
-    found = read_fleet(path, max_rate)
+        return {robots[0]: SeenRun(*read_run(path, max_rate, also))}
+    found = read_fleet(path, max_rate, also)
     if missing := [name for name in robots if name not in found]:
         raise InputError(f"{path}: robot '{missing[0]}' is not in it")
     return {name: SeenRun(found[name].run, found[name].scans) for name in robots}

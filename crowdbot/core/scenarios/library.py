@@ -10,13 +10,14 @@ import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
-from functools import cache, cached_property, partial
+from functools import cache, partial
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.support.seldom_collected import seldom_collected
 from crowdbot.dsl.diagnostics import Diagnostic
-from crowdbot.dsl.expand import Expansion, expand_document, load_document
+from crowdbot.dsl.expand import Expanding, Expansion, expand_document, load_document
 from crowdbot.dsl.installed import Installed
 from crowdbot.dsl.lock import LockFiles
 from crowdbot.dsl.scenario import Locked, Scenario
@@ -38,6 +39,7 @@ class OpenDocument:
     suite: ParsedSuite
 
 
+@seldom_collected()
 def open_document(spec: str, registry: Registry) -> OpenDocument:
     """Read a suite or scenario with all it extends; nothing is expanded.
 
@@ -72,6 +74,7 @@ def open_spec(spec: str, registry: Registry, overrides: Sequence[str] = ()) -> E
     return expansion
 
 
+@seldom_collected()
 def open_suite(
     spec: str, registry: Registry, overrides: Sequence[str] = ()
 ) -> tuple[Expansion, LockFiles]:
@@ -114,7 +117,7 @@ def check_writable(files: LockFiles) -> None:
 
 
 class _Origins:
-    """The scenarios as the suite has them, without ``--set``; expanded when somebody asks."""
+    """The scenarios as the suite has them, without ``--set``; each expanded when asked for."""
 
     def __init__(
         self,
@@ -123,15 +126,11 @@ class _Origins:
         expansion: Expansion,
         overrides: Sequence[str],
     ) -> None:
-        self._suite, self._registry = suite, registry
         self._given = None if overrides else expansion.scenarios
+        self._expanding = Expanding(suite, registry.scenario_model)
 
     def scenario(self, index: int) -> Scenario:
-        return self._scenarios[index]
-
-    @cached_property
-    def _scenarios(self) -> list[Scenario]:
-        return self._given or expand_document(self._suite, self._registry.scenario_model).scenarios
+        return self._given[index] if self._given else self._expanding.scenario(index)
 
 
 def _attach(expansion: Expansion, files: LockFiles, origins: _Origins) -> None:

@@ -11,7 +11,29 @@ import math
 
 from crowdbot.core.crowd.contact.robot_contact import R_BODY, R_YAW, RX, RY, extent_of, from_outline
 from crowdbot.core.support.compile import kernel
-from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.arrays import Array, Mask
+
+
+@kernel
+def mark_within_reach(robots: Array, reach: Array, marks: Mask) -> int:
+    """Mark the pairs of robots that are near enough to touch, however they are turned.
+
+    Args:
+        robots: (N, 8) rows as in `crowdbot.core.crowd.contact.robot_contact`.
+        reach: (N,) of the farthest point of each from its origin, m.
+        marks: (N, N) written for i < j.
+
+    Returns:
+        how many are marked.
+    """
+    found = 0
+    for i in range(robots.shape[0]):
+        for j in range(i + 1, robots.shape[0]):
+            dx, dy = robots[i, RX] - robots[j, RX], robots[i, RY] - robots[j, RY]
+            around = reach[i] + reach[j]
+            marks[i, j] = dx * dx + dy * dy <= around * around
+            found += marks[i, j]
+    return found
 
 
 @kernel

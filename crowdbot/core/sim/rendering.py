@@ -1,4 +1,4 @@
-"""Colour images, drawn by VTK through EGL: floor, walls, pillars and low-poly people.
+"""Colour images, drawn by VTK through EGL: floor, walls, pillars, low-poly people, robots.
 
 The pictures live in a SceneGraph of their own, so that they cost the plant nothing. What VTK
 draws may differ from machine to machine: colour is outside of crowdbot's determinism.
@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+from collections.abc import Sequence
 from functools import cache
 from itertools import islice
 
@@ -40,11 +41,14 @@ from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 from pydrake.systems.sensors import CameraInfo
 
 from crowdbot.core.geometry.optical_frame import OPTICAL_RPY
+from crowdbot.core.robots.look import visual_parts
 from crowdbot.core.sensing.body_model import PARTS, TRUNK
 from crowdbot.core.sensing.mount import sensor_pose_in_world
+from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.person_mesh import leg_obj, trunk_obj
 from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.robot import RobotModel
 from crowdbot.core.types.sensor import Pinhole
 from crowdbot.dsl.spec import Mount
 from crowdbot.errors import MissingLibraryError
@@ -73,6 +77,7 @@ class Renderer:
         camera: Pinhole,
         mount: tuple[float, float, float, float],
         tilt: tuple[float, float] = (0.0, 0.0),
+        robots: Sequence[RobotModel] = (),
     ) -> None:
         """Set the stage.
 
@@ -81,6 +86,7 @@ class Renderer:
             camera: whose pictures are wanted.
             mount: x, y, z, yaw from base_link, m and rad.
             tilt: roll and pitch of the mount, rad.
+            robots: what the other robots of the scene look like.
 
         Raises:
             MissingLibraryError: this machine cannot draw.
@@ -94,7 +100,7 @@ class Renderer:
         self._source = self._graph.RegisterSource("crowdbot")
         self._scenery(scene)
         self._people = self._crowd(scene)
-        self._robots = self._fleet(scene)
+        self._robots = self._fleet(scene, robots)
         self._context = self._graph.CreateDefaultContext()
         self._camera = _render_camera(camera)
 
@@ -132,21 +138,31 @@ class Renderer:
             pose = RigidTransform([x, y, 0.5 * (low + high)])
             self._add(Cylinder(radius, high - low), pose, _PILLAR, f"pillar{k}")
 
-    def _fleet(self, scene: Scene) -> list[FrameId]:
-        """Frames of the other robots, each an upright body over its outline."""
+    def _fleet(self, scene: Scene, models: Sequence[RobotModel]) -> list[FrameId]:
+        """Frames of the other robots: what is seen of each, else a body over its outline."""
         frames = []
         for k, robot in enumerate(scene.others.robots):
             frame = self._graph.RegisterFrame(self._source, GeometryFrame(f"robot{k}"))
-            outline, lift = robot.footprint.outline(0.0, 0.0, 0.0), 0.0
-            shape: Shape
-            if len(outline):
-                corners = [(x, y, z) for x, y in outline for z in (0.0, robot.height)]
-                shape = Convex(points=np.array(corners).T, label=f"robot{k}")
-            else:
-                shape, lift = Cylinder(robot.footprint.radius, robot.height), 0.5 * robot.height
-            self._add(shape, RigidTransform([0.0, 0.0, lift]), _ROBOT, f"robot{k}", frame)
             frames.append(frame)
+            solids = visual_parts(models[k]) if k < len(models) else []
+            for part, (corners, colour) in enumerate(solids):
+                shape = Convex(points=corners.T, label=f"robot{k}_{part}")
+                lift = RigidTransform([0.0, 0.0, models[k].base_height])
+                self._add(shape, lift, _rgb(colour), f"robot{k}_{part}", frame)
+            if not solids:
+                self._upright(robot, f"robot{k}", frame)
         return frames
+
+    def _upright(self, robot: OtherRobot, name: str, frame: FrameId) -> None:
+        """A robot of which nothing but its outline and height is known."""
+        outline, lift = robot.footprint.outline(0.0, 0.0, 0.0), 0.0
+        shape: Shape
+        if len(outline):
+            corners = [(x, y, z) for x, y in outline for z in (0.0, robot.height)]
+            shape = Convex(points=np.array(corners).T, label=name)
+        else:
+            shape, lift = Cylinder(robot.footprint.radius, robot.height), 0.5 * robot.height
+        self._add(shape, RigidTransform([0.0, 0.0, lift]), _ROBOT, name, frame)
 
     def _crowd(self, scene: Scene) -> list[FrameId]:
         """Frames of legs and trunk for everybody, then of what they have with them.
@@ -195,6 +211,12 @@ def _turned(roll: float, pitch: float, yaw: float) -> RotationMatrix:
     if roll == 0.0 and pitch == 0.0:
         return RotationMatrix.MakeZRotation(yaw)
     return RollPitchYaw(roll, pitch, yaw).ToRotationMatrix()
+
+
+def _rgb(colour: str) -> tuple[float, float, float]:
+    """Of ``#rrggbb``, each from 0 to 1."""
+    red, green, blue = (int(colour[i : i + 2], 16) / 255.0 for i in (1, 3, 5))
+    return red, green, blue
 
 
 def _on_the_floor(pose: Pose) -> RigidTransform:

@@ -295,7 +295,7 @@ def add_sensors(
         robot=built.name,
         on_reading=writer.reading,
         on_frame=writer.frame if writer.images else None,
-        renderers=_renderers(built.infos, scene),
+        renderers=_renderers(built.infos, scene, others),
     )
     builder.AddNamedSystem("sensors", bank)
     builder.Connect(robot.port, bank.GetInputPort(ports.ROBOT_STATE))
@@ -321,11 +321,18 @@ def _scene(built: BuiltRun, engine: CrowdEngine | None, others: Sequence[Compani
     )  # fmt: skip
 
 
-def _renderers(infos: Mapping[str, SensorInfo], scene: Scene) -> dict[str, ColourRenderer]:
+def _renderers(
+    infos: Mapping[str, SensorInfo], scene: Scene, others: Sequence[Companion]
+) -> dict[str, ColourRenderer]:
     """What draws the pictures of cameras with colour; VTK is loaded for these only."""
     cameras = {n: i for n, i in infos.items() if i.camera is not None and i.camera.colour}
     if not cameras:
         return {}
     from crowdbot.core.sim.rendering import Renderer
 
-    return {n: Renderer(scene, i.camera, i.mount, i.tilt) for n, i in cameras.items() if i.camera}
+    robots = [other.model for other in others]
+    return {
+        n: Renderer(scene, i.camera, i.mount, i.tilt, robots)
+        for n, i in cameras.items()
+        if i.camera
+    }

@@ -10,6 +10,7 @@ from typing import Any, get_args
 from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.planning.given_planner import GivenPlanner, choose_planner
 from crowdbot.core.planning.watchdog import STEP_LIMIT
+from crowdbot.core.recording.images import ImageCollector, ReplayImages
 from crowdbot.core.recording.scans import REPLAY_RATE
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry
@@ -25,7 +26,7 @@ from crowdbot.core.runs.identity import (
     run_identity,
 )
 from crowdbot.core.runs.outcome import Progress
-from crowdbot.core.runs.replayed import read_replay_images, shown_run
+from crowdbot.core.runs.replayed import images_of_replay, shown_run
 from crowdbot.core.runs.request import (
     Recorded,
     Request,
@@ -196,7 +197,8 @@ def _record_run(
     with partial(final) as folder:
         outcome = record_all(_setup(request, prepared, folder, identity), builts)
         check_interrupted(outcome, folder)
-        seen = read_robots(folder / files.RECORDING, tuple(builts), REPLAY_RATE)
+        images = _images(request, builts, folder / files.RECORDING)
+        seen = read_robots(folder / files.RECORDING, tuple(builts), REPLAY_RATE, images)
         runs = {name: one.run for name, one in seen.items()}
         scores = score_robots(
             request.registry,
@@ -207,9 +209,19 @@ def _record_run(
         record = run_record(request, identity, references, outcome, runs, scores, parts=parts)
         record["agents"] = prepared.run.people.source
         record["reference_hashes"] = reference_hashes(references)
-        record = _write_files(request, builts, folder, seen, scores, record)
+        shown = [] if images is None else images.images()
+        record = _write_files(request, builts, folder, seen, shown, scores, record)
         files.publish(folder, final)
     return record
+
+
+def _images(
+    request: Request, builts: Mapping[str, BuiltRun], recording: Path
+) -> ImageCollector | None:
+    """For the images that the page shows; None where it shows none."""
+    infos = [info for built in builts.values() for info in built.infos.values()]
+    shows = request.replay and request.record == "all" and any(info.camera for info in infos)
+    return images_of_replay(recording) if shows else None
 
 
 def _write_files(
@@ -217,6 +229,7 @@ def _write_files(
     builts: Mapping[str, BuiltRun],
     folder: Path,
     seen: Mapping[str, SeenRun],
+    images: Sequence[ReplayImages],
     scores: Scores,
     record: Mapping[str, Any],
 ) -> dict[str, Any]:
@@ -225,7 +238,7 @@ def _write_files(
     write_scenario(folder, scenario, request.registry)
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
     if request.replay:
-        _write_replay(request, builts, folder, seen, scores, record)
+        _write_replay(request, builts, folder, seen, images, scores, record)
     files.attach_files(folder, record)
     whole = {**record, "files": files.sizes(folder)}
     files.write_json(folder / files.RECORD, whole)
@@ -237,11 +250,10 @@ def _write_replay(
     builts: Mapping[str, BuiltRun],
     folder: Path,
     seen: Mapping[str, SeenRun],
+    images: Sequence[ReplayImages],
     scores: Scores,
     record: Mapping[str, Any],
 ) -> None:
-    infos = [info for built in builts.values() for info in built.infos.values()]
-    images = request.record == "all" and any(info.camera for info in infos)
     shown = shown_run(
         request.scenario,
         seen,
@@ -249,7 +261,7 @@ def _write_replay(
         next(iter(builts.values())).parts,
         record,
         scores,
-        read_replay_images(folder / files.RECORDING) if images else (),
+        images,
     )
     write_replay(folder / files.REPLAY, shown)
 

@@ -196,7 +196,9 @@ def _features(content: Any, name: str) -> Iterator[tuple[Any, dict[str, Any]]]:
             yield shape, dict(content.get("properties") or {})
     elif kind in ("Polygon", "MultiPolygon", "LineString", "MultiLineString", "GeometryCollection"):
         try:
-            yield shape_of(content), {}
+            with np.errstate(invalid="ignore"):  # NaN is an error of its own, with a message
+                shape = shape_of(content)
+            yield shape, {}
         except Exception as error:  # whatever shapely makes of wrong nesting
             raise InputError(f"{name}: a {kind} is damaged: {error}") from error
     elif kind not in ("Point", "MultiPoint"):

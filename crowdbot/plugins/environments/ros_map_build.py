@@ -63,14 +63,14 @@ def read_map(file: Path) -> RosMap:
     if not isinstance(content, dict) or "image" not in content:
         raise InputError(f"{file.name}: is not a map.yaml: it names no image")
     try:
-        origin = tuple(float(v) for v in content["origin"])
+        origin = tuple(_number("origin", v) for v in content["origin"])
         found = RosMap(
             image=str(content["image"]),
-            resolution=float(content["resolution"]),
+            resolution=_number("resolution", content["resolution"]),
             origin=(origin[0], origin[1], origin[2] if len(origin) > 2 else 0.0),
             negate=bool(int(content.get("negate", 0))),
-            occupied=float(content.get("occupied_thresh", _OCCUPIED)),
-            free=float(content.get("free_thresh", _FREE)),
+            occupied=_number("occupied_thresh", content.get("occupied_thresh", _OCCUPIED)),
+            free=_number("free_thresh", content.get("free_thresh", _FREE)),
         )
     except KeyError as error:
         raise InputError(f"{file.name}: {error.args[0]} is missing") from error
@@ -82,6 +82,13 @@ def read_map(file: Path) -> RosMap:
     if not 0.0 <= found.free <= found.occupied <= 1.0:
         raise InputError(f"{file.name}: thresholds must be 0 <= free <= occupied <= 1")
     return found
+
+
+def _number(name: str, value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: {value!r} is not a number") from None
 
 
 def image_of(file: Path) -> str | None:

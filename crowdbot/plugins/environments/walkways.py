@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from crowdbot.dsl import EnvironmentSpec, Face, Length, PositiveLength, Rectangle, Spec, outlines
 
@@ -23,11 +23,16 @@ class WalkwaySpec(EnvironmentSpec):
 
     wall_height: PositiveLength = Field(default=2.5, description="Height of the walls, m.")
 
+    _checked: bool = PrivateAttr(default=False)
+
     @model_validator(mode="after")
     def _with_usual_places(self) -> WalkwaySpec:
+        if self._checked:  # suites validate a place again with each scenario in it
+            return self
         self.check_shape()
         object.__setattr__(self, "zones", {**self.usual_zones(), **self.zones})
         object.__setattr__(self, "portals", {**self.usual_portals(), **self.portals})
+        self._checked = True
         return self
 
     def check_shape(self) -> None:

@@ -31,6 +31,7 @@ from crowdbot.plugins.planners.dwa_points_build import (
 )
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.heading_by_walls_build import HeadingByWalls, compile_heading
+from crowdbot.plugins.planners.lidar_views_build import LidarViews
 from crowdbot.plugins.planners.manoeuvring_build import Manoeuvring
 from crowdbot.plugins.planners.people_build import carry, people_in, with_discs
 from crowdbot.plugins.planners.robot_outline_build import core_of, disc_radius, swept_half_width
@@ -91,6 +92,7 @@ class Dwa:
         self._moved_at: tuple[float, float, float] | None = None
         self._escape_until = -math.inf
         self._nearest: tuple[float, float] | None = None
+        self._lost = False
 
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
@@ -107,7 +109,8 @@ class Dwa:
         self._p[rollout.REACH] = disc_radius(self._spec.robot_radius, task.robot)
         long = len(self._core) > 0 and not self._sideways  # it does not fit in every heading
         person = self._spec.person_radius
-        made = Manoeuvring(self._core, self._p, limits, person, _REACH) if long else None
+        views = LidarViews(sensors)
+        made = Manoeuvring(self._core, self._p, limits, views, person, _REACH) if long else None
         self._manoeuvring = made
         self._warm_up(task, sensors)
         self._forget()
@@ -145,14 +148,17 @@ class Dwa:
         self._wait(period)
         escaping = self._is_stuck(obs)
         room = distance
-        lost = self._is_lost(distance)
-        if self._manoeuvring is not None and (lost or escaping or self._manoeuvring):
-            lost = True
+        self._lost = self._is_lost(distance)
+        if self._manoeuvring is not None and (self._lost or escaping or self._manoeuvring):
+            self._lost = True
             found = self._manoeuvring.command(obs, self._stands, self._walkers)
             if found is not None:
                 self._last = found
                 return Command(*found)
-        if lost:
+            beside = self._manoeuvring.beside(obs.pose)
+            points = np.concatenate([points, beside])
+            velocities = np.concatenate([velocities, np.zeros_like(beside)])
+        if self._lost:
             goal, room = self._way_out(obs, goal, distance)
         else:
             self._map, self._way = np.empty((0, 2)), None
@@ -298,7 +304,8 @@ class Dwa:
         """Whether the robot has come no nearer to the goal for long: it needs a map."""
         now = 0.0 if self._time is None else self._time
         # A manoeuvre is not over where the robot comes nearer, but where it is through.
-        gain = 2.0 * float(self._p[rollout.REACH]) if self._manoeuvring else 0.3
+        long = self._lost and self._manoeuvring is not None
+        gain = 2.0 * float(self._p[rollout.REACH]) if long else 0.3
         if self._nearest is None or distance < self._nearest[0] - gain:
             self._nearest = (distance, now)
         return now - self._nearest[1] > 2.0 * self._spec.patience

@@ -20,15 +20,7 @@ _BEHIND = 0.4
 AIM = 0.7
 
 
-def remembered(
-    memory: Array,
-    seen: Array,
-    x: float,
-    y: float,
-    reach: float,
-    near: float = 0.0,
-    cell: float = CELL,
-) -> Array:
+def remembered(memory: Array, seen: Array, x: float, y: float, reach: float) -> Array:
     """The memory after another look.
 
     Args:
@@ -37,8 +29,6 @@ def remembered(
         x: of the robot, m.
         y: of the robot, m.
         reach: how far the robot sees, m.
-        near: what is nearer than this is kept whatever is seen: no lidar may see there, m.
-        cell: m.
 
     Returns:
         (N', 2) what was seen now and what is hidden, out of reach, or still there; one point in
@@ -50,9 +40,9 @@ def remembered(
     # Past the outline of a body some rays always go: only a wide gap shows that it is gone.
     view = np.min([np.roll(view, k) for k in range(-3, 4)], axis=0)
     at, gap = _polar(memory, x, y)
-    kept = memory[(gap + _BEHIND > view[at]) | (gap > reach) | (gap < near)]
+    kept = memory[(gap + _BEHIND > view[at]) | (gap > reach)]
     points: Array = np.concatenate([seen, kept])  # where both are, the new one is kept
-    _, first = np.unique(np.round(points / cell), axis=0, return_index=True)
+    _, first = np.unique(np.round(points / CELL), axis=0, return_index=True)
     return points[first]
 
 

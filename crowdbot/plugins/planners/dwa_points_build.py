@@ -8,6 +8,7 @@ import numba
 import numpy as np
 
 from crowdbot.core.interfaces import Array, Indices, Mask
+from crowdbot.core.support.stable_order import stable_order
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -91,7 +92,7 @@ def apparent_velocity(
         return out
     low, high = (slowest * dt) ** 2, (fastest * dt) ** 2
     # Whoever is farther away along x alone than anything moves does not count.
-    order = np.argsort(before[:, 0])
+    order = stable_order(before[:, 0])
     far = fastest * dt + 1e-9 * (1.0 + fastest * dt)
     for i in range(now.shape[0]):
         x, y = now[i, 0], now[i, 1]
@@ -105,7 +106,8 @@ def apparent_velocity(
             if square < best or (square == best and j < nearest):
                 best, nearest = square, j
         if low < best < high:
-            out[i] = (now[i] - before[nearest]) / dt
+            out[i, 0] = (x - before[nearest, 0]) / dt
+            out[i, 1] = (y - before[nearest, 1]) / dt
     return out
 
 

@@ -191,7 +191,10 @@ def candidates(
     v, w = np.empty(speeds + 1), np.empty(rates + 2)
     _evenly(low, high, v[:speeds])
     v[speeds] = max(low, min(0.0, high))
-    v.sort()
+    for k in range(speeds, 0, -1):  # to its place; v.sort() takes a second to compile
+        if v[k - 1] <= v[k]:
+            break
+        v[k - 1], v[k] = v[k], v[k - 1]
     _evenly(left, right, w[:rates])
     w[rates], w[rates + 1] = wish, max(left, min(right, 0.0))
     out = np.empty((len(v) * len(w), 2))

@@ -14,7 +14,7 @@ _SPEED, _BRAKING = 0.4, 0.6
 _NEAR, _ALIGNED = 0.03, 0.03
 #: Yaw rate per heading error, 1/s; heading per distance from the line, rad/m, and at most, rad.
 _GAIN, _PULL, _LEAN = 2.0, 1.5, 0.25
-#: A way is looked for anew after this, s.
+#: A way is old after this, s.
 _LASTS = 5.0
 
 
@@ -35,8 +35,8 @@ class Legs:
         self._legs, self._next, self._since = legs, 0, t
 
     def old(self, t: float) -> bool:
-        """Whether to look for a way again: none is left, or it was found long ago."""
-        return not self or t - self._since > _LASTS
+        """Whether the way was found long ago: another may be better by now."""
+        return t - self._since > _LASTS
 
     def velocity(self, pose: Pose, limits: RobotLimits) -> tuple[float, float]:
         """The next v (m/s) and w (rad/s); zero when all legs are done."""

@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, Observation, Pose, RobotLimits
+from crowdbot.core.interfaces import Array, Observation, Pose, Reading, RobotLimits
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
-from crowdbot.plugins.planners.dwa_map_build import islands, remembered
+from crowdbot.plugins.planners.dwa_map_build import islands
 from crowdbot.plugins.planners.dwa_points_build import nearest_per_sector
 from crowdbot.plugins.planners.legs_build import Legs
+from crowdbot.plugins.planners.lidar_views_build import LidarViews
 from crowdbot.plugins.planners.manoeuvre_build import manoeuvre
 from crowdbot.plugins.planners.people_build import carry, with_discs
 
-#: The map is renewed so often, s; its cells, and how far beside the robot it is believed whatever
-#: lidars see there, m.
+#: The map is renewed so often, s; its cells, and how far beside the robot what it remembers is in
+#: the way, m: that may be where no lidar looks.
 _PERIOD, _CELL, _BESIDE = 0.5, 0.03, 0.4
 #: Points of the map that are no farther apart are one thing; it is small up to this size, m.
 _LINK, _SMALL = 0.25, 0.6
-#: Clearance of a manoeuvre when it is planned, and when it is driven, m.
+#: Clearance of a manoeuvre when it is planned, if there is such a way, and when it is driven, m.
 _TIGHT, _TIGHTEST = 0.04, 0.02
 #: Shares of the wanted speed that are tried, if somebody is in the way.
 _SLOWER = (1.0, 0.5, 0.2)
-#: Who can do none of that for so long backs off at this speed: s, m/s.
+#: Who can do none of that for so long looks for another way if this one is old, and backs off at
+#: this speed: s, m/s.
 _HELD, _BACK_OFF = 1.0, -0.1
 _SECTORS = 240
 _NONE = np.empty((0, 2))
@@ -39,15 +42,23 @@ class Manoeuvring:
         core: of the robot's outline, as `robot_outline_build.core_of`.
         p: parameters of `dwa_rollout_build`.
         limits: the robot's.
+        lidars: what they look at.
         person_radius: disc that is kept clear around people, m.
         reach: how far lidars are believed, m.
     """
 
     def __init__(
-        self, core: Array, p: Array, limits: RobotLimits, person_radius: float, reach: float
+        self,
+        core: Array,
+        p: Array,
+        limits: RobotLimits,
+        lidars: LidarViews,
+        person_radius: float,
+        reach: float,
     ) -> None:
-        self._core, self._p, self._limits = core, p, limits
+        self._core, self._p, self._limits, self._lidars = core, p, limits, lidars
         self._person, self._reach = person_radius, reach
+        self._beside = float(p[rollout.REACH]) + _BESIDE
         self.forget()
         self._plan(np.ones((1, 2)), Pose(0.0, 0.0, 0.0), (9.0, 0.0))  # compiles
         islands(np.ones((1, 2)), _LINK, _SMALL)
@@ -73,24 +84,38 @@ class Manoeuvring:
         """
         if obs.t - self._mapped_at >= _PERIOD:
             self._mapped_at = obs.t
-            self._remember(obs.pose, stands)
-            if self._legs.old(obs.t):
+            self._remember(obs.pose, stands, obs.readings)
+            # A way that can be driven is kept: in a door, a new one may begin with going back.
+            if not self._legs or (self._held > _HELD and self._legs.old(obs.t)):
                 discs = with_discs(_NONE, _into(self._alone, obs.pose), self._person)
                 around = np.concatenate([self._map, _out_of(discs, obs.pose)])
-                self._legs.begin(self._plan(around, obs.pose, obs.goal), obs.t)
+                found = self._plan(around, obs.pose, obs.goal)
+                if len(found):
+                    self._legs.begin(found, obs.t)
         return self._drive(obs, stands, walkers) if self._legs else None
 
-    def _remember(self, pose: Pose, stands: Array) -> None:
-        x, y, _ = pose
+    def beside(self, pose: Pose) -> Array:
+        """(K, 2) what is remembered so near that no lidar may see it, base frame, m."""
+        points = _into(self._map, pose)
+        return points[np.hypot(points[:, 0], points[:, 1]) < self._beside]
+
+    def _remember(self, pose: Pose, stands: Array, readings: Mapping[str, Reading]) -> None:
+        """Take what is seen now, keep what is hidden or where no lidar looks."""
         seen = _out_of(nearest_per_sector(stands, _SECTORS, self._reach), pose)
-        beside = float(self._p[rollout.REACH]) + _BESIDE
-        self._map = remembered(self._map, seen, x, y, self._reach, beside, _CELL)
+        near = np.hypot(self._map[:, 0] - pose.x, self._map[:, 1] - pose.y) < self._reach
+        kept = self._map[near & ~self._lidars.past(readings, pose, self._map)]
+        points = np.concatenate([seen, kept])  # where both are, the new one is kept
+        _, first = np.unique(np.round(points / _CELL), axis=0, return_index=True)
+        self._map = points[first]
         self._alone = islands(self._map, _LINK, _SMALL)
 
     def _plan(self, around: Array, pose: Pose, goal: tuple[float, float]) -> Array:
-        """Legs of a manoeuvre among points (N, 2), world frame."""
+        """Legs of a manoeuvre among points (N, 2), world frame; none if there is no way."""
         rounding, reach = float(self._p[rollout.RADIUS]), float(self._p[rollout.REACH])
-        return manoeuvre(around, pose, goal, self._core, rounding, reach, _TIGHT)
+        found = manoeuvre(around, pose, goal, self._core, rounding, reach, _TIGHT)
+        if len(found) == 0:  # what is remembered has become blurred, as odometry drifts
+            found = manoeuvre(around, pose, goal, self._core, rounding, reach, _TIGHTEST)
+        return found
 
     def _drive(self, obs: Observation, stands: Array, walkers: Array) -> tuple[float, float, float]:
         """On along the legs, slower or not at all where somebody is in the way."""

@@ -1,4 +1,4 @@
-"""Joystick: a driver who points the stick at the goal with an shaky hand, or a recorded one.
+"""Joystick: a driver who points the stick at the goal with a shaky hand, or a recorded one.
 
 The stick goes aside in proportion to the angle between heading and goal, ahead as far as the goal
 is ahead (the cosine of that angle), and back to the middle near the goal. The hand's error is an

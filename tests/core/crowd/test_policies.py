@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,9 @@ import pytest
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdPolicy, CrowdView, CrowdWorld
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.desired_acceleration import candidates_of
+from crowdbot.core.crowd.desired_acceleration import candidates_of, relaxation_time_of
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS
+from crowdbot.core.crowd.steering.parameters import Steering, Wander
 from crowdbot.core.types.candidates import VelocityCandidates
 from crowdbot.errors import PluginError
 from tests.core.crowd.crowd_reference import Array
@@ -141,6 +143,42 @@ class Lists(ToGoal):
 def test_candidates_that_fail_are_named(candidates: object, message: str) -> None:
     with pytest.raises(PluginError, match=message):
         candidates_of(Lists(candidates))
+
+
+class Takes(ToGoal):
+    def __init__(self, time: object) -> None:
+        self._time = time
+
+    @property
+    def relaxation_time(self) -> object:
+        print("out of a property")
+        if isinstance(self._time, Exception):
+            raise self._time
+        return self._time
+
+
+@pytest.mark.parametrize(
+    ("time", "message"),
+    [
+        (RuntimeError("never"), "Takes': relaxation_time: .*never"),
+        ("soon", "Takes': relaxation_time: .*could not convert string to float"),
+        (-0.5, r"Takes': relaxation_time is -0\.5 s"),
+        (math.nan, "Takes': relaxation_time is nan s"),
+    ],
+)
+def test_a_relaxation_time_that_fails_names_the_policy(time: object, message: str) -> None:
+    """Steering parts ask for it, inside the boundary."""
+    engine = CrowdEngine(SOME, CrowdWorld(steering=Steering(wander=Wander())), Takes(time))
+    with pytest.raises(PluginError, match=message):
+        engine.run(1.0)
+
+
+def test_a_relaxation_time_is_asked_for_inside_the_boundary(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert relaxation_time_of(Takes(0.5)) == 0.5
+    assert capsys.readouterr() == ("", "out of a property\n")
+    assert relaxation_time_of(ToGoal()) == 0.0
 
 
 def test_candidates_are_asked_for_inside_the_boundary(capsys: pytest.CaptureFixture[str]) -> None:

@@ -75,6 +75,13 @@ def test_everything_built_in_is_there() -> None:
             assert component.summary
 
 
+def test_equal_registries_have_one_model_of_scenarios(tmp_path: Path) -> None:
+    assert found().scenario_model is found().scenario_model
+    more = found(plugin(tmp_path))
+    assert more.scenario_model is not found().scenario_model
+    assert more.scenario_model is more.scenario_model
+
+
 def test_a_plugin_adds_its_components(tmp_path: Path) -> None:
     registry = found(plugin(tmp_path))
     component = registry.find("planner", "acme.go")

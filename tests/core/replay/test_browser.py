@@ -16,7 +16,7 @@ from matplotlib.image import imread
 from PIL import Image
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from crowdbot.core.replay import write_replay
+from crowdbot.core.replay import OtherTrack, write_replay
 from tests.browser import PROGRAM, Visit, axe_findings, needs_axe, needs_browser
 from tests.core.replay.replay_cases import ARRIVED_AT, CONTACT_AT, NEAR_AT, passing
 from tests.core.replay.test_replay import EVIL
@@ -115,6 +115,20 @@ def test_it_opens_offline_and_lists_what_happened(browser: Browser, one: Path) -
             page.keyboard.press(key)
             settled(page)
             assert clock(page) == time
+
+
+def test_robots_of_a_fleet_are_chosen_by_their_names(browser: Browser, tmp_path: Path) -> None:
+    shown = passing()
+    other = OtherTrack(
+        name="qolo", run=replace(shown.run, agents=None, trips=None), look=(), leaves=False
+    )
+    write_replay(tmp_path / "fleet.html", replace(shown, robot="pepper", others=[other]))
+    with Visit(browser, tmp_path / "fleet.html", "#paused&t=4") as page:
+        texts = page.eval_on_selector_all("#whom option", "all => all.map((o) => o.textContent)")
+        assert texts[:4] == ["nobody", "robot: pepper", "robot 2: qolo", "person 7"]
+        page.select_option("#whom", label="robot 2: qolo")
+        settled(page)
+        assert "follow=robot+2" in page.url
 
 
 def test_somebody_is_followed(browser: Browser, one: Path) -> None:

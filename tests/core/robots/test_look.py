@@ -1,4 +1,4 @@
-"""What a robot looks like from above."""
+"""What a robot looks like, from above and for cameras."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.robots import build_model
-from crowdbot.core.robots.look import seen_from_above
+from crowdbot.core.robots.look import seen_from_above, visual_parts
 
 REGISTRY = discover(allow=())
 ROBOTS = ("turtlebot2", "pepper", "qolo", "cuybot", "smart_wheelchair")
@@ -40,6 +40,16 @@ def test_shapes_of_a_urdf_are_projected() -> None:
     assert area(box.outline) == pytest.approx(0.08)
     assert box.outline.min(axis=0) == pytest.approx([0.9, 1.8])
     assert box.outline.max(axis=0) == pytest.approx([1.1, 2.2])
+
+
+def test_visual_parts_are_the_shapes_in_the_frame_of_the_base() -> None:
+    spec = REGISTRY.find("robot", "pepper").spec()
+    model = replace(build_model(REGISTRY, spec), description=URDF, base="base_link")
+    box, ball = visual_parts(model)
+    assert (box.colour, ball.colour) == ("#ff0000", "#8a8d91")
+    assert box.corners.min(axis=0) == pytest.approx([0.9, 1.8, 0.45])
+    assert box.corners.max(axis=0) == pytest.approx([1.1, 2.2, 0.55])
+    assert np.hypot(*ball.corners.T[:2]).max() == pytest.approx(0.5)
 
 
 @pytest.mark.parametrize("kind", ROBOTS)

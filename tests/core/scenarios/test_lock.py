@@ -14,6 +14,7 @@ from crowdbot.core.scenarios.library import open_spec, open_suite
 from crowdbot.core.scenarios.lock import make_lock, population, write_lock
 from crowdbot.core.scenarios.lock_check import differences
 from crowdbot.dsl.canonical import dump_scenario_yaml
+from crowdbot.dsl.expand import Expanding
 from crowdbot.dsl.lock import join_tables, split_tables
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
@@ -93,6 +94,26 @@ def test_what_it_depends_on_is_drawn(suite: Path, change: str) -> None:
     assert people.source == "drawn"
     assert people.agents.hash == realise(one).hash
     assert people.agents.hash != population(opened(suite)[0], REGISTRY).agents.hash
+
+
+def test_with_set_only_the_scenario_asked_for_is_expanded_anew(
+    suite: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plain, changed = opened(suite), opened(suite, "crowd.costs.reflex.weight=3")
+    expanded: list[int] = []
+
+    def noted(self: Expanding, index: int) -> Scenario:
+        expanded.append(index)
+        return scenario(self, index)
+
+    scenario = Expanding.scenario
+    monkeypatch.setattr(Expanding, "scenario", noted)
+    for index in (2, 0):
+        locked = changed[index].locked
+        assert locked is not None
+        assert locked.origin() == plain[index]
+        assert locked.origin().references == plain[index].references
+    assert set(expanded) == {0, 2}
 
 
 def test_a_table_edited_by_hand_is_what_is_read_only_with_its_hash(suite: Path) -> None:

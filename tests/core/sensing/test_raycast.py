@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import ArrayLike, NDArray
 
@@ -17,6 +17,7 @@ from tests.core.sensing.sensing_worlds import (
     scene_of,
     walls_of,
 )
+from tests.examples import costly
 
 R = 0.33  # of the pillars of this page
 
@@ -83,7 +84,7 @@ def reference(
 
 
 @pytest.mark.slow
-@settings(max_examples=150)
+@costly(150)
 @given(st.integers(0, 2**32 - 1), st.booleans())
 def test_equals_brute_force(seed: int, flat: bool) -> None:
     rng = np.random.default_rng(seed)
@@ -110,7 +111,7 @@ def test_equals_brute_force(seed: int, flat: bool) -> None:
     np.testing.assert_allclose(incidence, a, rtol=1e-6, atol=1e-4)  # acos is blunt at 0
 
 
-@settings(max_examples=60)
+@costly(60)
 @given(st.integers(0, 2**32 - 1))
 def test_permutation_of_people_changes_no_scan(seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -4,14 +4,15 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.core.sensing.raycast_columns import DEEPEST, RayGrid
 from tests.core.sensing.sensing_worlds import scene_of, world
+from tests.examples import costly
 
 
-@settings(max_examples=200)
+@costly(200)
 @given(st.integers(0, 2**32 - 1), st.booleans(), st.booleans(), st.floats(0.5, 12.0))
 def test_a_grid_is_its_rays(seed: int, floor: bool, leaning: bool, reach: float) -> None:
     rng = np.random.default_rng(seed)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from crowdbot.core.live.planner import Manner
 from crowdbot.core.live.serve import LiveServe, serve_runs
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
+from crowdbot.core.recording.records import Record, Records
 from crowdbot.core.runs.request import Request
 from crowdbot.core.sim.built_run import build_run
 from crowdbot.core.sim.session import Session
@@ -61,6 +63,26 @@ def counted(
 def test_one_recording_is_built_once(tmp_path: Path, record: str) -> None:
     built, named = counted(scenario(SHORT), tmp_path, record, references=False)
     assert built == named
+
+
+@pytest.mark.slow
+def test_a_recording_with_images_is_read_in_one_pass(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """For the hash, the scores and the page with its images together."""
+    passes: Counter[str] = Counter()
+
+    def counted(records: Records) -> Iterator[Record]:
+        passes[records._path.name] += 1
+        return once(records)
+
+    once = Records.__iter__
+    monkeypatch.setattr(Records, "__iter__", counted)
+    world = scenario(SHORT)
+    assert any(sensor.kind == "rgbd_camera" for sensor in world.robots["robot"].sensors.values())
+    run = simulate(world, registry(), planner="goal_seek", out=tmp_path, references=False)
+    assert passes == {"run.mcap": 1}
+    assert "-images0" in (run.directory / "replay.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.slow

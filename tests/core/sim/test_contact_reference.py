@@ -10,13 +10,14 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.response.parameters import KeepOff
 from tests.core.sim.contact_reference import PERSON_RADIUS, ROBOT_RADIUS, Array, Meeting, contact
+from tests.examples import costly
 
 PHASES = np.linspace(0.0, 1.0, 17)[:-1]
 MEETINGS = {
@@ -126,7 +127,7 @@ SPEED = st.floats(-1.5, 1.5)
     mass=st.floats(3.0, 120.0), person=st.floats(20.0, 120.0), stiffness=st.floats(5e3, 6e4),
     dissipation=st.floats(0.0, 0.6),
 )  # fmt: skip
-@settings(max_examples=60)
+@costly(60)
 def test_what_one_gains_the_other_loses(
     offset: float, closing: float, drift: float, sideways: float, mass: float, person: float,
     stiffness: float, dissipation: float,
@@ -152,7 +153,7 @@ def test_what_one_gains_the_other_loses(
 
 @pytest.mark.slow
 @given(offset=st.floats(-0.3, 0.3), closing=st.floats(0.3, 2.0), dissipation=st.floats(0.0, 0.6))
-@settings(max_examples=25)
+@costly(25)
 def test_lost_energy_is_what_the_law_dissipates(
     offset: float, closing: float, dissipation: float
 ) -> None:

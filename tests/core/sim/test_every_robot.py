@@ -1,7 +1,8 @@
-"""Each robot that crowdbot ships, against closed forms: speed, odometry, walls, tilt, a push."""
+"""Each robot, against closed forms: speed, odometry, slip, walls, tilt, a push."""
 
 from __future__ import annotations
 
+import itertools
 import math
 from functools import cache
 from pathlib import Path
@@ -96,6 +97,33 @@ def test_a_wall_stops_it_where_its_outline_is(kind: str) -> None:
     assert max(r.x for r in track) + front < 50.01
     assert track[-1].x + front == pytest.approx(50.0, abs=0.01)
     assert max(r.tilt for r in track) < math.radians(3.0)
+
+
+FRICTION = 0.02
+#: Share of the weight on what drives: a third of it on two of six wheels that are as stiff, all of
+#: it where a force takes the place of wheels.
+CARRIED = {"turtlebot2": (0.4, 0.7), "qolo": (0.4, 1.0), "smart_wheelchair": (0.3, 0.4)}
+
+
+@pytest.mark.parametrize("kind", ROBOTS)
+def test_on_a_slippery_floor_it_gains_what_friction_gives(kind: str) -> None:
+    """v = mu g t times the share of the weight that the driven wheels carry, and no more."""
+    world = rig(
+        world_of(
+            kind, "robots.robot.task.start=[25, 0, 0]", f"environment.floor.friction={FRICTION}"
+        ),
+        constant(0.5),
+    )
+    track = [(t, r) for t, r in world.track(1.5, 1.0 / 16.0) if t > 0.5]
+    least, most = CARRIED.get(kind, (0.95, 1.0))
+    for (t0, before), (t1, after) in itertools.pairwise(track):
+        gained = (after.vx - before.vx) / ((t1 - t0) * FRICTION * 9.81)
+        assert least - 0.02 < gained < most + 0.02, f"at {t1} s"
+    assert track[-1][1].vx < FRICTION * 9.81 * 1.5 + 1e-6 < 0.5
+    assert max(r.tilt for _, r in track) < math.radians(1.0)
+    if kind not in SIDEWAYS:  # its wheels spin, and odometry believes them
+        counted = world.memory.readings["odometry"][-1].values[0] - 25.0
+        assert counted > track[-1][1].x - 25.0 + 0.2
 
 
 class Sideways(Drive):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,12 @@ import pytest
 from numpy.typing import NDArray
 
 from crowdbot.cli import main
-from crowdbot.core.interfaces import Pose, RobotState
+from crowdbot.core.geometry.footprint import footprint_of_model
+from crowdbot.core.interfaces import Pose, RobotModel, RobotState
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.robots import build_model
 from crowdbot.core.sensing.noise import sensor_rng
+from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.person_mesh import leg_obj, trunk_obj
 from crowdbot.core.sim.rendering import Renderer, check_egl
@@ -46,12 +51,15 @@ def _scene(people: object = (), pillars: object = ()) -> Scene:
     return scene
 
 
-def _both(scene: Scene) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
-    camera = build(SPEC)
-    pinhole = camera.info().camera
-    assert pinhole is not None
+def _both(
+    scene: Scene, tilt: tuple[float, float] = (0.0, 0.0), robots: Sequence[RobotModel] = ()
+) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+    mount = SPEC.mount.model_copy(update={"roll": tilt[0], "pitch": tilt[1]})
+    camera = build(SPEC.model_copy(update={"mount": mount}))
+    info = camera.info()
+    assert info.camera is not None
     depth = camera.read(scene, POSE, 0.0, sensor_rng(0, "robot", "camera", 0))
-    return depth, Renderer(scene, pinhole, camera.info().mount)(scene, POSE)
+    return depth, Renderer(scene, info.camera, info.mount, info.tilt, robots)(scene, POSE)
 
 
 def _sky(picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
@@ -66,6 +74,61 @@ def test_a_pillar_stands_where_the_depth_camera_sees_it() -> None:
     assert 0.1 < nothing.mean() < 0.9
     # Edges of polygons inside circles: a pixel of difference along the outlines.
     assert np.mean(sky != nothing) < 0.01
+
+
+TILTS = [(0.0, 0.2), (0.0, -0.15), (0.35, 0.0), (-0.3, 0.25)]
+
+
+@pytest.mark.parametrize(("roll", "pitch"), TILTS)
+def test_the_horizon_tilts_with_the_camera(roll: float, pitch: float) -> None:
+    """Sky is where the ray of a pixel, turned by Ry(pitch) Rx(roll), points above the horizon."""
+    _, picture = _both(_scene(), (roll, pitch))
+    pinhole = build(SPEC).info().camera
+    assert pinhole is not None
+    v, u = np.mgrid[0:120, 0:160]
+    (cx, cy), f = pinhole.centre, pinhole.focal
+    left, up = (cx - u) / f, (cy - v) / f
+    left, up = (left * math.cos(roll) - up * math.sin(roll),
+                left * math.sin(roll) + up * math.cos(roll))  # fmt: skip
+    above = up * math.cos(pitch) - math.sin(pitch) > 0.0
+    assert 0.1 < above.mean() < 0.9
+    assert np.mean(_sky(picture) != above) < 0.02  # two rows: the floor ends 200 m away
+
+
+@pytest.mark.parametrize("tilt", TILTS)
+def test_a_tilted_camera_sees_pillars_where_depth_does(tilt: tuple[float, float]) -> None:
+    depth, picture = _both(_scene(pillars=[[4.5, 2.2, 0.3], [6.0, 0.5, 0.5]]), tilt)
+    _, empty = _both(_scene(), tilt)
+    drawn = np.any(picture != empty, axis=2)
+    seen = depth < floor_alone(tilt) - 1e-6
+    assert seen.sum() > 500
+    assert np.mean(drawn != seen) < 0.015
+
+
+def floor_alone(tilt: tuple[float, float]) -> NDArray[np.float64]:
+    """(H, W) the floor alone, m."""
+    return _both(_scene(), tilt)[0]
+
+
+@pytest.mark.parametrize("kind", ["turtlebot2", "pepper", "qolo", "cuybot", "smart_wheelchair"])
+def test_another_robot_is_drawn_as_it_looks_within_its_outline(kind: str) -> None:
+    """In its colours; no more than what the depth camera takes for its body, and much of it."""
+    registry = discover(allow=())
+    model = build_model(registry, registry.find("robot", kind).spec(kind=kind))
+    body = OtherRobot(footprint_of_model(model), model.height)
+    scene = Scene([], [0.0, 2.5], [], [], robots=[body])
+    scene.show_robots([Pose(3.8, 2.2, 2.5)])
+    robot = RobotState(*POSE, 0, 0, 0, 0, 0.0102, 0, 0)
+    scene.update(robot, np.zeros((0, 4)), np.zeros(0, np.bool_))
+    depth, picture = _both(scene, robots=[model])
+    empty_depth, empty = _both(_scene())
+    drawn = np.any(picture != empty, axis=2)
+    body_seen = depth < empty_depth - 1e-6
+    assert np.sum(drawn & ~body_seen) < 0.08 * np.sum(drawn)
+    assert np.sum(drawn & body_seen) > 0.3 * np.sum(body_seen)
+    assert len(np.unique(picture[drawn] // 24, axis=0)) >= 4
+    _, upright = _both(scene)  # where nothing is known of its look
+    assert np.mean(np.any(upright != empty, axis=2) != body_seen) < 0.01
 
 
 def test_people_are_drawn_where_they_are_and_the_absent_are_not() -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numba import njit
 
@@ -27,6 +27,7 @@ from crowdbot.core.crowd.velocity_search.cost_calls import (
 from crowdbot.core.types.arrays import Array
 from crowdbot.dsl import CostFunctionSpec, Range
 from crowdbot.plugins.crowd import COSTS
+from tests.examples import costly
 from tests.plugins.crowd import cost_formulas as formulas
 from tests.plugins.crowd.cost_formulas import Other, Scene
 
@@ -194,7 +195,7 @@ FULL = st.builds(
         st.tuples(points(4.0), points(4.0)).filter(lambda w: abs(w[0] - w[1]) > 0.1), max_size=3
     ),
 )
-QUICK = settings(max_examples=150, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
+QUICK = costly(150)
 
 
 def same(a: float, b: float) -> bool:

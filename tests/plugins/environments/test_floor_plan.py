@@ -111,10 +111,21 @@ def test_a_bow_tie_is_repaired_with_a_warning(caplog: pytest.LogCaptureFixture) 
         ("a.geojson", '{"type": "Topology"}', "type 'Topology'"),
         ("a.geojson", '{"type": "Polygon", "coordinates": [[1]]}', "a Polygon is damaged"),
         ("a.geojson", "[" * 100_000, "is not JSON"),
+        (
+            "a.geojson",
+            '{"type": "Polygon", "coordinates": [[[0, 0], [NaN, 0], [9, 8], [0, 0]]]}',
+            "a coordinate is not finite",
+        ),
         ("a.geojson", b"\xff\xfe", "cannot be read as text"),
         ("map.yaml", "resolution: 0.1\n", "names no image"),
         ("map.yaml", "image: m.pgm\nresolution: 0\norigin: [0, 0, 0]\n", "above 0"),
         ("map.yaml", "image: m.pgm\nresolution: 0.1\n", "origin is missing"),
+        (
+            "map.yaml",
+            "image: m.pgm\nresolution: five\norigin: [0, 0, 0]\n",
+            "resolution: 'five' is not a number",
+        ),
+        ("map.yaml", "image: m.pgm\nresolution: -1\norigin: [0, 0, 0]\n", "above 0"),
         ("map.yaml", "image: m.pgm\nresolution: 0.1\norigin: [0, 0, 0]\n", "m.pgm: cannot be"),
         (
             "map.yaml",

@@ -6,6 +6,7 @@ Slow, and independent of the package: nothing of it is imported but the arrays.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from crowdbot.core.trajectories.trajectories import Trajectories
 
@@ -100,11 +101,14 @@ def time_to_contact(world: World, k: int, i: int) -> float:
     return (-b - math.sqrt(max(b * b - a * c, 0.0))) / a
 
 
-def risk(world: World) -> dict[str, float]:
+def risk(
+    world: World, contact: Callable[[World, int, int], float] = time_to_contact
+) -> dict[str, float]:
+    """Sums over samples; contact is when the robot and person i meet, from sample k on, s."""
     found = {"literal": 0.0, "corrected": 0.0, "exposed_time": 0.0}
     found |= {"severity_literal": 0.0, "severity_corrected": 0.0}
     for k in range(world.n):
-        each = [(time_to_contact(world, k, i), i) for i in range(world.m)]
+        each = [(contact(world, k, i), i) for i in range(world.m)]
         tau = min((e[0] for e in each), default=math.inf)
         if tau == math.inf:
             continue

@@ -1,8 +1,9 @@
-"""Clearance, contacts and times to contact of outlines, against shapely on random worlds."""
+"""Clearance, times to contact, risk of outlines, against shapely on random worlds."""
 
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from crowdbot.core.trajectories.encounters import (
     time_to_contact,
 )
 from crowdbot.core.trajectories.trajectories import Trajectories
+from tests.plugins.metrics import oracle
 from tests.plugins.metrics.scenes import random_scene, scores_of, value_of
 
 JUMP_SPEED, CONTACT_TOL, STILL = 10.0, 1e-9, 1e-9
@@ -93,3 +95,46 @@ def test_times_to_contact(seed: int) -> None:
                 assert not tau[k, m] < 60.0
             elif gap(nearest) < -1e-4:
                 assert tau[k, m] == pytest.approx(brentq(gap, 0.0, nearest, xtol=1e-12), abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_risk_severity_and_exposure(seed: int) -> None:
+    """The sums of the plain loops, with times to contact that shapely and a root search give."""
+    run, shape, rounding = world(seed)
+    plain = oracle.World(run)
+    bodies = [placed(run, shape, k) for k in range(plain.n)]
+
+    def contact(known: oracle.World, k: int, i: int) -> float:
+        at, velocity = known.at(k, i), known.relative_velocity(k, i)
+        if at is None:
+            return math.inf
+        reach = rounding + float(known.agents.radius[i])
+
+        def gap(s: float, vx: float = 0.0, vy: float = 0.0) -> float:
+            return float(bodies[k].distance(Point(at[0] + s * vx, at[1] + s * vy))) - reach
+
+        if gap(0.0) <= CONTACT_TOL:
+            return 0.0
+        if velocity is None or math.hypot(*velocity) <= oracle.SLOW:
+            return math.inf
+        speed = math.hypot(*velocity)
+        last = (math.hypot(at[0] - run_x[k], at[1] - run_y[k]) + 2.0 + reach) / speed
+        nearest = minimize_scalar(
+            gap, args=velocity, bounds=(0.0, last), method="bounded", options={"xatol": 1e-10}
+        ).x
+        if gap(nearest, *velocity) > 0.0:
+            return math.inf
+        return float(brentq(gap, 0.0, nearest, args=velocity, xtol=1e-13))
+
+    assert run.robot is not None
+    run_x, run_y = run.robot.x, run.robot.y
+    expected = oracle.risk(plain, contact)
+    risk, severity = scores_of("risk", run), scores_of("expected_severity", run)
+    assert expected["corrected"] > 0.0
+    for variant in ("literal", "corrected", "exposed_time"):
+        assert risk[variant].value == pytest.approx(expected[variant], rel=1e-6, abs=1e-6)
+    for variant in ("literal", "corrected"):
+        wanted = expected[f"severity_{variant}"]
+        assert severity[variant].value == pytest.approx(wanted, rel=1e-6, abs=1e-6)
+    exposed = scores_of("time_exposed", run)["corrected"].value
+    assert exposed == pytest.approx(expected["exposed_time"], abs=1e-6)

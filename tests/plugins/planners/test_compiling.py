@@ -39,7 +39,7 @@ class Watched:
 component = importlib.import_module("crowdbot.plugins.planners.KIND").NAME
 planner = Watched(load_build(component)(component.spec()))
 around = [[2.5 + 1.2 * math.cos(a), 1.2 * math.sin(a), 0.0, 0.0] for a in range(12)]
-World(crowd(1, 100, (0.8, 1.6), (1, -1))).run(planner, time_limit=10.0)
+World(crowd(1, 50, (0.8, 1.6), (1, -1))).run(planner, time_limit=4.0)
 World(around).run(planner, time_limit=12.0)  # nobody lets it out: it looks for a way
 assert any(planner.compiled.values())
 late = [name for name, ready in planner.compiled.items() if compiled()[name] != ready]

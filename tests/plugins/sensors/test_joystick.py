@@ -1,4 +1,4 @@
-"""The joystick: a driver who steers for the goal with an shaky hand, and a recorded one."""
+"""The joystick: a driver who steers for the goal with a shaky hand, and a recorded one."""
 
 from __future__ import annotations
 

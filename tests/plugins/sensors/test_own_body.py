@@ -6,13 +6,14 @@ import math
 from typing import cast
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.core.interfaces import Pose, Sensor
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.sensing.build import build_sensor
 from tests.core.sensing.sensing_worlds import BASE, REGISTRY, Array, read, scene_of
+from tests.examples import costly
 
 SENSORS = open_spec("challenge-2020", REGISTRY).scenarios[0].robots["robot"].sensors
 BUILT: dict[str, Sensor] = {
@@ -35,7 +36,7 @@ def _empty(name: str, values: Array, height: float) -> bool:
 
 
 @given(x=st.floats(-40.0, 40.0), y=st.floats(-4.0, 4.0), yaw=st.floats(-math.pi, math.pi))
-@settings(max_examples=40)
+@costly(40)
 def test_alone_in_the_world_nothing_is_seen(x: float, y: float, yaw: float) -> None:
     scene = scene_of()
     assert len(BUILT) >= 15
@@ -45,7 +46,7 @@ def test_alone_in_the_world_nothing_is_seen(x: float, y: float, yaw: float) -> N
 
 
 @given(yaw=st.floats(-math.pi, math.pi))
-@settings(max_examples=20)
+@costly(20)
 def test_four_walls_are_all_that_is_seen(yaw: float) -> None:
     """A room of 6 m: every beam of a lidar ends on a wall, at the distance of the nearest line."""
     corners = np.array([[3.0, 3.0], [-3.0, 3.0], [-3.0, -3.0], [3.0, -3.0]])

@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crowdbot.core.crowd.routing.corners import OUT_X, OUT_Y, ROOM, Corners
+from crowdbot.core.crowd.routing.corners import OUT_X, OUT_Y, ROOM
 from crowdbot.core.crowd.routing.corners import X as CORNER_X
 from crowdbot.core.crowd.routing.corners import Y as CORNER_Y
+from crowdbot.core.crowd.routing.packed import sight_in, table_in
 from crowdbot.core.crowd.routing.sight import Sight, is_clear
 from crowdbot.core.crowd.routing.trees import TO_GOAL
 from crowdbot.core.crowd.state import (
@@ -78,10 +79,7 @@ class Habits(NamedTuple):
 def find_aims(
     agents: Array, decision: int, dt: float, members: Indices, ids: Indices, preferred: Array,
     goals: Array, tree_of: Indices, left: Array, after: Indices,
-    table: Array, first: Indices, linked: Indices, length: Array,
-    edges: Array, start: Indices, listed: Indices, frame: Array, shape: Indices,
-    wide_edges: Array, wide_start: Indices, wide_listed: Indices, wide_frame: Array,
-    wide_shape: Indices, spread: float, patience: float, detour: float, key: np.uint64,
+    wholes: Indices, reals: Array, spread: float, patience: float, detour: float, key: np.uint64,
 ) -> int:  # fmt: skip
     """Set the AIM columns of people who are in the world or will be.
 
@@ -93,23 +91,19 @@ def find_aims(
         goals: (K, 2) to which ``tree_of`` leads.
         tree_of: (N,) row of ``left`` and ``after`` that leads to each one's goal.
         left, after: (T, V) see `plan_tree`.
-        table, first, linked, length: see `Corners`.
-        edges, start, listed, frame, shape: see `Sight`, at the margin of a body; likewise the
-            wide ones, nearer to the walls.
+        wholes, reals: see `Packed`: corners; sight at the margin of a body, and nearer to walls.
         spread, patience, detour, key: see `Habits`.
 
     Returns:
-        how many of them have another goal than ``goals`` says; unless it is 0, nothing was set.
+        1 + the place in ``members`` of the first with another goal than ``goals`` says, and
+        nothing was set; 0 if there is none.
     """
-    stale = 0
     for k in range(members.shape[0]):
         i = members[k]
-        stale += goals[k, 0] != agents[i, GOAL_X] or goals[k, 1] != agents[i, GOAL_Y]
-    if stale:
-        return stale
-    corners = Corners(table, first, linked, length)
-    sight = Sight(edges, start, listed, frame, shape)
-    wider = Sight(wide_edges, wide_start, wide_listed, wide_frame, wide_shape)
+        if goals[k, 0] != agents[i, GOAL_X] or goals[k, 1] != agents[i, GOAL_Y]:
+            return k + 1
+    table = table_in(wholes, reals)
+    sight, wider = sight_in(wholes, reals, 0), sight_in(wholes, reals, 1)
     habits = Habits(spread, patience, detour, key)
     for i in members:
         if agents[i, WAITING] == GONE:
@@ -118,9 +112,7 @@ def find_aims(
         turn = decision < 0 or (decision + ids[i]) % _LOOKS_EVERY == 0
         if turn or blocked or _looks(agents, i, table):
             tree = tree_of[i]
-            _look(
-                agents, i, ids[i], left[tree], after[tree], corners, sight, wider, blocked, habits
-            )
+            _look(agents, i, ids[i], left[tree], after[tree], table, sight, wider, blocked, habits)
     return 0
 
 
@@ -136,7 +128,7 @@ def _looks(agents: Array, i: int, table: Array) -> bool:
 
 @inline_kernel
 def _look(
-    agents: Array, i: int, number: int, left: Array, after: Indices, corners: Corners,
+    agents: Array, i: int, number: int, left: Array, after: Indices, table: Array,
     sight: Sight, wider: Sight, blocked: bool, habits: Habits,
 ) -> None:  # fmt: skip
     """Agent i looks for its goal, or for the corner on the way to it."""
@@ -156,22 +148,22 @@ def _look(
             _step_aside(agents, i, number, sight, habits)
         return
     if blocked and v >= 0:
-        _choose(agents, i, left, after, corners, sight, v, habits)
-        _aim(agents, i, number, corners, sight, habits)
+        _choose(agents, i, left, after, table, sight, v, habits)
+        _aim(agents, i, number, table, sight, habits)
         if agents[i, AIM] == v + 1.0:  # there is no other way
             _step_aside(agents, i, number, sight, habits)
         return
-    found = _follow(agents, i, number, after, left, corners, sight, wider, habits)
+    found = _follow(agents, i, number, after, left, table, sight, wider, habits)
     w = int(agents[i, AIM]) - 1
     if w != v and (w < 0 or after[w] == TO_GOAL) and _sees_goal(agents, i, sight):
         _forget(agents, i)
         return
     if w < 0:
-        _choose(agents, i, left, after, corners, sight, -1, habits)
+        _choose(agents, i, left, after, table, sight, -1, habits)
     if agents[i, AIM] == 0.0:
-        _choose(agents, i, left, after, corners, wider, -1, habits)
+        _choose(agents, i, left, after, table, wider, -1, habits)
     if not found:
-        _aim(agents, i, number, corners, sight, habits)
+        _aim(agents, i, number, table, sight, habits)
 
 
 @kernel
@@ -239,19 +231,19 @@ def _forget(agents: Array, i: int) -> None:
 
 @kernel
 def _beside(
-    agents: Array, i: int, number: int, v: int, aside: float, corners: Corners, habits: Habits
+    agents: Array, i: int, number: int, v: int, aside: float, table: Array, habits: Habits
 ) -> tuple[float, float]:
     """The place beside corner v at which agent i passes it on this trip."""
     trip, draw = int(agents[i, TRIP]), int(agents[i, DETOURS])
     u = counter_rng.uniform(habits.key, number, trip, counter_rng.ROUTE, (v << 16) + draw)
-    corner = corners.table[v]
+    corner = table[v]
     away = aside * u * u * min(habits.spread, _SHARE_OF_ROOM * corner[ROOM])
     return corner[CORNER_X] + away * corner[OUT_X], corner[CORNER_Y] + away * corner[OUT_Y]
 
 
 @kernel
 def _follow(
-    agents: Array, i: int, number: int, after: Indices, left: Array, corners: Corners,
+    agents: Array, i: int, number: int, after: Indices, left: Array, table: Array,
     sight: Sight, wider: Sight, habits: Habits,
 ) -> bool:  # fmt: skip
     """Go on to the corner after the one aimed at, where that is seen; drop one out of sight.
@@ -264,20 +256,20 @@ def _follow(
         agents[i, AIM] = 0.0
         return False
     x, y = agents[i, X], agents[i, Y]
-    cx, cy = corners.table[v, CORNER_X], corners.table[v, CORNER_Y]
+    cx, cy = table[v, CORNER_X], table[v, CORNER_Y]
     near = math.hypot(cx - x, cy - y) < _REACHED
     w = after[v]
     if w != TO_GOAL:
-        bx, by = _beside(agents, i, number, w, 1.0, corners, habits)
+        bx, by = _beside(agents, i, number, w, 1.0, table, habits)
         if is_clear(x, y, bx, by, sight):
             agents[i, AIM], agents[i, ASIDE] = w + 1.0, 1.0
             _head_for(agents, i, bx, by)
             return True
-        ox, oy = corners.table[w, CORNER_X], corners.table[w, CORNER_Y]
+        ox, oy = table[w, CORNER_X], table[w, CORNER_Y]
         if near and is_clear(x, y, ox, oy, wider):
             agents[i, AIM], agents[i, ASIDE] = w + 1.0, 1.0
             return False
-    bx, by = _beside(agents, i, number, v, agents[i, ASIDE], corners, habits)
+    bx, by = _beside(agents, i, number, v, agents[i, ASIDE], table, habits)
     if not near and math.hypot(bx - x, by - y) < _REACHED:
         agents[i, ASIDE] = 0.0  # there, and what comes after is out of sight: to the corner itself
         return False
@@ -291,7 +283,7 @@ def _follow(
 
 @kernel
 def _choose(
-    agents: Array, i: int, left: Array, after: Indices, corners: Corners, sight: Sight,
+    agents: Array, i: int, left: Array, after: Indices, table: Array, sight: Sight,
     avoided: int, habits: Habits,
 ) -> None:  # fmt: skip
     """The corner in sight from which the whole way is shortest; none leaves no aim.
@@ -303,17 +295,15 @@ def _choose(
     x, y = agents[i, X], agents[i, Y]
     best, limit = -1, math.inf
     if avoided >= 0:
-        away = math.hypot(
-            corners.table[avoided, CORNER_X] - x, corners.table[avoided, CORNER_Y] - y
-        )
+        away = math.hypot(table[avoided, CORNER_X] - x, table[avoided, CORNER_Y] - y)
         limit = habits.detour * (away + left[avoided])
         best = avoided
-    for v in range(corners.table.shape[0]):
-        cx, cy = corners.table[v, CORNER_X], corners.table[v, CORNER_Y]
+    for v in range(table.shape[0]):
+        cx, cy = table[v, CORNER_X], table[v, CORNER_Y]
         length = math.hypot(cx - x, cy - y) + left[v]
         if length >= limit or v == avoided:
             continue
-        if avoided >= 0 and _leads_past(v, avoided, corners.table, after):
+        if avoided >= 0 and _leads_past(v, avoided, table, after):
             continue
         if is_clear(x, y, cx, cy, sight):
             best, limit = v, length
@@ -334,18 +324,16 @@ def _leads_past(v: int, avoided: int, table: Array, after: Indices) -> bool:
 
 
 @kernel
-def _aim(
-    agents: Array, i: int, number: int, corners: Corners, sight: Sight, habits: Habits
-) -> None:
+def _aim(agents: Array, i: int, number: int, table: Array, sight: Sight, habits: Habits) -> None:
     """Set the point that agent i walks to."""
     v = int(agents[i, AIM]) - 1
     if v < 0:  # nothing is in sight, as in the thick of a wall
         _forget(agents, i)
         return
     x, y = agents[i, X], agents[i, Y]
-    ax, ay = _beside(agents, i, number, v, agents[i, ASIDE], corners, habits)
+    ax, ay = _beside(agents, i, number, v, agents[i, ASIDE], table, habits)
     if not is_clear(x, y, ax, ay, sight):
-        ax, ay = corners.table[v, CORNER_X], corners.table[v, CORNER_Y]
+        ax, ay = table[v, CORNER_X], table[v, CORNER_Y]
     _head_for(agents, i, ax, ay)
 
 

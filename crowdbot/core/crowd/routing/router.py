@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.crowd.routing.aims import Habits, find_aims
+from crowdbot.core.crowd.routing.packed import Packed
 from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.crowd.routing.route_map import RouteMap
 from crowdbot.core.types.arrays import Array
@@ -78,7 +79,7 @@ class _BodyClass:
 
     def __init__(self, members: NDArray[np.int64], routes: RouteMap, people: int) -> None:
         self.members, self.routes = members, routes
-        self._map: tuple[Any, ...] = (*routes.corners, *routes.sight, *routes.wider)
+        self._map = Packed.of(routes.corners.table, (routes.sight, routes.wider))
         self._goal = np.full((len(members), 2), np.nan)
         self._tree_of = np.zeros(people, np.int64)
         self._rows: dict[tuple[float, float], int] = {}
@@ -87,27 +88,28 @@ class _BodyClass:
         self._after = np.zeros((0, routes.count), np.int64)
 
     def find(self, rows: Array, agents: Agents, habits: Habits, dt: float, decision: int) -> None:
-        if self._aims(rows, agents, habits, dt, decision):
-            self._plan(rows)
-            self._aims(rows, agents, habits, dt, decision)
+        for _ in range(len(self.members)):  # usually nobody has a new goal, now and then one
+            changed = self._aims(rows, agents, habits, dt, decision)
+            if not changed:
+                return
+            self._plan(rows, changed - 1)
+        self._aims(rows, agents, habits, dt, decision)
 
     def _aims(self, rows: Array, agents: Agents, habits: Habits, dt: float, decision: int) -> int:
-        """How many have new goals; with none, aims are found."""
+        """1 + the first member with a new goal; if there is none, aims are found."""
         fixed: tuple[Any, ...] = (*self._map, *habits)
         return find_aims(
             rows, decision, dt, self.members, agents.id, agents.preferred_speed, self._goal,
             self._tree_of, self._left, self._after, *fixed,
         )  # fmt: skip
 
-    def _plan(self, rows: Array) -> None:
-        """Find the ways to new goals."""
-        goal = rows[self.members, s.GOAL_X : s.GOAL_Y + 1]
-        changed = np.flatnonzero((goal != self._goal).any(axis=1))
-        self._goal = goal
-        for k, (x, y) in zip(changed.tolist(), goal[changed].tolist(), strict=True):
-            self._tree_of[self.members[k]] = self._tree(x, y)
-        whose = self.members[changed]
-        rows[whose, s.AIM], rows[whose, s.AIM_X] = 0.0, np.nan
+    def _plan(self, rows: Array, k: int) -> None:
+        """Find the ways to a member's new goal."""
+        row = self.members[k]
+        x, y = float(rows[row, s.GOAL_X]), float(rows[row, s.GOAL_Y])
+        self._goal[k, 0], self._goal[k, 1] = x, y
+        self._tree_of[row] = self._tree(x, y)
+        rows[row, s.AIM], rows[row, s.AIM_X] = 0.0, np.nan
 
     def _tree(self, x: float, y: float) -> int:
         """The row of the ways to a goal, found or planned."""

@@ -27,6 +27,7 @@ from crowdbot.core.crowd.velocity_search.cost import (
     WALL_D2,
 )
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.stable_order import stable_order
 from crowdbot.core.types.arrays import Array
 
 # Columns of a body table: position, velocity, radius, preferred velocity, 1 for a pillar, index
@@ -64,7 +65,7 @@ def sort_discs(discs: Array, count: int, height: float, table: Array) -> tuple[f
         low, high = min(low, discs[b, Y]), max(high, discs[b, Y])
     strips = int((high - low) / height) + 1 if count else 0
     starts = np.zeros((strips + 1, 2), np.int64)
-    order = np.argsort(discs[:count, X], kind="mergesort")  # stable
+    order = stable_order(discs[:count, X])
     for b in range(1, count):  # equal x: by y
         a = b
         while (

@@ -57,6 +57,15 @@ function under(panel, px, py) {
   return best < 0 ? "" : personName(run, frame.people.person[best]);
 }
 
+/** What the list says of one to follow: of several robots, also the names that runs give it. */
+function followText(whom) {
+  const match = /^robot(?: (\d+))?$/.exec(whom);
+  if (!match) return whom;
+  const index = match[1] ? Number(match[1]) - 1 : 0;
+  const names = new Set(shown.runs.map((run) => run.robots[index]?.name).filter(Boolean));
+  return names.size ? `${whom}: ${[...names].join(", ")}` : whom;
+}
+
 /** The list to choose from without a pointer. */
 function offerFollowing() {
   const most = Math.max(...shown.runs.map((run) => run.robots.length));
@@ -66,6 +75,6 @@ function offerFollowing() {
     ...[...ids].sort((a, b) => a - b).map((id) => `person ${id}`),
   ];
   byId("whom").replaceChildren(el("option", { value: "", text: "nobody" }),
-    ...names.map((name) => el("option", { value: name, text: name })));
+    ...names.map((name) => el("option", { value: name, text: followText(name) })));
   byId("follow").hidden = !most;
 }

@@ -26,6 +26,7 @@ from pydrake.systems.framework import (
 )
 
 from crowdbot.core.crowd.contact.robot_contact import (
+    R_BODY,
     R_W,
     R_YAW,
     RELEASE_GAP,
@@ -34,6 +35,7 @@ from crowdbot.core.crowd.contact.robot_contact import (
     RX,
     RY,
     corners_of,
+    extent_of,
 )
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
@@ -41,7 +43,7 @@ from crowdbot.core.sim.bodies import SEEN, outlines_of, rows_of
 from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.fate import Fate
-from crowdbot.core.sim.outline_overlap import overlap_of_robots
+from crowdbot.core.sim.outline_overlap import mark_within_reach, overlap_of_robots
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array
@@ -116,10 +118,11 @@ class FleetContacts(LeafSystem):
         self._rows, self._fates, self._logs = rows_of(models), tuple(fates), tuple(logs)
         outlines = outlines_of(models)
         self._outlines = [outlines[k][: corners_of(outlines, k)] for k in range(len(models))]
-        self._pairs = tuple(combinations(range(len(models)), 2))
+        self._near = np.zeros((len(models), len(models)), dtype=np.bool_)
+        self._reach = np.array([extent_of(o) for o in self._outlines]) + self._rows[:, R_BODY]
         self._stiffness = {
             (i, j): in_series(in_series(SHELL, models[i].skin_stiffness), models[j].skin_stiffness)
-            for i, j in self._pairs
+            for i, j in combinations(range(len(models)), 2)
         }
         self._going_on: dict[tuple[int, int], _Touch] = {}
         count = len(models)
@@ -150,13 +153,20 @@ class FleetContacts(LeafSystem):
         flat = state.get_mutable_discrete_state().get_mutable_value(self._index)
         forces = flat.reshape(-1, ports.ROBOT_PUSH_SIZE)
         forces[:] = 0.0
-        for i, j in self._pairs:
+        for i, j in self._candidates():
             if self._fates[i].gone or self._fates[j].gone:
                 continue
             found = self._touch(i, j)
             self._keep(i, j, found, t)
             if found is not None:
                 self._add(forces, i, j, found)
+
+    def _candidates(self) -> list[tuple[int, int]]:
+        """Pairs that may touch, or did until now, in the order of all pairs."""
+        if mark_within_reach(self._rows, self._reach, self._near) == 0 and not self._going_on:
+            return []
+        near = zip(*np.nonzero(self._near), strict=True)
+        return sorted({*((int(i), int(j)) for i, j in near), *self._going_on})
 
     def _touch(self, i: int, j: int) -> Touched | None:
         of = self._outlines

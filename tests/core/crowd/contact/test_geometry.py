@@ -6,10 +6,11 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment, time_to_disc, time_to_segment
+from tests.examples import costly
 
 COORDINATE = st.floats(-6.0, 6.0)
 SPEED = st.floats(-3.0, 3.0)
@@ -24,7 +25,7 @@ def _distance_to_segment(px: float, py: float, ax: float, ay: float, bx: float, 
 
 
 @given(COORDINATE, COORDINATE, COORDINATE, COORDINATE, COORDINATE, COORDINATE)
-@settings(max_examples=200)
+@costly(200)
 def test_nearest_on_segment(
     px: float, py: float, ax: float, ay: float, bx: float, by: float
 ) -> None:
@@ -47,7 +48,7 @@ def _first_below(distance: np.ndarray[tuple[int], np.dtype[np.float64]], reach: 
 
 
 @given(COORDINATE, COORDINATE, SPEED, SPEED, RADIUS)
-@settings(max_examples=300)
+@costly(300)
 def test_time_to_disc(rx: float, ry: float, vx: float, vy: float, reach: float) -> None:
     gap2 = rx * rx + ry * ry - reach * reach
     assume(gap2 > 1e-6)
@@ -67,7 +68,7 @@ def test_time_to_disc(rx: float, ry: float, vx: float, vy: float, reach: float) 
 
 @pytest.mark.slow
 @given(COORDINATE, COORDINATE, COORDINATE, COORDINATE, SPEED, SPEED, st.floats(0.05, 0.5))
-@settings(max_examples=400)
+@costly(400)
 def test_time_to_segment(
     ax: float, ay: float, bx: float, by: float, vx: float, vy: float, radius: float
 ) -> None:

@@ -6,13 +6,14 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.response.parameters import Human, KeepOff
 from tests.core.crowd.crowd_reference import Array
 from tests.core.crowd.response.meetings import BODY, PERSON, Meeting, Place, robot
+from tests.examples import costly
 
 SQUARE = 0.25 * np.array([[1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]])
 CAPSULE = np.array([[-0.3, 0.0], [0.3, 0.0]])
@@ -29,7 +30,7 @@ def _turn(place: Place, angle: float) -> Place:
     way=st.floats(-math.pi, math.pi), pace=st.floats(0.0, 0.65),
     own=st.floats(0.3, 1.8), miss=st.floats(-0.4, 0.4),
 )  # fmt: skip
-@settings(max_examples=60)
+@costly(60)
 def test_nobody_walks_into_a_robot_that_he_sees_and_that_keeps_its_course(
     way: float, pace: float, own: float, miss: float
 ) -> None:
@@ -49,7 +50,7 @@ def test_nobody_walks_into_a_robot_that_he_sees_and_that_keeps_its_course(
     at=st.tuples(st.floats(-6, 6), st.floats(-3, 3)), v=st.tuples(*[st.floats(-1.5, 1.5)] * 2),
     pace=st.tuples(*[st.floats(-0.7, 0.7)] * 2), late=st.booleans(),
 )  # fmt: skip
-@settings(max_examples=60)
+@costly(60)
 def test_will_and_evasion_together_keep_within_the_cap(
     at: Place, v: Place, pace: Place, late: bool
 ) -> None:
@@ -104,7 +105,7 @@ def test_a_segment_without_length_is_a_disc() -> None:
     pace=st.tuples(st.floats(-0.6, 0.6), st.floats(-0.6, 0.6)), late=st.booleans(),
     angle=st.floats(-3, 3), by=st.tuples(st.floats(-9, 9), st.floats(-9, 9)), flip=st.booleans(),
 )  # fmt: skip
-@settings(max_examples=40)
+@costly(40)
 def test_no_place_direction_or_side_is_preferred(
     at: Place, v: Place, pace: Place, late: bool, angle: float, by: Place, flip: bool
 ) -> None:

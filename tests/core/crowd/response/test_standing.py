@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.core.crowd import state as s
@@ -13,12 +13,13 @@ from tests.core.crowd.crowd_reference import Array
 from tests.core.crowd.crowd_worlds import TICKS, challenge, rows
 from tests.core.crowd.response.meetings import BODY, PERSON, Meeting, robot
 from tests.core.crowd.response.test_human import CAPSULE, SQUARE
+from tests.examples import costly
 
 
 @given(
     y=st.floats(-0.6, 0.6), speed=st.floats(0.1, 1.8), late=st.booleans(), gap=st.floats(0.15, 4.0)
 )
-@settings(max_examples=60)
+@costly(60)
 def test_nobody_walks_into_a_robot_that_stands(
     y: float, speed: float, late: bool, gap: float
 ) -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld, policy_of
@@ -23,6 +23,7 @@ from crowdbot.core.crowd.steering.parameters import (
 from crowdbot.core.crowd.steering.parts import parts_of, steer
 from crowdbot.core.crowd.steering.wander import E_FOLD, wandering
 from crowdbot.core.types.arrays import Array
+from tests.examples import costly
 
 FULL = Steering(
     time_gap=TimeGap(),
@@ -202,7 +203,7 @@ def test_wander_is_of_person_and_key_only() -> None:
     assert not np.allclose(one[0], one[1])
 
 
-@settings(max_examples=50)
+@costly(50)
 @given(
     st.lists(
         st.tuples(

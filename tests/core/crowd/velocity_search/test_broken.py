@@ -30,29 +30,29 @@ from crowdbot.testing.crowd_views import random_view
 pytestmark = pytest.mark.slow  # it compiles
 
 
-@njit(BASE, error_model="numpy")
+@njit(BASE, cache=True, error_model="numpy")
 def _fine(ux: float, uy: float, preferred: float, max_speed: float, params: Any) -> float:
     return (ux - preferred) ** 2 + uy * uy
 
 
-@njit(BASE, error_model="numpy")
+@njit(BASE, cache=True, error_model="numpy")
 def _root(ux: float, uy: float, preferred: float, max_speed: float, params: Any) -> float:
     return math.sqrt(params[2] - uy)
 
 
-@njit(PREPARE, error_model="numpy")
+@njit(PREPARE, cache=True, error_model="numpy")
 def _one(
     agent: Any, near: Any, near_count: int, walls: Any, wall_count: int, params: Any, work: Any
 ) -> int:
     return 1
 
 
-@njit(EXCESS, error_model="numpy")
+@njit(EXCESS, cache=True, error_model="numpy")
 def _zero(ux: float, uy: float, budget: float, agent: Any, work: Any, params: Any) -> float:
     return 0.0
 
 
-@njit(EXCESS, error_model="numpy")
+@njit(EXCESS, cache=True, error_model="numpy")
 def _log(ux: float, uy: float, budget: float, agent: Any, work: Any, params: Any) -> float:
     return math.sqrt(params[2] - ux)
 

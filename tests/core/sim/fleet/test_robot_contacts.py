@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from shapely.affinity import rotate, translate  # type: ignore[import-untyped]
 from shapely.geometry import LineString, Point, Polygon  # type: ignore[import-untyped]
 
 from crowdbot.core.sim.fleet.robot_contacts import DISSIPATION, SHELL, touch
-from crowdbot.core.sim.outline_overlap import overlap_of_robots
+from crowdbot.core.sim.outline_overlap import mark_within_reach, overlap_of_robots
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array
 
@@ -24,6 +25,7 @@ SHAPES = [(np.zeros((0, 2)), 0.2), (SEGMENT, 0.15), (BOX, 0.0)]
 
 # Compiled before any example has a deadline.
 overlap_of_robots(np.zeros(8), BOX, np.zeros(8), BOX)
+mark_within_reach(np.zeros((2, 8)), np.zeros(2), np.zeros((2, 2), dtype=np.bool_))
 
 poses = st.tuples(st.floats(-1.6, 1.6), st.floats(-1.6, 1.6), st.floats(-3.1, 3.1))
 shapes = st.sampled_from(range(len(SHAPES)))
@@ -60,6 +62,26 @@ def test_robots_touch_where_shapely_says_so(
     if depth > 0.0:
         assert math.hypot(nx, ny) == pytest.approx(1.0)
         assert (nx, ny) == pytest.approx((-mx, -my), abs=1e-9) or gap < 1e-9
+
+
+@given(st.lists(st.tuples(shapes, poses), max_size=6))
+def test_whoever_touches_is_within_reach(
+    robots: list[tuple[int, tuple[float, float, float]]],
+) -> None:
+    """No pair that overlaps is left out, and none that cannot is looked at."""
+    rows = np.reshape([row(pose, SHAPES[k][1]) for k, pose in robots], (-1, 8))
+    reach = np.array([np.hypot(*SHAPES[k][0].T).max(initial=0.0) + SHAPES[k][1] for k, _ in robots])
+    marks = np.zeros((len(rows), len(rows)), dtype=np.bool_)
+    count = mark_within_reach(rows, reach, marks)
+    assert count == marks.sum()
+    for i, j in combinations(range(len(robots)), 2):
+        a, b = SHAPES[robots[i][0]][0], SHAPES[robots[j][0]][0]
+        if overlap_of_robots(rows[i], a, rows[j], b)[0] > 0.0:
+            assert marks[i, j]
+        apart = math.dist(rows[i, :2], rows[j, :2])
+        assert marks[i, j] == (apart <= reach[i] + reach[j]) or apart == pytest.approx(
+            reach[i] + reach[j]
+        )
 
 
 @given(poses, poses, st.tuples(*[st.floats(-1.0, 1.0)] * 3))

@@ -1,0 +1,73 @@
+"""The order of numbers, for compiled functions.
+
+Numba takes a second of processor time and more to compile ``np.argsort`` or ``sort``, and does so
+again for each function that calls them. This one is compiled once for all.
+"""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.types.arrays import Array
+
+Order = NDArray[np.int64]
+#: As many are sorted one by one before parts are merged.
+_SHORT = 16
+
+
+@numba.njit(cache=True, error_model="numpy")
+def stable_order(values: Array) -> Order:
+    """As ``np.argsort(values, kind="stable")``: equal ones keep their order, NaN come last.
+
+    Args:
+        values: (N,).
+
+    Returns:
+        (N,) indices, from the least to the greatest.
+    """
+    count = values.shape[0]
+    order, merged = np.empty(count, np.int64), np.empty(count, np.int64)
+    for first in range(0, count, _SHORT):
+        _sort_short(values, order, first, min(first + _SHORT, count))
+    width = _SHORT
+    while width < count:
+        for first in range(0, count, 2 * width):
+            middle = min(first + width, count)
+            _merge(values, order, merged, first, middle, min(middle + width, count))
+        order, merged = merged, order
+        width *= 2
+    return order
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _before(a: float, b: float) -> bool:
+    return bool(a < b or (b != b and a == a))
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _sort_short(values: Array, order: Order, first: int, end: int) -> None:
+    """Write the order of values [first, end) there, by insertion."""
+    for i in range(first, end):
+        place = i
+        while place > first and _before(values[i], values[order[place - 1]]):
+            order[place] = order[place - 1]
+            place -= 1
+        order[place] = i
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _merge(values: Array, order: Order, merged: Order, first: int, middle: int, end: int) -> None:
+    """Merge the sorted parts [first, middle) and [middle, end) of an order."""
+    i, j = first, middle
+    for k in range(first, end):
+        if j >= end or (i < middle and not _before(values[order[j]], values[order[i]])):
+            merged[k] = order[i]
+            i += 1
+        else:
+            merged[k] = order[j]
+            j += 1
+
+
+__all__ = ["stable_order"]

@@ -1,0 +1,61 @@
+"""The wheelchair that its driver steers, from the command line to the scores of shared control."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from rosbags.highlevel import AnyReader
+
+from crowdbot import cli
+from tests.paths import ROOT
+
+FILES = ROOT / "docs" / "howto" / "files"
+
+
+@pytest.mark.slow
+def test_the_wheelchair_of_the_guide_is_driven_and_scored(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Two seconds: the chair does what its driver asks for or brakes; scores know both commands."""
+    for name in ("wheelchair.yaml", "share_control.py"):
+        shutil.copy(FILES / name, tmp_path)
+    monkeypatch.chdir(tmp_path)
+    argv = ["simulate", "wheelchair.yaml", "--planner", "share_control.py:ShareControl",
+            "--record", "all", "--no-references", "--set", "robots.robot.task.time_limit=2",
+            "--quiet", "--json"]  # fmt: skip
+    assert cli.main(argv) == 0
+    run = json.loads(capsys.readouterr().out)
+    assert (run["status"], run["sim_time"]) == ("timeout", 2.0)
+
+    asked, told = (_velocities(Path(run["directory"]), topic) for topic in
+                   ("/joystick/cmd_vel", "/cmd_vel"))  # fmt: skip
+    assert len(asked) == len(told) == 2 * 16
+    assert np.ptp(asked[:, 0]) > 0.01  # the hand is not steady
+    assert asked[:, 0].max() <= 1.5
+    assert asked[:, 0].mean() > 1.0  # the goal is straight ahead
+    assert told[:, 1] == pytest.approx(asked[:, 1], abs=1e-9)  # the planner only brakes
+    assert np.all(told[:, 0] <= asked[:, 0] + 1e-9)
+    assert told[:, 0].mean() > 0.5
+
+    argv = ["evaluate", run["directory"], "--user-topic", "/joystick/cmd_vel", "--json"]
+    assert cli.main(argv) == 0
+    (scored,) = json.loads(capsys.readouterr().out)
+    values = {s["metric"]: s["value"] for s in scored["scores"] if s["variant"] == "corrected"}
+    assert 0.9 < values["agreement"] < 1.0
+    assert 0.0 < values["fluency"] < 1.0
+    assert 0.0 < values["user_input_entropy"] < 1.0
+
+
+def _velocities(run: Path, topic: str) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+    """(N, 2) m/s ahead and rad/s, as a reader that is not ours reads them."""
+    with AnyReader([run / "run.mcap"]) as reader:
+        (connection,) = [c for c in reader.connections if c.topic == topic]
+        messages = [reader.deserialize(raw, connection.msgtype)
+                    for _, _, raw in reader.messages([connection])]  # fmt: skip
+    twists: list[Any] = [getattr(m, "twist", m) for m in messages]
+    return np.array([(twist.linear.x, twist.angular.z) for twist in twists])

@@ -1,0 +1,52 @@
+"""Collecting cycles seldom, for a while."""
+
+from __future__ import annotations
+
+import gc
+
+import pytest
+
+from crowdbot.core.support.seldom_collected import seldom_collected
+
+
+@pytest.fixture(autouse=True)
+def _as_before() -> object:
+    before = gc.get_threshold()
+    yield
+    gc.set_threshold(*before)
+
+
+def _collections() -> int:
+    gc.collect()
+    before = _so_far()
+    kept = [[k] for k in range(50_000)]
+    after = _so_far()
+    assert len(kept) == 50_000
+    return after - before
+
+
+def _so_far() -> int:
+    return sum(int(one["collections"]) for one in gc.get_stats())
+
+
+def test_many_new_objects_are_made_without_a_collection() -> None:
+    gc.set_threshold(700, 10, 10)
+    assert _collections() > 10
+    with seldom_collected():
+        assert _collections() == 0
+    assert gc.get_threshold() == (700, 10, 10)
+
+
+@pytest.mark.parametrize("first", [0, 1_000_000])
+def test_what_somebody_set_higher_or_off_stays(first: int) -> None:
+    gc.set_threshold(first, 5, 7)
+    with seldom_collected():
+        assert gc.get_threshold() == (first, 5, 7)
+    assert gc.get_threshold() == (first, 5, 7)
+
+
+def test_errors_leave_it_as_it_was() -> None:
+    gc.set_threshold(700, 10, 10)
+    with pytest.raises(KeyError), seldom_collected():
+        raise KeyError
+    assert gc.get_threshold() == (700, 10, 10)
