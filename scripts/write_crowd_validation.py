@@ -2,7 +2,7 @@
 
     python scripts/write_crowd_validation.py [--seeds 1..3] [NAME...]
 
-Simulates each named crowd (and the crowd of challenge-2026) where people were recorded, and writes
+Simulates each named crowd (and those of the two challenges) where people were recorded, and writes
 docs/reference/crowd/validation.md and crowdbot/core/realism/known_crowds.json, crowd by crowd. With
 names only these are simulated, in that order; the others keep what was written before.
 """
@@ -35,7 +35,9 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "reference" / "crowd" / "validation.md"
 NUMBERS = ROOT / "crowdbot" / "core" / "realism" / KNOWN
 #: Suites whose own crowds are measured as they are there.
-SUITES = {"challenge-2026": "challenge mix"}
+SUITES = {"challenge-2026": "challenge-2026"}
+#: The crowd of challenge-2020 with the bodies it has there, and the speeds of real people.
+MIX, SPEEDS = "challenge_2020", ["speed.mean=1.34 m/s", "speed.std=0.26 m/s", "body.radius=0.33 m"]
 #: Copies of people who avoid nobody that are listed beside the crowds.
 _NOBODY = "people who avoid nobody"
 
@@ -44,6 +46,7 @@ def crowds(registry: Registry) -> Iterator[tuple[str, Crowd]]:
     """Name and crowd of all that is listed."""
     for name in crowd_parts(registry):
         yield name, open_crowd(name, registry)
+    yield "challenge mix", open_crowd(MIX, registry, SPEEDS)
     for suite, name in SUITES.items():
         crowd = open_spec(suite, registry).scenarios[0].crowd
         if crowd is not None:
@@ -79,9 +82,11 @@ def page(rows: Sequence[dict[str, Any]], reference: RealismReference) -> str:
         "curves of one of them.",
         "",
         "Named crowds have no bodies and speeds of their own unless the part says so: people of "
-        "0.2 m radius who prefer 1.5 m/s. `challenge mix` is the crowd of `challenge-2026` with "
-        "its own bodies and speeds. `demo_2` equals `social_forces`: they differ only in ranges "
-        "beyond which nobody is felt ([named policies](named_policies.md)).",
+        "0.2 m radius who prefer 1.5 m/s. `challenge mix` is `challenge_2020` with people "
+        "of 0.33 m who prefer 1.34 ± 0.26 m/s, `challenge-2026` is the crowd of that suite: "
+        "`calibrated`, with a larger spread of speeds and accelerations up to 3 m/s². "
+        "`demo_2` equals `social_forces`: they differ only in ranges beyond which nobody is felt "
+        "([named policies](named_policies.md)).",
         "",
         *_table(
             ["crowd", "index", "score", "speed", "acceleration", "turning", "nearest",

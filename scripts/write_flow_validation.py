@@ -30,7 +30,6 @@ from crowdbot.core.realism.corridor import Corridor, simulate
 from crowdbot.core.realism.model import CrowdModel, model_of
 from crowdbot.core.realism.reference import shipped
 from crowdbot.core.registry.registry import Registry, discover
-from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.scenarios.named_crowds import open_crowd
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND
@@ -50,6 +49,8 @@ PEOPLE, FIRST, LAST = 100, 20, 80
 PATIENCE = 120.0
 #: Persons per metre and second whom 60 people made at 0.8 m and at 1.2 m.
 SPECIFIC_FLOW = (1.61, 1.97)
+#: Bodies of challenge-2020, and speeds of real people.
+MIX = ["speed.mean=1.34 m/s", "speed.std=0.26 m/s", "body.radius=0.33 m"]
 _COLOURS = ("#0063b1", "#c8500a")
 
 Points = list[tuple[float, float]]
@@ -80,9 +81,7 @@ class Measured:
 def crowds(registry: Registry) -> Iterator[tuple[str, CrowdModel]]:
     """The two crowds that are measured."""
     yield "calibrated", model_of(open_crowd("calibrated", registry), registry)
-    challenge = open_spec("challenge-2026", registry).scenarios[0].crowd
-    assert challenge is not None
-    yield "challenge mix", model_of(challenge, registry)
+    yield "challenge mix", model_of(open_crowd("challenge_2020", registry, MIX), registry)
 
 
 def mean_speed(model: CrowdModel, density: float, seed: int) -> float:

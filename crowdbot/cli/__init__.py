@@ -28,6 +28,7 @@ from crowdbot.cli._complete import offer
 from crowdbot.cli._mishaps import left_by, tell_of_threads
 from crowdbot.core.registry.plugin_errors import telling_interrupts
 from crowdbot.core.support.quick_exit import end_without_collecting
+from crowdbot.core.support.seldom_collected import collect_seldom
 from crowdbot.errors import CrowdbotError, PluginError, SpecError, did_you_mean, nearest, printable
 
 _SETTINGS: dict[str, Any] = {
@@ -74,6 +75,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(argv: Sequence[str] | None) -> int:
     words = sys.argv[1:] if argv is None else list(argv)
+    if argv is None and not _READING.isdisjoint(words[:1]):
+        collect_seldom()
     try:
         with _silence() if _wants_silence(words) else nullcontext():
             get_command(_app())(words, prog_name="crowdbot")
@@ -85,6 +88,9 @@ def _run(argv: Sequence[str] | None) -> int:
         return done.code if isinstance(done.code, int) else int(done.code is not None)
     return 0
 
+
+#: Commands that read documents, tell about them, and are over: a process of theirs is short.
+_READING = frozenset(("expand", "plugins", "validate"))
 
 #: Commands whose output only tells what they did; with ``-q`` they say only what went wrong.
 _TELLING = frozenset(

@@ -122,6 +122,10 @@ class Diagnostic:
         """``file:line:column: error[code] message``."""
         return f"{self.mark}: error[{self.code}] {_shown(self.message)}"
 
+    def sentence(self) -> str:
+        """The headline and what instead: what Python's exceptions say, who show no snippet."""
+        return self.headline() + (f"; {_shown(self.hint)}" if self.hint else "")
+
     def sort_key(self) -> tuple[str, int, int, str, str]:
         """By position, then code."""
         mark = self.mark

@@ -153,6 +153,12 @@ class Crowd(Spec):
         description="Where people come out of a portal: anywhere in it, or opposite to where "
         "they went in.",
     )
+    goal_point: Literal["random", "ahead"] = Field(
+        default="random",
+        exclude_if=lambda value: value == "random",
+        description="Where in a portal people go on each trip: anywhere, so that ways cross, or "
+        "straight ahead of where they come in or start.",
+    )
     robot_response: RobotResponseChoice = Field(
         default=HumanResponse(), description="How people take the robot."
     )

@@ -12,10 +12,12 @@ from crowdbot.core.environments.build import build_environment
 from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec, pick
+from crowdbot.core.scenarios.named_crowds import open_crowd
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.dsl.canonical import content_hash
 from crowdbot.dsl.expand import Expansion
+from crowdbot.dsl.robot_response import HumanResponse
 from crowdbot.dsl.scenario import Crowd
 
 REGISTRY = discover(allow=())
@@ -71,10 +73,30 @@ def test_attention(suite: Expansion, label: str, ignoring: float, late: float) -
 
 
 def test_people_walk_as_people_do(suite: Expansion) -> None:
-    """Mean and standard deviation of Weidmann 1993; a tail is cut off at three sd."""
+    """Mean of the fit, standard deviation of Weidmann 1993; a tail is cut off at three sd."""
     speeds = np.concatenate([realise(one).speed for one in suite.scenarios[::40]])
-    assert np.mean(speeds) == pytest.approx(1.34, abs=0.04)
+    assert np.mean(speeds) == pytest.approx(1.58, abs=0.04)
     assert np.std(speeds) == pytest.approx(0.26, abs=0.03)
+
+
+def test_people_are_the_calibrated_crowd(suite: Expansion) -> None:
+    """All that the part sets but the spread of speeds; people go straight ahead, as it was fitted.
+
+    Nobody uses more than a leg can do, whether for others or for the robot.
+    """
+    part = open_crowd("calibrated", REGISTRY)
+    assert part.speed is not None
+    for crowd in crowds(suite).values():
+        assert (crowd.policy, crowd.costs, crowd.steering) == (
+            part.policy, part.costs, part.steering,
+        )  # fmt: skip
+        assert crowd.speed is not None
+        assert crowd.speed.mean == part.speed.mean
+        for name in ("radius", "avoided_radius"):
+            assert getattr(crowd.body, name) == getattr(part.body, name)
+        assert crowd.goal_point == "ahead"
+        assert isinstance(crowd.robot_response, HumanResponse)
+        assert crowd.body.max_acceleration <= crowd.robot_response.total_acceleration
 
 
 @pytest.mark.slow

@@ -120,7 +120,7 @@ class CrowdEngine:
         rows[:, s.X], rows[:, s.Y] = a.x, a.y
         for i in range(len(a)):
             if a.at_goal[i] == PORTAL:
-                draw_goal(rows, i, a.id, a.radius, self.world.out[a.flow[i]], self._place.goal_key)
+                draw_goal(rows, i, a.id, a.radius, a.flow[i], self._place, a.x[i], a.y[i])
             else:
                 rows[i, s.WAYPOINT] = a.at_goal[i] == ONWARD
                 head_for(rows, i, self._people, self._place.goal_key)

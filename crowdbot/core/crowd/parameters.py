@@ -75,6 +75,7 @@ class WorldParameters(NamedTuple):
     Attributes:
         walls, entrance, out, stiffness, dissipation: as there.
         keep_offset: whether people come out of the in-portal opposite to where they went in.
+        goal_ahead: whether their goal in the out-portal is opposite to where their trip starts.
         boundary: (4,) x0, x1, y0, y1, m, infinite where the world has no border.
         goals_wrap: whether goals wrap with their agents.
         response: what people do about robots tick by tick, see
@@ -87,6 +88,7 @@ class WorldParameters(NamedTuple):
     entrance: Array
     out: Array
     keep_offset: bool
+    goal_ahead: bool
     boundary: Array
     goals_wrap: bool
     response: Array
@@ -100,7 +102,7 @@ class WorldParameters(NamedTuple):
         """Those of a world."""
         w, boundary = world, world.periodic_boundary
         return cls(
-            w.walls, w.entrance, w.out, w.exit_point == "offset",
+            w.walls, w.entrance, w.out, w.exit_point == "offset", w.goal_point == "ahead",
             ENDLESS if boundary is None else np.array(boundary, np.float64), not w.parity,
             w.response.by_tick, w.stiffness, w.dissipation, np.uint64(w.goal_key),
             _sides(w.solids),

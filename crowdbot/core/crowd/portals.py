@@ -75,12 +75,27 @@ def entry_fraction(box: Array, x0: float, y0: float, x1: float, y1: float) -> fl
 
 @kernel
 def draw_goal(
-    agents: Array, i: int, ids: NDArray[np.int64], radius: Array, out: Array, key: np.uint64
+    agents: Array,
+    i: int,
+    ids: NDArray[np.int64],
+    radius: Array,
+    flow: int,
+    world: WorldParameters,
+    x: float,
+    y: float,
 ) -> None:
-    """Set the goal of agent i's current trip: a point of the out-portal, a radius inside."""
-    trip = int(agents[i, TRIP])
-    u = counter_rng.uniform(key, ids[i], trip, counter_rng.GOAL, 0)
-    v = counter_rng.uniform(key, ids[i], trip, counter_rng.GOAL, 1)
+    """Set the goal of agent i's current trip: a point of the out-portal, a radius inside.
+
+    With ``world.goal_ahead`` it lies in the out-portal as (x, y), where the trip starts, lies in
+    the in-portal, beyond whose sides it counts as on them; or else it is drawn.
+    """
+    out = world.out[flow]
+    if world.goal_ahead:
+        u, v = _shares(world.entrance[flow], radius[i], x, y)
+    else:
+        key, trip = world.goal_key, int(agents[i, TRIP])
+        u = counter_rng.uniform(key, ids[i], trip, counter_rng.GOAL, 0)
+        v = counter_rng.uniform(key, ids[i], trip, counter_rng.GOAL, 1)
     agents[i, GOAL_X], agents[i, GOAL_Y] = point_in(out, radius[i], u, v)
 
 
@@ -96,6 +111,12 @@ def _share(at: float, low: float, high: float, margin: float) -> float:
     """Where a coordinate lies between the sides of a box shrunk by a margin, 0 to 1."""
     room = high - low - 2.0 * margin
     return min(1.0, max(0.0, (at - low - margin) / room)) if room > 0.0 else 0.5
+
+
+@kernel
+def _shares(box: Array, margin: float, x: float, y: float) -> tuple[float, float]:
+    """Where a point lies between the sides of a box shrunk by a margin, each 0 to 1."""
+    return _share(x, box[0], box[1], margin), _share(y, box[2], box[3], margin)
 
 
 @kernel
@@ -168,11 +189,10 @@ def try_to_re_enter(
         _try_to_come_back(agents, i, people, world, robots, discs, now)
         return
     flow, radius, key = people.flow[i], people.radius[i], world.goal_key
-    out, trip, attempt = world.out[flow], int(agents[i, TRIP]), int(agents[i, ATTEMPT])
+    trip, attempt = int(agents[i, TRIP]), int(agents[i, ATTEMPT])
     agents[i, ATTEMPT] += 1.0
     if world.keep_offset:
-        u = _share(agents[i, X], out[0], out[1], radius)
-        v = _share(agents[i, Y], out[2], out[3], radius)
+        u, v = _shares(world.out[flow], radius, agents[i, X], agents[i, Y])
     else:
         u = counter_rng.uniform(key, people.id[i], trip, counter_rng.ENTRY, 2 * attempt)
         v = counter_rng.uniform(key, people.id[i], trip, counter_rng.ENTRY, 2 * attempt + 1)
@@ -182,7 +202,7 @@ def try_to_re_enter(
     agents[i, TRIP] = trip + 1.0
     agents[i, JUMPS] += 1.0
     agents[i, AIM] = 0.0
-    draw_goal(agents, i, people.id, people.radius, out, key)
+    draw_goal(agents, i, people.id, people.radius, flow, world, x, y)
     enter(agents, i, x, y, people.preferred_speed[i], now)
 
 

@@ -62,9 +62,9 @@ def tick(
     start_time: Array, at_goal: Indices, flow: Indices, route: Array, first: Indices,
     entry_order: Indices, heeds_robot: Mask, push: Array, goal_area: Array, pause: Array,
     ahead: Indices, origin: Array, guide: Indices, abreast: Array, stays_at: Mask,
-    walls: Array, entrance: Array, out: Array, keep_offset: bool, boundary: Array,
-    goals_wrap: bool, response: Array, stiffness: float, dissipation: float, goal_key: np.uint64,
-    solids: Array,
+    walls: Array, entrance: Array, out: Array, keep_offset: bool, goal_ahead: bool,
+    boundary: Array, goals_wrap: bool, response: Array, stiffness: float, dissipation: float,
+    goal_key: np.uint64, solids: Array,
     reaction: Array, placed: Array, order: Indices,
 ) -> None:  # fmt: skip
     """Advance from tick k to k + 1.
@@ -87,8 +87,8 @@ def tick(
         entry_order, heeds_robot, push, goal_area, pause, ahead, origin, guide, abreast, stays_at,
     )  # fmt: skip
     world = WorldParameters(
-        walls, entrance, out, keep_offset, boundary, goals_wrap, response, stiffness, dissipation,
-        goal_key, solids,
+        walls, entrance, out, keep_offset, goal_ahead, boundary, goals_wrap, response, stiffness,
+        dissipation, goal_key, solids,
     )  # fmt: skip
     header, agents = flat[:HEADER_SIZE], flat[HEADER_SIZE:].reshape(-1, AGENT_COLUMNS)
     now = header[TICK] * dt

@@ -34,6 +34,8 @@ class CrowdWorld:
         entrance, out: (F, 4) boxes x0, x1, y0, y1 of each flow's portals, m.
         exit_point: where people come out of the in-portal: at a random point, or opposite to
             where they went into the out-portal, ``offset`` kept.
+        goal_point: where in the out-portal people go on each trip: to a random point, or straight
+            ``ahead``, opposite to where the trip starts.
         response: what people do about robots.
         cohesion: what holds groups together; None: nothing.
         steering: what people do beside any policy.
@@ -53,6 +55,7 @@ class CrowdWorld:
     entrance: Array = field(default_factory=lambda: np.zeros((0, 4)))
     out: Array = field(default_factory=lambda: np.zeros((0, 4)))
     exit_point: Literal["random", "offset"] = "random"
+    goal_point: Literal["random", "ahead"] = "random"
     response: Response = field(default_factory=Human)
     cohesion: Cohesion | None = field(default_factory=Cohesion)
     steering: Steering = field(default_factory=Steering)

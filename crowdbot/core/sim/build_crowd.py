@@ -160,6 +160,7 @@ def _world(
         entrance=boxes[:, 0],
         out=boxes[:, 1],
         exit_point=crowd.exit_point,
+        goal_point=crowd.goal_point,
         response=response_of(response),
         cohesion=None if crowd.groups is None else Cohesion(**crowd.groups.model_dump()),
         steering=steering_of(

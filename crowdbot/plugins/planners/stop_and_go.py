@@ -30,7 +30,7 @@ class StopAndGoSpec(PlannerSpec):
         default=None, description="Radius of the robot, m; unset: the robot's own outline."
     )
     person_radius: NonNegativeLength = Field(
-        default=0.33, description="Disc that is kept clear around legs; 0: legs alone, m."
+        default=0.25, description="Disc that is kept clear around legs; 0: legs alone, m."
     )
     speed: Annotated[float, Gt(0), Le(1)] = Field(
         default=1.0, description="Cruising speed as a fraction of the robot's largest."
@@ -56,6 +56,11 @@ class StopAndGoSpec(PlannerSpec):
     most_aside: Annotated[float, Ge(0), Le(1.2)] = Field(
         default=0.785,
         description="How far to either side it looks for room (0 goes straight), rad.",
+    )
+    look_ahead: NonNegativeDuration = Field(
+        default=3.0,
+        description="Drives towards where nobody will be met for so long, if all go on as they "
+        "do; 0: only towards where it may drive fastest now, s.",
     )
     aside_reach: NonNegativeLength = Field(
         default=1.0, description="Nearer to the goal than this it goes straight, m."

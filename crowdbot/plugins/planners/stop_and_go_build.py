@@ -37,10 +37,12 @@ from crowdbot.plugins.planners.robot_outline_build import half_width_and_front
 from crowdbot.plugins.planners.stop_and_go import StopAndGoSpec
 
 #: People farther away do not matter yet, m.
-_REACH = 4.0
+_REACH = 6.0
 #: What it costs to turn a box away from the goal, and away from that chosen last, m/s per rad:
 #: without the second it would waver between two gaps.
 _ASIDE, _CHANGE = 0.05, 0.1
+#: Of ``most_aside``: the directions that are looked into, straight ahead first.
+_SHARES = (0.0, 1 / 4, -1 / 4, 1 / 2, -1 / 2, 3 / 4, -3 / 4, 1.0, -1.0)
 #: With the goal farther off than this it turns towards it first, rad.
 _AHEAD = 1.2
 
@@ -137,13 +139,17 @@ class StopAndGo:
             self._chosen = None
             return 0.0
         best, turn = -math.inf, 0.0
-        for share in (0.0, 1 / 3, -1 / 3, 2 / 3, -2 / 3, 1.0, -1.0):
+        cruise, clear = self._limits.v_max * spec.speed, self._half_width + spec.side_margin
+        for share in _SHARES:
             aside = share * spec.most_aside
             heading = yaw + error + aside
             last = heading if self._chosen is None else self._chosen
-            speed = min(self._safe_speed(scene, error + aside)[0], self._limits.v_max * spec.speed)
+            free = min(self._safe_speed(scene, error + aside)[0] / cruise, 1.0)
+            if spec.look_ahead > 0.0:
+                away = time_to_contact(scene.points, scene.velocities, cruise, error + aside, clear)
+                free = min(free, away / spec.look_ahead)
             change = abs(math.remainder(heading - last, 2.0 * math.pi))
-            value = speed * math.cos(aside) - _ASIDE * abs(aside) - _CHANGE * change
+            value = cruise * free * math.cos(aside) - _ASIDE * abs(aside) - _CHANGE * change
             if value > best + 1e-9:
                 best, turn = value, aside
         self._chosen = yaw + error + turn
@@ -185,6 +191,31 @@ def safe_speed(room: Array, approach: Array, deceleration: float, reaction_time:
     lag = deceleration * reaction_time + approach
     left = np.maximum(0.0, room - approach * reaction_time)
     return np.asarray(np.sqrt(lag * lag + 2.0 * deceleration * left) - lag)
+
+
+def time_to_contact(
+    points: Array, velocities: Array, speed: float, heading: float, radius: float
+) -> float:
+    """When a robot that drives on and things that go on first touch, s; infinite: never.
+
+    What is behind it does not count: who comes from there sees the robot.
+
+    Args:
+        points: (P, 2) base frame, m.
+        velocities: (P, 2) m/s.
+        speed: of the robot, m/s.
+        heading: of the robot, base frame, rad.
+        radius: of the disc that is to stay clear, m.
+    """
+    ahead = np.array([math.cos(heading), math.sin(heading)])
+    before = points @ ahead > 0.0
+    at, going = points[before], velocities[before] - speed * ahead
+    a, b = np.sum(going * going, axis=1), -np.sum(at * going, axis=1)
+    c = np.sum(at * at, axis=1) - radius * radius
+    root = b * b - a * c
+    meets = (b > 0.0) & (root >= 0.0)
+    times = (b[meets] - np.sqrt(root[meets])) / a[meets]
+    return float(np.maximum(times, 0.0).min(initial=math.inf))
 
 
 def build(spec: StopAndGoSpec) -> StopAndGo:

@@ -235,6 +235,22 @@ def test_kept_offset(y: float) -> None:
     assert person[s.JUMPS] == 1.0
 
 
+@pytest.mark.parametrize("y", [-4.9, -2.0, 0.0, 3.7])
+def test_a_goal_straight_ahead(y: float) -> None:
+    """Of where the trip starts, at first and after each way through the portals."""
+    world = CrowdWorld(entrance=ENTRANCE, out=OUT, goal_point="ahead")
+    engine = CrowdEngine(Agents.of(x=49.0, y=y, preferred_speed=1.0), world, Straight())
+    flat = engine.initial_state()
+    (person,) = rows(flat)
+    assert person[s.GOAL_Y] == pytest.approx(np.clip(y, -5.0 + RADIUS, 5.0 - RADIUS), abs=1e-9)
+    assert OUT[0] <= person[s.GOAL_X] <= OUT[1]
+    while flat[s.TRIPS] < 1.0 or rows(flat)[0, s.WAITING] != s.PRESENT:
+        engine.advance(flat)
+    (person,) = rows(flat)
+    assert person[s.GOAL_Y] == pytest.approx(person[s.Y], abs=1e-9)
+    assert abs(person[s.Y] - y) > 0.05  # it came in somewhere else
+
+
 class Straight:
     contact_stiffness = 0.0
 

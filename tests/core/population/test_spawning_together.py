@@ -232,11 +232,11 @@ def test_the_distance_to_an_area_is_that_to_its_nearest_point(
     assert near - 0.12 <= area.distance(x, y) <= near + 1e-9
 
 
-@pytest.mark.parametrize("point", ["random", "offset"])
-def test_the_exit_point_reaches_the_engine(point: str) -> None:
-    scenario = hall({"spawns": {"s": STREAM}, "exit_point": point})
+@pytest.mark.parametrize(("point", "goal"), [("random", "ahead"), ("offset", "random")])
+def test_the_points_of_portals_reach_the_engine(point: str, goal: str) -> None:
+    scenario = hall({"spawns": {"s": STREAM}, "exit_point": point, "goal_point": goal})
     engine = build_crowd(
         scenario, realise(scenario), build_environment(REGISTRY, scenario.environment), REGISTRY
     )
     assert engine is not None
-    assert engine.world.exit_point == point
+    assert (engine.world.exit_point, engine.world.goal_point) == (point, goal)

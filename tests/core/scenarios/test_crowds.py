@@ -19,7 +19,7 @@ REGISTRY = discover(allow=())
 
 def test_crowds_by_name_by_file_and_by_kind(tmp_path: Path) -> None:
     parts = crowd_parts(REGISTRY)
-    assert {"calibrated", "orca", "challenge_2026"} <= set(parts)
+    assert {"calibrated", "orca", "challenge_2020"} <= set(parts)
     copied = tmp_path / "mine.yaml"
     copied.write_text(parts["power_law"].read_text())
     same = open_crowd("power_law", REGISTRY)
@@ -52,7 +52,7 @@ def test_wrong_names_fields_and_files_are_told(tmp_path: Path) -> None:
 
 
 def test_scenarios_with_other_crowds() -> None:
-    plain = open_spec("challenge-2026", REGISTRY)
+    plain = open_spec("challenge-2026", REGISTRY, ["crowd.body.radius=0.3 m"])
     found = with_crowds(plain, ["orca", "calibrated"], REGISTRY)
     assert len(found.scenarios) == 2 * len(plain.scenarios)
     first, own = found.scenarios[0], plain.scenarios[0]
@@ -61,6 +61,7 @@ def test_scenarios_with_other_crowds() -> None:
     assert first.crowd is not None
     assert own.crowd is not None
     assert first.crowd.policy != own.crowd.policy
+    assert first.crowd.steering is None
     assert (first.crowd.flow, first.crowd.speed) == (own.crowd.flow, own.crowd.speed)
     assert first.crowd.robot_response == own.crowd.robot_response
     calibrated = found.scenarios[len(plain.scenarios)]
@@ -87,5 +88,5 @@ def test_lines_of_a_report() -> None:
     assert line.startswith("calibrated, realism 0.8")
     assert "ghosts 0.5" in line
     assert lines_of([("", "0" * 16), ("", "1" * 16)]) == [
-        "2 crowds whose realism was not measured; crowdbot realism SUITE does"
+        "2 crowds whose realism was not measured; `crowdbot realism SUITE` measures it"
     ]

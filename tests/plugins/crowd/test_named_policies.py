@@ -54,7 +54,7 @@ def test_the_catalogue_is_complete() -> None:
     assert set(NAMES) == {
         "dutra", "rvo", "orca", "social_forces", "karamouzas", "moussaid", "pledestrians", "paris",
         "power_law", "van_toll", "foe_avoidance", "demo_0", "demo_1", "demo_2",
-        "challenge_2026", "calibrated", "social_forces_corrected", "orca_corrected",
+        "challenge_2020", "calibrated", "social_forces_corrected", "orca_corrected",
     }  # fmt: skip
 
 

@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.plugins.planners.stop_and_go import STOP_AND_GO, StopAndGoSpec
-from crowdbot.plugins.planners.stop_and_go_build import build, safe_speed
+from crowdbot.plugins.planners.stop_and_go_build import build, safe_speed, time_to_contact
 from tests.plugins.planners.world import LIMITS, PERSON, RADIUS, Outcome, World
 
-SPEC = StopAndGoSpec()
-STRAIGHT = StopAndGoSpec(most_aside=0.0)
+SPEC = StopAndGoSpec(person_radius=PERSON)
+STRAIGHT = StopAndGoSpec(most_aside=0.0, person_radius=PERSON)
 
 
 def test_component() -> None:
@@ -39,7 +39,7 @@ def test_stands_before_a_standing_person() -> None:
 @settings(max_examples=15)
 @given(st.floats(-0.6, 0.6), st.floats(0.1, 1.0))
 def test_never_touches_what_stands(y: float, speed: float) -> None:
-    spec = StopAndGoSpec(speed=speed, most_aside=0.0)
+    spec = StopAndGoSpec(speed=speed, most_aside=0.0, person_radius=PERSON)
     out = World([[5, y, 0, 0]]).run(build(spec), time_limit=12.0, stop_at=7.0)
     assert not out.contacts
     assert out.arrived == (abs(y) > RADIUS + SPEC.side_margin + PERSON) or speed < 0.7
@@ -120,5 +120,33 @@ def speed_at_contact(spec: StopAndGoSpec) -> float:
 
 
 def test_stands_when_somebody_who_does_not_look_walks_into_it() -> None:
-    assert speed_at_contact(SPEC) < 0.05
-    assert speed_at_contact(StopAndGoSpec(look_back=0.0)) > 0.2
+    assert speed_at_contact(STRAIGHT) < 0.05
+    assert speed_at_contact(STRAIGHT.model_copy(update={"look_back": 0.0})) > 0.2
+
+
+def test_gets_out_of_the_way_of_somebody_who_does_not_look() -> None:
+    """He is seen early enough only with ``look_ahead``; the boxes are as short as its braking."""
+    early, late = (
+        World([[12.0, 0.1, -1.3, 0.0]]).run(build(spec), time_limit=12.0, stop_at=6.0)
+        for spec in (SPEC, SPEC.model_copy(update={"look_ahead": 0.0}))
+    )
+    assert early.arrived
+    assert not early.contacts
+    assert early.t < late.t or late.contacts
+
+
+@given(st.floats(-5, 5), st.floats(-5, 5), st.floats(-2, 2), st.floats(-2, 2), st.floats(-1.5, 1.5))
+def test_time_to_contact_is_when_discs_first_touch(
+    x: float, y: float, vx: float, vy: float, heading: float
+) -> None:
+    """Beside the same motions in small steps; what is behind, or inside and leaving, never is."""
+    speed, radius = 0.65, 0.3
+    at, going = np.array([[x, y]]), np.array([[vx, vy]])
+    found = time_to_contact(at, going, speed, heading, radius)
+    ahead = np.array([np.cos(heading), np.sin(heading)])
+    t = np.linspace(0.0, 20.0, 20001)[:, np.newaxis]
+    away = np.hypot(*(at + t * (going - speed * ahead)).T)
+    if at @ ahead <= 0.0 or away.min() > radius + 1e-3:
+        assert found == np.inf or found > 20.0
+    elif away[0] > radius and away.min() < radius - 1e-3:
+        assert found == pytest.approx(t[np.argmax(away <= radius), 0], abs=2e-3)
