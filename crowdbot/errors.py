@@ -45,7 +45,7 @@ class SpecError(InputError):
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         self.diagnostics = tuple(diagnostics)
-        super().__init__("\n".join(d.headline() for d in self.diagnostics))
+        super().__init__("\n".join(d.sentence() for d in self.diagnostics))
 
 
 class UnknownNameError(InputError):

@@ -62,7 +62,7 @@ def test_a_suite_is_expanded_by_name() -> None:
 
 CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: crowdbot.load(FILE, set="density"), "density"),
-    (lambda: crowdbot.load(FILE, set={"crowd.flow.denisty": 1}), "denisty"),
+    (lambda: crowdbot.load(FILE, set={"crowd.flow.denisty": 1}), "did you mean 'density'"),
     (lambda: crowdbot.load(FILE, set={"crowd": object()}), "number, text, list or mapping"),
     (lambda: crowdbot.load(SUITE, ID, set=3), "key=value texts or a mapping"),  # type: ignore[call-overload]
     (lambda: crowdbot.load(3), "path_or_name must be a str or Path, not a int"),  # type: ignore[call-overload]

@@ -78,7 +78,14 @@ def end_hung_process() -> None:
 
 
 def print_run(run: Run, *, as_json: bool) -> None:
-    """Scores on stdout, as a table or as JSON; what went wrong on stderr."""
+    """Scores on stdout, as a table or as JSON; what went wrong on stderr, last, to be seen."""
+    _print_result(run, as_json=as_json)
+    if run.record["status"] == "planner_failed":
+        sys.stdout.flush()
+        print(f"error: {run.record['reason']}", file=sys.stderr)
+
+
+def _print_result(run: Run, *, as_json: bool) -> None:
     from crowdbot.core.runs.run_directory import REPLAY, SCORES
     from crowdbot.core.scoring.scores_csv import headlines, read_scores_csv, scores_table
 
@@ -88,8 +95,6 @@ def print_run(run: Run, *, as_json: bool) -> None:
             f"note: it replaces a run that was recorded differently: {', '.join(run.replaced)}",
             file=sys.stderr,
         )
-    if run.record["status"] == "planner_failed":
-        print(f"error: {run.record['reason']}", file=sys.stderr)
     if as_json:
         scores = [
             {

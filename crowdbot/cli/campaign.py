@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -114,7 +115,11 @@ def campaign(
     if dry_run:
         print_plan(plan, size, as_json=as_json)
         return
-    state = run_plan(plan, size, cluster)
+    try:
+        state = run_plan(plan, size, cluster)
+    except KeyboardInterrupt:
+        print("interrupted; the same command makes the runs that are missing", file=sys.stderr)
+        raise
     if as_json:
         typer.echo(json.dumps(_document(state), indent=2))
     if state.exit_code:

@@ -105,7 +105,9 @@ def _assert_variants(metric: MetricComponent[Any], table: Mapping[str, list[str]
 
 def _assert_parameters(component: Component[Any], table: Mapping[str, list[str]]) -> None:
     fields = {n: f for n, f in component.spec.model_fields.items() if n != "kind"}
-    assert set(table) == set(fields), f"parameters are {', '.join(fields) or 'none'}"
+    assert set(table) == set(fields), (
+        f"parameters are {', '.join(fields) or 'none'}; the card has {', '.join(table) or 'none'}"
+    )
     for name, (default, *_) in table.items():
         value = fields[name].get_default()
         number = float(value) if isinstance(value, int | float) else None

@@ -252,6 +252,7 @@ def test_ctrl_c_ends_workers_and_keeps_what_is_finished(tmp_path: Path) -> None:
     said, err = running.communicate(timeout=AT_MOST)
     assert running.returncode == 130, said + err
     assert "Traceback" not in said + err
+    assert "interrupted; the same command makes the runs that are missing" in err
     assert not any(map(_alive, workers))
     assert _records(out) >= 1
 

@@ -14,6 +14,7 @@ from typing import Any, cast
 
 from crowdbot.core.planning.planner import Planner
 from crowdbot.core.registry.plugin_boundary import PluginCall
+from crowdbot.core.support.near_files import near_files
 from crowdbot.core.support.source_digest import imported_names
 from crowdbot.errors import InputError, PlannerError, did_you_mean, nearest
 
@@ -34,7 +35,7 @@ def planner_class(path: Path, name: str) -> type[Any]:
         PlannerError: the file cannot be imported.
     """
     if not path.is_file():
-        raise InputError(f"{path}: no such file")
+        raise InputError(f"{path}: no such file{near_files(path)}")
     module = _import(path)
     found = getattr(module, name, None)
     if not inspect.isclass(found):

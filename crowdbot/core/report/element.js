@@ -66,6 +66,7 @@ function decimalsFor(numbers) {
 /** With so many decimals; what they would hide, the very large and the very small, as a power of ten. */
 function format(number, decimals) {
   if (!Number.isFinite(number)) return "–";
+  if (number === 0 && decimals > 6) return "0";
   const text = number.toFixed(Math.min(decimals, 12));
   const hidden = number !== 0 && (Number(text) === 0 || Math.abs(number) >= 1e6 || decimals > 6);
   return (hidden ? number.toExponential(2) : Number(text) === 0 ? text.replace("-", "") : text).replaceAll("-", "−");

@@ -243,7 +243,12 @@ def _class(run: RunRow) -> str:
 def _source(run: RunRow) -> str:
     planner = _map(run, "planner")
     digest = str(planner.get("sha256", ""))[:12]
-    return f"{planner.get('kind', run.planner)}{f' sha256 {digest}' * bool(digest)}"
+    loose = [p for p in run.record.get("plugins") or () if not p.get("pinned", True)]
+    beside = ", ".join(f"{p['distribution']} sha256 {p.get('sha256', '')[:12]}" for p in loose)
+    return (
+        f"{planner.get('kind', run.planner)}{f' sha256 {digest}' * bool(digest)}"
+        f"{f', with the plugin {beside}' * bool(beside)}"
+    )
 
 
 def _map(run: RunRow, name: str) -> Mapping[str, Any]:

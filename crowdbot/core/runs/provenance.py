@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
 from importlib import metadata
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -78,11 +79,15 @@ def _versions() -> tuple[tuple[str, str], ...]:
 
 
 def plugins(registry: Registry) -> list[dict[str, Any]]:
-    """The plugins that were loaded; of those that are not pinned, the hash of their files."""
+    """The plugins that were loaded; of those that are not pinned, the hash of their files.
+
+    One that was given by a path is called by its last part: a run is the same run however the
+    path was written, and wherever the plugin lies.
+    """
     return [
         {
             "name": p.name,
-            "distribution": p.distribution,
+            "distribution": Path(p.distribution).resolve().name if p.given else p.distribution,
             "pinned": p.pinned,
             **({} if p.pinned else {"sha256": p.sha256}),
             **({"data": p.data} if p.data else {}),

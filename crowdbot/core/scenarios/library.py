@@ -15,6 +15,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.support.near_files import near_files
 from crowdbot.core.support.seldom_collected import seldom_collected
 from crowdbot.dsl.diagnostics import Diagnostic
 from crowdbot.dsl.expand import Expanding, Expansion, expand_document, load_document
@@ -22,7 +23,7 @@ from crowdbot.dsl.installed import Installed
 from crowdbot.dsl.lock import LockFiles
 from crowdbot.dsl.scenario import Locked, Scenario
 from crowdbot.dsl.suite import ParsedSuite
-from crowdbot.errors import InputError, SpecError, UnknownNameError
+from crowdbot.errors import InputError, SpecError, UnknownNameError, nearest
 
 _BUILTIN = "builtin"
 _UNPACKED = "crowdbot-unpacked-"
@@ -215,6 +216,8 @@ def _find(spec: str, roots: dict[str, list[Path]], registry: Registry) -> tuple[
     if looks_like_path or os.path.lexists(spec):
         return path, spec
     why = registry.why_absent(spec) if ":" in spec else ""
+    if not why and not nearest(spec, packaged):
+        why = near_files(path).removeprefix("; ")
     raise UnknownNameError("suite", spec, packaged, why)
 
 

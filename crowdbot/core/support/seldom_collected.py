@@ -6,19 +6,28 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-#: New objects before the collector looks at them, instead of 700: about 10 MB of small ones.
-_MANY = 100_000
+#: New objects before the collector looks at them, instead of 700: about 50 MB of small ones.
+_MANY = 500_000
+
+
+def collect_seldom() -> None:
+    """Collect cycles seldom from now on, in a process that reads, tells and ends.
+
+    A threshold that is larger already, or 0 (off), stays.
+    """
+    first, *others = gc.get_threshold()
+    if 0 < first < _MANY:
+        gc.set_threshold(_MANY, *others)
 
 
 @contextmanager
 def seldom_collected() -> Iterator[None]:
-    """Collect cycles seldom: specs and trees of documents are many, are kept, and have few.
+    """As `collect_seldom`, for a while: documents are many objects with few cycles.
 
-    A decorator, too. A threshold that is larger already, or 0 (off), stays.
+    A decorator, too.
     """
     before = gc.get_threshold()
-    if 0 < before[0] < _MANY:
-        gc.set_threshold(_MANY, *before[1:])
+    collect_seldom()
     try:
         yield
     finally:

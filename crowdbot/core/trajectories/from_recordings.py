@@ -17,7 +17,13 @@ from crowdbot.core.trajectories.bag_tables import bag_tables
 from crowdbot.core.trajectories.datasets import eth_ucy_table, split_robot, trajnet_table
 from crowdbot.core.trajectories.own_recordings import Samples
 from crowdbot.core.trajectories.plausibility import implausible
-from crowdbot.core.trajectories.raw_table import ColumnNames, RawTable, frame_table, read_table
+from crowdbot.core.trajectories.raw_table import (
+    ColumnNames,
+    RawTable,
+    frame_table,
+    in_seconds,
+    read_table,
+)
 from crowdbot.errors import InputError, RecordingWarning
 from crowdbot.lazy import lazy_names
 
@@ -48,6 +54,7 @@ class FromRecordings:
         resample: Samples = None,
         clock_offset: float = 0.0,
         max_gap: float = 1.0,
+        frame_rate: float | None = None,
         columns: TableColumns | None = None,
         contacts: Path | str | Mapping[str, ArrayLike] | None = None,
         robot_radius: float | None = None,
@@ -80,6 +87,7 @@ class FromRecordings:
                 at the robot's times; a number: everything is, at so many Hz.
             clock_offset: s, added to the times of people, whose clock differs by it.
             max_gap: s; over a longer time without a row nobody is interpolated, but absent.
+            frame_rate: frames per second, where times are numbers of frames; None: they are not.
             columns: names of columns where they differ:
                 ``{"robot": {"x": "pos_x"}, "agents": {"id": "track"}}``.
             contacts: t0, t1, agent (-1: a wall), impulse, peak_force, relative_speed, optionally
@@ -113,7 +121,7 @@ class FromRecordings:
         }
         return _made(
             cls,
-            tables,
+            in_seconds(tables, frame_rate),
             contacts=as_columns,
             agent_radius=agent_radius,
             agent_mass=agent_mass,
@@ -145,6 +153,7 @@ class FromRecordings:
         resample: Samples = None,
         clock_offset: float = 0.0,
         max_gap: float = 1.0,
+        frame_rate: float | None = None,
         columns: TableColumns | None = None,
         contacts: object | None = None,
         robot_radius: float | None = None,
@@ -171,6 +180,7 @@ class FromRecordings:
                 at the robot's times; a number: everything is, at so many Hz.
             clock_offset: s, added to the times of people, whose clock differs by it.
             max_gap: s; over a longer time without a row nobody is interpolated, but absent.
+            frame_rate: frames per second, where times are numbers of frames; None: they are not.
             columns: names of columns where they differ, as for `from_csv`.
             contacts: a frame as the table of `from_csv`.
             robot_radius, robot_mass: m, kg; needed with a robot.
@@ -197,7 +207,7 @@ class FromRecordings:
         }
         return _made(
             cls,
-            tables,
+            in_seconds(tables, frame_rate),
             agent_radius=agent_radius,
             agent_mass=agent_mass,
             resample=resample,
@@ -484,6 +494,8 @@ def _made(
     elif isinstance(arrived, str):
         raise InputError(f"robot_goal_time is a time in s, None or 'derived', not {arrived!r}")
     told = {n: v for n, v in told.items() if n not in columns}
+    if "robot_x" in columns and None in (told.get("robot_radius"), told.get("robot_mass")):
+        raise InputError("a robot needs robot_radius (m) and robot_mass (kg), which tables lack")
     run: _Run = cast(Any, cls).from_arrays(**columns, robot_goal_time=arrived, **told)
     for text in run.implausible():
         warnings.warn(text, RecordingWarning, stacklevel=3)

@@ -70,7 +70,7 @@ def columns_of(
             "their clocks cannot be compared"
         )
     if agents is not None:
-        agents.require("t", "id", "x", "y")
+        agents.require("agents", "t", "id", "x", "y")
         ids = Ids(agents)
         people = {n: agents.numbers(n) for n in AGENT[2:] if n in agents}
         people |= {"t": agents.times()[0] + clock_offset, "id": ids.rows}
@@ -102,9 +102,9 @@ def _zero(rows: Mapping[str, Array] | None, people: Mapping[str, Array] | None) 
 
 
 def _robot_rows(robot: RawTable) -> dict[str, Array]:
-    robot.require("t", "x", "y")
+    robot.require("robot", "t", "x", "y")
     if ("vx" in robot) != ("vy" in robot):
-        robot.require("vx", "vy")
+        robot.require("robot", "vx", "vy")
     rows = {n: robot.numbers(n) for n in ROBOT[1:] if n in robot}
     rows["t"] = robot.times()[0]
     if not len(rows["t"]):
@@ -221,7 +221,7 @@ def _on_samples(
 
 
 def _trips(table: RawTable, ids: Ids | None, zero: float) -> dict[str, Any]:
-    table.require(*TRIP)
+    table.require("trips", *TRIP)
     agent = table.numbers("agent").astype(np.int64) if ids is None else ids.of(table, "agent")
     return {
         "trip_agent": agent,
@@ -232,7 +232,7 @@ def _trips(table: RawTable, ids: Ids | None, zero: float) -> dict[str, Any]:
 
 
 def _contacts(table: RawTable, ids: Ids | None, zero: float) -> dict[str, Any]:
-    table.require(*CONTACT[:-1])
+    table.require("contacts", *CONTACT[:-1])
     columns: dict[str, Any] = {n: table.numbers(n) for n in CONTACT[3:] if n in table}
     columns |= {n: table.times(n)[0] - zero for n in ("t0", "t1")}
     if ids is not None:

@@ -23,6 +23,7 @@ _MOVING = 0.05
 _FEW = 5
 _STEPS = (1e-4, 5.0)  # s; a median time between samples outside is not one in seconds
 _UNITS, _USUAL = {"millimetres": 1000, "centimetres": 100}, 0.8  # m/s, of robots and people
+_CREEPING, _FRAMES = 0.15, 25  # m/s, slower than anybody walks or drives; frames per second, usual
 _HEADINGS = 0.7  # rad; a heading that is farther from the motion does not agree with it
 
 
@@ -36,6 +37,7 @@ def implausible(run: Trajectories) -> list[str]:
         tracks.append(("people", run.agents.x, run.agents.y, PERSON_SPEED))
     for who, x, y, limit in tracks:
         found += _speeds(who, run.t, x, y, limit)
+    found += _frames(run.t, tracks)
     found += _headings(run)
     found += _recorded_velocities(run)
     return found or list(_apart(run))
@@ -53,19 +55,37 @@ def _times(t: Array) -> Iterator[str]:
 
 
 def _speeds(who: str, t: Array, x: Array, y: Array, limit: float) -> Iterator[str]:
-    with np.errstate(invalid="ignore"):
-        steps = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
-        speeds = steps / np.diff(t).reshape(-1, *([1] * (x.ndim - 1)))
-    speeds = speeds[np.isfinite(speeds) & (steps > 0.0)]
-    if len(speeds) < _FEW:
-        return
-    median = float(np.median(speeds))
-    if median <= limit:
+    median = _median_speed(t, x, y)
+    if median is None or median <= limit:
         return
     unit, factor = min(_UNITS.items(), key=lambda item: abs(np.log(median / item[1] / _USUAL)))
     yield (
         f"{who}: median speed {median:.3g} m/s: positions in {unit}? "
         f"Divided by {factor} it would be {median / factor:.3g} m/s"
+    )
+
+
+def _median_speed(t: Array, x: Array, y: Array) -> float | None:
+    """Of what moves, m/s; None where too little does."""
+    with np.errstate(invalid="ignore"):
+        steps = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
+        speeds = steps / np.diff(t).reshape(-1, *([1] * (x.ndim - 1)))
+    speeds = speeds[np.isfinite(speeds) & (steps > 0.0)]
+    return float(np.median(speeds)) if len(speeds) >= _FEW else None
+
+
+def _frames(t: Array, tracks: list[tuple[str, Array, Array, float]]) -> Iterator[str]:
+    """Whether times look like numbers of frames: whole, and nobody gets anywhere in a second."""
+    if len(t) < _FEW or np.any(t != np.round(t)) or np.median(np.diff(t)) > _STEPS[1]:
+        return
+    medians = {who: _median_speed(t, x, y) for who, x, y, _ in tracks}
+    speeds = {who: speed for who, speed in medians.items() if speed is not None}
+    if not speeds or max(speeds.values()) >= _CREEPING:
+        return
+    who, speed = max(speeds.items(), key=lambda item: item[1])
+    yield (
+        f"{who}: median speed {speed:.3g} m/s, and all times are whole numbers: numbers of frames? "
+        f"With frame_rate={_FRAMES} it would be {speed * _FRAMES:.3g} m/s"
     )
 
 

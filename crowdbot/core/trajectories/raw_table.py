@@ -7,7 +7,7 @@ import io
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.support.near_files import near_files
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError, did_you_mean, nearest
 
@@ -33,11 +34,13 @@ class RawTable:
         name: what messages call it.
         columns: name -> cells.
         lines: line of each row in a file; empty where it is not a file.
+        header: the names of all its columns there, also of those that nobody asked for.
     """
 
     name: str
     columns: Mapping[str, Cells]
     lines: Sequence[int] = ()
+    header: Sequence[str] = ()
 
     def __contains__(self, column: str) -> bool:
         return column in self.columns
@@ -49,19 +52,24 @@ class RawTable:
         """What messages call a row."""
         return f"{self.name}:{self.lines[row]}" if len(self.lines) else f"{self.name}, row {row}"
 
-    def require(self, *columns: str) -> None:
+    def require(self, role: str, *columns: str) -> None:
         """Refuse a table that lacks a column.
+
+        Args:
+            role: which of our tables it is: robot, agents, trips, contacts.
+            columns: what it must have.
 
         Raises:
             InputError: it does.
         """
         missing = [c for c in columns if c not in self.columns]
         if missing:
-            has = ", ".join(self.columns) or "nothing"
-            many = "s" if len(missing) > 1 else ""
+            has = ", ".join(self.header or self.columns) or "nothing"
+            told = ", ".join(f"'{c}': 'ITS NAME THERE'" for c in missing)
+            what = "columns {} are" if len(missing) > 1 else "column {} is"
             raise InputError(
-                f"{self.name}:1: the column {', '.join(missing)} is missing; the table has {has}; "
-                f"columns={{'{missing[0]}': 'ITS NAME THERE'}} names the column{many}"
+                f"{self.name}:1: the {what.format(', '.join(missing))} missing; "
+                f"the table has {has}; columns={{'{role}': {{{told}}}}} says what they are called"
             )
 
     def numbers(self, column: str) -> Array:
@@ -153,7 +161,8 @@ def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable
     try:
         text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+        near = near_files(path) if isinstance(error, FileNotFoundError) else ""
+        raise InputError(f"{path}: cannot be read: {error.strerror}{near}") from error
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: not a table: {error}") from error
     lines = text.splitlines()
@@ -165,7 +174,7 @@ def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable
         ours: [row[i] for row in rows[1:]]
         for ours, i in _chosen(str(path), header, names, known).items()
     }
-    return RawTable(str(path), columns, numbers[1:])
+    return RawTable(str(path), columns, numbers[1:], header)
 
 
 def frame_table(name: str, frame: Any, names: ColumnNames, known: Iterable[str]) -> RawTable:
@@ -189,7 +198,34 @@ def frame_table(name: str, frame: Any, names: ColumnNames, known: Iterable[str])
         raise InputError(f"{name}: a data frame is wanted, not a {type(frame).__name__}") from error
     if len({len(c) for c in columns.values()}) > 1:
         raise InputError(f"{name}: its columns differ in length")
-    return RawTable(name, columns)
+    return RawTable(name, columns, header=header)
+
+
+def in_seconds(tables: Mapping[str, RawTable], frame_rate: float | None) -> Mapping[str, RawTable]:
+    """Tables whose times are numbers of frames, with times in s.
+
+    Args:
+        tables: by what they are.
+        frame_rate: frames per second; None: times are in seconds, or stamps.
+
+    Raises:
+        InputError: the rate is not positive, or there are stamps.
+    """
+    if frame_rate is None:
+        return tables
+    if not (math.isfinite(frame_rate) and frame_rate > 0.0):
+        raise InputError(f"frame_rate is a number of frames per second, not {frame_rate!r}")
+    return {name: _without_frames(table, frame_rate) for name, table in tables.items()}
+
+
+def _without_frames(table: RawTable, frame_rate: float) -> RawTable:
+    seconds = {}
+    for name in {"t", "t0", "t1"} & set(table.columns):
+        frames, stamped = table.times(name)
+        if stamped:
+            raise InputError(f"{table.where(0)}: {name} holds stamps; frame_rate is for frames")
+        seconds[name] = frames / frame_rate
+    return replace(table, columns={**table.columns, **seconds})
 
 
 def _plain(series: Any) -> Any:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -82,3 +83,22 @@ def test_versions_and_plugins() -> None:
 
 
 GOLDEN = "cb1-sha256:5c0f553610a1d665c1647faca2482c1e5b466e03e91cb37c5470dca4a4ecb9a4"
+
+
+def test_a_plugin_is_the_same_however_its_path_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A campaign's workers get absolute paths; what they make must be what was planned."""
+    (tmp_path / "here").mkdir()
+    (tmp_path / "loose.py").write_text(
+        "from crowdbot.hookspecs import hookimpl\n\n\n@hookimpl\ndef crowdbot_planners():\n"
+        "    return []\n"
+    )
+    monkeypatch.chdir(tmp_path / "here")
+    told = [
+        provenance.plugins(discover(extra=[path], entry_points=False))
+        for path in (Path("../loose.py"), tmp_path / "loose.py")
+    ]
+    assert told[0] == told[1]
+    (mine,) = [p for p in told[0] if p["name"] == "loose"]
+    assert mine["distribution"] == "loose.py"

@@ -6,7 +6,7 @@ import gc
 
 import pytest
 
-from crowdbot.core.support.seldom_collected import seldom_collected
+from crowdbot.core.support.seldom_collected import collect_seldom, seldom_collected
 
 
 @pytest.fixture(autouse=True)
@@ -43,6 +43,13 @@ def test_what_somebody_set_higher_or_off_stays(first: int) -> None:
     with seldom_collected():
         assert gc.get_threshold() == (first, 5, 7)
     assert gc.get_threshold() == (first, 5, 7)
+
+
+def test_the_rest_of_a_process() -> None:
+    gc.set_threshold(700, 10, 10)
+    collect_seldom()
+    assert _collections() == 0
+    assert gc.get_threshold()[1:] == (10, 10)
 
 
 def test_errors_leave_it_as_it_was() -> None:

@@ -205,6 +205,12 @@ def _circle(scale: float = 1.0) -> dict[str, Any]:
     return {"t": t, "x": scale * 3 * np.cos(t / 5), "y": scale * 3 * np.sin(t / 5)}
 
 
+def _frames() -> dict[str, Any]:
+    """The same circle, of a camera with 25 pictures a second."""
+    k = np.arange(300)
+    return {"t": k, "x": 3 * np.cos(k / 125), "y": 3 * np.sin(k / 125)}
+
+
 def _people(x: Any, y: Any, t: Any) -> dict[str, Any]:
     return {"t": t, "id": np.zeros(len(t)), "x": x, "y": y}
 
@@ -220,6 +226,7 @@ def _wrong() -> dict[str, tuple[dict[str, Any], dict[str, Any] | None, str]]:
         "people mm": (good, _people(1000 * x, 1000 * y, t), "people: median speed 600 m/s.*milli"),
         "ms": ({**good, "t": 1000 * t}, None, "median time between samples 100 s: milliseconds"),
         "ns": ({**good, "t": 1e9 * t}, None, "nanoseconds"),
+        "frames": (_frames(), None, "whole numbers.*frame_rate=25 it would be 0.6 m/s"),
         "degrees": ({**good, "theta": np.degrees(theta)}, None, "taken as degrees, in 100 %"),
         "y first": ({**good, "theta": 0.5 * np.pi - theta}, None, "x and y exchanged, in 100 %"),
         "north": ({**good, "theta": theta - 0.5 * np.pi}, None, "turned by (-)?90 degrees"),
@@ -242,6 +249,36 @@ def test_what_cannot_be_is_warned_of_with_the_evidence(name: str) -> None:
     robot, agents, message = _wrong()[name]
     with pytest.warns(RecordingWarning, match=message):
         crowdbot.Trajectories.from_pandas(robot, agents, **BODY)
+
+
+def test_times_may_be_numbers_of_frames(tmp_path: Path) -> None:
+    robot = tmp_path / "robot.csv"
+    robot.write_text("Bild;Pos X;Pos Y\n" + "".join(f"{k};{0.02 * k};0\n" for k in range(50)))
+    people = tmp_path / "people.csv"
+    people.write_text("Bild;Wer;Pos X;Pos Y\n" + "".join(f"{k};ada;9;1\n" for k in range(50)))
+    names = {"t": "Bild", "x": "Pos X", "y": "Pos Y"}
+    columns = {"robot": names, "agents": {**names, "id": "Wer"}}
+    run = crowdbot.Trajectories.from_csv(robot, people, columns=columns, frame_rate=25, **BODY)
+    np.testing.assert_allclose(run.t, np.arange(50) / 25)
+    assert run.robot is not None
+    np.testing.assert_allclose(np.diff(run.robot.x) / np.diff(run.t), 0.5)
+    with pytest.raises(InputError, match="frame_rate is a number of frames per second, not 0"):
+        crowdbot.Trajectories.from_csv(robot, columns={"robot": names}, frame_rate=0, **BODY)
+
+
+def test_stamps_are_no_frames(tmp_path: Path) -> None:
+    path = tmp_path / "r.csv"
+    path.write_text("t,x,y\n2026-05-01T10:00:00Z,0,0\n2026-05-01T10:00:01Z,1,0\n")
+    with pytest.raises(InputError, match=r"r\.csv:2: t holds stamps; frame_rate is for frames"):
+        crowdbot.Trajectories.from_csv(path, frame_rate=25, **BODY)
+
+
+def test_what_is_missing_is_said_with_the_nearest_right_thing(tmp_path: Path) -> None:
+    (tmp_path / "robot.csv").write_text("t,x,y\n0,0,0\n1,1,0\n")
+    with pytest.raises(InputError, match=r"did you mean '.*robot\.csv'"):
+        crowdbot.Trajectories.from_csv(tmp_path / "robt.csv", **BODY)
+    with pytest.raises(InputError, match="a robot needs robot_radius"):
+        crowdbot.Trajectories.from_csv(tmp_path / "robot.csv", robot_mass=3.0)
 
 
 def test_a_plausible_recording_is_quiet() -> None:
@@ -386,7 +423,8 @@ def test_eth_and_ucy(tmp_path: Path) -> None:
     ("text", "message"),
     [
         ("", "the file is empty"),
-        ("a,b\n1,2\n", "the column t, x, y is missing; the table has"),
+        ("a,b\n1,2\n", "the columns t, x, y are missing; the table has a, b; columns={'robot'"),
+        ("t,x\n1,2\n", "the column y is missing; the table has t, x; columns="),
         ("t,x,y\n0,0,0\n0,1,0\n", r":3: t does not increase"),
         ("t,x,y\n0,0\n", r":2: the row is too short: 2 cells of 3"),
         ("t,x,y\n0,east,0\n", r":2: x: could not convert"),
