@@ -45,6 +45,7 @@ def main() -> None:
         for number, row in enumerate(times):
             for n in (0, 1) if number % 2 == 0 else (1, 0):
                 row[n] = _run(places[n], chosen.planner, chosen.seconds)
+            print(f"round {number + 1}: {row[0]:.2f} s, {row[1]:.2f} s", flush=True)
         hashes = [_trajectory(place) for place in places]
     before, after = ([row[n] for row in times] for n in (0, 1))
     a, b = median(before), median(after)

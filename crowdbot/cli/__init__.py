@@ -25,10 +25,11 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from crowdbot.cli._complete import offer
-from crowdbot.cli._mishaps import tell_of_threads
+from crowdbot.cli._mishaps import left_by, tell_of_threads
+from crowdbot.core.registry.plugin_errors import telling_interrupts
 from crowdbot.core.support.quick_exit import end_without_collecting
 from crowdbot.core.support.seldom_collected import collect_seldom
-from crowdbot.errors import CrowdbotError, SpecError, did_you_mean, nearest, printable
+from crowdbot.errors import CrowdbotError, PluginError, SpecError, did_you_mean, nearest, printable
 
 _SETTINGS: dict[str, Any] = {
     "add_completion": False,
@@ -48,12 +49,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     _tolerate_any_encoding()
     tell_of_threads()
     try:
-        return _run(argv)
+        with telling_interrupts():
+            return _run(argv)
     except CrowdbotError as error:
         _say(_text(error))
         return error.exit_code
-    except KeyboardInterrupt:
-        return 130
+    except (KeyboardInterrupt, SystemExit) as error:
+        if said := left_by(error):
+            _say(said)
+        return PluginError.exit_code if said else 130
     except BrokenPipeError:
         _drop_output()
         return 0
@@ -78,6 +82,8 @@ def _run(argv: Sequence[str] | None) -> int:
             get_command(_app())(words, prog_name="crowdbot")
         sys.stdout.flush()
     except SystemExit as done:
+        if left_by(done):
+            raise
         sys.stdout.flush()
         return done.code if isinstance(done.code, int) else int(done.code is not None)
     return 0

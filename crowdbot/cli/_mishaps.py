@@ -6,16 +6,20 @@ import os
 import sys
 import threading
 import traceback
+from importlib.metadata import entry_points
 
+from crowdbot.core.registry.plugin_errors import (
+    UserInterrupt,
+    culprit,
+    error_text,
+)
 from crowdbot.errors import printable
 
 
 def internal_error(error: Exception) -> str:
     """One line; it names the plugins of others, which run in this process and can break it."""
-    from importlib.metadata import entry_points
-
     text = (
-        f"internal error {type(error).__name__}: {error}; "
+        f"internal error {error_text(error)}{culprit(error)}; "
         "run with CROWDBOT_DEBUG=1 for the traceback"
     )
     allowed = os.environ.get("CROWDBOT_PLUGINS", "")
@@ -27,6 +31,19 @@ def internal_error(error: Exception) -> str:
             f", or with CROWDBOT_PLUGINS=builtin to see whether it is a plugin's: {_few(others)}"
         )
     return text
+
+
+def left_by(error: BaseException) -> str:
+    """What a plugin raised to leave crowdbot, where no call expected it.
+
+    Empty where it was the user, or the command line itself, whose own ``SystemExit`` comes from
+    click.
+    """
+    turned = error.__context__.__cause__ if error.__context__ else None
+    if isinstance(turned, KeyboardInterrupt):  # typer makes an exit of it
+        error = turned
+    place = "" if isinstance(error, UserInterrupt) else culprit(error)
+    return f"error: a plugin raised {error_text(error)}{place}" if place else ""
 
 
 def tell_of_threads() -> None:

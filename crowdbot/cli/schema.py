@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -15,6 +16,9 @@ from crowdbot.errors import UsageError
 
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
+
+
+_LOG = logging.getLogger(__name__)
 
 
 class DocumentKind(StrEnum):
@@ -49,11 +53,23 @@ def schema(
             f"a {document} has no canonical form; 'crowdbot schema scenario --canonical' is that "
             "of its scenarios"
         )
-    text = to_text(build(document, installed(plugin, no_plugins), canonical=canonical))
+    text = to_text(build(document, _describable(plugin, no_plugins), canonical=canonical))
     if out is None:
         typer.echo(text, nl=False)
     else:
         atomic_write(out, text.encode())
+
+
+def _describable(plugin: list[Path] | None, no_plugins: bool) -> Registry:
+    """What is installed, but for plugins that have no schema; each of them is a warning."""
+    from crowdbot.core.registry.schema_check import describable
+
+    found = installed(plugin, no_plugins)
+    described = describable(found)
+    for old, new in zip(found.plugins, described.plugins, strict=True):
+        if new.error and not old.error:
+            _LOG.warning("warning: plugin '%s' is left out: %s", new.name, new.error)
+    return described
 
 
 def build(document: str, registry: Registry, *, canonical: bool = False) -> dict[str, Any]:

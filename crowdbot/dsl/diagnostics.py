@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -70,6 +71,8 @@ CODES = {
 REFERENCE = "docs/reference/errors.md"
 #: Nobody reads more of them; documents that have more are broken in some other way.
 MAX_ERRORS = 1000
+#: Errors of one text that are shown.
+_ALIKE = 10
 _WINDOW = 100
 _LONGEST = 400
 
@@ -145,12 +148,27 @@ class Diagnostic:
 
 
 def render(diagnostics: Iterable[Diagnostic]) -> str:
-    """All errors for people, with a last line that counts them."""
+    """All errors for people, with a last line that counts them.
+
+    Of those that say the same of many places, the first `_ALIKE` are shown, and how many follow.
+    """
     found = list(diagnostics)
     count = "1 error" if len(found) == 1 else f"{len(found)} errors"
     if len(found) >= MAX_ERRORS:
         count = f"at least {count}"
-    return "\n".join([*(_render_one(d) for d in found), f"{count}; see {REFERENCE}"])
+    alike = Counter[tuple[str, str, str]]()
+    lines = []
+    for one in found:
+        said = (one.mark.source.name, one.code, one.message)
+        alike[said] += 1
+        if alike[said] <= _ALIKE:
+            lines.append(_render_one(one))
+    lines += [
+        f"{name}: error[{code}] {_shown(message)}: {number - _ALIKE} more of them"
+        for (name, code, message), number in alike.items()
+        if number > _ALIKE
+    ]
+    return "\n".join([*lines, f"{count}; see {REFERENCE}"])
 
 
 def _render_one(diagnostic: Diagnostic) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -174,6 +175,7 @@ class _Expander:
         self._merged: Merged = {}
         self._data: dict[Node, Any] = {}
         self._seeds: dict[str, Node] = {}
+        self._folders: dict[str, str] = {}
         self._parts, self._checks = ValidParts(), Checks()
         self._assets = AssetFiles(suite.finder) if suite.finder else None
         self._validated: dict[tuple[tuple[str, int], ...], Scenario] = {}
@@ -205,6 +207,25 @@ class _Expander:
             axis_words(suite.base, suite.axes, self._set),
         )
 
+    def _unusable(self, bare: _Bare) -> str:
+        """Why a combination's id cannot be a folder beside those before; empty where it can."""
+        if bare.name == self._suite.scenario_id:
+            return ""
+        first = self._folders.setdefault(bare.name.lower(), bare.name)
+        if first != bare.name:
+            return f"'{bare.name}' is '{first}' where file systems do not tell capitals"
+        return path_problem(bare.name)
+
+    def _longest(self, bare: _Bare) -> Mark:
+        """Where the longest of a combination's labels is written."""
+        keys = {axis.name: axis.keys for axis in self._suite.axes}
+        marks = [
+            (len(label), keys[axis][label])
+            for axis, label in bare.labels.items()
+            if label in keys[axis]
+        ]
+        return max(marks, key=itemgetter(0), default=(0, self._suite.base.mark))[1]
+
     def one(self, index: int) -> Scenario:
         if self._bare is None:
             self._bare = list(self._trees())
@@ -216,9 +237,8 @@ class _Expander:
     def _scenario(self, bare: _Bare, tree: Node) -> Scenario | None:
         """A combination with its references; None if something is wrong, which is noted."""
         self._total += 1
-        if bare.name != self._suite.scenario_id and (why := path_problem(bare.name)):
-            mark = self._suite.base.mark
-            self._note(Diagnostic("E116", f"the id {why}", mark), bare.name, "")
+        if why := self._unusable(bare):
+            self._note(Diagnostic("E116", f"the id {why}", self._longest(bare)), bare.name, "")
             return None
         scenario = self._validate(bare.name, tree)
         references = {
@@ -329,7 +349,7 @@ class _Expander:
         """The scenario, made of parts that are known to be valid; None if that does not work."""
         try:
             return self._model.model_validate(self._parts.fill(tree, data))
-        except Exception:  # also a validator that does not expect validated parts
+        except (Exception, SystemExit):  # also a validator that does not expect validated parts
             return None
 
     def _note(self, diagnostic: Diagnostic, name: str, reference: str) -> None:

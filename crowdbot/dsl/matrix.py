@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from crowdbot.dsl.diagnostics import Diagnostic, Mark, Source
 from crowdbot.dsl.merge import kind_of, merge
@@ -23,10 +23,11 @@ _Path = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """A named axis: label -> what it overrides."""
+    """A named axis: label -> what it overrides, and label -> where it is written."""
 
     name: str
     labels: dict[str, Node]
+    keys: dict[str, Mark] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +108,7 @@ def _read_axis(name: str, key: Mark, node: Node, problems: list[Diagnostic]) -> 
             labels[label] = Node(entry.node.mark, {}, implied=True)
         else:
             labels[label] = entry.node
-    return Axis(name, labels)
+    return Axis(name, labels, {label: entry.key for label, entry in node.entries.items()})
 
 
 def _check_name(what: str, name: str, key: Mark, problems: list[Diagnostic]) -> None:

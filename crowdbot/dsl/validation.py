@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import inspect
+import os
 import re
-from collections.abc import Iterable, Mapping
+import traceback
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
@@ -44,11 +46,28 @@ def validate(model: type[M], data: Any, tree: Node) -> tuple[M | None, list[Diag
     try:
         return model.model_validate(data), []
     except ValidationError as error:
-        details = error.errors(include_url=False)[:MAX_ERRORS]
+        details = _without_echoes(error.errors(include_url=False))[:MAX_ERRORS]
         return None, [diagnose(detail, tree, model) for detail in details]
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         text = f"a validator of the installed components failed: {type(error).__name__}: {error}"
-        raise PluginError(text) from error
+        raise PluginError(f"{text}{_innermost(error)}") from error
+
+
+def _innermost(error: BaseException) -> str:
+    """`` (file:line)`` of the validator that raised."""
+    frames = traceback.extract_tb(error.__traceback__)[1:]
+    own = [f for f in frames if f"{os.sep}pydantic" not in f.filename and f.filename[0] != "<"]
+    return f" ({own[-1].filename}:{own[-1].lineno})" if own else ""
+
+
+def _without_echoes(details: Sequence[Any]) -> list[Any]:
+    """Errors, but for lists that are too short only because of entries that are wrong."""
+    places = [tuple(detail["loc"]) for detail in details]
+    parents = {place[:n] for place in places for n in range(len(place))}
+    return [
+        d for d, at in zip(details, places, strict=True)
+        if d["type"] != "too_short" or at not in parents
+    ]  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

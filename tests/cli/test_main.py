@@ -7,6 +7,7 @@ import sys
 import pytest
 
 from crowdbot import cli
+from crowdbot.core.registry.plugin_errors import UserInterrupt
 from crowdbot.errors import CrowdbotError, PluginError, SimulationError, UsageError
 from tests.waiting import AT_MOST
 
@@ -58,9 +59,11 @@ def test_a_mistyped_command_gets_a_hint(capsys: pytest.CaptureFixture[str]) -> N
         (PluginError("acme broke"), 3, "error: acme broke"),
         (SimulationError("no"), 4, "error: no"),
         (CrowdbotError("x"), 1, "error: x"),
-        (KeyboardInterrupt(), 130, ""),
+        (UserInterrupt(), 130, ""),
         (PermissionError(13, "Permission denied", "f"), 1, "error: f: Permission denied"),
-        (ZeroDivisionError("z"), 4, "internal error ZeroDivisionError: z; run with CROWDBOT_DEBUG"),
+        (ZeroDivisionError("z"), 4, f"internal error ZeroDivisionError: z ({__file__}:"),
+        (KeyboardInterrupt(), 3, f"error: a plugin raised KeyboardInterrupt ({__file__}:"),
+        (SystemExit(0), 3, f"error: a plugin raised SystemExit: 0 ({__file__}:"),
     ],
 )
 def test_exit_codes(

@@ -74,3 +74,12 @@ def test_tabs_do_not_move_the_caret() -> None:
     source = Source("f.yaml", ("\t\tBAD",))
     shown = render([Diagnostic("E102", "no", Mark(source, 0, 2, 3))]).split("\n")
     assert shown[1].index("BAD") == shown[2].index("^^^")
+
+
+def test_what_is_said_of_many_places_is_said_a_few_times() -> None:
+    source = Source("f.yaml", ("x" * 900,))
+    many = [Diagnostic("E004", "alias 'a'", Mark(source, 0, i)) for i in range(900)]
+    shown = render([*many, Diagnostic("E102", "another", Mark(source))])
+    assert shown.count("f.yaml:1:") == 11
+    assert "f.yaml: error[E004] alias 'a': 890 more of them\n901 errors" in shown
+    assert "890" not in render(many[:10])

@@ -209,17 +209,20 @@ def test_all_errors_at_once_sorted(write: Write) -> None:
     ]
 
 
-def test_validator_of_a_plugin_that_crashes_is_a_plugin_error(write: Write) -> None:
+@pytest.mark.parametrize("error", [ZeroDivisionError("oops"), SystemExit(0), RecursionError()])
+def test_validator_of_a_plugin_that_crashes_is_a_plugin_error(
+    write: Write, error: BaseException
+) -> None:
     from crowdbot.dsl.validation import validate
     from crowdbot.errors import PluginError
 
     class Broken(REGISTRY.scenario_model):  # type: ignore[name-defined, misc]
         @classmethod
         def model_validate(cls, *_: Any, **__: Any) -> Any:
-            raise ZeroDivisionError("oops")
+            raise error
 
     tree = load_document(write(SUITE)).base
-    with pytest.raises(PluginError, match="ZeroDivisionError"):
+    with pytest.raises(PluginError, match=rf"{type(error).__name__}.*test_expansion\.py:\d+"):
         validate(Broken, {}, tree)
 
 

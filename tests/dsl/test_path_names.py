@@ -64,7 +64,29 @@ def test_ids_that_grow_too_long(tmp_path: Path) -> None:
     axes = "".join(f"  x{i}: {{{label}: {{title: t}}}}\n" for i in range(1))
     axes += f"  y: {{{label}: {{contact.dissipation: 0.4 s/m}}}}\n"
     file.write_text(f"crowdbot: 1\nsuite: {{id: s}}\nbase:\n{WORLD}matrix:\n{axes}")
-    with pytest.raises(SpecError, match=f"the id has 241 bytes; at most {LONGEST}"):
+    with pytest.raises(SpecError, match=f"the id has 241 bytes; at most {LONGEST}") as caught:
+        open_spec(str(file), registry())
+    mark = caught.value.diagnostics[0].mark
+    assert mark.source.lines[mark.line][mark.column :].startswith(label)
+
+
+def test_ids_that_are_one_folder_on_some_disks(tmp_path: Path) -> None:
+    file = tmp_path / "s.yaml"
+    labels = "{a: {title: t}, b: {title: u}, A: {title: v}}"
+    file.write_text(f"crowdbot: 1\nsuite: {{id: s}}\nbase:\n{WORLD}matrix:\n  x: {labels}\n")
+    with pytest.raises(SpecError, match="the id 'A' is 'a' where file systems") as caught:
+        open_spec(str(file), registry())
+    assert str(caught.value.diagnostics[0].mark) == f"{file}:7:37"
+
+
+def test_a_list_whose_entries_are_wrong_is_not_called_empty(tmp_path: Path) -> None:
+    file = tmp_path / "s.yaml"
+    file.write_text(f"crowdbot: 1\nsuite: {{id: s}}\nseeds: {{runs: [-1]}}\nbase:\n{WORLD}")
+    with pytest.raises(SpecError) as caught:
+        open_spec(str(file), registry())
+    assert [d.code for d in caught.value.diagnostics] == ["E112"]
+    file.write_text(f"crowdbot: 1\nsuite: {{id: s}}\nseeds: {{runs: []}}\nbase:\n{WORLD}")
+    with pytest.raises(SpecError, match="at least 1"):
         open_spec(str(file), registry())
 
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import posixpath
 import tempfile
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from crowdbot.core.bundle.archive import Archive
 from crowdbot.core.bundle.check_run import ClaimedRun
 from crowdbot.core.bundle.pack import read_json
+from crowdbot.core.recording.attachments import attached
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.robots import RecordedRun, read_recorded
@@ -58,11 +61,18 @@ def read_member(archive: Archive, name: str) -> RecordedRun:
     Raises:
         InputError: it cannot be read.
     """
+    with _unpacked(archive, name) as file:
+        return read_recorded(file)
+
+
+@contextmanager
+def _unpacked(archive: Archive, name: str) -> Iterator[Path]:
+    """A recording of a bundle as a file; errors inside do not name that."""
     with tempfile.TemporaryDirectory(prefix="crowdbot-bundle-") as folder:
         file = Path(folder) / files.RECORDING
         archive.unpack(name, file)
         try:
-            return read_recorded(file)
+            yield file
         except InputError as error:
             raise InputError(str(error).removeprefix(f"{file}: ")) from None
 
@@ -87,11 +97,36 @@ def ownership_problems(run: ClaimedRun, found: RecordedRun) -> Iterator[str]:
 
 def _run_problems(archive: Archive, run: ClaimedRun, name: str) -> Iterator[str]:
     try:
-        found = read_member(archive, name)
+        with _unpacked(archive, name) as file:
+            found = read_recorded(file)
+            attachments = attached(file) if found.complete else []
     except InputError as error:
         yield str(error)
         return
     yield from ownership_problems(run, found)
+    yield from _attachment_problems(archive, run, attachments)
+
+
+def _attachment_problems(
+    archive: Archive, run: ClaimedRun, attachments: Sequence[tuple[str, bytes]]
+) -> Iterator[str]:
+    """Files inside a recording that are not those of its run; it need not have any.
+
+    The record inside is older than the list of sizes, which the recording's own is in.
+    """
+    if len({name for name, _ in attachments}) < len(attachments):
+        yield "two files inside it have one name"
+    for name, content in attachments:
+        if name == files.RECORD:
+            plain = {k: v for k, v in run.record.items() if k != "files"}
+            same = content == (json.dumps(plain, indent=2, ensure_ascii=False) + "\n").encode()
+        elif name in (files.SCENARIO, files.SCORES):
+            same = content == archive.read(f"{run.entry.directory}/{name}")
+        else:
+            yield f"a file inside it belongs to no run: {name[:100]}"
+            continue
+        if not same:
+            yield f"{name} inside it is not that of the run"
 
 
 def _reference_problems(archive: Archive, name: str, wanted: str) -> Iterator[str]:

@@ -94,6 +94,7 @@ def verdict_of(reruns: Sequence[Rerun]) -> RerunVerdict:
     for rerun in reruns:
         findings += _other_people(rerun)
         findings += _other_conditions(rerun)
+        findings += _other_role(rerun)
         if rerun.relation == "identical":
             findings += _other_ending(rerun)
             findings += _unequal(rerun)
@@ -197,6 +198,13 @@ def _other_conditions(rerun: Rerun) -> Iterator[str]:
         if differing:
             yield f"{rerun.claimed.name}: {key} differ from those of the suite: " \
                   f"{', '.join(differing[:3])}"  # fmt: skip
+
+
+def _other_role(rerun: Rerun) -> Iterator[str]:
+    """A role that the planner does not declare; nobody can see it in what it did."""
+    said, found = (r.get("role", "candidate") for r in (rerun.claimed.record, rerun.record))
+    if said != found:
+        yield f"{rerun.claimed.name}: role is claimed to be {said!r}, but is {found!r}"
 
 
 def _other_version(a: Any, b: Any) -> bool:

@@ -26,6 +26,7 @@ from crowdbot.core.crowd.velocity_search.cost import (
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.support.immutable import immutable_fields
+from crowdbot.core.support.plain_numbers import plain_numbers
 from crowdbot.core.types.arrays import Array
 from crowdbot.dsl.component_specs import CostFunctionSpec, CrowdPolicySpec
 from crowdbot.errors import PluginError
@@ -120,7 +121,7 @@ def _checked_costs(
 ) -> Callable[[Array, AgentView, Neighbours], Array]:
     def checked(candidates: Array, agent: AgentView, neighbours: Neighbours) -> Array:
         with call("evaluate"):
-            found = np.asarray(evaluate(candidates, agent, neighbours), np.float64)
+            found = plain_numbers(evaluate(candidates, agent, neighbours))
         if found.shape != (len(candidates),):
             call.fail(f"evaluate returned shape {found.shape} for {len(candidates)} candidates")
         if np.isnan(found).any():

@@ -9,6 +9,7 @@ import numpy as np
 
 from crowdbot.core.crowd.policy import CrowdPolicy, CrowdView
 from crowdbot.core.registry.plugin_boundary import PluginCall
+from crowdbot.core.support.plain_numbers import plain_numbers
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.candidates import VelocityCandidates
 from crowdbot.errors import PluginError
@@ -92,11 +93,16 @@ def _call(policy: CrowdPolicy) -> PluginCall:
     return policy.call if isinstance(policy, CheckedPolicy) else CheckedPolicy(policy).call
 
 
+#: Components of an answer beyond this would overflow, m/s or m/s^2.
+_MOST = 1e9
+
+
 def _checked(asked: object, view: CrowdView, call: PluginCall) -> Array:
-    answer = np.asarray(asked, np.float64)
+    with call("decision", view.t):
+        answer = plain_numbers(asked)
     if answer.shape != view.position.shape:
         call.fail(f"returned shape {answer.shape} instead of {view.position.shape}")
-    finite = np.isfinite(answer)
+    finite = np.abs(answer) < _MOST  # not of NaN
     if finite.all():
         return answer
     finite = np.all(finite, axis=1)

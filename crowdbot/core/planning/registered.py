@@ -10,10 +10,18 @@ from pydantic import ValidationError
 from crowdbot.core.planning.planner import Planner
 from crowdbot.core.planning.python_file import checked_planner
 from crowdbot.core.registry.build_reference import load_build
+from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
 from crowdbot.dsl.component import Component
 from crowdbot.dsl.component_specs import PlannerSpec
-from crowdbot.errors import InputError, PlannerError, UnknownNameError, did_you_mean, nearest
+from crowdbot.errors import (
+    CrowdbotError,
+    InputError,
+    PlannerError,
+    UnknownNameError,
+    did_you_mean,
+    nearest,
+)
 
 
 def find_kind(kind: str, registry: Registry, where: str = "") -> Component[Any]:
@@ -39,9 +47,14 @@ def spec_of_kind(
 
     Raises:
         InputError: a parameter is wrong.
+        PluginError: a validator raised something else.
     """
+    call = PluginCall(f"planner '{component.kind}'", passes=(CrowdbotError, ValidationError))
     try:
-        spec: PlannerSpec = component.spec.model_validate({**parameters, "kind": component.kind})
+        with call("its parameters cannot be read"):
+            spec: PlannerSpec = component.spec.model_validate(
+                {**parameters, "kind": component.kind}
+            )
     except ValidationError as error:
         known = component.spec.model_fields
         raise InputError("\n".join(_lines(error, component.kind, known, where))) from None

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import os
+import struct
+import zlib
 from collections.abc import Mapping
 from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
+from typing import IO
 
+from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.reader import SeekingReader
 from mcap.records import Attachment, AttachmentIndex
@@ -15,6 +20,8 @@ from crowdbot.core.recording.chunk import serialised
 from crowdbot.core.recording.ending import END_OF_DATA_SIZE, FileIndex, ending
 from crowdbot.errors import InputError
 
+#: Bytes before the content of a record: what it is, and its length.
+_HEAD = 9
 _TYPES = {".json": "application/json", ".yaml": "application/yaml", ".csv": "text/csv"}
 
 
@@ -43,6 +50,32 @@ def attach(path: Path, files: Mapping[str, bytes]) -> None:
         file.write(data + ending(index, end + len(data)))
         file.flush()
         os.fsync(file.fileno())
+
+
+def attached(path: Path) -> list[tuple[str, bytes]]:
+    """The files in a complete recording, names and contents, in their order.
+
+    Raises:
+        InputError: they cannot be read, or their checksums say otherwise.
+    """
+    try:
+        with path.open("rb") as file:
+            summary = SeekingReader(file).get_summary()
+            if summary is None or summary.statistics is None:
+                raise ValueError("it has no index")
+            return [_content(file, place) for place in summary.attachment_indexes]
+    except (McapError, OSError, ValueError, EOFError, struct.error) as error:
+        raise InputError(f"{path}: its attachments cannot be read: {error}") from error
+
+
+def _content(file: IO[bytes], place: AttachmentIndex) -> tuple[str, bytes]:
+    file.seek(place.offset)
+    record = file.read(place.length)[_HEAD:]
+    crc = int.from_bytes(record[-4:], "little")
+    if crc and crc != zlib.crc32(record[:-4]):
+        raise ValueError(f"the checksum of '{place.name[:100]}' is another one")
+    found = Attachment.read(ReadDataStream(BytesIO(record)))
+    return found.name, found.data
 
 
 def _index(path: Path) -> tuple[FileIndex, int]:

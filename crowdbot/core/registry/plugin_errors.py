@@ -7,13 +7,18 @@ import sysconfig
 import traceback
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
+from functools import cache
+from importlib.metadata import entry_points
 from importlib.resources import files
 from pathlib import Path
 
 from crowdbot.errors import Interrupted, PlannerHungError
 
-#: Frames of crowdbot are not where somebody else's error is.
+#: Frames of crowdbot's machinery are not where somebody else's error is.
 _PACKAGE = str(files("crowdbot"))
+#: Modules whose frames every command has.
+_NO_PLUGINS = frozenset(("crowdbot", "click", "typer"))
+_MACHINERY = tuple(f"{_PACKAGE}/{part}/" for part in ("core", "dsl", "cli"))
 
 
 def describe_error(error: BaseException, sources: Collection[str] = ()) -> str:
@@ -24,8 +29,31 @@ def describe_error(error: BaseException, sources: Collection[str] = ()) -> str:
         sources: files in which the culprit is known to be written; frames in them, beside them or
             in nobody's library are preferred.
     """
+    return f"{error_text(error)}{_where(error, sources)}"
+
+
+def error_text(error: BaseException) -> str:
+    """Type and text of an error, also of one that has no text."""
     kind, text = type(error).__name__, _text(error)
-    return f"{kind}{f': {text}' if text else ''}{_where(error, sources)}"
+    return f"{kind}{f': {text}' if text else ''}"
+
+
+@cache
+def _plugin_roots() -> frozenset[str]:
+    """First names of the modules of installed plugins; looking for them takes milliseconds."""
+    found = entry_points(group="crowdbot")
+    return frozenset(e.value.partition(":")[0].partition(".")[0] for e in found)
+
+
+def culprit(error: BaseException) -> str:
+    """`` (file:line)`` of the innermost frame that is in a plugin; empty where none is."""
+    found = ""
+    for frame, line in traceback.walk_tb(error.__traceback__):
+        root = str(frame.f_globals.get("__name__")).partition(".")[0]
+        file = frame.f_code.co_filename
+        if root not in _NO_PLUGINS and (not _is_a_library(file) or root in _plugin_roots()):
+            found = f" ({file}:{line})"
+    return found
 
 
 def is_user_interrupt(error: BaseException) -> bool:
@@ -91,12 +119,17 @@ def _where(error: BaseException, sources: Collection[str]) -> str:
 
 
 def _is_ours(file: str) -> bool:
-    return file.startswith(f"{_PACKAGE}/core/")
+    return file.startswith(_MACHINERY)
 
 
 def _is_own(file: str, sources: Collection[str]) -> bool:
     """A planner's file, a file beside it, or any file that is not an installed library."""
     if file in sources or Path(file).parent in {Path(s).parent for s in sources}:
         return True
+    return not _is_ours(file) and not _is_a_library(file)
+
+
+def _is_a_library(file: str) -> bool:
+    """Whether nobody wrote a file for crowdbot: Python's own, and what is installed."""
     libraries = {sysconfig.get_path(p) for p in ("stdlib", "platstdlib", "purelib", "platlib")}
-    return not _is_ours(file) and not any(file.startswith(p) for p in libraries if p)
+    return file.startswith(("<", *(p for p in libraries if p)))

@@ -90,6 +90,7 @@ class RecordModel(_Part):
     reason: str
     sim_time: Seconds
     wall_time: Seconds
+    planner_process: Literal["own", "in_process"] = "in_process"
     role: Literal["floor", "baseline", "ceiling", "candidate"] = "candidate"
     recorded: Literal["all", "used", "none"] = "all"
     agents: Literal["locked", "drawn", "none"] = "none"

@@ -6,6 +6,7 @@ import fnmatch
 import html
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import TYPE_CHECKING, Any, cast, overload
 
 import numpy as np
@@ -18,12 +19,20 @@ from crowdbot.core.support.data_frame import to_arrow, to_pandas
 from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.trajectories.preprocess import truncate_at_arrival, with_velocities
 from crowdbot.core.trajectories.questionnaires import Questionnaires
+from crowdbot.core.trajectories.sizes import check_sizes
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.component import Component
 from crowdbot.dsl.component_specs import MetricSpec
 from crowdbot.dsl.metric_component import MetricComponent
-from crowdbot.errors import InputError, PluginError, UnknownNameError, did_you_mean, nearest
+from crowdbot.errors import (
+    InputError,
+    PluginError,
+    UnknownNameError,
+    did_you_mean,
+    hidden_character,
+    nearest,
+)
 
 if TYPE_CHECKING:
     import pandas as pd  # type: ignore[import-untyped]
@@ -152,8 +161,8 @@ def score(
 
     Raises:
         UnknownNameError: no metric or variant answers to a name.
-        InputError: there is nothing to score, a metric is retired, a parameter does not fit, or an
-            arrival time lies outside its run.
+        InputError: there is nothing to score, a metric is retired, a parameter does not fit, an
+            arrival time lies outside its run, or a number of it is beyond all sizes.
         PluginError: a metric failed.
     """
     if crowded is None and commands is None and questionnaires is None:
@@ -171,6 +180,7 @@ def score(
     for trajectories in (run, robot_alone, crowd_alone):
         if trajectories is not None:
             truncate_at_arrival(trajectories)  # an impossible arrival is not a metric's failure
+            check_sizes(trajectories)
     specs = metric_specs(registry, metrics, parameters or {})
     scores = [s for spec in specs for s in _scores_of(registry, spec, run, refs)]
     return Scores(tuple(_of_variants(scores, variants)))
@@ -239,6 +249,10 @@ def _checked_metric(metric: object) -> Metric:
     return cast(Metric, metric)
 
 
+#: Of one metric; what it returns may never end.
+_MOST_SCORES = 1000
+
+
 def _scores_of(
     registry: Registry, spec: MetricSpec, run: Trajectories, refs: References
 ) -> list[Score]:
@@ -249,8 +263,10 @@ def _scores_of(
         answer: object = metric.score(run, refs)
         if not isinstance(answer, Iterable):
             call.fail(f"score returned {answer!r}; a list of scores is wanted")
-        scores = list(answer)
-    if wrong := _what_is_wrong(scores, registry.find("metric", spec.kind)):
+        scores = list(islice(answer, _MOST_SCORES))  # of more, the variants are wrong anyway
+    with call("what it returned"):
+        wrong = _what_is_wrong(scores, registry.find("metric", spec.kind))
+    if wrong:
         call.fail(wrong)
     parameters = spec.model_dump(exclude={"kind"})
     return [replace(s, parameters=parameters) for s in scores]
@@ -261,6 +277,8 @@ def _what_is_wrong(scores: Sequence[object], component: Component[MetricSpec]) -
     for item in scores:
         if not isinstance(item, Score) or item.metric != component.kind:
             return f"returned {item!r} instead of its own scores"
+        if hidden := hidden_character(str(item.reason), allowed=""):
+            return f"returned a reason with the character {hidden}"
     names = [s.variant for s in scores if isinstance(s, Score)]
     if len(set(names)) != len(names):
         return f"returned a variant twice: {', '.join(names)}"

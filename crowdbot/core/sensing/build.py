@@ -13,12 +13,15 @@ from numpy.typing import NDArray
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.sensing.sensor import DepthCamera, NoiseGenerator, Sensor, SensorWithMemory
+from crowdbot.core.support.plain_numbers import plain_numbers
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.component_specs import NoiseSpec, SensorSpec
-from crowdbot.errors import PluginError
+from crowdbot.errors import PluginError, hidden_character
 
+#: Numbers of one reading: 100 images of a million pixels.
+_MOST_VALUES = 100_000_000
 _TEXTS = ("category", "frame", "ros_type")
 
 
@@ -93,7 +96,7 @@ class CheckedSensor:
             PluginError: it raised, or returned something that is not a reading.
         """
         with self._call("read", given[2]):
-            values = np.asarray(self._sensor.read(*given), np.float64)
+            values = plain_numbers(self._sensor.read(*given))
         if values.shape != self._shape:
             self._call.fail(f"read returned shape {values.shape}; info() says {self._shape}")
         if math.isnan(np.minimum.reduce(values, axis=None)):  # quicker than looking at each
@@ -129,13 +132,11 @@ def _check(info: object) -> None:
     for name in _TEXTS:
         if not (isinstance(getattr(info, name), str) and getattr(info, name)):
             refuse(f"{name} is {getattr(info, name)!r}")
+        if hidden := hidden_character(getattr(info, name), allowed=""):
+            refuse(f"{name} has the character {hidden}")
     if not (isinstance(info.rate, int | float) and 0.0 < info.rate <= TICKS_PER_SECOND):
         refuse(f"rate is {info.rate!r} Hz; it must be above 0 and at most {TICKS_PER_SECOND}")
-    shape: object = info.shape
-    if not (
-        isinstance(shape, tuple) and all(isinstance(n, Integral) and int(n) > 0 for n in shape)
-    ):
-        refuse(f"shape is {shape!r}; a tuple of whole numbers above 0 is wanted")
+    _check_shape(info, refuse)
     _check_mount(info, refuse)
     if not (isinstance(info.memory, Integral) and int(info.memory) >= 0):
         refuse(f"memory is {info.memory!r}")
@@ -146,6 +147,16 @@ def _check(info: object) -> None:
     if not all(isinstance(d, int | float) and 0.0 <= d < math.inf for d in info.deviations):
         refuse(f"deviations are {info.deviations!r}; numbers from 0 on are wanted")
     _check_camera(info, refuse)
+
+
+def _check_shape(info: SensorInfo, refuse: Callable[[str], None]) -> None:
+    shape: object = info.shape
+    if not (
+        isinstance(shape, tuple) and all(isinstance(n, Integral) and int(n) > 0 for n in shape)
+    ):
+        refuse(f"shape is {shape!r}; a tuple of whole numbers above 0 is wanted")
+    if math.prod(info.shape) > _MOST_VALUES:
+        refuse(f"shape is {shape!r}; a reading has at most {_MOST_VALUES} numbers")
 
 
 def _check_camera(info: SensorInfo, refuse: Callable[[str], None]) -> None:

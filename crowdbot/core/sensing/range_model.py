@@ -22,6 +22,7 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sensing.sensor import NoiseGenerator
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.immutable import immutable
+from crowdbot.core.support.plain_numbers import plain_numbers
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 from crowdbot.dsl.range_sensor import RangeSensorSpec
@@ -85,11 +86,26 @@ class RangeModel:
         """
         spec, lost = self._spec, _KEPT
         for generator in self._noise:
-            distance += generator.errors(immutable(distance), rng)
+            distance += _errors(generator, distance, rng)
         if spec.dropout > 0.0:
             lost = rng.random(len(distance)) < spec.dropout
         _finish(distance, lost, spec.range_min, spec.range_max, self._step)
         return distance
+
+
+def _errors(generator: NoiseGenerator, distance: Array, rng: np.random.Generator) -> Array:
+    """Errors (N,) of one generator, m; of what was not hit they may be anything.
+
+    Raises:
+        ValueError: they are not one number for each beam; named after the generator's class.
+    """
+    found = plain_numbers(generator.errors(immutable(distance), rng))
+    who = f"noise of {type(generator).__module__}.{type(generator).__name__}"
+    if found.shape != distance.shape:
+        raise ValueError(f"{who}: errors returned shape {found.shape} for {distance.shape}")
+    if not np.isfinite(found).all() and not np.isfinite(found[distance < np.inf]).all():
+        raise ValueError(f"{who}: errors returned something that is not finite for what was hit")
+    return found
 
 
 @kernel

@@ -16,6 +16,7 @@ from crowdbot.core.bundle.archive import open_archive
 from crowdbot.core.bundle.check import problems_of
 from crowdbot.core.bundle.entries import load_entries
 from crowdbot.core.bundle.manifest import MANIFEST
+from crowdbot.core.recording.attachments import attach
 from crowdbot.core.runs.record_model import record_problems
 from crowdbot.core.scenarios.library import open_suite
 from crowdbot.dsl.expand import Expansion
@@ -117,6 +118,38 @@ def test_files_of_no_run_are_named(bundle: Path) -> None:
     assert "readme.json belongs to no run of the manifest" in found
     found = problems(rewrite(bundle, {}, dict([*more.items()][:1]), honest=True))
     assert found == [f"{next(iter(more))} belongs to no run of the manifest"]
+
+
+def with_files(bundle: Path, tmp_path: Path, **changes: bytes) -> list[str]:
+    """What is wrong when a recording has the files of its run inside, some of them changed."""
+    name = members(bundle, "run.mcap")[0]
+    with open_archive(bundle) as archive:
+        archive.unpack(name, tmp_path / "run.mcap")
+        record = json.loads(archive.text(name.replace("run.mcap", "run.json")))
+        plain = {k: v for k, v in record.items() if k != "files"}
+        inside = {
+            "scenario.yaml": archive.read(name.replace("run.mcap", "scenario.yaml")),
+            "scores.csv": archive.read(name.replace("run.mcap", "scores.csv")),
+            "run.json": (json.dumps(plain, indent=2) + "\n").encode(),
+        }
+    attach(tmp_path / "run.mcap", inside | changes)
+    content = (tmp_path / "run.mcap").read_bytes().replace(b"FLIPS", b"FLIPT")
+    return problems(rewrite(bundle, {name: lambda _: content}, honest=True))
+
+
+@pytest.mark.parametrize(("changes", "why"), [
+    ({"scores.csv": b"better,scores"}, "scores.csv inside it is not that of the run"),
+    ({"run.json": b"{}"}, "run.json inside it is not that of the run"),
+    ({"scenario.yaml": b"FLIPS"}, "the checksum of 'scenario.yaml' is another one"),
+    ({"more.txt": b"x"}, "a file inside it belongs to no run: more.txt"),
+])  # fmt: skip
+def test_files_inside_a_recording_are_those_of_its_run(
+    bundle: Path, tmp_path: Path, changes: dict[str, bytes], why: str
+) -> None:
+    assert with_files(bundle, tmp_path) == []
+    found = with_files(bundle, tmp_path, **changes)
+    assert len(found) == 1
+    assert why in found[0]
 
 
 # ------------------------------------------------------------------------ manifest
@@ -282,6 +315,7 @@ WRONG: tuple[dict[str, Any], ...] = (
     {"conditions": {"rates.log": 8}},
     {"axes": 3},
     {"role": "winner"},
+    {"planner_process": "inside"},
     {"run_id": None},
 )
 

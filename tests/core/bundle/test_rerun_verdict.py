@@ -52,6 +52,7 @@ def test_the_same_trajectory_and_scores_are_verified() -> None:
     ({"goal_time": 3.0}, "goal_time is claimed to be 3.0, but is None"),
     ({"sim_time": 4.0}, "sim_time is claimed to be 4.0, but is 2.0"),
     ({"privileged": False}, "privileged is claimed to be False"),
+    ({"role": "floor"}, "role is claimed to be 'floor', but is 'candidate'"),
     ({"conditions": {"rates.log": "8 Hz"}}, "conditions differ from those of the suite: rates.log"),
     ({"metrics": {"risk": {"spec_version": 1, "horizon": 9.0}}}, "metrics differ from those"),
 ])  # fmt: skip

@@ -88,7 +88,7 @@ class Says:
     [
         (np.zeros((2, 2)), r"Says': returned shape \(2, 2\) instead of \(3, 2\)"),
         (np.zeros(3), r"instead of \(3, 2\)"),
-        (None, r"instead of \(3, 2\)"),
+        (None, "a NoneType where an array of numbers is wanted"),
         (np.array([[0, 0], [0, np.nan], [0, 0]]), r"\[0.0, nan\] for agent 3 at t = 0 s"),
         (np.full((3, 2), np.inf), "for agent 7"),
     ],
