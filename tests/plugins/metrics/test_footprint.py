@@ -68,9 +68,9 @@ def test_the_reading_of_a_disc_stays_as_a_variant(footprint: Any, reach: float) 
     assert values(scores_of("min_clearance", run)) == pytest.approx(
         {"corrected": gaps["outline"], "disc": gaps["disc"]}
     )
-    near = values(scores_of("proximity", run))
-    assert near["corrected"] == pytest.approx(1 / 0.9)  # of centres
-    assert near["outline"] == pytest.approx(1 / gaps["outline"])
+    near = scores_of("proximity", run)
+    assert value_of(near) == pytest.approx(1 / 0.9)  # of centres
+    assert value_of(near, "outline") == pytest.approx(1 / gaps["outline"])
 
 
 def test_times_to_contact_of_a_disc() -> None:
@@ -81,9 +81,8 @@ def test_times_to_contact_of_a_disc() -> None:
     assert least == pytest.approx(
         {"corrected": (apart - 0.2) / 0.5, "disc": (apart - np.hypot(0.6, 0.2)) / 0.5}
     )
-    assert least["corrected"] is not None
-    risk = values(scores_of("risk", run, risk_horizon="9 s"))
-    assert risk["disc"] > risk["rate"] > 0
+    risk = scores_of("risk", run, risk_horizon="9 s")
+    assert value_of(risk, "disc") > value_of(risk, "rate") > 0
 
 
 def test_a_round_robot_reads_alike_either_way() -> None:
