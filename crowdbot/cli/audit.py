@@ -82,10 +82,18 @@ def _judged(plan: Plan, registry: Registry) -> tuple[Audit, Path]:
     from crowdbot.core.statistics.audit import audit as judge
 
     results = replace(_of(load(plan.out), plan), scales=score_scales(registry))
-    found = judge(results)
+    found = judge(results, _seeing_floors(registry))
     path = plan.out / found.suite / AUDIT
     write_audit(path, found)
     return found, path
+
+
+def _seeing_floors(registry: Registry) -> list[str]:
+    """Labels of the floors that read any sensor."""
+    from crowdbot.core.planning.resolve import kinds_of_role, resolve_planner
+
+    floors = [resolve_planner(kind, registry) for kind in kinds_of_role("floor", registry)]
+    return [floor.label for floor in floors if floor.needs is None or floor.needs]
 
 
 def _of(results: Results, plan: Plan) -> Results:

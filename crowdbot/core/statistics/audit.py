@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -30,8 +30,8 @@ class AuditedPair(_Model):
 
     Attributes:
         better, worse: labels, and their roles.
-        required: whether the suite fails if it is not: baselines over floors. The ceiling over
-            baselines only says how much there is left to win.
+        required: whether the suite fails if it is not: whoever sees, over floors that do not.
+            Baselines over floors that see, and the ceiling over baselines, are only told.
         by, low, high: mean lead and its interval, in the score's unit.
     """
 
@@ -62,7 +62,7 @@ class Audit(_Model):
 
     Attributes:
         suite: its id.
-        tells_apart: whether every baseline is ahead of every floor, for certain.
+        tells_apart: whether whoever sees is ahead of every floor that does not, for certain.
         reason: why not, where that is not for the pairs to say.
         metric, variant: the score that decides.
         roles: planner -> floor, baseline or ceiling.
@@ -105,11 +105,13 @@ class Audit(_Model):
         return bool(audited) and all(r.spec_hash == self.scenarios[r.scenario] for r in audited)
 
 
-def audit(results: Results) -> Audit:
+def audit(results: Results, seeing: Collection[str] = ()) -> Audit:
     """Judge a suite by the runs of floors, baselines and ceilings; others are left out.
 
     Args:
         results: of one suite.
+        seeing: labels of the floors that read sensors. They have to be ahead of the blind ones, as
+            baselines have; a baseline that is not ahead of them says nothing of the suite.
 
     Raises:
         InputError: there is no such run.
@@ -122,7 +124,7 @@ def audit(results: Results) -> Audit:
     name = primary_name(table)
     pairs = [] if name is None else [
         _pair(lead_over(table, name, a, b, level=_LEVEL), required)
-        for a, b, required in _wanted(roles)
+        for a, b, required in _wanted(roles, seeing)
     ]  # fmt: skip
     reason = _reason(roles, name is not None, pairs)
     required = [p for p in pairs if p.required]
@@ -141,11 +143,14 @@ def audit(results: Results) -> Audit:
     )
 
 
-def _wanted(roles: Mapping[str, str]) -> list[tuple[str, str, bool]]:
+def _wanted(roles: Mapping[str, str], seeing: Collection[str]) -> list[tuple[str, str, bool]]:
     of = {role: sorted(p for p, r in roles.items() if r == role) for role in set(roles.values())}
-    baselines = of.get("baseline", [])
-    required = [(b, f, True) for b in baselines for f in of.get("floor", [])]
-    return required + [(c, b, False) for c in of.get("ceiling", []) for b in baselines]
+    baselines, floors = of.get("baseline", []), of.get("floor", [])
+    careful = [f for f in floors if f in seeing]
+    blind = [f for f in floors if f not in seeing]
+    required = [(a, b, True) for a in (*baselines, *careful) for b in blind]
+    told = [(b, f, False) for b in baselines for f in careful]
+    return required + told + [(c, b, False) for c in of.get("ceiling", []) for b in baselines]
 
 
 def _pair(lead: Lead, required: bool) -> AuditedPair:

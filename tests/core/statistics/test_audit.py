@@ -35,6 +35,21 @@ def test_a_baseline_that_loses_is_not_told_apart_either() -> None:
     assert not audit(results({**GOOD, "blind": [1.0] * 8})).tells_apart
 
 
+def test_a_floor_that_sees_is_held_against_those_that_do_not() -> None:
+    """A baseline need not be ahead of it, but it has to be ahead of the blind ones itself."""
+    careful = {**GOOD, "slow": [0.8] * 8}
+    found = audit(results(careful), seeing=["slow"])
+    assert found.tells_apart
+    assert [(p.better, p.worse, p.required) for p in found.pairs] == [
+        ("known", "blind", True), ("known", "still", True),
+        ("slow", "blind", True), ("slow", "still", True),
+        ("known", "slow", False), ("seer", "known", False),
+    ]  # fmt: skip
+    assert not audit(results(careful)).tells_apart
+    worse = audit(results({**careful, "slow": [0.0] * 8}), seeing=["slow"])
+    assert [(p.better, p.worse) for p in worse.failing] == [("slow", "blind"), ("slow", "still")]
+
+
 def test_the_ceiling_decides_nothing() -> None:
     found = audit(results({**GOOD, "seer": [0.0] * 8}))
     assert found.tells_apart

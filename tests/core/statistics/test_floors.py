@@ -14,7 +14,13 @@ from crowdbot.core.statistics import check_floors, summarise
 from crowdbot.core.statistics.floors import FloorCheck
 from tests.core.statistics.made_up_results import run, score
 
-ROLES = {"blind": "floor", "still": "floor", "known": "baseline", "seer": "ceiling"}
+ROLES = {
+    "blind": "floor",
+    "still": "floor",
+    "known": "baseline",
+    "seer": "ceiling",
+    "slow": "floor",
+}
 PRIMARY = "success_no_collision"
 
 
