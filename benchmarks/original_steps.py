@@ -53,9 +53,10 @@ FIGURES: dict[str, tuple[dict[str, Any], dict[str, dict[str, Any]], float, float
 
 
 def whole_step(
-    policy: dict[str, Any], costs: dict[str, dict[str, Any]], agents: Agents, walls: Array
-) -> Callable[[], object]:
-    """A function that advances a crowd by `DT`."""
+    policy: dict[str, Any], costs: dict[str, dict[str, Any]], agents: Agents, walls: Array,
+    seen: list[CrowdView] | None = None,
+) -> Callable[[], object]:  # fmt: skip
+    """A function that advances a crowd by `DT`; each view of the policy is added to ``seen``."""
     chosen, world = policy_of(policy, costs)(agents), CrowdWorld(walls=walls)
     flat = CrowdEngine(agents, world, chosen).initial_state()
     _, rows = s.view(flat)
@@ -72,6 +73,8 @@ def whole_step(
             goal=np.ascontiguousarray(rows[:, s.GOAL_X : s.GOAL_Y + 1]),
             present=everybody, robot=robots[:, :5], walls=walls, dt=DT, decides=everybody,
         )  # fmt: skip
+        if seen is not None:
+            seen.append(view)
         rows[:, s.AX : s.AY + 1] = desired_acceleration(chosen, view)
         tick(
             flat,

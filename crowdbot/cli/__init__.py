@@ -82,6 +82,8 @@ def _run(argv: Sequence[str] | None) -> int:
             get_command(_app())(words, prog_name="crowdbot")
         sys.stdout.flush()
     except SystemExit as done:
+        if isinstance(done.__context__, BrokenPipeError):  # rich makes an exit of it
+            raise done.__context__ from None
         if left_by(done):
             raise
         sys.stdout.flush()

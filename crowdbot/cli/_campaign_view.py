@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from crowdbot.core.runs.outcome import ENDINGS
+from crowdbot.core.runs.outcome import ENDINGS, PLANNER_FAILED
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -25,7 +25,7 @@ _COLUMNS = (*ENDINGS, "failed")
 def show(plan: Plan) -> Iterator[Listener]:
     """Yield what a campaign calls with its state."""
     if logging.getLogger("crowdbot").level > logging.INFO:
-        yield _silent
+        yield _only_failures
         return
     complete = sum(bool(r.status) for r in plan.runs)
     _say(f"{len(plan.runs)} runs, {complete} complete, {len(plan.jobs)} jobs to do")
@@ -42,8 +42,10 @@ def show(plan: Plan) -> Iterator[Listener]:
         _summary(lines.state)
 
 
-def _silent(state: State, job: Job | None, done: Done | None) -> None:
-    del state, job, done
+def _only_failures(state: State, job: Job | None, done: Done | None) -> None:
+    """With ``--quiet``: what went wrong."""
+    if job is not None and done is not None and (done.error or done.status == PLANNER_FAILED):
+        _say(_line(state, job, done))
 
 
 class _Lines:

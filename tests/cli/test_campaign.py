@@ -164,9 +164,11 @@ def test_failures_are_on_record_and_stop_nobody(tmp_path: Path) -> None:
     file.write_text(BAD)
     planners = [f"{file}:{name}" for name in ("Dies", "Hangs", "Raises")]
     argv = [word for name in planners for word in ("--planner", name)]
-    only = ["--only", "in-d0125-slow-c01-r02"]
-    code, summary, _ = run(tmp_path / "runs", *only, *argv, "--planner", "goal_seek")
+    only = ["--only", "in-d0125-slow-c01-r02", "--quiet"]
+    code, summary, err = run(tmp_path / "runs", *only, *argv, "--planner", "goal_seek")
     assert code == 3
+    assert "· Raises · seed 0: planner_failed" in err  # quiet is not mute
+    assert "goal_seek" not in err
     assert summary["statuses"] == {"planner_failed": 3, "timeout": 1}
     reasons = {r.planner: r.reason for r in load(tmp_path / "runs").runs}
     assert "its process was ended by signal 9 (SIGKILL)" in reasons["Dies"]

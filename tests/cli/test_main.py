@@ -133,6 +133,18 @@ def test_a_closed_pipe_is_no_error() -> None:
     assert done.stderr == ""
 
 
+@pytest.mark.parametrize("words", [("expand", "challenge-2020"), ("plugins",), ("--help",)])
+def test_nobody_reads_at_all(words: tuple[str, ...]) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(
+        [sys.executable, "-m", "crowdbot", *words], stdout=write, stderr=subprocess.PIPE,
+        text=True, timeout=AT_MOST, check=False,
+    )  # fmt: skip
+    os.close(write)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 @pytest.mark.slow
 def test_no_colours_without_a_terminal() -> None:
     for env in ({}, {"NO_COLOR": "1"}):

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, cast, get_args
 
+from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.support.source_digest import declared_data
 from crowdbot.dsl.component_specs import PlannerRole
 from crowdbot.errors import InputError, did_you_mean, nearest
@@ -30,19 +31,21 @@ class PlannerDescription:
     data: tuple[str, ...] = ()
 
 
-def described(holder: type) -> PlannerDescription:
+def described(holder: type, call: PluginCall) -> PlannerDescription:
     """What a class says.
 
     Raises:
         InputError: there is no such role.
+        PluginError: it raises when it is asked; of the class that ``call`` raises.
     """
-    needs = getattr(holder, "needs", None)
-    return PlannerDescription(
-        needs=None if needs is None else tuple(str(n) for n in needs),
-        privileged=getattr(holder, "privileged", False) is True,
-        role=role_of(holder),
-        data=declared_data(holder),
-    )
+    with call("what it says of itself"):
+        needs = getattr(holder, "needs", None)
+        return PlannerDescription(
+            needs=None if needs is None else tuple(str(n) for n in needs),
+            privileged=getattr(holder, "privileged", False) is True,
+            role=role_of(holder),
+            data=declared_data(holder),
+        )
 
 
 def read_description(said: Mapping[str, Any], who: str) -> PlannerDescription:

@@ -16,6 +16,7 @@ from crowdbot.core.planning.description import described
 from crowdbot.core.planning.planner import Observation, Planner, Task
 from crowdbot.core.planning.python_file import (
     build_of_class,
+    call_of_class,
     check_parameters,
     checked_planner,
     missing_methods,
@@ -90,7 +91,8 @@ def _of_class(kind: type[Any], parameters: Mapping[str, Any]) -> PlannerChoice:
         raise InputError(f"class '{kind.__name__}' is not a planner: no {' and no '.join(missing)}")
     check_parameters(kind, parameters, kind.__name__)
     origin, digest = _written(kind)
-    said, name = described(kind), kind.__name__
+    name = kind.__name__
+    said = described(kind, call_of_class(Path(origin), name))
     file = origin.endswith(".py")
     return PlannerChoice(
         name=name,

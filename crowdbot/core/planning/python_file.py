@@ -13,10 +13,10 @@ from types import ModuleType
 from typing import Any, cast
 
 from crowdbot.core.planning.planner import Planner
-from crowdbot.core.registry.plugin_boundary import PluginCall
+from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
 from crowdbot.core.support.near_files import near_files
 from crowdbot.core.support.source_digest import imported_names
-from crowdbot.errors import InputError, PlannerError, did_you_mean, nearest
+from crowdbot.errors import CrowdbotError, InputError, PlannerError, did_you_mean, nearest
 
 _METHODS = ("reset", "step")
 #: Libraries that take long to import and start no threads by that, and what makes them ready.
@@ -32,18 +32,32 @@ def planner_class(path: Path, name: str) -> type[Any]:
 
     Raises:
         InputError: there is no such file, or no such planner in it.
-        PlannerError: the file cannot be imported.
+        PlannerError: the file cannot be imported, or raises when it is asked for the class.
     """
     if not path.is_file():
         raise InputError(f"{path}: no such file{near_files(path)}")
     module = _import(path)
-    found = getattr(module, name, None)
-    if not inspect.isclass(found):
+    # Modules and metaclasses may run code when they are asked for a name.
+    with call_of_class(path, name)("cannot be loaded"):
+        found = getattr(module, name, None)
         classes = [n for n, v in vars(module).items() if inspect.isclass(v)]
+        is_class = inspect.isclass(found)
+        missing = missing_methods(found)
+    if not is_class:
         raise InputError(f"{path}: no class '{name}'{did_you_mean(nearest(name, classes))}")
-    if missing := missing_methods(found):
+    if missing:
         raise InputError(f"{path}: class '{name}' is not a planner: no {' and no '.join(missing)}")
-    return found
+    return cast(type[Any], found)
+
+
+def call_of_class(path: Path, name: str, passes: Exceptions = CrowdbotError) -> PluginCall:
+    """The boundary to a class of a file, whose errors name its line."""
+    return PluginCall(
+        f"planner '{name}' ({path})",
+        sources=lambda: {str(path.resolve())},
+        error=PlannerError,
+        passes=passes,
+    )
 
 
 def _import(path: Path) -> ModuleType:
@@ -81,13 +95,7 @@ def build_of_class(
     Raises:
         PlannerError: it cannot be made, or lacks a method.
     """
-    call = PluginCall(
-        f"planner '{name}' ({path})",
-        sources=lambda: {str(path.resolve())},
-        error=PlannerError,
-        passes=PlannerError,
-    )
-    with call("cannot be built"):
+    with call_of_class(path, name, PlannerError)("cannot be built"):
         return checked_planner(kind(**parameters))
 
 
@@ -114,9 +122,12 @@ def check_parameters(kind: type[Any], parameters: Mapping[str, Any], where: str)
 
     Raises:
         InputError: it has no such parameter, or lacks one.
+        PlannerError: it raises something else when it is asked.
     """
+    call = PluginCall(where, error=PlannerError, passes=(ValueError, TypeError))
     try:
-        inspect.signature(kind).bind(**parameters)
+        with call("its parameters"):
+            inspect.signature(kind).bind(**parameters)
     except ValueError:  # a class without a signature tells only when it is called
         return
     except TypeError as error:

@@ -20,6 +20,7 @@ from crowdbot.core.planning.planner import Planner
 from crowdbot.core.planning.process.process_planner import ProcessPlan, describe
 from crowdbot.core.planning.python_file import (
     build_of_class,
+    call_of_class,
     check_parameters,
     guess_class,
     planner_class,
@@ -149,7 +150,8 @@ def _from_kind(
             f"planner '{kind}' cannot run in a process of its own: its plugin is known to this "
             "process only"
         )
-    description, dump = described(component.spec), spec.model_dump(mode="json")
+    description = described(component.spec, registry.plugin_call(spec))
+    dump = spec.model_dump(mode="json")
     build: Callable[[], Planner]
     if in_process or registry.source is None:
         # Imported at once, so that one that cannot be is refused before a run begins.
@@ -258,7 +260,7 @@ def _from_class(
     if in_process:
         kind = planner_class(path, name)
         check_parameters(kind, parameters, f"{path}:{name}")
-        description = described(kind)
+        description = described(kind, call_of_class(path, name))
         build = partial(build_of_class, kind, parameters, path, name)
     else:
         plan = ProcessPlan(

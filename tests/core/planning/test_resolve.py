@@ -10,7 +10,7 @@ import pytest
 from pydantic import Field
 
 from crowdbot.core.interfaces import SensorInfo
-from crowdbot.core.planning.choice import PlannerPlace
+from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner, select_sensors
 from crowdbot.core.registry.registry import Plugin, Registry, assemble, discover
 from crowdbot.dsl import Component, PlannerSpec, PositiveLength
@@ -290,6 +290,41 @@ def test_python_files_that_cannot_be_imported(
     (tmp_path / "bad.py").write_text(text)
     with pytest.raises(PlannerError, match=message):
         resolve_planner(str(tmp_path / "bad.py:Mine"), registry)
+
+
+MEAN = """class Mean(type):
+    @property
+    def {asked}(cls):
+        raise SystemExit(3)
+class Mine(metaclass=Mean):
+    def reset(self, *a): ...
+    def step(self, obs): ...
+"""
+
+
+@pytest.mark.parametrize(
+    ("place", "asked", "doing"),
+    [
+        (ANYWHERE, "needs", "what it says of itself"),
+        (INSIDE, "needs", "what it says of itself"),
+        (INSIDE, "role", "what it says of itself"),
+        (INSIDE, "data", "what it says of itself"),
+        (INSIDE, "reset", "cannot be loaded"),
+        (INSIDE, "__signature__", "its parameters"),
+    ],
+)
+def test_classes_that_raise_when_they_are_asked(
+    registry: Registry, tmp_path: Path, place: PlannerPlace, asked: str, doing: str
+) -> None:
+    (tmp_path / "bad.py").write_text(MEAN.format(asked=asked))
+    with pytest.raises(PlannerError, match=rf"Mine.*: {doing}: SystemExit: 3 \(.*bad.py:4\)"):
+        resolve_planner(f"{tmp_path}/bad.py:Mine", registry, place=place)
+
+
+def test_a_file_that_raises_when_it_is_asked(registry: Registry, tmp_path: Path) -> None:
+    (tmp_path / "bad.py").write_text("def __getattr__(name):\n    raise SystemExit(name)\n")
+    with pytest.raises(PlannerError, match=r"'Mine'.*SystemExit: Mine \(.*bad.py:2\)"):
+        resolve_planner(f"{tmp_path}/bad.py:Mine", registry, place=INSIDE)
 
 
 def test_a_class_that_cannot_be_made(registry: Registry, source: Path) -> None:

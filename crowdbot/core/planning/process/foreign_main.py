@@ -81,6 +81,7 @@ class ForeignSide:
         self._doing = "parameters"
         with contextlib.suppress(ValueError):  # a class without a signature tells when called
             inspect.signature(self._kind).bind(**self._parameters)
+        self._doing = "what it says of itself"
         return {
             "type": "hello", "protocol": self._serving.PROTOCOL, "arrays": "shared",
             "runtime": f"{platform.python_implementation()} {platform.python_version()}",

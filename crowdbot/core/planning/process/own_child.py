@@ -11,6 +11,7 @@ import io
 import signal
 import sys
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -27,7 +28,13 @@ from crowdbot.core.planning.planner import (
     named_signal,
 )
 from crowdbot.core.planning.process import serving
-from crowdbot.core.planning.python_file import build_of_class, check_parameters, planner_class
+from crowdbot.core.planning.python_file import (
+    build_of_class,
+    call_of_class,
+    check_parameters,
+    planner_class,
+)
+from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotBody, RobotLimits
 from crowdbot.core.types.sensor import Pinhole, Reading, SensorInfo
@@ -41,6 +48,8 @@ _TYPES = SimpleNamespace(
 
 #: The simulator keeps no more of an error, characters.
 _LONGEST_TEXT = 10_000
+#: What describes a planner, the boundary to it, and what makes it.
+_Found = tuple[type, PluginCall, Callable[[], Planner]]
 
 
 class OwnSide:
@@ -62,13 +71,10 @@ class OwnSide:
         """Find the planner and say what it is."""
         del sent
         find = self._file if "file" in self._what else self._kind
-        holder, self._build = find()
-        return {
-            "type": "hello",
-            "protocol": serving.PROTOCOL,
-            "arrays": "shared",
-            **serving.described(holder),
-        }
+        holder, call, self._build = find()
+        with call("what it says of itself"):
+            said = serving.described(holder)
+        return {"type": "hello", "protocol": serving.PROTOCOL, "arrays": "shared", **said}
 
     def reset(self, sent: Mapping[str, Any]) -> dict[str, Any]:
         """Make the planner and reset it."""
@@ -107,21 +113,22 @@ class OwnSide:
     def _log(self, name: str, value: float) -> None:
         self._signals.append(named_signal(name, value))
 
-    def _file(self) -> tuple[type, Callable[[], Planner]]:
+    def _file(self) -> _Found:
         path, name = Path(self._what["file"]), self._what["class"]
         parameters = self._what["parameters"]
         kind = planner_class(path, name)
         check_parameters(kind, parameters, f"{path}:{name}")
-        return kind, lambda: build_of_class(kind, parameters, path, name)
+        build = partial(build_of_class, kind, parameters, path, name)
+        return kind, call_of_class(path, name), build
 
-    def _kind(self) -> tuple[type, Callable[[], Planner]]:
+    def _kind(self) -> _Found:
         from crowdbot.core.planning.registered import build_of_kind, load_kind  # they are slow
         from crowdbot.core.registry.registry import RegistrySource, discover
 
         where: RegistrySource = self._what["plugins"]
         registry = discover(extra=where.extra, allow=where.allow, entry_points=where.entry_points)
         spec = load_kind(self._what["kind"], self._what["parameters"], registry)
-        return type(spec), lambda: build_of_kind(spec, registry)
+        return type(spec), registry.plugin_call(spec), partial(build_of_kind, spec, registry)
 
 
 def main(what: Mapping[str, Any]) -> None:
