@@ -206,6 +206,18 @@ def test_a_file_that_is_no_recording(tmp_path: Path, capsys: Captured) -> None:
     assert "x.mcap" in failure(capsys, tmp_path / "x.mcap")
 
 
+def test_numbers_beyond_all_sizes_are_told_with_the_recording(
+    folder: Path, capsys: Captured
+) -> None:
+    record(
+        folder.parents[2] / "references/crowd_alone/run.mcap",
+        scene(T, None, [line(T, (1e300, 0), (0.0, 0))]),
+    )
+    text = failure(capsys, folder)
+    assert "references/crowd_alone/run.mcap: damaged: trajectories: agent_x has a number" in text
+    assert text.startswith("error: ")
+
+
 def test_names_that_nothing_answers_to(folder: Path, capsys: Captured) -> None:
     assert "did you mean 'risk'" in failure(capsys, folder, "--metrics", "rissk")
     assert "did you mean 'corrected'" in failure(capsys, folder, "--variant", "corected")

@@ -1,6 +1,9 @@
 from __future__ import annotations
 
+import itertools
+import re
 import zipfile
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -81,6 +84,46 @@ def test_unknown_suite() -> None:
 def test_missing_file(spec: str) -> None:
     with pytest.raises(SpecError, match=r"E001.*o such file"):
         open_spec(spec, REGISTRY)
+
+
+class Folder:
+    """A folder in something like an archive, whose files may be anything."""
+
+    def __init__(self, names: Iterable[object] = (), *, is_file: bool = False) -> None:
+        self._names, self._is_file = names, is_file
+        self.name: object = ""
+
+    def is_dir(self) -> bool:
+        return not self._is_file
+
+    def iterdir(self) -> Iterator[Folder]:
+        for name in self._names:
+            if name is SystemExit:
+                raise SystemExit(3)
+            file = Folder(is_file=True)
+            file.name = name
+            yield file
+
+    def read_bytes(self) -> bytes:
+        return SUITE.encode()
+
+
+@pytest.mark.parametrize(
+    ("names", "why"),
+    [
+        ([SystemExit], r"SystemExit: 3 \(.*test_library.py:\d+\)"),
+        (["../../out.yaml"], "'../../out.yaml' is not the name of a file"),
+        ([7], "7 is not the name of a file"),
+        (map(str, itertools.count()), "more than 2000 files"),
+    ],
+)
+def test_folders_that_cannot_be_read_are_left_out(
+    names: Iterable[object], why: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    registry = with_plugin(Folder(names))
+    assert suite_names(registry) == suite_names(REGISTRY)
+    assert len(open_spec("challenge-2020", registry).scenarios) == 162
+    assert re.search(f"suites of crowdbot-acme 1.*{why}.*left out", caplog.text)
 
 
 def test_suite_of_a_plugin(tmp_path: Path) -> None:

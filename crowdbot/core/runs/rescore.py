@@ -21,6 +21,7 @@ from crowdbot.core.runs.robots import references_by_robot, score_robots
 from crowdbot.core.scoring.evaluate import score
 from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.trajectories.questionnaires import Questionnaires
+from crowdbot.core.trajectories.sizes import check_sizes
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
 from crowdbot.errors import CrowdbotError, InputError
@@ -163,6 +164,10 @@ def _read(file: Path, robot: str | None, *, allowed: bool) -> WholeRecording:
     found = read_whole(file, robot)
     if not found.complete and not allowed:
         raise _cut(file, found.until)
+    try:
+        check_sizes(found.run)
+    except InputError as error:  # of a run, a calibration run: say of which
+        raise InputError(f"{file}: damaged: {error}") from None
     return found
 
 

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import atexit
+import logging
 import os
 import re
 import shutil
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import cache, partial
 from importlib.resources.abc import Traversable
+from itertools import count
 from pathlib import Path
 
+from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.support.near_files import near_files
 from crowdbot.core.support.seldom_collected import seldom_collected
@@ -23,9 +26,12 @@ from crowdbot.dsl.installed import Installed
 from crowdbot.dsl.lock import LockFiles
 from crowdbot.dsl.scenario import Locked, Scenario
 from crowdbot.dsl.suite import ParsedSuite
-from crowdbot.errors import InputError, SpecError, UnknownNameError, nearest
+from crowdbot.errors import CrowdbotError, InputError, SpecError, UnknownNameError, nearest
 
+_LOG = logging.getLogger("crowdbot")
 _BUILTIN = "builtin"
+#: In one plugin's folder, those in folders inside it included.
+_MOST_FILES = 2000
 _UNPACKED = "crowdbot-unpacked-"
 #: Errors about something that no plugin has: kind, metric, file.
 _UNKNOWN = ("E120", "E121", "E201")
@@ -232,13 +238,28 @@ def _packaged(roots: dict[str, list[Path]]) -> dict[str, Path]:
 
 
 def plugin_folders(registry: Registry) -> dict[str, list[Path]]:
-    """Plugin name -> its scenario folders as real ones; those inside archives are unpacked."""
+    """Plugin name -> its scenario folders as real ones; those inside archives are unpacked.
+
+    Folders that cannot be read are left out with a warning: other plugins' suites stay.
+    """
     roots: dict[str, list[Path]] = {}
     for plugin in registry.plugins:
-        folders = [f for f in plugin.scenario_dirs if f.is_dir()]
-        if folders:
-            roots[plugin.name] = [f if isinstance(f, Path) else _unpacked(f) for f in folders]
-    return roots
+        call = PluginCall(f"suites of {plugin.distribution or plugin.name}")
+        try:
+            with call("cannot be read"):
+                roots[plugin.name] = [_real(f) for f in plugin.scenario_dirs if f.is_dir()]
+        except CrowdbotError as error:
+            _warn_once(f"{error}; they are left out")
+    return {name: folders for name, folders in roots.items() if folders}
+
+
+@cache
+def _warn_once(text: str) -> None:
+    _LOG.warning("%s", text)
+
+
+def _real(folder: Path | Traversable) -> Path:
+    return Path(os.fspath(folder)) if isinstance(folder, Path) else _unpacked(folder)
 
 
 @cache
@@ -246,17 +267,27 @@ def _unpacked(folder: Traversable) -> Path:
     """A folder of an archive as a real one, which lives as long as the process."""
     target = Path(tempfile.mkdtemp(prefix=_UNPACKED))
     atexit.register(shutil.rmtree, target, ignore_errors=True)
-    _unpack(folder, target)
+    _unpack(folder, target, count(1))
     return target
 
 
-def _unpack(folder: Traversable, target: Path) -> None:
+def _unpack(folder: Traversable, target: Path, numbers: Iterator[int]) -> None:
+    """Copy a folder.
+
+    Raises:
+        InputError: it has too many files, or a name that is none.
+    """
     for item in folder.iterdir():
+        if next(numbers) > _MOST_FILES:
+            raise InputError(f"there are more than {_MOST_FILES} files")
+        name = item.name
+        if not isinstance(name, str) or name in ("", "..") or Path(name).name != name:
+            raise InputError(f"{name!r:.80} is not the name of a file")
         if item.is_dir():
-            (target / item.name).mkdir()
-            _unpack(item, target / item.name)
+            (target / name).mkdir()
+            _unpack(item, target / name, numbers)
         else:
-            (target / item.name).write_bytes(item.read_bytes())
+            (target / name).write_bytes(item.read_bytes())
 
 
 def _shown(path: Path, spec: str) -> str:
