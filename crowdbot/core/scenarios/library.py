@@ -15,6 +15,7 @@ from functools import cache, partial
 from importlib.resources.abc import Traversable
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
@@ -258,7 +259,7 @@ def _warn_once(text: str) -> None:
     _LOG.warning("%s", text)
 
 
-def _real(folder: Path | Traversable) -> Path:
+def _real(folder: Any) -> Path:
     return Path(os.fspath(folder)) if isinstance(folder, Path) else _unpacked(folder)
 
 
@@ -275,7 +276,7 @@ def _unpack(folder: Traversable, target: Path, numbers: Iterator[int]) -> None:
     """Copy a folder.
 
     Raises:
-        InputError: it has too many files, or a name that is none.
+        InputError: it has too many files, or one with a name that no file can have.
     """
     for item in folder.iterdir():
         if next(numbers) > _MOST_FILES:
