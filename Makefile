@@ -16,6 +16,8 @@ PYTHON ?= python3
 # Tests start hundreds of processes: without byte code each would translate all our files again.
 export PYTHONDONTWRITEBYTECODE :=
 BIN := .venv/bin
+# One more than cores: many tests wait for processes, which leaves a fifth of the machine idle.
+WORKERS = $(shell $(PYTHON) -c "import os; print(1 + (os.cpu_count() or 1))")
 READY := .venv/ready-$(shell cat requirements.lock pyproject.toml | cksum | cut -d' ' -f1)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
@@ -34,7 +36,7 @@ check: setup
 test: setup
 	@$(MAKE) --no-print-directory -j2 --output-sync lint kernels
 	@$(MAKE) --no-print-directory js-where-node-is
-	$(BIN)/pytest -n auto --dist worksteal
+	$(BIN)/pytest -n $(WORKERS) --dist worksteal
 
 # What numba compiles, while mypy has the other core: or else each test process would compile it.
 kernels: setup

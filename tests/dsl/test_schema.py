@@ -34,7 +34,7 @@ STARTED = ("torch_planner.yaml",)
 WRITTEN = sorted(
     file
     for file in [*SPECS.rglob("*.yaml"), *ROOT.glob("docs/*/files/*.yaml")]
-    if file.name not in STARTED
+    if file.name not in STARTED and file.parent.name != "plans"  # maps of ROS are YAML, too
 )
 
 #: Broken files that a schema takes: what it cannot say, and where validate says it.

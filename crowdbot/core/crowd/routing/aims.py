@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot.core.crowd.routing.corners import OUT_X, OUT_Y, ROOM
 from crowdbot.core.crowd.routing.corners import X as CORNER_X
 from crowdbot.core.crowd.routing.corners import Y as CORNER_Y
-from crowdbot.core.crowd.routing.packed import sight_in, table_in
+from crowdbot.core.crowd.routing.packed_mesh import sight_in, table_in
 from crowdbot.core.crowd.routing.sight import Sight, is_clear
 from crowdbot.core.crowd.routing.trees import TO_GOAL
 from crowdbot.core.crowd.state import (
@@ -91,7 +91,8 @@ def find_aims(
         goals: (K, 2) to which ``tree_of`` leads.
         tree_of: (N,) row of ``left`` and ``after`` that leads to each one's goal.
         left, after: (T, V) see `plan_tree`.
-        wholes, reals: see `Packed`: corners; sight at the margin of a body, and nearer to walls.
+        wholes, reals: see `PackedMesh`: corners; sight at the margin of a body, and nearer
+            to walls.
         spread, patience, detour, key: see `Habits`.
 
     Returns:

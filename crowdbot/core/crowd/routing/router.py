@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.crowd.routing.aims import Habits, find_aims
-from crowdbot.core.crowd.routing.packed import Packed
+from crowdbot.core.crowd.routing.packed_mesh import PackedMesh
 from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.crowd.routing.route_map import RouteMap
 from crowdbot.core.types.arrays import Array
@@ -79,7 +79,7 @@ class _BodyClass:
 
     def __init__(self, members: NDArray[np.int64], routes: RouteMap, people: int) -> None:
         self.members, self.routes = members, routes
-        self._map = Packed.of(routes.corners.table, (routes.sight, routes.wider))
+        self._map = PackedMesh.of(routes.corners.table, (routes.sight, routes.wider))
         self._goal = np.full((len(members), 2), np.nan)
         self._tree_of = np.zeros(people, np.int64)
         self._rows: dict[tuple[float, float], int] = {}

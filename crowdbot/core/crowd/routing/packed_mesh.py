@@ -17,7 +17,7 @@ _OF_SIGHT = 9
 _HEAD = 1 + 2 * _OF_SIGHT
 
 
-class Packed(NamedTuple):
+class PackedMesh(NamedTuple):
     """The head and all arrays, one after the other.
 
     Attributes:
@@ -29,7 +29,7 @@ class Packed(NamedTuple):
     reals: Array
 
     @classmethod
-    def of(cls, table: Array, sights: tuple[Sight, Sight]) -> Packed:
+    def of(cls, table: Array, sights: tuple[Sight, Sight]) -> PackedMesh:
         """Pack a table of corners (V, `CORNER_COLUMNS`) and two sights."""
         head, wholes, reals = [table.size], list[Indices](), [table.ravel()]
         at_whole, at_real = _HEAD, table.size
