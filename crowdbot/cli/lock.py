@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.core.support.plural import plural
 
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
@@ -61,9 +62,9 @@ def _check(expansion: Expansion, files: LockFiles, registry: Registry, *, as_jso
     elif found:
         for difference in found:
             typer.echo(str(difference))
-        typer.echo(f"{_counted(len(found), 'difference')}; to accept: {files.command}", err=True)
+        typer.echo(f"{plural(len(found), 'difference')}; to accept: {files.command}", err=True)
     else:
-        typer.echo(f"{expansion.suite_id}: the lock fits, {_counted(count, 'scenario')}")
+        typer.echo(f"{expansion.suite_id}: the lock fits, {plural(count, 'scenario')}")
     raise typer.Exit(1 if found else 0)
 
 
@@ -90,11 +91,7 @@ def _write(
         typer.echo(json.dumps(document, indent=2))
         return
     typer.echo(
-        f"{expansion.suite_id}: {_counted(scenarios, 'scenario')}, "
-        f"{_counted(draws, 'table')} of agents ({made.drawn} drawn, {draws - made.drawn} kept)"
+        f"{expansion.suite_id}: {plural(scenarios, 'scenario')}, "
+        f"{plural(draws, 'table')} of agents ({made.drawn} drawn, {draws - made.drawn} kept)"
     )
     typer.echo(f"wrote {files.lock_path} and {files.agents_path.name}")
-
-
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}" if count == 1 else f"{count} {what}s"

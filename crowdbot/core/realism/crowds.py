@@ -57,7 +57,7 @@ def lines_of(crowds: Iterable[tuple[str, str]]) -> list[str]:
     if missing:
         found.append(
             f"{len(missing)} crowd{'s' * (len(missing) != 1)} whose realism was not measured; "
-            "`crowdbot realism SUITE` measures it"
+            "measure it with crowdbot realism SUITE"
         )
     return found
 

@@ -8,6 +8,7 @@ from crowdbot.core.report import provenance
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.results.rows import RunRow
 from crowdbot.core.scoring.four_scores import is_main
+from crowdbot.core.support.plural import plural
 
 _SOFTWARE = ("crowdbot", "drake", "numpy", "python")
 
@@ -28,9 +29,9 @@ def _ran(contents: Contents) -> str:
     scenarios = len({a.scenario for a in contents.attempts})
     draws = len({run.realisation_hash for run in runs})
     return (
-        f"We simulated {planners} in {_plural(scenarios, 'scenario')} of the suite "
-        f"{contents.heading.suite}, with {_plural(draws, 'independent crowd draw')} and the "
-        f"{_seeds(contents.seeds)}: {_plural(len(contents.attempts), 'run')} in all."
+        f"We simulated {planners} in {plural(scenarios, 'scenario')} of the suite "
+        f"{contents.heading.suite}, with {plural(draws, 'independent crowd draw')} and the "
+        f"{_seeds(contents.seeds)}: {plural(len(contents.attempts), 'run')} in all."
     )
 
 
@@ -83,14 +84,14 @@ def _compared(contents: Contents) -> list[str]:
     said = [
         "Planners were compared in pairs of the same scenario and seed by Wilcoxon signed-rank "
         "tests in which the signs of whole crowd draws are exchanged; Holm's correction over the "
-        f"{_plural(summary.tests, 'test')} of {family} keeps the chance of any false verdict "
+        f"{plural(summary.tests, 'test')} of {family} keeps the chance of any false verdict "
         f"among them at {100 * summary.alpha:g} %. A run in which the planner failed counts as "
         "worse than any other."
     ]
     sample = contents.sample
     if sample is not None and sample.too_small:
         said.append(
-            f"With {_plural(sample.draws, 'crowd draw')} no verdict was possible; at least "
+            f"With {plural(sample.draws, 'crowd draw')} no verdict was possible; at least "
             f"{sample.least} would be needed."
         )
     return said
@@ -107,10 +108,6 @@ def _software(contents: Contents) -> str:
     digest = provenance.hashes(runs)["sha256 of all run ids and trajectory hashes"]
     with_ = f"Simulated with {_and(named)}. " if named else ""
     return f"{with_}The data are identified by sha256 {digest[:16]}."
-
-
-def _plural(count: int, noun: str) -> str:
-    return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
 def _and(parts: Sequence[str]) -> str:

@@ -19,6 +19,7 @@ from crowdbot.core.statistics.estimate import NOTHING, Estimate
 from crowdbot.core.statistics.signed_rank import least_p
 from crowdbot.core.statistics.summary import headline_names
 from crowdbot.core.statistics.table import MISSING, Name, Table
+from crowdbot.core.support.plural import plural
 
 #: The score that decides, the first of these that the runs have: older ones lack the first.
 PRIMARY = (four_scores.PRIMARY.metric, "success_no_collision", "success")
@@ -173,7 +174,8 @@ def _low(lead: Lead) -> float:
 def _by(lead: Lead) -> str:
     """Such as ``0.31 [0.22, 0.40] ahead of stop_and_go in 18 pairs``."""
     why = f" ({lead.reason})" if lead.reason else ""
-    place = f"{lead.other}, {lead.pairs} pairs, {lead.draws} crowd draws"
+    counts = f"{plural(lead.pairs, 'pair')}, {plural(lead.draws, 'crowd draw')}"
+    place = f"{lead.other}, {counts}"
     if lead.by.value is None:
         return f"not comparable with {place}{why}"
     ends = (lead.by.low, lead.by.high)

@@ -17,6 +17,7 @@ from crowdbot.core.scoring.four_scores import is_main
 from crowdbot.core.statistics.comparison import Comparison, reach
 from crowdbot.core.statistics.signed_rank import least_p
 from crowdbot.core.statistics.summary import Summary
+from crowdbot.core.support.plural import plural
 
 #: Nobody simulates more draws than this: a difference that needs them counts as none.
 MOST_DRAWS = 100_000
@@ -51,8 +52,8 @@ class SampleSize:
             return ""
         return (
             f"The sample is too small for any verdict between planners: "
-            f"{_plural(self.draws, 'crowd draw')} in {_plural(self.pairs, 'pair')} of runs. "
-            f"{_plural(self.tests, 'test')} that share a chance of {100 * self.alpha:g} % of a "
+            f"{plural(self.draws, 'crowd draw')} in {plural(self.pairs, 'pair')} of runs. "
+            f"{plural(self.tests, 'test')} that share a chance of {100 * self.alpha:g} % of a "
             f"false verdict need at least {self.least} crowd draws, since p cannot be below "
             f"2^(1 - draws): {self.least} scenarios with a crowd of their own would do if one "
             "planner were better in each of them"
@@ -119,7 +120,3 @@ def draws_needed(found: Comparison, tests: int, alpha: float, level: float) -> i
 
 def _finds(size: float, spread: float, draws: int, level: float) -> bool:
     return size >= spread / math.sqrt(draws) * reach(draws - 1, level)
-
-
-def _plural(count: int, noun: str) -> str:
-    return f"{count} {noun}{'' if count == 1 else 's'}"
