@@ -99,8 +99,12 @@ def _errors(generator: NoiseGenerator, distance: Array, rng: np.random.Generator
     Raises:
         ValueError: they are not one number for each beam; named after the generator's class.
     """
-    found = plain_numbers(generator.errors(immutable(distance), rng))
+    answer = generator.errors(immutable(distance), rng)
     who = f"noise of {type(generator).__module__}.{type(generator).__name__}"
+    try:
+        found = plain_numbers(answer)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{who}: errors returned {error}") from None
     if found.shape != distance.shape:
         raise ValueError(f"{who}: errors returned shape {found.shape} for {distance.shape}")
     if not np.isfinite(found).all() and not np.isfinite(found[distance < np.inf]).all():

@@ -32,6 +32,8 @@ def measured(answer: object) -> Any:
     [
         (np.zeros(1), r"test_wrong_noise\._Noise: errors returned shape \(1,\) for \(3,\)"),
         (0.5, r"shape \(\)"),
+        (None, r"test_wrong_noise\._Noise: errors returned a NoneType where an array"),
+        (np.zeros(3) * 1j, r"_Noise: errors returned an array of complex128"),
         ([0.0, np.inf, 0.0], "not finite for what was hit"),
         ([np.nan, 0.0, 0.0], "not finite for what was hit"),
     ],
