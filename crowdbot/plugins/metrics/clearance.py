@@ -20,6 +20,7 @@ class MinClearanceSpec(MetricSpec):
 MIN_CLEARANCE = declare(
     MinClearanceSpec,
     symbol="CD_min",
+    spec_version=2,
     unit="m",
     better="higher",
     more_people="down",

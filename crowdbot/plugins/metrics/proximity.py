@@ -22,6 +22,7 @@ class ProximitySpec(MetricSpec):
 PROXIMITY = declare(
     ProximitySpec,
     symbol="P",
+    spec_version=2,
     unit="1/m",
     better="lower",
     minimum=0.0,

@@ -24,7 +24,7 @@ class RiskSpec(MetricSpec):
 RISK = declare(
     RiskSpec,
     symbol="R",
-    spec_version=2,
+    spec_version=3,
     unit="s",
     better="lower",
     minimum=0.0,
@@ -119,6 +119,7 @@ class MinTimeToCollisionSpec(MetricSpec):
 MIN_TIME_TO_COLLISION = declare(
     MinTimeToCollisionSpec,
     symbol="TTC_min",
+    spec_version=2,
     unit="s",
     better="higher",
     experimental=True,
