@@ -248,10 +248,13 @@ def plugin_folders(registry: Registry) -> dict[str, list[Path]]:
         call = PluginCall(f"suites of {plugin.distribution or plugin.name}")
         try:
             with call("cannot be read"):
-                roots[plugin.name] = [_real(f) for f in plugin.scenario_dirs if f.is_dir()]
+                folders = [_real(f) for f in plugin.scenario_dirs if f.is_dir()]
         except CrowdbotError as error:
             _warn_once(f"{error}; they are left out")
-    return {name: folders for name, folders in roots.items() if folders}
+            continue
+        if folders:  # without, one that has taken another's name would hide that one's
+            roots[plugin.name] = folders
+    return roots
 
 
 @cache
