@@ -15,7 +15,7 @@ import math
 import re
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Annotated, Any
 
 from annotated_types import Ge, Gt
@@ -149,13 +149,19 @@ class Quantity:
             above: if 0, neither minus signs nor zeros fit.
             least: if 0, minus signs fit before zeros only.
         """
-        units = [p for u in UNITS[self.dimension] for p in _written(u)]
+        units = _spellings(self.dimension)
         bare = "|".join(re.escape(u) for u in units if not u[0].isdigit())
         blank = "|".join(re.escape(u) for u in units if u[0].isdigit())
         tails = [f" *(?:{bare})" if bare else "", f" +(?:{blank})" if blank else ""]
         sign = {(True, False): r"(?!-)(?=\+?[0-9.]*[1-9])", (False, True): r"(?!-[0-9.]*[1-9])"}
         front = sign.get((above == 0, least == 0), "")
         return f"^{front}{_NUMBER}(?:{'|'.join(t for t in tails if t)})$"
+
+
+@cache
+def _spellings(dimension: str) -> tuple[str, ...]:
+    """All spellings of all units of a dimension."""
+    return tuple(text for unit in UNITS[dimension] for text in _written(unit))
 
 
 def plain_unit(unit: str) -> str:

@@ -7,6 +7,7 @@ import sys
 import pytest
 
 from crowdbot import cli
+from crowdbot.cli._typer_app import load
 from crowdbot.core.registry.plugin_errors import UserInterrupt
 from crowdbot.errors import CrowdbotError, PluginError, SimulationError, UsageError
 from tests.waiting import AT_MOST
@@ -158,6 +159,6 @@ def test_output_in_any_encoding() -> None:
 
 @pytest.mark.parametrize("command", cli.command_names())
 def test_who_adds_plugins_can_leave_out_the_installed_ones(command: str) -> None:
-    for name, one in {command: (top := cli._load(command)), **getattr(top, "commands", {})}.items():
+    for name, one in {command: (top := load(command)), **getattr(top, "commands", {})}.items():
         options = {text for param in one.params for text in param.opts}
         assert ("--plugin" in options) == ("--no-plugins" in options), name
