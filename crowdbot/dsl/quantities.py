@@ -69,6 +69,8 @@ class Quantity:
     """Annotation that makes a float field accept text with a unit of one dimension."""
 
     dimension: str
+    #: The largest amount, in SI units; None: as `MOST` says.
+    most: float | None = None
 
     @property
     def si_unit(self) -> str:
@@ -95,7 +97,7 @@ class Quantity:
         Raises:
             PydanticKnownError: it is beyond `MOST` of this dimension.
         """
-        most = MOST.get(self.dimension, math.inf)
+        most = self.most or MOST.get(self.dimension, math.inf)
         if math.isfinite(value) and abs(value) > most:
             kind: Any = "less_than_equal" if value > 0.0 else "greater_than_equal"
             raise PydanticKnownError(kind, {kind[0] + "e": math.copysign(most, value)})

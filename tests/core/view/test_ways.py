@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import shapely
+import shapely  # type: ignore[import-untyped,unused-ignore]
 
 from crowdbot.core.crowd.routing.free_space import FreeSpace
 from crowdbot.core.population.realise import realise
