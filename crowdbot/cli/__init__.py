@@ -69,6 +69,8 @@ def _run(argv: Sequence[str] | None) -> int:
     words = sys.argv[1:] if argv is None else list(argv)
     if argv is None and not _READING.isdisjoint(words[:1]):
         collect_seldom()
+        # What watches models of services, pydantic would look for in every distribution.
+        os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
         with _silence() if _wants_silence(words) else nullcontext():
             code = (plain_call(words) or _with_options(words))()
