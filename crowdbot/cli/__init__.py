@@ -21,12 +21,15 @@ from contextlib import contextmanager, nullcontext, redirect_stdout
 from functools import partial
 from pathlib import Path
 
+from crowdbot.cli._command_names import command_names
 from crowdbot.cli._mishaps import left_by, tell_of_threads
 from crowdbot.cli._plain import plain_call
 from crowdbot.core.registry.plugin_errors import telling_interrupts
 from crowdbot.core.support.quick_exit import end_without_collecting
 from crowdbot.core.support.seldom_collected import collect_seldom
 from crowdbot.errors import CrowdbotError, PluginError, SpecError, printable
+
+__all__ = ["command_names", "main"]
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -114,14 +117,6 @@ def _silence() -> Iterator[None]:
     """Nothing on stdout; messages on stderr stay."""
     with Path(os.devnull).open("w", encoding="utf-8") as nowhere, redirect_stdout(nowhere):
         yield
-
-
-def command_names() -> list[str]:
-    """Names of all commands, sorted."""
-    import pkgutil
-
-    modules = (m.name for m in pkgutil.iter_modules(__path__))
-    return sorted(m.replace("_", "-") for m in modules if not m.startswith("_"))
 
 
 def _start_log() -> None:

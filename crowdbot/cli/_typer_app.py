@@ -10,7 +10,7 @@ import typer
 from typer.core import TyperGroup
 from typer.main import get_command
 
-from crowdbot.cli import command_names
+from crowdbot.cli._command_names import command_names
 from crowdbot.cli._complete import offer
 from crowdbot.errors import did_you_mean, nearest
 

@@ -10,11 +10,10 @@ from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
-import crowdbot
 from crowdbot.errors import Interrupted, PlannerHungError
 
 #: Frames of crowdbot's machinery are not where somebody else's error is.
-_PACKAGE = str(Path(crowdbot.__file__).parent)
+_PACKAGE = str(Path(__file__).parents[2])
 #: Modules whose frames every command has.
 _NO_PLUGINS = frozenset(("crowdbot", "click", "typer"))
 _MACHINERY = tuple(f"{_PACKAGE}/{part}/" for part in ("core", "dsl", "cli"))

@@ -5,9 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-import crowdbot
-
-_PACKAGE = Path(crowdbot.__file__).parent
+_PACKAGE = Path(__file__).parents[2]
 _VARIABLE = "NUMBA_CACHE_DIR"
 _LOCATORS = "NUMBA_CACHE_LOCATOR_CLASSES"
 #: What numba asks, in turn: where the first has no file or no folder, numba's own.

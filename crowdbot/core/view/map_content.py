@@ -13,7 +13,7 @@ from crowdbot.core.geometry.rotation import rotation
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.types.arrays import Array, Point
 from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.core.view.names import Names
+from crowdbot.core.view.names import MapNames
 from crowdbot.core.view.shapes import SPEEDS, Disc, Path, Shape, Text
 from crowdbot.core.view.ways import Ways
 from crowdbot.core.view.world import Map
@@ -281,7 +281,7 @@ def _robots(content: MapContent, world: Map) -> Iterator[Shape]:
 
 def _names(content: MapContent, world: Map) -> Iterator[Shape]:
     goals = {robot.goal for robot in content.robots}
-    names = Names(world)
+    names = MapNames(world)
     for name, polygon in content.parts.zones.items():
         role = "text-goal" if name in goals else "text-zone"
         yield names.put(f"{name} (goal)" if name in goals else name, polygon.tolist(), role)

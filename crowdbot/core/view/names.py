@@ -18,7 +18,7 @@ _MOST_LINES = 12
 Box = tuple[float, float, float, float]
 
 
-class Names:
+class MapNames:
     """The names that were put on a map so far."""
 
     def __init__(self, world: Map) -> None:

@@ -168,7 +168,7 @@ def _read(
 def _read_ros_map(spec: FloorPlanSpec, file: Path | None, image: Path | None) -> Any:
     assert file is not None  # checked with the document
     found = read_map(file)
-    grey = read_grey(image or file.parent / found.image)
+    grey = read_grey(image or file.parent / found.image, see_through=found.mode == "scale")
     cells = free_cells(found, grey, unknown_is_free=spec.unknown == "free")
     if not cells.any():
         raise InputError(f"{file.name}: no cell of its image is free")

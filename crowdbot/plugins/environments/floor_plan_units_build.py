@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import shapely  # type: ignore[import-untyped,unused-ignore]
 
-from crowdbot.core.types.arrays import Array
+from crowdbot.core.interfaces import Array
 from crowdbot.errors import InputError
 from crowdbot.plugins.environments.floor_plan import FloorPlanSpec
 
@@ -60,8 +60,8 @@ def check_numbers(shapes: list[Any], spec: FloorPlanSpec, name: str, crs: str, t
         worst = numbers[np.argmax(np.max(np.abs(numbers) / (180.0, 90.0), axis=1))]
         if abs(worst[0]) > 180.0 or abs(worst[1]) > 90.0:
             raise InputError(
-                f"{name}: {_at(worst)} is no longitude and latitude, and unit is 'deg'; {where}: "
-                "see 'unit'"
+                f"{name}: {_at(worst)} is not a longitude and latitude, and unit is 'deg'; "
+                f"{where}: see 'unit'"
             )
         return
     on_earth = _on_earth(low, high)
@@ -99,7 +99,9 @@ def check_place(shapes: list[Any], spec: FloorPlanSpec, name: str) -> None:
     if math.hypot(x, y) <= _FAR:
         return
     if spec.unit == "deg":
-        point = np.array(spec.origin) + _turned(np.array([x, y]), -spec.rotation) / _metres_a_degree(spec.origin[1])
+        point = np.array(spec.origin) + _turned(
+            np.array([x, y]), -spec.rotation
+        ) / _metres_a_degree(spec.origin[1])
         origin = f"[{point[0]:.6f}, {point[1]:.6f}]"
     else:
         origin = f"[{spec.origin[0] - x:.10g} m, {spec.origin[1] - y:.10g} m]"

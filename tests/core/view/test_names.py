@@ -3,7 +3,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crowdbot.core.view.names import Names
+from crowdbot.core.view.names import MapNames
 from crowdbot.core.view.shapes import Text
 from crowdbot.core.view.world import Map
 
@@ -38,14 +38,14 @@ areas = st.builds(
 
 @given(st.lists(st.tuples(areas, st.sampled_from(["hall", "one destination"])), max_size=8))
 def test_no_name_hides_another(listed: list[tuple[list[tuple[float, float]], str]]) -> None:
-    names = Names(WORLD)
+    names = MapNames(WORLD)
     put = [names.put(text, corners, "text-zone") for corners, text in listed]
     assert [t.text for t in put] == [text for _, text in listed]
     assert not any(overlap(a, b) for i, a in enumerate(put) for b in put[:i])
 
 
 def test_one_area_of_two_streams_has_both_names_inside() -> None:
-    names, corners = Names(WORLD), box(10.0, 5.0, 6.0, 4.0)
+    names, corners = MapNames(WORLD), box(10.0, 5.0, 6.0, 4.0)
     first = names.put("one destination", corners, "text-route")
     second = names.put("two destination", corners, "text-route")
     (left, bottom), (right, top) = WORLD.at(10.0, 5.0), WORLD.at(16.0, 9.0)
@@ -57,7 +57,7 @@ def test_one_area_of_two_streams_has_both_names_inside() -> None:
 
 
 def test_names_of_narrow_areas_are_turned_beside_each_other() -> None:
-    names, corners = Names(WORLD), box(1.0, 1.0, 2.0, 10.0)
+    names, corners = MapNames(WORLD), box(1.0, 1.0, 2.0, 10.0)
     first = names.put("goal (goal)", corners, "text-goal")
     second = names.put("one destination", corners, "text-route")
     assert first.turned == second.turned == 90.0

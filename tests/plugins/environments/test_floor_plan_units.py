@@ -56,7 +56,7 @@ def test_degrees_far_from_the_origin_are_told_theirs(tmp_path: Path) -> None:
 
 
 def test_metres_are_no_degrees(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"\(405040, 5757030\) is no longitude and latitude"):
+    with pytest.raises(InputError, match=r"\(405040, 5757030\) is not a longitude and latitude"):
         _plan(tmp_path, GRID, unit="deg")
     with pytest.raises(InputError, match="more than 5000 m; its numbers count as deg"):
         _plan(tmp_path, ROOM, CRS84, unit="deg")
