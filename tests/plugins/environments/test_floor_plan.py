@@ -239,7 +239,7 @@ def test_what_is_transparent_is_unknown_in_mode_scale(
 
 
 def test_an_unknown_mode_is_said(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="mode 'trinry' is not one of .*did you mean 'trinary'"):
+    with pytest.raises(InputError, match=r"mode 'trinry' is not one of .*did you mean 'trinary'"):
         _plan(file=_map(tmp_path, mode="trinry"))
 
 
