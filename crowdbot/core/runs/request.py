@@ -18,6 +18,7 @@ from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.scoring.evaluate import Scores
 from crowdbot.core.scoring.metric import References
 from crowdbot.core.scoring.scores_csv import read_scores_csv
+from crowdbot.core.support.arguments import path_of
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.dsl.axis_words import AxisWords
 from crowdbot.dsl.path_names import path_problem
@@ -55,10 +56,11 @@ class Run:
         Raises:
             InputError: there is no complete run.
         """
-        record = files.read_record(Path(directory))
+        path = path_of("directory", directory)
+        record = files.read_record(path)
         if record is None:
             raise InputError(f"{directory}: no run directory, there is no {files.RECORD} in it")
-        return cls(Path(directory), record, reused=True)
+        return cls(path, record, reused=True)
 
     @property
     def scenario(self) -> str:
