@@ -135,8 +135,8 @@ def _place_problems(run: ClaimedRun, scenario: Scenario, axes: Mapping[str, str]
     """
     record, crowd = run.record, scenario.crowd
     if record.get("axes", {}) != dict(axes):
-        said, wanted = _labels(record.get("axes")), _labels(dict(axes))
-        yield f"its axes are {said}; the scenario's are {wanted}"
+        labels, wanted = _labels(record.get("axes")), _labels(dict(axes))
+        yield f"its axes are {labels}; the scenario's are {wanted}"
     said, versions = record.get("crowd"), record.get("versions")
     same = isinstance(versions, dict) and versions.get("crowdbot") == metadata.version("crowdbot")
     if same and said is not None and said != ("" if crowd is None else fingerprint(crowd)):
@@ -144,7 +144,7 @@ def _place_problems(run: ClaimedRun, scenario: Scenario, axes: Mapping[str, str]
 
 
 def _labels(axes: object) -> str:
-    return str(axes)[:100] if axes else "none"
+    return str(axes)[:100] if axes else "{}"
 
 
 def _scenario_problems(

@@ -374,7 +374,7 @@ def test_something_that_nobody_thought_of_is_one_line(
     ("change", "why"),
     [
         ({"axes": {"crowd": "mine"}}, "its axes are {'crowd': 'mine'}; the scenario's are {'flow'"),
-        ({"axes": {}}, "its axes are none; the scenario's are {'flow'"),
+        ({"axes": {}}, "its axes are {}; the scenario's are {'flow'"),
         ({"crowd": "x" * 64}, "its crowd is said to be 'xxx"),
         ({"goal_time": 99.0}, "its goal_time is 99 s, but it ended after 1 s"),
         ({"toppled_time": 2.0}, "its toppled_time is 2 s, but it ended after 1 s"),
