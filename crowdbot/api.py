@@ -100,7 +100,7 @@ def simulate(
     seed: int = 0,
     out: str | Path | None = None,
     suite: str = "scenarios",
-    record: Recorded = "all",
+    record: Recorded = "used",
     references: bool = True,
     force: bool = False,
     metrics: str | Sequence[str] = "*",
@@ -123,8 +123,9 @@ def simulate(
         out: root of the run directories; None uses a temporary folder that lives as long as the
             result.
         suite: name of the first folder below ``out``.
-        record: which sensors are simulated and recorded: ``all``; ``used``, those that the
-            planner reads; ``none``, only what scores need.
+        record: which sensors are simulated and recorded: ``used``, those that the
+            planner reads, as the replay page shows them; ``all``, with every reading;
+            ``none``, only what scores need.
         references: whether the calibration runs are made where they are missing.
         force: whether a complete run is made again.
         metrics: one or several globs over metric names.

@@ -25,6 +25,7 @@ from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
 
+#: What is recorded, most first: what a run has holds all that the levels after it ask for.
 Recorded = Literal["all", "used", "none"]
 
 
@@ -157,7 +158,7 @@ class Request:
     seed: int
     out: Path
     suite: str = "scenarios"
-    record: Recorded = "all"
+    record: Recorded = "used"
     references: bool = True
     force: bool = False
     metrics: Sequence[str] | None = None

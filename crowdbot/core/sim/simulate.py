@@ -64,7 +64,7 @@ def simulate(
     seed: int = 0,
     out: Path | None = None,
     suite: str = "scenarios",
-    record: Recorded = "all",
+    record: Recorded = "used",
     references: bool = True,
     force: bool = False,
     metrics: Sequence[str] | None = None,
@@ -233,7 +233,7 @@ def _images(
 ) -> ImageCollector | None:
     """For the images that the page shows; None where it shows none."""
     infos = [info for built in builts.values() for info in built.infos.values()]
-    shows = request.replay and request.record == "all" and any(info.camera for info in infos)
+    shows = request.replay and request.record != "none" and any(info.camera for info in infos)
     return images_of_replay(recording) if shows else None
 
 
