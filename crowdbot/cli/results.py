@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
+from typer.core import TyperGroup
 
 from crowdbot.core.scoring.four_scores import MAIN_SCORES
 from crowdbot.core.support.name_lines import in_lines
@@ -19,8 +20,22 @@ if TYPE_CHECKING:
     from crowdbot.core.results.rows import Results
     from crowdbot.core.statistics.groups import GroupSummary
 
+
+class _Tables(TyperGroup):
+    """The tables of results; where a folder is named, it is told where folders go."""
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        found = super().get_command(ctx, cmd_name)
+        if found is None and Path(cmd_name).is_dir():
+            ctx.fail(f"a folder of runs is given with --runs {cmd_name}")
+        return found
+
+
 results = typer.Typer(
-    add_completion=False, invoke_without_command=True, pretty_exceptions_enable=False
+    cls=_Tables,
+    add_completion=False,
+    invoke_without_command=True,
+    pretty_exceptions_enable=False,
 )
 
 _Out = Annotated[

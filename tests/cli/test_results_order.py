@@ -33,3 +33,11 @@ def test_named_metrics_come_first(
     assert shown["named"][:2] == NAMED
     assert shown["open"][0] == "safe_efficiency"
     assert sorted(shown["named"]) == sorted(shown["open"])
+
+
+def test_a_folder_is_told_where_it_belongs(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["results", str(tmp_path)]) == 2
+    said = "".join(c for c in capsys.readouterr().err if c not in " │\n")
+    assert "afolderofrunsisgivenwith--runs" in said
