@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, overload
 
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.library import open_spec, pick
+from crowdbot.core.support.arguments import expect, number_of, path_of, texts_of
 from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.dsl.settings import setting_texts
-from crowdbot.errors import InputError
+from crowdbot.errors import InputError, kind_of
 
 if TYPE_CHECKING:
     from crowdbot.core.planning.given_planner import GivenPlanner
@@ -59,11 +60,9 @@ def load(
         UnknownNameError: no such suite or scenario.
         InputError: an argument is of another kind.
     """
-    _expect("path_or_name", path_or_name, str, Path)
+    expect("path_or_name", path_or_name, str, Path)
     if scenario is not None:
-        _expect("scenario", scenario, str)
-    if not isinstance(set, str | Sequence | Mapping):
-        raise InputError(f"set is key=value texts or a mapping, not a {type(set).__name__}")
+        expect("scenario", scenario, str)
     expansion = open_spec(str(path_or_name), registry(), setting_texts(set))
     if scenario is not None:
         return pick(expansion, scenario)
@@ -88,7 +87,8 @@ def expand(suite: Expansion | Scenario | str | Path, *, set: Overrides = ()) -> 
         raise InputError("set changes what is loaded: give it to load, or a name to expand")
     if isinstance(suite, Scenario):
         return [suite]
-    _expect("suite", suite, Expansion)
+    if not isinstance(suite, Expansion):
+        raise InputError(f"suite must be a file, a name or a Suite, not {kind_of(suite)}")
     return list(suite.scenarios)
 
 
@@ -100,7 +100,7 @@ def simulate(
     seed: int = 0,
     out: str | Path | None = None,
     suite: str = "scenarios",
-    record: Recorded = "all",
+    record: Recorded = "used",
     references: bool = True,
     force: bool = False,
     metrics: str | Sequence[str] = "*",
@@ -123,8 +123,9 @@ def simulate(
         out: root of the run directories; None uses a temporary folder that lives as long as the
             result.
         suite: name of the first folder below ``out``.
-        record: which sensors are simulated and recorded: ``all``; ``used``, those that the
-            planner reads; ``none``, only what scores need.
+        record: which sensors are simulated and recorded: ``used``, those that the
+            planner reads, as the replay page shows them; ``all``, with every reading;
+            ``none``, only what scores need.
         references: whether the calibration runs are made where they are missing.
         force: whether a complete run is made again.
         metrics: one or several globs over metric names.
@@ -146,15 +147,16 @@ def simulate(
     from crowdbot.core.planning.choice import PlannerPlace
     from crowdbot.core.sim.simulate import simulate as simulate_it
 
-    _expect("scenario", scenario, Scenario, hint="crowdbot.load(SUITE, ID) reads one")
-    memory = None if planner_memory is None else round(planner_memory * 2**30)
+    expect("scenario", scenario, Scenario, hint="crowdbot.load(SUITE, ID) reads one")
+    if in_process is not None:
+        expect("in_process", in_process, bool)
     return simulate_it(
         scenario,
         registry(),
         planner=planner,
         planner_settings=planner_settings,
         seed=seed,
-        out=None if out is None else Path(out),
+        out=None if out is None else path_of("out", out),
         suite=suite,
         record=record,
         references=references,
@@ -162,7 +164,7 @@ def simulate(
         metrics=_patterns(metrics),
         replay=replay,
         step_budget=step_budget,
-        place=PlannerPlace(in_process=in_process, memory=memory),
+        place=PlannerPlace(in_process=in_process, memory=_bytes(planner_memory)),
         progress=progress,
         stop=stop,
     )
@@ -172,7 +174,21 @@ def _patterns(metrics: str | Sequence[str]) -> Sequence[str] | None:
     """What a record says of the metrics; None is all of them."""
     if metrics == "*":
         return None
-    return [metrics] if isinstance(metrics, str) else metrics
+    return texts_of("metrics", metrics)
+
+
+def _bytes(planner_memory: float | None) -> int | None:
+    """Address space of a planner's process; given in GiB.
+
+    Raises:
+        InputError: it is not a positive number.
+    """
+    if planner_memory is None:
+        return None
+    memory = number_of("planner_memory", planner_memory, "GiB")
+    if memory <= 0.0:
+        raise InputError(f"planner_memory must be positive, in GiB, not {memory:g}")
+    return round(memory * 2**30)
 
 
 def evaluate(run: Run | str | Path, metrics: str | Sequence[str] = "*") -> Scores:
@@ -190,7 +206,7 @@ def evaluate(run: Run | str | Path, metrics: str | Sequence[str] = "*") -> Score
     from crowdbot.core.runs.request import Run as RunOnDisk
 
     made = RunOnDisk.open(run) if isinstance(run, str | Path) else run
-    _expect("run", made, RunOnDisk, hint="crowdbot.simulate returns one")
+    expect("run", made, RunOnDisk, hint="crowdbot.simulate returns one")
     refs = made.references
     scores = score(made.trajectories, refs.robot_alone, refs.crowd_alone, metrics=metrics)
     return replace(scores, scenario=made.scenario, planner=made.planner, seed=made.seed)
@@ -254,7 +270,6 @@ def results(root: str | Path = "runs") -> Results:
     """
     from crowdbot.core.results.rows import Results as AllResults
 
-    _expect("root", root, str, Path)
     return AllResults.open(root)
 
 
@@ -279,20 +294,8 @@ def _check_recorded(
             hint = (
                 "Trajectories.from_csv, from_arrays and others make them; a run has .trajectories"
             )
-            _expect(name, value, SomeTrajectories, hint=hint)
+            expect(name, value, SomeTrajectories, hint=hint)
     given = {"commands": commands, "commands_baseline": commands_baseline}
     for name, value in given.items():
         if value is not None:
-            _expect(name, value, SomeCommands, hint="Commands.from_arrays makes them")
-
-
-def _expect(name: str, value: object, *kinds: type, hint: str = "") -> None:
-    """Refuse an argument of another kind.
-
-    Raises:
-        InputError: it is.
-    """
-    if not isinstance(value, kinds):
-        wanted = " or ".join(k.__name__ for k in kinds)
-        more = f"; {hint}" if hint else ""
-        raise InputError(f"{name} must be a {wanted}, not a {type(value).__name__}{more}")
+            expect(name, value, SomeCommands, hint="Commands.from_arrays makes them")

@@ -105,6 +105,12 @@ def nearest(name: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:
     return tuple(difflib.get_close_matches(name, sorted(known), n=limit, cutoff=0.6))
 
 
+def kind_of(value: object) -> str:
+    """What kind of thing a value is, with its article: ``an int``, ``a list``, ``None``."""
+    name = type(value).__name__
+    return "None" if value is None else f"{'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"
+
+
 def did_you_mean(near: Sequence[str]) -> str:
     """``"; did you mean 'a' or 'b'?"``, or nothing."""
     return f"; did you mean {' or '.join(repr(n) for n in near)}?" if near else ""

@@ -1,11 +1,20 @@
 """How Sphinx makes the site: ``make docs``; pages stay readable as they are."""
 
+import sys
 from importlib.metadata import version as installed
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).parents[1]))  # for our own extension
 
 project = "crowdbot"
 author = "The crowdbot developers"
 release = version = installed("crowdbot")
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "scripts.accessible_pages",
+]
 root_doc = "index"
 source_suffix = {".md": "markdown"}
 exclude_patterns = ["**/.pytest_cache", "**/node_modules"]

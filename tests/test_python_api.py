@@ -29,6 +29,14 @@ def short() -> crowdbot.Scenario:
     return crowdbot.load(SUITE, ID, set="robots.robot.task.time_limit=1")
 
 
+@functools.cache
+def driven() -> crowdbot.Trajectories:
+    """Two samples of a robot that stands."""
+    still = {"robot_x": [0, 0], "robot_y": [0, 0], "robot_theta": [0, 0]}
+    body: dict[str, Any] = {"t": [0.0, 1.0], "robot_radius": 0.2, "robot_mass": 6.0, **still}
+    return crowdbot.Trajectories.from_arrays(**body)
+
+
 class Creep:
     """Goes slowly ahead and remembers what it saw."""
 
@@ -65,27 +73,53 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: crowdbot.load(FILE, set={"crowd.flow.denisty": 1}), "did you mean 'density'"),
     (lambda: crowdbot.load(FILE, set={"crowd": object()}), "number, text, list or mapping"),
     (lambda: crowdbot.load(SUITE, ID, set=3), "key=value texts or a mapping"),  # type: ignore[call-overload]
-    (lambda: crowdbot.load(3), "path_or_name must be a str or Path, not a int"),  # type: ignore[call-overload]
-    (lambda: crowdbot.load(SUITE, 3), "scenario must be a str, not a int"),  # type: ignore[call-overload]
+    (lambda: crowdbot.load(3), "path_or_name must be a str or Path, not an int"),  # type: ignore[call-overload]
+    (lambda: crowdbot.load(SUITE, 3), "scenario must be a str, not an int"),  # type: ignore[call-overload]
     (lambda: crowdbot.load(SUITE, "counter-d250"), "unknown scenario"),
     (lambda: crowdbot.expand(3), "suite must be"),  # type: ignore[arg-type]
     (lambda: crowdbot.expand(short(), set="a=1"), "give it to load"),
     (lambda: crowdbot.simulate(SUITE), "crowdbot.load(SUITE, ID)"),  # type: ignore[arg-type]
     (lambda: crowdbot.evaluate("nowhere"), "no run directory"),
-    (lambda: crowdbot.evaluate(3), "run must be a Run, not a int"),  # type: ignore[arg-type]
+    (lambda: crowdbot.evaluate(3), "run must be a Run, not an int"),  # type: ignore[arg-type]
     (lambda: crowdbot.score("run.csv"), "crowded must be a Trajectories, not a str"),  # type: ignore[arg-type]
     (lambda: crowdbot.score(commands=[1]), "commands must be a Commands"),  # type: ignore[arg-type]
     (lambda: crowdbot.Results.open("nowhere"), "no folder of results"),
-    (lambda: crowdbot.results(3), "root must be a str or Path"),  # type: ignore[arg-type]
+    (lambda: crowdbot.results(3), "root must be a path, not an int"),  # type: ignore[arg-type]
     (lambda: crowdbot.Run.open("nowhere"), "no run directory"),
     (lambda: crowdbot.Results().to_pandas("people"), "no table 'people'"),  # type: ignore[arg-type]
     (lambda: crowdbot.Session("x"), "a session needs a scenario"),  # type: ignore[arg-type]
-    (lambda: crowdbot.Session(short(), seed=-1), "not negative: -1"),
+    (lambda: crowdbot.Session(short(), seed=-1), "at least 0, not -1"),
     (lambda: crowdbot.Session(short(), sensors=["radar"]), "needs 'radar'"),
-    (lambda: crowdbot.simulate(short(), planner=3), "a int is not a planner"),  # type: ignore[arg-type]
+    (lambda: crowdbot.simulate(short(), planner=3), "an int is not a planner"),  # type: ignore[arg-type]
     (lambda: crowdbot.simulate(short(), planner=int), "class 'int' is not a planner"),
     (lambda: crowdbot.simulate(short(), planner=Creep, planner_settings={"w": 1}), "'w'"),
     (lambda: crowdbot.simulate(short(), planner=Creep(), planner_settings={"v": 1}), "its own"),
+    (lambda: crowdbot.load(FILE, set=[3]), "key=value texts or a mapping, not an int"),  # type: ignore[list-item]
+    (lambda: crowdbot.load(FILE, set=b"a=1"), "key=value texts or a mapping"),  # type: ignore[arg-type]
+    (lambda: crowdbot.simulate(short(), seed=1.5), "seed must be a whole number"),  # type: ignore[arg-type]
+    (lambda: crowdbot.simulate(short(), seed="a"), "not a str"),  # type: ignore[arg-type]
+    (lambda: crowdbot.simulate(short(), out=3), "out must be a path, not an int"),  # type: ignore[arg-type]
+    (lambda: crowdbot.simulate(short(), suite=3), "suite must be a str"),  # type: ignore[arg-type]
+    (lambda: crowdbot.simulate(short(), metrics=[3]), "list of str; an int is in it"),  # type: ignore[list-item]
+    (lambda: crowdbot.simulate(short(), step_budget="1"), "step_budget must be a number"),  # type: ignore[arg-type]
+    (lambda: crowdbot.simulate(short(), planner_memory="4"), "a number in GiB, not a str"),  # type: ignore[arg-type]
+    (lambda: crowdbot.simulate(short(), planner_memory=-1), "must be positive"),
+    (lambda: crowdbot.simulate(short(), planner_memory=float("nan")), "not nan"),
+    (lambda: crowdbot.simulate(short(), in_process="yes"), "in_process must be a bool"),  # type: ignore[arg-type]
+    (lambda: crowdbot.simulate(short(), progress="yes"), "progress must be a function"),  # type: ignore[arg-type]
+    (lambda: crowdbot.simulate(short(), stop=None), "stop must be a function, not None"),  # type: ignore[arg-type]
+    (lambda: crowdbot.simulate(short(), planner_settings=3), "key=value texts"),  # type: ignore[arg-type]
+    (lambda: crowdbot.score(driven(), metrics=3), "metrics must be a str or a list"),  # type: ignore[arg-type]
+    (lambda: crowdbot.score(driven(), variants=[3]), "variants must be a list of str"),  # type: ignore[list-item]
+    (lambda: crowdbot.score(driven(), parameters=3), "parameters must be a mapping"),  # type: ignore[arg-type]
+    (lambda: crowdbot.score(driven(), parameters={"risk": 3}), "parameters of risk"),  # type: ignore[dict-item]
+    (lambda: crowdbot.score(driven(), metrics="success").find(3), "metric must be a str"),  # type: ignore[arg-type]
+    (lambda: crowdbot.Run.open(None), "directory must be a path, not None"),  # type: ignore[arg-type]
+    (lambda: crowdbot.Results.open(b"runs"), "root must be a path, not a bytes"),  # type: ignore[arg-type]
+    (lambda: crowdbot.Session(short(), sensors=3), "sensors must be a str or a list"),  # type: ignore[arg-type]
+    (lambda: crowdbot.Session(short(), recording=3), "recording must be a path"),  # type: ignore[arg-type]
+    (lambda: crowdbot.Session(short(), recording=ROOT), "this is a folder"),
+    (lambda: crowdbot.Session(short(), registry=3), "registry must be a Registry"),  # type: ignore[arg-type]
 ]  # fmt: skip
 
 

@@ -14,6 +14,7 @@ import logging
 import os
 import pkgutil
 import re
+import shutil
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext, redirect_stdout
@@ -36,6 +37,10 @@ _SETTINGS: dict[str, Any] = {
     "pretty_exceptions_enable": False,
     "context_settings": {"help_option_names": ["-h", "--help"]},
 }
+
+
+#: Columns; 80 have room for the longest option beside its type and what it does.
+_NARROW = 80
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -147,12 +152,29 @@ def _load(name: str) -> Any:
     command = get_command(found)
     command.name = name
     for one in (command, *getattr(command, "commands", {}).values()):
+        one.help = _unwrapped(one.help)
+        if one.help and not one.short_help:  # or else click would leave out its end
+            one.short_help = one.help.partition("\n\n")[0]
+        if _is_narrow():
+            one.rich_markup_mode = None
         taken = {text for param in one.params for text in param.opts}
         one.params += [p for p in _verbosity_params() if not taken & set(p.opts)]
         for param in one.params:
             if completes := offer(param.name):
                 param._custom_shell_complete = completes
     return command
+
+
+def _is_narrow() -> bool:
+    """Whether a table of options would cut their names off, which plain help does not."""
+    return shutil.get_terminal_size().columns < _NARROW
+
+
+def _unwrapped(text: str | None) -> str | None:
+    """Paragraphs of a docstring as single lines, which help wraps to the width of the screen."""
+    if text is None:
+        return None
+    return "\n\n".join(" ".join(part.split("\n")) for part in text.split("\n\n"))
 
 
 def _set_level(level: int) -> Any:
@@ -211,6 +233,8 @@ _Version = Annotated[
 def _app() -> typer.Typer:
     _start_log()
     settings = {**_SETTINGS, "add_completion": True}
+    if _is_narrow():
+        settings["rich_markup_mode"] = None
     app = typer.Typer(cls=_Commands, no_args_is_help=True, **settings)
 
     @app.callback()

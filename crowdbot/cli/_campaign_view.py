@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from crowdbot.core.runs.outcome import ENDINGS, PLANNER_FAILED
+from crowdbot.core.support.plural import plural
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -28,7 +29,8 @@ def show(plan: Plan) -> Iterator[Listener]:
         yield _only_failures
         return
     complete = sum(bool(r.status) for r in plan.runs)
-    _say(f"{len(plan.runs)} runs, {complete} complete, {len(plan.jobs)} jobs to do")
+    runs, jobs = plural(len(plan.runs), "run"), plural(len(plan.jobs), "job")
+    _say(f"{runs}, {complete} complete, {jobs} to do")
     for label, why in plan.left_out.items():
         _say(f"{label} is left out: {why}")
     lines = _Lines()

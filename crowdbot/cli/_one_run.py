@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 import signal
 import sys
@@ -91,9 +92,8 @@ def _print_result(run: Run, *, as_json: bool) -> None:
 
     rows = read_scores_csv(run.directory / SCORES)
     if run.replaced:
-        print(
-            f"note: it replaces a run that was recorded differently: {', '.join(run.replaced)}",
-            file=sys.stderr,
+        logging.getLogger("crowdbot").info(
+            "note: it replaces a run that was recorded differently: %s", ", ".join(run.replaced)
         )
     if as_json:
         scores = [

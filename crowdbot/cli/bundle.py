@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.core.support.plural import plural
 from crowdbot.errors import UsageError
 
 
@@ -92,8 +93,8 @@ def bundle(
         raise typer.Exit(0 if verdict is None or verdict["ok"] else 1)
     lacking = f", {len(manifest.missing)} missing" if manifest.missing else ""
     typer.echo(
-        f"{manifest.edition_name}: {manifest.label}, {len(manifest.runs)} runs{lacking}, "
-        f"{len(manifest.members)} files, {target.stat().st_size / 1e6:.1f} MB"
+        f"{manifest.edition_name}: {manifest.label}, {plural(len(manifest.runs), 'run')}{lacking}, "
+        f"{plural(len(manifest.members), 'file')}, {target.stat().st_size / 1e6:.1f} MB"
     )
     typer.echo(f"wrote {target}")
     if verdict is not None:

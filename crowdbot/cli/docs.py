@@ -10,6 +10,8 @@ import typer
 
 from crowdbot.errors import InputError, UnknownNameError
 
+#: Characters that are shown of a line that holds a text.
+_EXCERPT = 120
 #: Pages at the top, and folders, as the index has them: what one learns from before what one asks.
 _ORDER = (
     "index",
@@ -40,7 +42,7 @@ def docs(
     folder = documents()
     if search is not None:
         found = [] if not search.strip() else list(_lines(folder, search))
-        shown = [f"{f['page']}:{f['line']}: {f['text']}" for f in found]
+        shown = [f"{f['page']}:{f['line']}: {_excerpt(str(f['text']), search)}" for f in found]
         typer.echo(json.dumps(found, indent=2, ensure_ascii=False) if as_json else "\n".join(shown))
         if not found:
             raise InputError(f"no page holds '{search}'")
@@ -97,6 +99,20 @@ def _file(folder: Path, page: str) -> Path:
 def _title(file: Path) -> str:
     with file.open(encoding="utf-8") as lines:
         return next((line[2:].strip() for line in lines if line.startswith("# ")), "")
+
+
+def _excerpt(line: str, text: str) -> str:
+    """A line, or of a long one what stands around the text, in whole words."""
+    if len(line) <= _EXCERPT:
+        return line
+    at = max(line.casefold().find(text.casefold()), 0)
+    begin = max(0, min(at - _EXCERPT // 2, len(line) - _EXCERPT))
+    part = line[begin : begin + _EXCERPT]
+    before, after = begin > 0, begin + _EXCERPT < len(line)
+    part = part.partition(" ")[2] if before and " " in part[: at - begin] else part
+    end = part.rpartition(" ")[0] if after else part
+    part = end if text.casefold() in end.casefold() else part
+    return f"{'… ' if before else ''}{part}{' …' if after else ''}"
 
 
 def _lines(folder: Path, text: str) -> list[dict[str, object]]:

@@ -85,7 +85,9 @@ def _show(about: dict[str, Any], found: RecordingContents) -> None:
     for name in ("scenario", "trajectory"):
         if about.get(name):
             console.print(f"{name}: {about[name]}", markup=False)
-    table = Table("topic", "type", "messages", "Hz", "bytes", box=None, pad_edge=False)
+    table = Table(box=None, pad_edge=False)
+    for name in ("topic", "type", "messages", "Hz", "bytes"):
+        table.add_column(name, overflow="fold", no_wrap=name not in ("topic", "type"))
     for topic in found.topics:
         rate = "" if topic.rate is None else f"{topic.rate:.1f}"
         table.add_row(topic.name, topic.msgtype, str(topic.count), rate, str(topic.size))

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.core.support.plural import plural
 from crowdbot.errors import printable
 
 
@@ -71,4 +72,5 @@ def leaderboard(
             json.dumps({"page": str(out), "tables": document, "left_out": left_out}, indent=2)
         )
         return
-    typer.echo(f"{len(entries)} bundles, {len(tables)} tables; wrote {out}")
+    counts = f"{plural(len(entries), 'bundle')}, {plural(len(tables), 'table')}"
+    typer.echo(f"{counts}; wrote {out}")

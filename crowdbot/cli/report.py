@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 import shlex
 import sys
@@ -17,6 +18,7 @@ from urllib.parse import quote
 import typer
 
 from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.core.support.plural import plural
 from crowdbot.errors import InputError, UnknownNameError, UsageError
 
 if TYPE_CHECKING:
@@ -95,7 +97,7 @@ def _left_out(results: Results) -> list[str]:
     """What the page says of damaged runs."""
     lost = [d.directory for d in results.damaged]
     some = ", ".join(lost[:_SHOWN]) + (", …" if len(lost) > _SHOWN else "")
-    return [f"damaged: {len(lost)} runs are left out: {some}"] if lost else []
+    return [f"damaged: {plural(len(lost), 'run')} left out: {some}"] if lost else []
 
 
 def _chosen(results: Results, suite: str | None, planners: Sequence[str], root: Path) -> Results:
@@ -185,21 +187,14 @@ def _replays(results: Results, root: Path, out: Path) -> dict[str, str]:
 def _tell(
     paths: dict[str, Path], contents: Contents, findings: Sequence[Finding], as_json: bool
 ) -> None:
+    quiet = logging.getLogger("crowdbot").level > logging.INFO
     for finding in findings:
+        if quiet and finding.accepted:
+            continue
         print(f"{'accepted' if finding.accepted else 'warning'}: {finding}", file=sys.stderr)
     if not as_json:
-        counts = contents.counts()
-        said = ", ".join(f"{n} {name.replace('_', ' ')}" for name, n in counts.items() if n)
-        print(f"{', '.join(contents.planners)}: {said}", file=sys.stderr)
-        ranks = contents.ranks.verdicts if contents.ranks else ()
-        told = [
-            *(f"crowd: {line}" for line in contents.crowds),
-            contents.suspicion,
-            contents.sample.text if contents.sample else "",
-            *(check.text for check in contents.floors),
-            *(verdict.text for verdict in ranks),
-        ]
-        print("\n".join(text for text in told if text), file=sys.stderr)
+        if not quiet:
+            _tell_of(contents)
         typer.echo(paths["html"])
         return
     document = {
@@ -219,3 +214,19 @@ def _tell(
         "ranks_by_crowd": None if contents.ranks is None else contents.ranks.as_json(),
     }
     typer.echo(json.dumps(document, indent=2, ensure_ascii=False))
+
+
+def _tell_of(contents: Contents) -> None:
+    """What the page says first, on stderr."""
+    counts = contents.counts()
+    said = ", ".join(f"{n} {name.replace('_', ' ')}" for name, n in counts.items() if n)
+    print(f"{', '.join(contents.planners)}: {said}", file=sys.stderr)
+    ranks = contents.ranks.verdicts if contents.ranks else ()
+    told = [
+        *(f"crowd: {line}" for line in contents.crowds),
+        contents.suspicion,
+        contents.sample.text if contents.sample else "",
+        *(check.text for check in contents.floors),
+        *(verdict.text for verdict in ranks),
+    ]
+    print("\n".join(text for text in told if text), file=sys.stderr)

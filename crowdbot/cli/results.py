@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from crowdbot.core.scoring.four_scores import MAIN_SCORES
+from crowdbot.core.support.name_lines import in_lines
+from crowdbot.core.support.plural import plural
 
 if TYPE_CHECKING:
     from crowdbot.core.results.rows import Results
@@ -28,6 +30,8 @@ _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 _ROOT = Path("runs")
 #: Wide enough for every table; a terminal wraps what it cannot hold.
 _WIDTH = 240
+#: Columns of names in terminals that are narrower than the second.
+_NAME_WIDTH, _WHOLE_NAMES = 10, 80
 #: Counts of runs without a value.
 _WITHOUT = ("undefined", "censored", "failed")
 #: What is shown of every planner when nobody asks for more.
@@ -89,7 +93,8 @@ def show(
     _print([_line(s) for s in summaries], as_csv=as_csv, as_json=as_json)
     if not (as_csv or as_json):
         damaged = f", {len(found.damaged)} damaged" if found.damaged else ""
-        typer.echo(f"{len(found.runs)} runs, {len(found.failures)} failures{damaged}")
+        runs, failures = plural(len(found.runs), "run"), plural(len(found.failures), "failure")
+        typer.echo(f"{runs}, {failures}{damaged}")
 
 
 @results.command()
@@ -297,7 +302,10 @@ def _print_table(lines: list[dict[str, Any]]) -> None:
 
     table = table_of(lines)
     if "mean" in lines[0] and Console(width=9999).measure(table).maximum > console.width:
-        table = table_of([_narrow(line) for line in lines], padding=0)
+        rows = [_narrow(line) for line in lines]
+        if console.width < _WHOLE_NAMES:
+            rows = [_broken(row) for row in rows]
+        table = table_of(rows, padding=0)
     console.print(table)
 
 
@@ -315,6 +323,11 @@ def _narrow(line: dict[str, Any]) -> dict[str, Any]:
         "median": line["median"],
         "n": ", ".join([str(line["n"]), *missing]),
     }
+
+
+def _broken(line: dict[str, Any]) -> dict[str, Any]:
+    """A line whose names are broken between their words."""
+    return {n: in_lines(v, _NAME_WIDTH) if isinstance(v, str) else v for n, v in line.items()}
 
 
 def _shown(value: Any) -> str:

@@ -47,7 +47,7 @@ def simulate(
     ] = None,
     seed: RunSeed = 0,
     out: OutRoot = Path("runs"),
-    record: Record = RecordChoice.all,
+    record: Record = RecordChoice.used,
     references: Annotated[
         bool, typer.Option(help="Run robot_alone and crowd_alone where they are missing.")
     ] = True,

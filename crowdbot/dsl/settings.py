@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 
-from crowdbot.errors import InputError
+from crowdbot.errors import InputError, kind_of
 
 
 def setting_texts(settings: str | Sequence[str] | Mapping[str, object]) -> Sequence[str]:
@@ -15,11 +15,21 @@ def setting_texts(settings: str | Sequence[str] | Mapping[str, object]) -> Seque
         settings: one text, several, or a mapping of keys to values that JSON can say.
 
     Raises:
-        InputError: a value cannot be written as JSON.
+        InputError: it is something else, or a value cannot be written as JSON.
     """
     if not isinstance(settings, Mapping):
-        return [settings] if isinstance(settings, str) else settings
+        return _texts(settings)
     try:
         return [f"{key}={json.dumps(value)}" for key, value in settings.items()]
     except (TypeError, ValueError) as error:
         raise InputError(f"a setting is a number, text, list or mapping: {error}") from None
+
+
+def _texts(settings: str | Sequence[str]) -> Sequence[str]:
+    if isinstance(settings, str):
+        return [settings]
+    texts = settings if isinstance(settings, Sequence) else [settings]
+    for text in texts:
+        if not isinstance(text, str):
+            raise InputError(f"settings are key=value texts or a mapping, not {kind_of(text)}")
+    return texts

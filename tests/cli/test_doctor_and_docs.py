@@ -11,11 +11,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from rich.console import Console
 
 from crowdbot import cli
 from crowdbot.cli import _complete, _doctor
 from crowdbot.cli._builtin_names import BUILTIN_NAMES
+from crowdbot.cli.docs import _excerpt
 from crowdbot.core.scoring.scores_csv import scores_table
 from crowdbot.core.types.score import Score
 from scripts.write_completion_names import FILE as FILE_OF_NAMES
@@ -164,5 +167,14 @@ def test_tables_fit_and_lose_nothing(width: int, monkeypatch: pytest.MonkeyPatch
     assert max(len(line) for line in lines) <= width
     text = "".join("".join(lines).split())
     assert all(c in text for c in ("E_s", "corrected_whole", "0.125", "+"))
-    letters = [line[1:].split("  ")[0] for line in lines]
-    assert "neighbour_veloc" in "".join(letters)
+    if width < 80:  # broken between words
+        assert {"neighbour_", "velocity_", "similarity"} <= set("\n".join(lines).split())
+    else:
+        assert "neighbour_velocity_similarity" in text
+
+
+@given(st.text("ab c", max_size=400), st.text("ab", min_size=1, max_size=9))
+def test_excerpts_hold_the_text(line: str, text: str) -> None:
+    shown = _excerpt(f"{line}{text}{line}", text)
+    assert text in shown
+    assert len(shown) <= 120 + 4

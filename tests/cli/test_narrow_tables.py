@@ -7,7 +7,9 @@ from typing import Any
 import pytest
 
 from crowdbot.cli._plugin_table import table
+from crowdbot.cli.info import _show
 from crowdbot.cli.results import _print_table
+from crowdbot.core.recording.contents import RecordingContents, TopicContents
 
 LINE: dict[str, Any] = {
     "planner": "dwa", "metric": "contacts_per_km", "variant": "at_fault", "unit": "1/km",
@@ -25,7 +27,9 @@ def test_results_fit_and_say_everything(
     text = capsys.readouterr().out
     assert max(map(len, text.splitlines())) <= width
     told = "".join(text.split())
-    if width > 70:  # below, cells are folded between letters
+    if width < 70:  # broken between words, not between letters
+        assert {"contacts_", "per_km", "at_fault,", "1/km"} <= set(text.split())
+    else:
         for word in ("dwa", "contacts_per_km", "at_fault", "1/km", "12.35", "1.5", "98.5", "7"):
             assert word in told
     assert "12" in told
@@ -42,3 +46,21 @@ def test_the_last_column_is_wrapped(width: int, monkeypatch: pytest.MonkeyPatch)
     assert text.split()[-60:] == words
     monkeypatch.delenv("COLUMNS")
     assert len(table(rows).splitlines()) == 2  # a file need not be folded
+
+
+@pytest.mark.parametrize("width", [60, 80, 200])
+def test_topics_of_a_recording_are_named_in_full(
+    width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    topic = TopicContents("/crowdbot/candidates", "crowdbot_msgs/msg/VelocityCandidates", 1, 3780)
+    found = RecordingContents(
+        topics=(topic,), finished=True, complete=True, status="arrived", is_run=True, end=1.0,
+        size=4000, attachments={},
+    )  # fmt: skip
+    monkeypatch.setenv("COLUMNS", str(width))
+    _show({"file": "run.mcap"}, found)
+    told = "".join(capsys.readouterr().out.split())
+    assert "…" not in told
+    if width > 70:
+        assert "crowdbot_msgs/msg/VelocityCandidates" in told
+    assert "3780" in told

@@ -25,9 +25,14 @@ COLUMNS = (
 # ---------------------------------------------------------------- a complete run
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The directory of one run of 3 s of `dwa`."""
+    """The directory of one run of 3 s of `dwa`, everything recorded."""
     out = tmp_path_factory.mktemp("whole")
-    assert cli.main(["simulate", "challenge-2020", ID, *limit(3.0), "--out", str(out)]) == 0
+    assert (
+        cli.main(
+            ["simulate", "challenge-2020", ID, *limit(3.0), "--record", "all", "--out", str(out)]
+        )
+        == 0
+    )
     (record,) = out.glob("challenge-2020/**/run.json")
     return record.parent
 
@@ -181,7 +186,7 @@ def test_without_references(shell: Shell) -> None:
 
 def test_what_is_recorded_changes_nothing_else(shell: Shell) -> None:
     hashes, topics = set(), {}
-    for record in ("all", "used", "none"):
+    for record in ("none", "used", "all"):
         answer = shell("--planner", "goal_seek", "--record", record, "--json")
         assert answer.json["reused"] is False
         hashes.add(answer.json["hashes"]["trajectory"])
@@ -191,7 +196,15 @@ def test_what_is_recorded_changes_nothing_else(shell: Shell) -> None:
     assert any("lidar" in t for t in topics["all"])
     assert not any("lidar" in t for t in topics["used"])
     assert any("odom" in t for t in topics["all"])  # topics of ROS tools (decision 0016)
-    assert topics["none"] <= topics["used"] < topics["all"]
+    assert topics["none"] < topics["used"] < topics["all"]
+    for record in ("used", "none"):  # what is there holds more
+        answer = shell("--planner", "goal_seek", "--record", record, "--json")
+        assert (answer.json["reused"], answer.json["recorded"]) == (True, "all")
+
+
+def test_used_is_what_simulate_records(shell: Shell) -> None:
+    answer = shell("--planner", "goal_seek", "--json")
+    assert answer.json["recorded"] == "used"
 
 
 def test_a_scenario_without_people(shell: Shell) -> None:

@@ -300,7 +300,7 @@ def test_runs_beside_each_other(tmp_path: Path, capsys: Captured) -> None:
     for planner, id_ in (("goal_seek", ONE[2]), ("stop_and_go", ONE[2]), ("goal_seek", other_id)):
         words = ["simulate", ONE[1], id_, "--planner", planner, "--out", str(tmp_path)]
         short = ["--set", "robots.robot.task.time_limit=0.5", "--no-references", "-q"]
-        assert main([*words, *short]) == 0
+        assert main([*words, *short, "--record", "all"]) == 0
 
     def made(planner: str, id_: str = ONE[2]) -> str:
         (found,) = tmp_path.glob(f"{ONE[1]}/{id_}*/{planner}/seed-0")

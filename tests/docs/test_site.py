@@ -136,3 +136,5 @@ def test_pages_are_understood(tmp_path: Path) -> None:
     built = (tmp_path / "html" / "reference" / "python_api.html").read_text(encoding="utf-8")
     assert "crowdbot.Session" in built
     assert "https://" not in re.sub(r'<a [^>]*href="https?://[^"]*"', "", built)
+    for mark in ('role="heading">', "<pre>", '<aside class="sidebar-drawer">'):
+        assert mark not in built, "scripts/accessible_pages.py no longer fits the theme"

@@ -29,7 +29,7 @@ from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.component_specs import PlannerSpec
 from crowdbot.dsl.settings import setting_texts
-from crowdbot.errors import InputError
+from crowdbot.errors import InputError, kind_of
 
 #: What `choose_planner` takes: a name or file, a spec, a class, an object, a function.
 GivenPlanner = str | Path | PlannerSpec | type[Any] | Planner | Callable[[Observation], Any]
@@ -74,7 +74,7 @@ def choose_planner(
     if callable(planner) and not hasattr(planner, "step"):
         return _of_function(planner)
     raise InputError(
-        f"a {type(planner).__name__} is not a planner: a name, a file, a class or object with "
+        f"{kind_of(planner)} is not a planner: a name, a file, a class or object with "
         "reset and step, or a function from an observation to a command is wanted"
     )
 

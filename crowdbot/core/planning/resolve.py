@@ -35,6 +35,7 @@ from crowdbot.core.support.source_digest import source_digest
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.component import Component
 from crowdbot.dsl.component_specs import PlannerRole, PlannerSpec
+from crowdbot.dsl.settings import setting_texts
 from crowdbot.errors import InputError
 
 #: Of a document, bytes.
@@ -213,6 +214,7 @@ def setting_values(settings: Sequence[str] | Mapping[str, Any]) -> dict[str, Any
     """
     if isinstance(settings, Mapping):
         return dict(settings)
+    settings = setting_texts(settings)
     values: dict[str, Any] = {}
     for setting in settings:
         key, equals, value = setting.partition("=")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from functools import cache
 from typing import Any, NamedTuple
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core.geometry.optical_frame import optical
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
+from crowdbot.core.recording.images import Grid, grid_of, thinned
 from crowdbot.core.recording.template import Template
 from crowdbot.core.types.sensor import CameraFrame, Pinhole, SensorInfo
 
@@ -28,26 +28,30 @@ class ImageMessage(NamedTuple):
 class CameraMessages:
     """What images of one camera become: depth, colour if there is some, a CameraInfo each."""
 
-    def __init__(self, name: str, info: SensorInfo) -> None:
+    def __init__(self, name: str, info: SensorInfo, width: int | None = None) -> None:
         """Prepare.
 
         Args:
             name: of the sensor: the root of its topics.
             info: of a sensor with a ``camera``.
+            width: leave out rows and columns so that at most so many columns remain.
         """
         assert info.camera is not None
+        self._width = width = width or info.camera.width
         self._root = f"/{name}"
         head = ros.header(template.ANY_TIME, optical(info.frame))
-        self._about = Template(_camera_info(head, info.camera), template.ANY_STAMP)
-        self._blank = cache(lambda encoding, size: _image(head, encoding, (*info.shape, size)))
-        self._pixels = math.prod(info.shape)
+        rows, columns = thinned(np.zeros(info.shape, np.bool_), width).shape
+        about = _camera_info(head, info.camera, (rows, columns), grid_of(info.shape, width))
+        self._about = Template(about, template.ANY_STAMP)
+        self._blank = cache(lambda encoding, size: _image(head, encoding, (rows, columns, size)))
+        self._pixels = rows * columns
 
     def __call__(self, frame: CameraFrame) -> Iterator[ImageMessage]:
         """The messages of one image."""
         stamp = template.stamp(ros.nanoseconds(frame.stamp))
-        yield from self._pair("depth", "16UC1", stamp, frame.depth_mm)
+        yield from self._pair("depth", "16UC1", stamp, thinned(frame.depth_mm, self._width))
         if frame.colour is not None:
-            yield from self._pair("color", "rgb8", stamp, frame.colour)
+            yield from self._pair("color", "rgb8", stamp, thinned(frame.colour, self._width))
 
     def _pair(
         self, kind: str, encoding: str, stamp: bytes, pixels: NDArray[Any]
@@ -78,13 +82,15 @@ def _image(head: Any, encoding: str, shape: tuple[int, int, int]) -> Template:
     return Template(message, template.ANY_STAMP, data.tobytes())
 
 
-def _camera_info(head: Any, camera: Pinhole) -> Any:
-    f, (cx, cy) = camera.focal, camera.centre
+def _camera_info(head: Any, camera: Pinhole, size: tuple[int, int], grid: Grid) -> Any:
+    """Of images (rows, columns) that have the pixels of a grid."""
+    f, (column, row) = camera.focal / grid.every, camera.centre
+    cx, cy = (column - grid.column) / grid.every, (row - grid.row) / grid.every
     return ros.new(
         "sensor_msgs/CameraInfo",
         header=head,
-        height=camera.height,
-        width=camera.width,
+        height=size[0],
+        width=size[1],
         distortion_model="plumb_bob",
         d=np.zeros(5),
         k=np.array([f, 0, cx, 0, f, cy, 0, 0, 1.0]),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +13,13 @@ from crowdbot.core.recording.records import Record, decode
 from crowdbot.core.recording.scans import Thinning
 from crowdbot.errors import InputError
 
+#: As many images per second as the replay page holds, Hz, and as wide, in pixels.
+REPLAY_IMAGE_RATE, REPLAY_IMAGE_WIDTH = 2.0, 96
+
 _LEAVES: dict[str, tuple[Literal["depth", "colour"], str]] = {
     "/depth/image_raw": ("depth", "16UC1"),
-    "/colour/image_raw": ("colour", "rgb8"),
+    "/color/image_raw": ("colour", "rgb8"),
+    "/colour/image_raw": ("colour", "rgb8"),  # of older recordings
 }
 
 
@@ -33,6 +37,27 @@ class ReplayImages:
     kind: Literal["depth", "colour"]
     t: NDArray[np.float64]
     pixels: NDArray[Any]
+
+
+class Grid(NamedTuple):
+    """Which pixels remain: one of ``every`` in either direction, the first at row and column."""
+
+    every: int
+    row: int
+    column: int
+
+
+def grid_of(shape: tuple[int, ...], width: int) -> Grid:
+    """Of an image (H, W, ...): the pixels that remain, so that at most ``width`` columns do."""
+    rows, columns = shape[:2]
+    every = -(-columns // width)
+    return Grid(every, min(every // 2, rows - 1), every // 2)
+
+
+def thinned(pixels: NDArray[Any], width: int) -> NDArray[Any]:
+    """A view of an image (H, W, ...) of which rows and columns are left out."""
+    every, row, column = grid_of(pixels.shape, width)
+    return pixels[row::every, column::every]
 
 
 class ImageCollector:
@@ -86,8 +111,7 @@ def _pixels(path: Path, record: Record, width: int) -> NDArray[Any]:
             f"{path}: {record.topic} holds an image of {message.encoding or 'no encoding'} with "
             f"{flat.size} numbers, not {encoding} of {message.width} x {message.height}"
         )
-    every = -(-message.width // width)
-    return flat.reshape(shape)[every // 2 :: every, every // 2 :: every].copy()
+    return thinned(flat.reshape(shape), width).copy()
 
 
 def _images(path: Path, topic: str, rows: list[tuple[int, NDArray[Any]]]) -> ReplayImages:

@@ -49,9 +49,13 @@ class Thinning:
         self._gap = round(1e9 / rate) if rate else 0
         self._due = 0
 
+    def due(self, ns: int) -> bool:
+        """Whether a reading of this time (ns) would remain."""
+        return ns >= self._due
+
     def keeps(self, ns: int) -> bool:
         """Whether the reading of this time (ns) remains; to be asked in the order of time."""
-        if ns < self._due:
+        if not self.due(ns):
             return False
         self._due = ns - (ns % self._gap if self._gap else 0) + self._gap
         return True

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any, Protocol
 
 from crowdbot.core.recording import markers, scenery, template
 from crowdbot.core.recording import messages as ros
-from crowdbot.core.recording.container import McapFile
+from crowdbot.core.recording.chunk import Piece
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.namespace import in_namespace
 from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
-from crowdbot.core.recording.scans import Thinning
+from crowdbot.core.recording.scans import REPLAY_RATE, Thinning
 from crowdbot.core.recording.template import Template
 from crowdbot.core.recording.topics import Topic, is_odometry, usual_names
 from crowdbot.core.recording.viewers import ARROWS_TYPE, PEOPLE_RATE, PeopleArrows, RobotWay
@@ -18,22 +19,38 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command
 
 
+class ToolFile(Protocol):
+    """Takes messages: a recording, or whoever wants to have them."""
+
+    def put(self, topic: str, ns: int, message: Any, *, latched: bool = False) -> None:
+        """A message, logged at ``ns`` nanoseconds of simulated time."""
+
+    def put_bytes(
+        self, topic: str, ns: int, msgtype: str, *pieces: Piece, latched: bool = False
+    ) -> None:
+        """A message that is already serialised, in one or more pieces."""
+
+
 class ToolTopics:
     """Writes clock, frames, map, robot, commands, people, path and contacts into a file."""
 
-    def __init__(self, file: McapFile, header: RecordingHeader, description: str) -> None:
+    def __init__(
+        self, file: ToolFile, header: RecordingHeader, description: str, *, whole: bool = True
+    ) -> None:
         """Write what never moves.
 
         Args:
             file: that of the recording.
             header: constants of the run.
             description: the robot's URDF; empty where there is none.
+            whole: False writes of the samples only what a viewer needs: where the robot is as
+                often as scans are kept, and where people are.
         """
-        self._file = file
+        self._file, self._whole = file, whole
         agents, robot = header.agents, header.robot
         self._people = None if agents is None else PeopleMessages(agents)
         self._arrows = None if agents is None else PeopleArrows(agents.id, agents.radius)
-        self._arrows_due = Thinning(PEOPLE_RATE)
+        self._people_due, self._pose_due = Thinning(PEOPLE_RATE), Thinning(REPLAY_RATE)
         self._way = None if robot is None else RobotWay(robot.radius)
         self._clock, self._twist = template.clock(), template.twist()
         self._namespace = header.namespace
@@ -47,24 +64,35 @@ class ToolTopics:
 
     def state(self, ns: int, robot: Sequence[float] | None, agents: Array | None) -> None:
         """One sample of the log: x, y, yaw of the robot; people (4, M); either may be missing."""
-        stamp = template.stamp(ns)
-        if not self._namespace:
-            self._put(Topic.CLOCK, ns, self._clock, stamp)
+        if self._whole and not self._namespace:
+            self._put(Topic.CLOCK, ns, self._clock, template.stamp(ns))
         if robot is not None:
-            x, y, yaw = robot[:3]
-            parts = stamp, template.two(x, y), template.turn(yaw)
+            self._robot(ns, *robot[:3])
+        if agents is not None:
+            self._crowd(ns, agents)
+
+    def _robot(self, ns: int, x: float, y: float, yaw: float) -> None:
+        parts = template.stamp(ns), template.two(x, y), template.turn(yaw)
+        if self._whole or self._pose_due.keeps(ns):
             self._put(Topic.TF, ns, self._truth, *parts)
+        if self._whole:
             self._put(Topic.POSE, ns, self._pose, *parts)
-            if self._way is not None:
-                self._way.add(ns / 1e9, x, y, yaw)
-        if self._people is not None and self._arrows is not None and agents is not None:
+        if self._way is not None:
+            self._way.add(ns / 1e9, x, y, yaw)
+
+    def _crowd(self, ns: int, agents: Array) -> None:
+        if self._people is None or self._arrows is None:
+            return
+        seldom = self._people_due.keeps(ns)
+        if self._whole:
             people = self._people.pedestrians(ns, agents)
             self._file.put_bytes(Topic.PEOPLE, ns, PEOPLE, people)
+        if self._whole or seldom:
             data = self._people.marker(ns, agents)
             self._file.put_bytes(Topic.PEOPLE_MARKER, ns, MARKER, data)
-            if self._arrows_due.keeps(ns):
-                data = self._arrows.message(ns, agents)
-                self._file.put_bytes(Topic.PEOPLE_MARKERS, ns, ARROWS_TYPE, data)
+        if self._whole and seldom:
+            data = self._arrows.message(ns, agents)
+            self._file.put_bytes(Topic.PEOPLE_MARKERS, ns, ARROWS_TYPE, data)
 
     def measured(self, sensor: str, ns: int, msgtype: str, data: bytes, values: Array) -> None:
         """A reading once more, under the name that users of ROS expect; the frame of odometry."""

@@ -24,6 +24,7 @@ from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.candidates import Choosers
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.header import RecordingHeader, tilts_message, with_frames
+from crowdbot.core.recording.images import REPLAY_IMAGE_RATE, REPLAY_IMAGE_WIDTH
 from crowdbot.core.recording.namespace import NamespacedFile
 from crowdbot.core.recording.scans import REPLAY_RATE, Thinning, whole_centimetres
 from crowdbot.core.recording.states import SeriesRows, StateSample, StatesWriter
@@ -62,9 +63,6 @@ class RecordingWriter:
     """Writes what the simulation hands over; all times are simulated seconds, >= 0.
 
     Arrays belong to the writer from then on, but those of readings, which it copies.
-
-    Attributes:
-        images: whether images are written, which are large.
     """
 
     def __init__(
@@ -83,11 +81,12 @@ class RecordingWriter:
             path: file to write; the caller gives it its final name when the run is complete.
             header: constants of the run.
             record: ``none`` leaves out all that scores do not need; ``used`` keeps what the
-                replay page shows, scans and cones as exact and as often as it does; ``all`` has
-                every reading and image, and the messages of ROS tools.
+                replay page shows, scans, cones and images as exact and as often as it does, and
+                what a viewer needs to draw the run; ``all`` has every reading and image, and all
+                messages of ROS tools.
             choosers: people whose choices are among known candidates, which makes the file
                 smaller; nobody is in two groups.
-            description: the robot's URDF, which ``all`` says.
+            description: the robot's URDF, which ``none`` leaves out.
             beside: what writes to the same file what all robots share; the header then has a
                 namespace.
 
@@ -98,9 +97,13 @@ class RecordingWriter:
             McapFile(path) if beside is None else NamespacedFile(beside._file, header.namespace)
         )
         header = with_frames(header)
-        self.images = record == "all"
+        self._images = record != "none"
+        self._whole = record == "all"
         cameras = {n: i for n, i in header.sensors.items() if i.camera is not None}
-        self._cameras = {n: CameraMessages(n, i) for n, i in cameras.items()}
+        width = None if self._whole else REPLAY_IMAGE_WIDTH
+        self._cameras = {n: CameraMessages(n, i, width) for n, i in cameras.items()}
+        rate = None if self._whole else REPLAY_IMAGE_RATE
+        self._frames = {n: Thinning(rate) for n in cameras}
         ranging = {n: i for n, i in header.sensors.items() if n not in cameras}
         self._sensors = sensor_topics(ranging, header.namespace)
         seen = {n: i for n, i in header.sensors.items() if is_scan(i) or is_cone(i)}
@@ -120,7 +123,11 @@ class RecordingWriter:
             self._file.put(Topic.TILTS, 0, tilts, latched=True)
         for group in known:
             self._file.put(Topic.CANDIDATES, 0, group.to_message(), latched=True)
-        self._tools = ToolTopics(self._file, header, description) if record == "all" else None
+        self._tools = (
+            None
+            if record == "none"
+            else ToolTopics(self._file, header, description, whole=self._whole)
+        )
 
     def state(
         self,
@@ -153,7 +160,7 @@ class RecordingWriter:
     def reading(self, sensor: str, reading: Reading) -> None:
         """One reading of a sensor that the header lists and that is not a camera."""
         thinning = self._thinning.get(sensor)
-        if self._tools is not None:
+        if self._whole:
             values = reading.values.copy()
         elif thinning is not None and thinning.keeps(ros.nanoseconds(reading.stamp)):
             values = whole_centimetres(reading.values)
@@ -161,9 +168,13 @@ class RecordingWriter:
             return
         self._waiting.append(partial(self._measured, sensor, reading.stamp, values))
 
+    def wants_frame(self, camera: str, stamp: float) -> bool:
+        """Whether `frame` would keep an image of this time (s)."""
+        return self._images and self._frames[camera].due(ros.nanoseconds(stamp))
+
     def frame(self, camera: str, frame: CameraFrame) -> None:
         """One image of a camera that the header lists."""
-        if not self.images:
+        if not self._images or not self._frames[camera].keeps(ros.nanoseconds(frame.stamp)):
             return
         self._waiting.append(partial(self._frame_messages, self._cameras[camera], frame))
         self._image_bytes += frame.depth_mm.nbytes
@@ -277,12 +288,12 @@ class RecordingWriter:
         topic, ns = self._sensors[sensor], ros.nanoseconds(stamp)
         data = topic.message(ns, values)
         self._file.put_bytes(topic.name, ns, topic.msgtype, data)
-        if self._tools is not None:
+        if self._tools is not None and self._whole:
             self._tools.measured(sensor, ns, topic.msgtype, data, values)
 
     def _say_path(self) -> None:
         """Once in a simulated second, and at the end."""
-        if self._tools is not None:
+        if self._tools is not None and self._whole:
             self._tools.path(self._now)
 
     def _frame_messages(self, camera: CameraMessages, frame: CameraFrame) -> None:

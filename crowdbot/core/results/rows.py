@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 from crowdbot.core.scoring.score_scale import Scales
+from crowdbot.core.support.arguments import path_of
 from crowdbot.core.support.data_frame import to_arrow, to_pandas
 from crowdbot.errors import InputError
 from crowdbot.lazy import lazy_names
@@ -195,7 +196,7 @@ class Results:
         Raises:
             InputError: there is no such folder, or a run in it is damaged.
         """
-        return cast(Results, _beside("load")(Path(root)))
+        return cast(Results, _beside("load")(path_of("root", root)))
 
     def to_pandas(self, table: Table = "scores") -> pd.DataFrame:
         """A row a score, with suite, scenario, planner, seed and the axes of its run.

@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from crowdbot.core.planning.choice import IN_PROCESS, MEMORY
 from crowdbot.core.registry.registry import Registry
@@ -16,7 +16,7 @@ from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.outcome import PLANNER_FAILED
 from crowdbot.core.runs.record_model import record_problems
-from crowdbot.core.runs.request import Request
+from crowdbot.core.runs.request import Recorded, Request
 from crowdbot.core.scenarios.lock import Population, population
 from crowdbot.dsl.canonical import content_hash
 from crowdbot.dsl.scenario import Scenario
@@ -195,7 +195,7 @@ def _reference(
 
 
 def reusable_record(request: Request, run_id: str, *, compared: bool) -> dict[str, Any] | None:
-    """The record of the run if it is complete and was recorded as it is wanted now.
+    """The record of the run if it is complete and holds as much as is wanted now.
 
     Args:
         request: what is wanted.
@@ -212,11 +212,17 @@ def reusable_record(request: Request, run_id: str, *, compared: bool) -> dict[st
         return None
     if record.get("planner_process", IN_PROCESS) != request.choice.process:
         return None
-    if record.get("recorded") != request.record or (compared and not record.get("references")):
+    if not _holds(record, request) or (compared and not record.get("references")):
         return None
     if request.replay and not (request.directory / files.REPLAY).exists():
         return None
     return record
+
+
+def _holds(record: Mapping[str, Any], request: Request) -> bool:
+    """Whether as much was recorded as is wanted, or more."""
+    levels = get_args(Recorded)
+    return record.get("recorded") in levels[: levels.index(request.record) + 1]
 
 
 def recorded_otherwise(request: Request, identity: Mapping[str, Any]) -> tuple[str, ...]:

@@ -8,7 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.environments.build import build_environment
-from crowdbot.core.recording.images import ImageCollector, ReplayImages
+from crowdbot.core.recording.images import (
+    REPLAY_IMAGE_RATE,
+    REPLAY_IMAGE_WIDTH,
+    ImageCollector,
+    ReplayImages,
+)
 from crowdbot.core.recording.scans import REPLAY_RATE
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.replay import OtherTrack, Scenery, ShownRun
@@ -24,8 +29,6 @@ from crowdbot.core.types.robot import RobotModel
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError, UsageError
-
-_IMAGE_RATE, _IMAGE_WIDTH = 2.0, 96
 
 
 def replay_facts(record: Mapping[str, Any]) -> dict[str, str]:
@@ -70,7 +73,7 @@ def scenery(parts: EnvironmentParts, height: float) -> Scenery:
 
 def images_of_replay(recording: Path) -> ImageCollector:
     """Collects what the page shows of cameras."""
-    return ImageCollector(recording, _IMAGE_RATE, _IMAGE_WIDTH)
+    return ImageCollector(recording, REPLAY_IMAGE_RATE, REPLAY_IMAGE_WIDTH)
 
 
 def replayed_runs(folders: Sequence[Path], registry: Registry) -> list[ShownRun]:

@@ -18,12 +18,14 @@ from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.scoring.evaluate import Scores
 from crowdbot.core.scoring.metric import References
 from crowdbot.core.scoring.scores_csv import read_scores_csv
+from crowdbot.core.support.arguments import path_of
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.dsl.axis_words import AxisWords
 from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
 
+#: What is recorded, most first: what a run has holds all that the levels after it ask for.
 Recorded = Literal["all", "used", "none"]
 
 
@@ -55,10 +57,11 @@ class Run:
         Raises:
             InputError: there is no complete run.
         """
-        record = files.read_record(Path(directory))
+        path = path_of("directory", directory)
+        record = files.read_record(path)
         if record is None:
             raise InputError(f"{directory}: no run directory, there is no {files.RECORD} in it")
-        return cls(Path(directory), record, reused=True)
+        return cls(path, record, reused=True)
 
     @property
     def scenario(self) -> str:
@@ -155,7 +158,7 @@ class Request:
     seed: int
     out: Path
     suite: str = "scenarios"
-    record: Recorded = "all"
+    record: Recorded = "used"
     references: bool = True
     force: bool = False
     metrics: Sequence[str] | None = None

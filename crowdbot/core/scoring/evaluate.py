@@ -15,6 +15,7 @@ from pydantic import ValidationError
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scoring.metric import Metric, References
+from crowdbot.core.support.arguments import expect, mapping_of, texts_of
 from crowdbot.core.support.data_frame import to_arrow, to_pandas
 from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.trajectories.preprocess import truncate_at_arrival, with_velocities
@@ -85,7 +86,10 @@ class Scores(Sequence[Score]):
 
         Raises:
             UnknownNameError: there is none.
+            InputError: a name is not a text.
         """
+        expect("metric", metric, str)
+        expect("variant", variant, str)
         of_metric = {s.variant: s for s in self.items if s.metric == metric}
         if not of_metric:
             raise UnknownNameError("metric", metric, {s.metric for s in self.items})
@@ -196,10 +200,11 @@ def metric_specs(
         InputError: a parameter does not fit, or a metric that is named is retired.
     """
     known = registry.components("metric")
-    for kind in parameters:
-        registry.find("metric", kind)
+    for kind, fields in mapping_of("parameters", parameters, "metrics to fields").items():
+        registry.find("metric", str(kind))
+        mapping_of(f"parameters of {kind}", fields, "fields to values")
     chosen: set[str] = set()
-    for glob in [metrics] if isinstance(metrics, str) else metrics:
+    for glob in texts_of("metrics", metrics):
         chosen.update(_matching(known, glob, registry.why_absent(glob)))
     specs = {kind: _spec(known[kind], parameters.get(kind, {})) for kind in known}
     return [specs[kind] for kind in known if kind in chosen]
@@ -291,7 +296,7 @@ def _what_is_wrong(scores: Sequence[object], component: Component[MetricSpec]) -
 def _of_variants(scores: Sequence[Score], variants: str | Sequence[str]) -> list[Score]:
     if variants == "all":
         return list(scores)
-    wanted = {variants} if isinstance(variants, str) else set(variants)
+    wanted = set(texts_of("variants", variants))
     known = {s.variant for s in scores}
     for name in sorted(wanted - known):
         raise UnknownNameError("variant", name, known)

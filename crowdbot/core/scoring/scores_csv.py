@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main, main_first
 from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.support.name_lines import in_lines
 from crowdbot.core.support.plain_text import plain_text
 from crowdbot.core.types.score import Score
 from crowdbot.errors import InputError, hidden_character
@@ -37,6 +38,8 @@ COLUMNS = (
     "upper",
 )
 _VALUE_WIDTH, _WHOLE_NAMES = 20, 80
+#: Of names in narrower terminals.
+_NAME_WIDTH = 14
 _NUMBERS = ("value", "lower", "upper")
 _TEXTS = ("category", "metric", "symbol", "variant", "unit", "better", "status", "reason")
 
@@ -199,7 +202,8 @@ def section_of(score: Score) -> str:
 def scores_table(scores: Sequence[Score]) -> Table:
     """A table for people, the four scores first, then by category.
 
-    It fits the terminal: in one of less than 80 columns names are folded, and none is left out.
+    It fits the terminal: in one of less than 80 columns names are broken between their words, and
+    none is left out.
     The last column says what is better: + higher, - lower, = like the people.
     """
     from rich.box import SIMPLE_HEAD
@@ -221,7 +225,10 @@ def scores_table(scores: Sequence[Score]) -> Table:
         for s in group:
             head = ("", "") if s.metric == shown else (s.metric, s.symbol)
             style = "" if s.status == "ok" else "dim"
-            cells = (*head, s.variant, verdict(s), _SIGNS[s.better])
+            names = [*head, s.variant]
+            if not whole:
+                names[0] = in_lines(names[0], _NAME_WIDTH)
+            cells = (*names, verdict(s), _SIGNS[s.better])
             table.add_row(*map(Text, cells), style=style)
             shown = s.metric
     return table

@@ -93,7 +93,7 @@ def header_of(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
 
 def description_of(setup: RunSetup, built: BuiltRun) -> str:
     """The robot's URDF, where it is recorded."""
-    return to_urdf(built.model, built.infos, built.name) if setup.record == "all" else ""
+    return to_urdf(built.model, built.infos, built.name) if setup.record != "none" else ""
 
 
 @contextmanager

@@ -41,7 +41,7 @@ from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, is_due
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotState
-from crowdbot.core.types.sensor import CameraFrame, Reading, SensorInfo
+from crowdbot.core.types.sensor import Reading, SensorInfo
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,22 +131,20 @@ class SensorBank(LeafSystem):
         *,
         seed: int,
         robot: str,
-        on_reading: Callable[[str, Reading], None],
-        on_frame: Callable[[str, CameraFrame], None] | None = None,
+        writer: RecordingWriter,
         renderers: Mapping[str, ColourRenderer] = MappingProxyType({}),
     ) -> None:
         """Take the sensors.
 
         Args:
             crowd_size: length of the crowd's state, 0 without people.
-            on_reading: gets each reading of sensors other than cameras.
-            on_frame: gets each image of cameras; None where images are not recorded.
+            writer: gets each reading, and those images that it asks for.
             renderers: what draws the colour images of cameras, by the camera's name.
         """
         super().__init__()
         self._scene = scene
         self._poses: list[Pose | None] = []
-        self._on_reading, self._on_take_frame = on_reading, on_frame
+        self._writer, self._on_reading = writer, writer.reading
         self._idle = SensorStream(seed, robot, "").at(0)
         people = len(s.view(np.zeros(crowd_size))[1]) if crowd_size else 0
         self.slots, size = lay_out(
@@ -226,9 +224,9 @@ class SensorBank(LeafSystem):
         bank[slot.stamp] = t
         view = bank[slot.values]
         capture(robot, people, view, self._poses)
-        if self._on_take_frame is not None:
+        if self._writer.wants_frame(name, t):
             image = self._images[name].frame(self._scene, pose, t, view)
-            self._on_take_frame(name, image)
+            self._writer.frame(name, image)
 
     def _see(self, context: Context, robot: RobotState) -> Array | None:
         """Show the scene as it is now; returns the crowd's rows, if any."""
@@ -293,8 +291,7 @@ def add_sensors(
         0 if crowd is None else crowd.state.size(),
         seed=seed,
         robot=built.name,
-        on_reading=writer.reading,
-        on_frame=writer.frame if writer.images else None,
+        writer=writer,
         renderers=_renderers(built.infos, scene, others),
     )
     builder.AddNamedSystem("sensors", bank)

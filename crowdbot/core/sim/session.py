@@ -27,11 +27,12 @@ from crowdbot.core.scenarios.one_robot import check_one_robot
 from crowdbot.core.sim.built_run import BuiltRun, build_run
 from crowdbot.core.sim.record_crowd import RunSetup
 from crowdbot.core.sim.run_thread import Exchange, own_stdout, start_run
+from crowdbot.core.support.arguments import expect, path_of, texts_of, whole_number_of
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.motion import Command
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.dsl.seeds import stream_seed
-from crowdbot.errors import InputError
+from crowdbot.errors import InputError, kind_of
 
 #: What a session takes as a command: v, w and for a robot that goes sideways vy; m/s, rad/s.
 CommandLike = Command | tuple[float, ...] | Sequence[float]
@@ -67,7 +68,8 @@ class Session:
         planner_seed: what a planner would get in this run for its own random numbers.
 
     Raises:
-        InputError: the scenario has not exactly one robot, or the robot lacks a sensor.
+        InputError: the scenario has not exactly one robot, the robot lacks a sensor, or another
+            argument is wrong.
     """
 
     def __init__(
@@ -82,19 +84,21 @@ class Session:
     ) -> None:
         if not isinstance(scenario, Scenario):
             raise InputError(
-                f"a session needs a scenario, not a {type(scenario).__name__}; "
+                f"a session needs a scenario, not {kind_of(scenario)}; "
                 "crowdbot.load(SUITE, ID) reads one"
             )
         check_one_robot(scenario, "a session")
+        if registry is not None:
+            expect("registry", registry, Registry)
         self.scenario, self._registry = scenario, registry or discover()
         self._choice = _choice(sensors, privileged=privileged)
-        self._recording = None if recording is None else Path(recording)
+        self._recording = None if recording is None else _checked_recording(recording)
         self._people = population(scenario, self._registry).agents
         self._exchange: Exchange | None = None
         self._thread: threading.Thread | None = None
         self._observation: Observation | None = None
         self._outcome: Outcome | None = None
-        self._seed = _checked_seed(seed)
+        self._seed = whole_number_of("seed", seed)
         self._built: BuiltRun | None = self._build()
         self._describe(self._built)
 
@@ -112,10 +116,10 @@ class Session:
                 written.
         """
         self.close()
-        self._seed = self._seed if seed is None else _checked_seed(seed)
+        self._seed = self._seed if seed is None else whole_number_of("seed", seed)
         built, self._built = self._built or self._build(), None  # sensors remember: for one run
         self._describe(built)
-        self._outcome = None
+        self._outcome = self._observation = None
         exchange = self._exchange = Exchange()
         host = PlannerHost(cast(Planner, exchange), "session", self.limits)
         setup = RunSetup(
@@ -249,7 +253,7 @@ class Session:
         elif isinstance(answer, Outcome):
             self._end(answer)
         else:
-            self._exchange = self._thread = None
+            self._exchange = self._thread = self._observation = None
             raise answer
         return self.observe()
 
@@ -263,10 +267,11 @@ class Session:
         return self._recording.with_name(f"{self._recording.name}.partial")
 
 
-def _checked_seed(seed: int) -> int:
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise InputError(f"the seed of a run is an integer, not negative: {seed!r}")
-    return seed
+def _checked_recording(recording: str | Path) -> Path:
+    path = path_of("recording", recording)
+    if path.is_dir():
+        raise InputError(f"{path}: a recording is a file, and this is a folder")
+    return path
 
 
 def _checked_command(command: CommandLike) -> Command:
@@ -294,7 +299,7 @@ def _choice(sensors: Sequence[str] | None, *, privileged: bool) -> PlannerChoice
         spec_dump={"kind": "session"},
         build=build,
         pinned=False,
-        needs=None if sensors is None else tuple(sensors),
+        needs=None if sensors is None else texts_of("sensors", sensors),
         label="session",
         privileged=privileged,
     )

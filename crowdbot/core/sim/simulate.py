@@ -48,6 +48,7 @@ from crowdbot.core.sim.preflight import preflight
 from crowdbot.core.sim.record_all import record_all
 from crowdbot.core.sim.record_crowd import RunSetup
 from crowdbot.core.sim.references import check_interrupted, make_references, partial
+from crowdbot.core.support.arguments import expect, expect_function, number_of, whole_number_of
 from crowdbot.dsl.axis_words import AxisWords
 from crowdbot.dsl.path_names import path_problem
 from crowdbot.dsl.scenario import Scenario
@@ -63,7 +64,7 @@ def simulate(
     seed: int = 0,
     out: Path | None = None,
     suite: str = "scenarios",
-    record: Recorded = "all",
+    record: Recorded = "used",
     references: bool = True,
     force: bool = False,
     metrics: Sequence[str] | None = None,
@@ -102,7 +103,9 @@ def simulate(
             directory is left.
         Interrupted: ``stop`` said so; a ``.partial`` directory is left.
     """
-    _check_options(seed, suite, record, step_budget)
+    seed = whole_number_of("seed", seed)
+    _check_options(suite, record, step_budget)
+    _check_callbacks(progress, stop)
     choice = choose_planner(planner, registry, planner_settings, place)
     if metrics is not None:
         metric_specs(registry, metrics, {})  # a wrong name ends the run before it begins
@@ -134,20 +137,30 @@ def simulate(
     return make_run(request, prepare(scenario, registry, references=request.references), keep)
 
 
-def _check_options(seed: int, suite: str, record: str, step_budget: float | None) -> None:
+def _check_callbacks(progress: object, stop: object) -> None:
+    """Refuse what cannot be called.
+
+    Raises:
+        InputError: one cannot.
+    """
+    if progress is not None:
+        expect_function("progress", progress)
+    expect_function("stop", stop)
+
+
+def _check_options(suite: str, record: str, step_budget: float | None) -> None:
     """Refuse values that types cannot exclude.
 
     Raises:
         InputError: one is wrong.
     """
-    if seed < 0:
-        raise InputError(f"the seed of a run must not be negative: {seed}")
+    expect("suite", suite, str)
     if suite != Path(suite).name or path_problem(suite):
         raise InputError(f"suite '{suite}' is not the name of a folder")
     if record not in get_args(Recorded):
         choices = " or ".join(map(repr, get_args(Recorded)))
         raise InputError(f"record must be {choices}, not {record!r}")
-    if step_budget is not None and not 0.0 < step_budget < STEP_LIMIT:
+    if step_budget is not None and not 0.0 < number_of("step_budget", step_budget) < STEP_LIMIT:
         raise InputError(
             f"the budget of a step must be above 0 and below {STEP_LIMIT:g} s, "
             f"after which it counts as hung; not {step_budget:g}"
@@ -220,7 +233,7 @@ def _images(
 ) -> ImageCollector | None:
     """For the images that the page shows; None where it shows none."""
     infos = [info for built in builts.values() for info in built.infos.values()]
-    shows = request.replay and request.record == "all" and any(info.camera for info in infos)
+    shows = request.replay and request.record != "none" and any(info.camera for info in infos)
     return images_of_replay(recording) if shows else None
 
 

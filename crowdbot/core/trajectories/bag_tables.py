@@ -75,7 +75,7 @@ def _messages(path: Path, topics: set[str] | None = None) -> Iterator[tuple[str,
             chosen = [c for c in reader.connections if topics is None or c.topic in topics]
             for connection, ns, raw in reader.messages(connections=chosen):
                 yield connection.topic, ns, reader.deserialize(raw, connection.msgtype)
-    except AnyReaderError as error:
+    except (AnyReaderError, FileNotFoundError) as error:
         raise InputError(f"{path}: not a bag that can be read: {error}") from error
 
 

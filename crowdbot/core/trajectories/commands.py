@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from crowdbot.core.support.arguments import number_of, path_of
 from crowdbot.core.support.csv_columns import read_columns
 from crowdbot.core.support.immutable import immutable
 from crowdbot.core.types.arrays import Array
@@ -66,9 +67,9 @@ class Commands:
         if not len(times) or np.any(np.diff(times) <= 0):
             raise InputError("commands: t must not be empty, and must strictly increase")
         for name, limit in (("v_max", v_max), ("w_max", w_max)):
-            if not 0 < limit < math.inf:
+            if not 0 < number_of(name, limit) < math.inf:
                 raise InputError(f"commands: {name} must be positive")
-        end = float(times[-1] if t_end is None else t_end)
+        end = float(times[-1]) if t_end is None else number_of("t_end", t_end, "s")
         if not times[-1] <= end < math.inf:
             raise InputError(f"commands: t_end {end} s lies before the last command")
         return cls(**columns, v_max=float(v_max), w_max=float(w_max), t_end=end)
@@ -82,7 +83,7 @@ class Commands:
         Raises:
             InputError: it cannot be read, a column is missing, or a cell is not a number.
         """
-        columns = read_columns(Path(path), COLUMNS)
+        columns = read_columns(path_of("path", path), COLUMNS)
         return cls.from_arrays(**columns, v_max=v_max, w_max=w_max, t_end=t_end)
 
     @property

@@ -12,6 +12,7 @@ from typing import Any, Literal, Self, TypeVar, cast
 
 from numpy.typing import ArrayLike
 
+from crowdbot.core.support.arguments import mapping_of, number_of, path_of, point_of
 from crowdbot.core.trajectories import own_recordings as own
 from crowdbot.core.trajectories.bag_tables import bag_tables
 from crowdbot.core.trajectories.datasets import eth_ucy_table, split_robot, trajnet_table
@@ -115,7 +116,7 @@ class FromRecordings:
         else:
             as_columns = contacts
         tables = {
-            n: read_table(Path(p), names.get(n, {}), _COLUMNS[n])
+            n: read_table(path_of(n, p), names.get(n, {}), _COLUMNS[n])
             for n, p in given.items()
             if p is not None
         }
@@ -277,7 +278,7 @@ class FromRecordings:
         Warns:
             RecordingWarning: units or frames cannot be what they should be.
         """
-        own_robot, others = bag_tables(Path(path), robot, people)
+        own_robot, others = bag_tables(path_of("path", path), robot, people)
         if own_robot is None and resample == "robot":
             resample = None
         return _made(
@@ -343,7 +344,7 @@ class FromRecordings:
         Warns:
             RecordingWarning: units or frames cannot be what they should be.
         """
-        table = trajnet_table(Path(path), scene, frame_rate)
+        table = trajnet_table(path_of("path", path), scene, frame_rate)
         own_robot, others = split_robot(table, robot)
         return _made(
             cls,
@@ -405,7 +406,7 @@ class FromRecordings:
         Warns:
             RecordingWarning: units or frames cannot be what they should be.
         """
-        table = eth_ucy_table(Path(path), frame_rate)
+        table = eth_ucy_table(path_of("path", path), frame_rate)
         own_robot, others = split_robot(table, robot)
         return _made(
             cls,
@@ -439,11 +440,31 @@ class FromRecordings:
             UnknownNameError: there is no such robot.
         """
         read = _above("read_trajectories")
-        return cast(Self, read(Path(path), robot))
+        return cast(Self, read(path_of("path", path), robot))
 
     def implausible(self) -> list[str]:
         """What in it cannot be, such as positions in millimetres, in sentences with evidence."""
         return implausible(cast(Any, self))
+
+
+#: Numbers that recordings are told beside their tables, and their units.
+_NUMBERS = {
+    "robot_radius": "m",
+    "robot_mass": "kg",
+    "robot_goal_radius": "m",
+    "robot_speed_limit": "m/s",
+}
+
+
+def _told_number(name: str, value: Any) -> float | None:
+    """A number, or None where that means unknown.
+
+    Raises:
+        InputError: it is something else.
+    """
+    if value is None and name != "robot_goal_radius":
+        return None
+    return number_of(name, value, _NUMBERS[name])
 
 
 def _names_of(columns: TableColumns | None) -> TableColumns:
@@ -452,13 +473,14 @@ def _names_of(columns: TableColumns | None) -> TableColumns:
     Raises:
         InputError: there is no such table.
     """
-    for table, names in (columns or {}).items():
+    columns = mapping_of("columns", columns or {}, "tables to names of columns")
+    for table, names in columns.items():
         if table not in _COLUMNS or not isinstance(names, Mapping):
             raise InputError(
                 "columns: write {'robot': {'x': 'NAME THERE'}}, with the tables "
                 f"{', '.join(_COLUMNS)}; not {table!r}: {names!r}"
             )
-    return columns or {}
+    return columns
 
 
 def _made(
@@ -475,16 +497,19 @@ def _made(
     **told: Any,
 ) -> _Run:
     """The run of some tables, and of what was told beside them; warns of what cannot be."""
+    told = {n: _told_number(n, v) if n in _NUMBERS else v for n, v in told.items()}
+    if told["robot_goal"] is not None:
+        told["robot_goal"] = point_of("robot_goal", told["robot_goal"])
     columns = own.columns_of(
         tables.get("robot"),
         tables.get("agents"),
         tables.get("trips"),
         tables.get("contacts"),
-        agent_radius=agent_radius,
-        agent_mass=agent_mass,
+        agent_radius=number_of("agent_radius", agent_radius, "m"),
+        agent_mass=number_of("agent_mass", agent_mass, "kg"),
         resample=resample,
-        clock_offset=clock_offset,
-        max_gap=max_gap,
+        clock_offset=number_of("clock_offset", clock_offset, "s"),
+        max_gap=number_of("max_gap", max_gap, "s"),
         from_zero=from_zero,
     )
     arrived = robot_goal_time

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.geometry.footprint import Footprint
+from crowdbot.core.support.arguments import number_of
 from crowdbot.core.trajectories.raw_table import Ids, RawTable
 from crowdbot.core.trajectories.resample import interpolated, steady_times
 from crowdbot.core.types.arrays import Array
@@ -148,7 +149,8 @@ def _samples(
             raise InputError("resample='robot' needs a robot")
     elif resample is not None:
         ends = (tables[0].min(), tables[0].max())
-        return steady_times(float(ends[0]), float(ends[1]), float(resample))
+        rate = number_of("resample", resample, "Hz")
+        return steady_times(float(ends[0]), float(ends[1]), rate)
     if rows is not None:
         return rows["t"]
     ordered = np.unique(tables[0])
@@ -243,6 +245,21 @@ def _contacts(table: RawTable, ids: Ids | None, zero: float) -> dict[str, Any]:
     return columns | {"agent": agent}
 
 
+def _corners(goal_zone: Any) -> Array:
+    """(K, 2) corners of a zone, m.
+
+    Raises:
+        InputError: it is something else.
+    """
+    try:
+        corners = np.asarray(goal_zone, dtype=float)
+    except (TypeError, ValueError):
+        corners = np.zeros(0)
+    if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:
+        raise InputError(f"goal_zone must be (K, 2) corners in m, K >= 3, not {goal_zone!r}")
+    return corners
+
+
 def arrival(
     columns: Mapping[str, Any],
     goal: tuple[float, float] | None,
@@ -252,6 +269,9 @@ def arrival(
     """When the robot's centre was first within the goal, s; None: never, or there is no goal.
 
     Within ``goal_radius`` of the goal, or inside the zone; between two samples it moves straight.
+
+    Raises:
+        InputError: the zone is not a polygon.
     """
     if "robot_x" not in columns:
         return None
@@ -259,7 +279,7 @@ def arrival(
     if goal is not None and goal_radius > 0.0:
         gap = np.hypot(x - goal[0], y - goal[1]) - goal_radius
     elif goal_zone is not None:
-        gap = Footprint(np.asarray(goal_zone, dtype=float), 0.0).gap(x, y)
+        gap = Footprint(_corners(goal_zone), 0.0).gap(x, y)
     else:
         return None
     inside = np.flatnonzero(gap <= 0.0)

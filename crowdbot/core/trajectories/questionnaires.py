@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from crowdbot.core.support.arguments import path_of
 from crowdbot.errors import InputError, UnknownNameError
 
 #: Scales of the NASA task load index; performance is rated low when it was good.
@@ -81,7 +82,7 @@ class Questionnaires:
         Raises:
             InputError: it cannot be read, or a row is wrong; names the line.
         """
-        path = Path(path)
+        path = path_of("path", path)
         try:
             with path.open(encoding="utf-8-sig", newline="") as file:
                 reader = csv.DictReader(file, strict=True)

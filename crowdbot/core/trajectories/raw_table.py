@@ -15,9 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.support.arguments import expect, number_of
 from crowdbot.core.support.near_files import near_files
 from crowdbot.core.types.arrays import Array
-from crowdbot.errors import InputError, did_you_mean, nearest
+from crowdbot.errors import InputError, did_you_mean, kind_of, nearest
 
 #: Our name of a column -> the name that it has in a file.
 ColumnNames = Mapping[str, str]
@@ -92,6 +93,8 @@ class RawTable:
         cells = self.columns[column]
         if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
             return cells.astype("datetime64[ns]").astype(np.int64) / 1e9, True
+        if isinstance(cells, np.ndarray) and cells.dtype.kind == "m":
+            return cells.astype("timedelta64[ns]").astype(np.int64) / 1e9, False
         stamped = any(_is_stamp(cell) for cell in cells[:1])
         read = self._stamp if stamped else self._number
         times = np.array([read(column, i, cell) for i, cell in enumerate(cells)], dtype=float)
@@ -195,7 +198,7 @@ def frame_table(name: str, frame: Any, names: ColumnNames, known: Iterable[str])
         keys = list(frame)
         columns = {ours: np.asarray(_plain(frame[keys[i]])) for ours, i in chosen.items()}
     except (TypeError, KeyError) as error:
-        raise InputError(f"{name}: a data frame is wanted, not a {type(frame).__name__}") from error
+        raise InputError(f"{name}: a data frame is wanted, not {kind_of(frame)}") from error
     if len({len(c) for c in columns.values()}) > 1:
         raise InputError(f"{name}: its columns differ in length")
     return RawTable(name, columns, header=header)
@@ -213,7 +216,7 @@ def in_seconds(tables: Mapping[str, RawTable], frame_rate: float | None) -> Mapp
     """
     if frame_rate is None:
         return tables
-    if not (math.isfinite(frame_rate) and frame_rate > 0.0):
+    if number_of("frame_rate", frame_rate, "1/s") <= 0.0:
         raise InputError(f"frame_rate is a number of frames per second, not {frame_rate!r}")
     return {name: _without_frames(table, frame_rate) for name, table in tables.items()}
 
@@ -241,6 +244,7 @@ def _chosen(
     """Our names of the columns -> where they are."""
     known = list(known)
     for ours, theirs in names.items():
+        expect("a column's name", theirs, str)
         if ours not in known:
             raise InputError(
                 f"columns: '{ours}' is not a column of ours{did_you_mean(nearest(ours, known))}; "

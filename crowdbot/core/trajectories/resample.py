@@ -9,15 +9,23 @@ import numpy as np
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
+#: Samples of one run: a day at 1000 Hz.
+_MOST = 1e8
+
 
 def steady_times(begin: float, end: float, rate: float) -> Array:
     """(N,) times from ``begin`` on, 1 / ``rate`` apart, none after ``end``; s, Hz.
 
     Raises:
-        InputError: the rate is not positive.
+        InputError: the rate is not positive, or makes more samples than can be held.
     """
     if not (math.isfinite(rate) and rate > 0.0):
         raise InputError(f"resample: a rate is positive, in Hz, not {rate!r}")
+    if (end - begin) * rate > _MOST:
+        raise InputError(
+            f"resample: {end - begin:g} s at {rate:g} Hz are {(end - begin) * rate:.3g} samples, "
+            f"more than {_MOST:g}"
+        )
     count = math.floor((end - begin) * rate + 1e-9) + 1
     times: Array = begin + np.arange(count) / rate
     return times

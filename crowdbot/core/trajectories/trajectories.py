@@ -12,6 +12,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crowdbot.core.support.arguments import mapping_of, number_of, point_of
 from crowdbot.core.support.immutable import immutable, immutable_fields
 from crowdbot.core.trajectories.from_recordings import FromRecordings
 from crowdbot.core.types.arrays import Array
@@ -21,6 +22,8 @@ _Cached = TypeVar("_Cached")
 
 
 def _read_only(values: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
+    if np.iscomplexobj(values):
+        raise InputError("trajectories: complex numbers where real ones are wanted")
     try:
         array = np.array(values, dtype=dtype)
     except (TypeError, ValueError) as error:
@@ -204,11 +207,28 @@ class Trajectories(FromRecordings):
             planner_step_time=None if planner_step_time is None else _read_only(planner_step_time),
             robot_footprint=None if robot_footprint is None else _read_only(robot_footprint),
             robot_speed_limit=_speed_limit(robot_speed_limit),
-            signals={k: _read_only(v) for k, v in (signals or {}).items()},
+            signals=_signals(signals or {}),
         )
         _check(run)
         _check_travellers(run)
         return run
+
+
+def _signals(signals: Mapping[str, ArrayLike]) -> dict[str, Array]:
+    """Signals by name.
+
+    Raises:
+        InputError: one is not a table of times and values.
+    """
+    found = {}
+    for name, rows in mapping_of("signals", signals, "names to arrays").items():
+        found[name] = _read_only(rows)
+        if found[name].size and (found[name].ndim != 2 or found[name].shape[1] != 2):
+            raise InputError(
+                f"trajectories: signal '{name}' has shape {found[name].shape}, expected (P, 2): "
+                "times and values"
+            )
+    return found
 
 
 def _check_travellers(run: Trajectories) -> None:
@@ -241,11 +261,11 @@ def _robot(arguments: Mapping[str, Any]) -> RobotTrack:
     return RobotTrack(
         **rows,
         v=_read_only(unknown if v is None else v),
-        radius=float(arguments["robot_radius"]),
-        mass=float(arguments["robot_mass"]),
-        goal_time=None if goal_time is None else float(goal_time),
-        goal=None if goal is None else (float(goal[0]), float(goal[1])),
-        goal_radius=float(arguments["robot_goal_radius"]),
+        radius=number_of("robot_radius", arguments["robot_radius"], "m"),
+        mass=number_of("robot_mass", arguments["robot_mass"], "kg"),
+        goal_time=None if goal_time is None else number_of("robot_goal_time", goal_time, "s"),
+        goal=None if goal is None else point_of("robot_goal", goal),
+        goal_radius=number_of("robot_goal_radius", arguments["robot_goal_radius"], "m"),
     )
 
 
@@ -255,9 +275,12 @@ def _speed_limit(value: float | None) -> float | None:
     Raises:
         InputError: it is not positive.
     """
-    if value is not None and not (np.isfinite(value) and value > 0):
+    if value is None:
+        return None
+    limit = number_of("robot_speed_limit", value, "m/s")
+    if limit <= 0.0:
         raise InputError(f"trajectories: robot_speed_limit is {value}, not a positive speed in m/s")
-    return None if value is None else float(value)
+    return limit
 
 
 def _forward(rows: Mapping[str, Array]) -> Array:
@@ -298,6 +321,7 @@ def _trips(arguments: Mapping[str, Any]) -> Trips:
 
 
 def _contacts(table: Mapping[str, ArrayLike]) -> ContactEvents:
+    table = mapping_of("contacts", table, "columns to arrays")
     names = [f.name for f in fields(ContactEvents)]
     if "bearing" not in table:  # tables of others, and of older recordings
         table = {**table, "bearing": np.full(np.shape(table.get("t0", ())), np.nan)}
@@ -320,6 +344,7 @@ def _check(run: Trajectories) -> None:
                 _check_shape(f"robot_{name}", getattr(run.robot, name), (n,))
         _check_non_negative("robot_radius", run.robot.radius)
         _check_non_negative("robot_mass", run.robot.mass)
+        _check_non_negative("robot_goal_radius", run.robot.goal_radius)
     if run.agents is not None:
         m = run.agents.x.shape[1] if run.agents.x.ndim == 2 else 0
         _check_shape("agent_id", run.agents.id, (m,))

@@ -44,6 +44,14 @@ def _read(path: Path) -> dict[str, list[tuple[int, Any]]]:
     return found
 
 
+def _raw(path: Path) -> dict[str, list[tuple[int, bytes]]]:
+    found: dict[str, list[tuple[int, bytes]]] = {}
+    with AnyReader([path]) as reader:
+        for connection, ns, data in reader.messages():
+            found.setdefault(connection.topic, []).append((ns, data))
+    return found
+
+
 def test_a_bag_of_ros_2_is_a_folder_of_version_8(recording: Path) -> None:
     out = _export(recording, "rosbag2")
     about = YAML(typ="safe").load(out / "metadata.yaml")["rosbag2_bagfile_information"]
@@ -89,6 +97,36 @@ def test_the_map_has_the_walls(recording: Path) -> None:
     for x0, y0, x1, _ in WALLS:
         near = np.abs(y - y0) <= cell
         assert set(np.floor((x[near] - x0) / cell).astype(int)) >= set(range(int((x1 - x0) / cell)))
+
+
+@pytest.mark.parametrize("record", ["none", "used"])
+def test_what_follows_from_samples_is_the_same_in_each_bag(
+    recording: Path, tmp_path: Path, record: Any
+) -> None:
+    path = tmp_path / "less" / "run.mcap"
+    path.parent.mkdir()
+    write_run(path, RUN, record=record)
+    whole, less = (_raw(_export(p, "rosbag2")) for p in (recording, path))
+    for topic in (
+        "/clock", "/tf", "/tf_static", "/robot/pose", "/pedestrians", "/pedestrians_marker",
+        "/people_markers", "/walls_marker", "/goal_zone", "/goal_pose", "/map",
+    ):  # fmt: skip
+        assert less[topic] == whole[topic], topic
+    assert len(less["/contact_markers"]) == len(whole["/contact_markers"])
+    assert {"/scan": record == "used", "/cmd_vel": record == "used"} == {
+        topic: topic in less for topic in ("/scan", "/cmd_vel")
+    }
+
+
+def test_odometry_that_was_not_recorded_makes_no_tree(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "run.mcap"
+    write_run(path, RUN, record="used")
+    assert cli.main(["export", str(path), "--to", "rosbag2", "--tf", "odometry"]) == 1
+    error = capsys.readouterr().err
+    assert "there is no /odom in it; only --record all keeps odometry" in error
+    assert sorted(tmp_path.iterdir()) == [path]
 
 
 @pytest.mark.parametrize("record", ["none", "used"])

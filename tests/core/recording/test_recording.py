@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,9 @@ from crowdbot.core.recording import (
     read_trajectories,
     recording_info,
 )
+from crowdbot.core.recording.records import Records
 from crowdbot.core.recording.scans import REPLAY_RATE, Thinning
+from crowdbot.core.recording.viewers import PEOPLE_RATE
 from crowdbot.core.replay import ShownRun, write_replay
 from crowdbot.core.runs.provenance import trajectory_hash
 from crowdbot.core.trajectories.trajectories import Trajectories
@@ -184,7 +187,11 @@ def test_record_used_keeps_what_the_replay_shows_too(tmp_path: Path) -> None:
     write_run(tmp_path / "used", FULL, record="used")
     write_run(tmp_path / "none", FULL, record="none")
     topics = {n: set(recording_info(tmp_path / n).topics) for n in ("all", "used", "none")}
-    assert topics["used"] - topics["none"] == {"/front/scan"}
+    assert topics["used"] - topics["none"] == {
+        "/front/scan", "/cmd_vel", "/tf", "/tf_static", "/robot_description",
+        "/pedestrians_marker", "/contact_markers", "/walls_marker", "/map", "/goal_zone",
+        "/goal_pose",
+    }  # fmt: skip
     assert topics["used"] < topics["all"]
     pages = []
     for name in ("all", "used"):
@@ -192,6 +199,21 @@ def test_record_used_keeps_what_the_replay_shows_too(tmp_path: Path) -> None:
         write_replay(tmp_path / f"{name}.html", ShownRun(run=run, scans=scans, title="run"))
         pages.append((tmp_path / f"{name}.html").read_bytes())
     assert pages[0] == pages[1]
+
+
+def test_record_used_says_what_all_says_less_often(tmp_path: Path) -> None:
+    """But for scans, whose distances are rounded."""
+    messages: dict[str, dict[str, list[tuple[int, bytes]]]] = {"all": {}, "used": {}}
+    for record, found in messages.items():
+        write_run(tmp_path / record, FULL, record=record)  # type: ignore[arg-type]
+        for message in Records(tmp_path / record):
+            found.setdefault(message.topic, []).append((message.ns, message.data))
+    for topic in messages["used"].keys() - {"/front/scan"}:
+        assert set(messages["used"][topic]) <= set(messages["all"][topic]), topic
+    for topic, rate in (("/tf", REPLAY_RATE), ("/pedestrians_marker", PEOPLE_RATE)):
+        stamps = [ns for ns, _ in messages["used"][topic]]
+        assert len(stamps) < len(messages["all"][topic])
+        assert min(b - a for a, b in pairwise(stamps)) >= 1e9 / rate
 
 
 def test_one_pass_reads_what_three_do(tmp_path: Path) -> None:

@@ -13,12 +13,14 @@ from crowdbot.api import registry
 from crowdbot.core.live.planner import Manner
 from crowdbot.core.live.serve import LiveServe, serve_runs
 from crowdbot.core.live.session import LiveSession
+from crowdbot.core.planning.planner import Observation
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
 from crowdbot.core.recording.records import Record, Records
 from crowdbot.core.runs.request import Request
 from crowdbot.core.sim.built_run import build_run
 from crowdbot.core.sim.session import Session
 from crowdbot.core.sim.simulate import simulate
+from crowdbot.core.types.motion import Command
 from crowdbot.dsl.component_specs import EnvironmentSpec, RobotSpec, SensorSpec
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
@@ -65,9 +67,23 @@ def test_one_recording_is_built_once(tmp_path: Path, record: str) -> None:
     assert built == named
 
 
+class Looker:
+    """Stands still and sees."""
+
+    needs = ("camera",)
+
+    def reset(self, *_: Any) -> None:
+        """Nothing to do."""
+
+    def step(self, obs: Observation) -> Command:
+        assert [reading.values.shape for reading in obs.readings.values()] == [(240, 320)]
+        return Command(0.0, 0.0)
+
+
 @pytest.mark.slow
+@pytest.mark.parametrize(("planner", "record"), [("goal_seek", "all"), (Looker(), "used")])
 def test_a_recording_with_images_is_read_in_one_pass(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, planner: Any, record: Any
 ) -> None:
     """For the hash, the scores and the page with its images together."""
     passes: Counter[str] = Counter()
@@ -80,7 +96,9 @@ def test_a_recording_with_images_is_read_in_one_pass(
     monkeypatch.setattr(Records, "__iter__", counted)
     world = scenario(SHORT)
     assert any(sensor.kind == "rgbd_camera" for sensor in world.robots["robot"].sensors.values())
-    run = simulate(world, registry(), planner="goal_seek", out=tmp_path, references=False)
+    run = simulate(
+        world, registry(), planner=planner, out=tmp_path, references=False, record=record
+    )
     assert passes == {"run.mcap": 1}
     assert "-images0" in (run.directory / "replay.html").read_text(encoding="utf-8")
 

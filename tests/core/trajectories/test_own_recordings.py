@@ -311,7 +311,7 @@ def test_data_frames(tmp_path: Path) -> None:
         crowdbot.Trajectories.from_pandas(named, **BODY)
     renamed = crowdbot.Trajectories.from_pandas(named, columns={"robot": {"x": "east"}}, **BODY)
     assert renamed.robot is not None
-    with pytest.raises(InputError, match="a data frame is wanted, not a int"):
+    with pytest.raises(InputError, match="a data frame is wanted, not an int"):
         crowdbot.Trajectories.from_pandas(3, **BODY)
 
 

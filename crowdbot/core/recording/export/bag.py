@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import shutil
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -19,13 +19,14 @@ from rosbags.interfaces import (
 )
 
 from crowdbot.core.recording import messages as ros
-from crowdbot.core.recording.export.extras import Extra, extras
+from crowdbot.core.recording.export.extras import OFTEN, Extra, extras
 from crowdbot.core.recording.export.stamps import moved
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.reader import read_trajectories, recording_info
 from crowdbot.core.recording.records import Records
 from crowdbot.core.recording.scenery import BASE
 from crowdbot.core.recording.topics import Topic, sensor_topics, usual_names
+from crowdbot.errors import InputError
 
 Tree = Literal["truth", "odometry"]
 _FOREVER = QosTime(2147483647, 4294967295)
@@ -68,7 +69,7 @@ def write_ros2(path: Path, out: Path, options: BagOptions) -> int:
     """Write a folder with ``metadata.yaml`` (version 8) and an MCAP file; how many messages.
 
     Raises:
-        InputError: no recording of crowdbot, or the folder exists.
+        InputError: no recording of crowdbot, the folder exists, or odometry was not recorded.
     """
     from rosbags.rosbag2 import StoragePlugin, Writer
 
@@ -120,10 +121,27 @@ def _merged(path: Path, options: BagOptions) -> Iterator[_Message]:
     """What was recorded and what is added, in the order of time."""
     info = recording_info(path)
     header, run = info.header, read_trajectories(path)
+    if options.tree == "odometry" and "/odom" not in info.topics:
+        raise InputError(f"{path}: there is no /odom in it; only --record all keeps odometry")
+    counts = {topic: count for topic, (_, count) in info.topics.items()}
+    lacking = _lacking(counts, len(run.t), options)
     every = extras(header, run, options.description, markers=options.markers)
-    added = [extra for extra in every if extra.topic not in info.topics]
-    recorded = _recorded(path, set(info.topics), _names(header, options, info.topics), options)
+    added = [extra for extra in every if lacking(extra.topic)]
+    instead = dict.fromkeys(topic for topic in OFTEN if any(e.topic == topic for e in added))
+    names = _names(header, options, info.topics) | instead
+    recorded = _recorded(path, set(info.topics), names, options)
     yield from heapq.merge(_sorted(recorded), _sorted(_added(added)))
+
+
+def _lacking(topics: Mapping[str, int], samples: int, options: BagOptions) -> Callable[[str], bool]:
+    """Which topics are to be added: that are not recorded, or not at each of the samples."""
+
+    def lacking(topic: str) -> bool:
+        if topic == Topic.TF and options.tree == "odometry":
+            return False
+        return topics.get(topic, 0) < (samples if topic in OFTEN else 1)
+
+    return lacking
 
 
 def _sorted(messages: Iterable[_Message]) -> list[_Message]:

@@ -1,4 +1,4 @@
-"""Topics that users of ROS expect and that a recording may lack: map, path, goal, people."""
+"""Topics that users of ROS expect and that a recording may lack: all that follows from it."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from crowdbot.core.recording import messages as ros
-from crowdbot.core.recording import scenery
+from crowdbot.core.recording.chunk import Piece
 from crowdbot.core.recording.header import RecordingHeader
-from crowdbot.core.recording.scans import Thinning
+from crowdbot.core.recording.tools import ToolTopics
 from crowdbot.core.recording.topics import Topic
-from crowdbot.core.recording.viewers import ARROWS_TYPE, PEOPLE_RATE, PeopleArrows, RobotWay
+from crowdbot.core.recording.viewers import RobotWay
 from crowdbot.core.trajectories.trajectories import RobotTrack, Trajectories
+
+#: Of samples, and recorded less often where not everything is.
+OFTEN = (Topic.TF, Topic.PEOPLE_MARKER)
 
 
 class Extra(NamedTuple):
@@ -31,25 +34,52 @@ def extras(
 ) -> Iterator[Extra]:
     """What may be added to a bag, in the order of time for each topic.
 
+    Clock, frames, poses, people, walls and map are those that a recording of everything has.
+
     Args:
         description: the robot's URDF, if it is known.
         markers: whether to add people and contacts as markers, one for each.
     """
-    if header.walls is not None and len(header.walls):
-        yield _told(Topic.MAP, 0, scenery.occupancy_grid(0, header.walls), latched=True)
-    if description is not None:
-        text = ros.new("std_msgs/String", data=description)
-        yield _told(Topic.DESCRIPTION, 0, text, latched=True)
-    goal = scenery.goal_pose(0, header)
-    if goal is not None:
-        yield _told(Topic.GOAL_POSE, 0, goal, latched=True)
+    for extra in _tools(header, run, description or ""):
+        if markers or extra.topic != Topic.PEOPLE_MARKERS:
+            yield extra
     if run.robot is not None:
         way = _way(run, run.robot)
         yield _told(Topic.PATH, 0, way.path(0), latched=True)
         if markers:
             yield from _contacts(run, way)
-    if markers and run.agents is not None:
-        yield from _people(run)
+
+
+class _Kept:
+    """Keeps the messages that it is told."""
+
+    def __init__(self) -> None:
+        self.messages: list[Extra] = []
+
+    def put(self, topic: str, ns: int, message: Any, *, latched: bool = False) -> None:
+        """One message, at ``ns`` nanoseconds."""
+        self.put_bytes(topic, ns, message.__msgtype__, ros.to_cdr(message), latched=latched)
+
+    def put_bytes(
+        self, topic: str, ns: int, msgtype: str, *pieces: Piece, latched: bool = False
+    ) -> None:
+        """One message that is serialised, at ``ns`` nanoseconds."""
+        self.messages.append(Extra(str(topic), ns, msgtype, b"".join(pieces), latched))
+
+
+def _tools(header: RecordingHeader, run: Trajectories, description: str) -> list[Extra]:
+    """What follows from header and samples."""
+    kept = _Kept()
+    tools = ToolTopics(kept, header, description)
+    robot, people = run.robot, run.agents
+    for k, t in enumerate(run.t.tolist()):
+        pose = state = None
+        if robot is not None:
+            pose = float(robot.x[k]), float(robot.y[k]), float(robot.theta[k])
+        if people is not None:
+            state = np.stack([people.x[k], people.y[k], people.vx[k], people.vy[k]])
+        tools.state(ros.nanoseconds(t), pose, state)
+    return kept.messages
 
 
 def _told(topic: Topic, ns: int, message: Any, *, latched: bool = False) -> Extra:
@@ -61,17 +91,6 @@ def _way(run: Trajectories, robot: RobotTrack) -> RobotWay:
     for row in zip(run.t, robot.x, robot.y, robot.theta, strict=True):
         way.add(*map(float, row))
     return way
-
-
-def _people(run: Trajectories) -> Iterator[Extra]:
-    people = run.agents
-    assert people is not None
-    arrows, due = PeopleArrows(people.id, people.radius), Thinning(PEOPLE_RATE)
-    for k, t in enumerate(run.t.tolist()):
-        ns = ros.nanoseconds(t)
-        if due.keeps(ns):
-            state = np.stack([people.x[k], people.y[k], people.vx[k], people.vy[k]])
-            yield Extra(str(Topic.PEOPLE_MARKERS), ns, ARROWS_TYPE, arrows.message(ns, state))
 
 
 def _contacts(run: Trajectories, way: RobotWay) -> Iterator[Extra]:
