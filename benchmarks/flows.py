@@ -4,18 +4,25 @@ Prints, for each flow and stiffness of contacts, over all draws: the longest tim
 trip was slower than 5 cm/s, and the deepest overlap of two people. In the corridor all walk one
 way, as in the challenge, or half of them each way; everybody is drawn and avoids alike.
 
+With ``--depths`` also how deep all encounters were in which two people overlapped, and by the angle
+between the ways to their goals.
+
     python benchmarks/flows.py
+    python benchmarks/flows.py --stiffness 250 --draws 4 --seconds 40 --depths
     python benchmarks/flows.py --stiffness 250 --seconds 60 --only torus,walls
 """
 
 from __future__ import annotations
 
 import argparse
+import math
 import tempfile
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from corridor import EVERY, overlap_of
+from corridor import EVERY
+from numpy.typing import NDArray
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
@@ -94,22 +101,72 @@ def document(stiffnesses: list[float], radius: float, draws: int) -> str:
     }
 
 
-def measure(engine: CrowdEngine, seconds: float) -> tuple[float, float]:
-    """Longest standstill on a trip, s; deepest overlap, m."""
-    flat = engine.initial_state()
+@dataclass
+class Measured:
+    """One draw: longest standstill on a trip, s; seconds of all people together; encounters.
+
+    An encounter of two people who overlap has its depth, m, and the angle between the ways to their
+    goals, degrees, where it was deepest.
+    """
+
+    standstill: float = 0.0
+    person_seconds: float = 0.0
+    encounters: list[tuple[float, float]] = field(default_factory=list)
+
+    @property
+    def deepest(self) -> float:
+        """Of all encounters, m."""
+        return max((depth for depth, _ in self.encounters), default=0.0)
+
+
+def measure(engine: CrowdEngine, seconds: float) -> Measured:
+    flat, step = engine.initial_state(), EVERY / TICKS_PER_SECOND
     radius, (_, people) = engine.agents.radius, s.view(flat)
-    standing, longest, deepest = np.zeros(len(engine.agents)), 0.0, 0.0
-    for _ in range(round(seconds * TICKS_PER_SECOND / EVERY)):
+    standing, found = np.zeros(len(engine.agents)), Measured()
+    open_: dict[tuple[int, int], tuple[float, float]] = {}
+    for _ in range(round(seconds / step)):
         left = EVERY
         while left:
             left -= engine.advance_alone(flat, left)
         here = people[:, s.WAITING] == s.PRESENT
         slow = np.hypot(people[:, s.VX], people[:, s.VY]) < STANDING
         counts = here & slow & (people[:, s.ON_TRIP] == 1.0)
-        standing = np.where(counts, standing + EVERY / TICKS_PER_SECOND, 0.0)
-        longest = max(longest, float(standing.max()))
-        deepest = max(deepest, overlap_of(people[here, s.X : s.Y + 1], radius[here]))
-    return longest, deepest
+        standing = np.where(counts, standing + step, 0.0)
+        found.standstill = max(found.standstill, float(standing.max()))
+        found.person_seconds += float(here.sum()) * step
+        now = _overlaps(people, radius, np.flatnonzero(here))
+        found.encounters += [open_.pop(pair) for pair in list(open_) if pair not in now]
+        open_ |= {pair: max(one, open_.get(pair, one)) for pair, one in now.items()}
+    found.encounters += open_.values()
+    return found
+
+
+def _overlaps(
+    people: NDArray[np.float64], radius: NDArray[np.float64], rows: NDArray[np.int64]
+) -> dict[tuple[int, int], tuple[float, float]]:
+    """Rows of two who overlap -> how deep, m, and the angle between their ways, degrees."""
+    at, way = people[rows, s.X : s.Y + 1], people[rows, s.GOAL_X : s.GOAL_Y + 1]
+    bearing = np.arctan2(*(way - at).T[::-1])
+    gap = np.hypot(*(at[:, None] - at).transpose(2, 0, 1))
+    depth = np.triu(radius[rows][:, None] + radius[rows] - gap, 1)
+    found = {}
+    for i, j in np.argwhere(depth > 0.0).tolist():
+        turned = abs(math.remainder(bearing[i] - bearing[j], math.tau))
+        found[int(rows[i]), int(rows[j])] = float(depth[i, j]), math.degrees(turned)
+    return found
+
+
+def _print_depths(rows: list[Measured]) -> None:
+    """Distribution of all encounters, and the deepest for each range of angles."""
+    listed = np.array([one for row in rows for one in row.encounters]).reshape(-1, 2)
+    depth, angle = listed.T
+    often = 100.0 * len(listed) / sum(row.person_seconds for row in rows)
+    shares = " ".join(f"{q:.3f}" for q in np.quantile(depth, (0.5, 0.9, 0.99)))
+    print(f"    {often:.1f} per 100 s and person; depth of 50, 90, 99 %: {shares} m")
+    for low, high in ((0, 30), (30, 60), (60, 120), (120, 150), (150, 181)):
+        own = depth[(low <= angle) & (angle < high)]
+        if len(own):
+            print(f"    {low:3} to {min(high, 180):3} deg: {len(own):5}, deepest {own.max():.3f} m")
 
 
 def main() -> None:
@@ -119,8 +176,9 @@ def main() -> None:
     parser.add_argument("--radius", type=float, default=0.25, help="of a body, m")
     parser.add_argument("--stiffness", default="62.5,250", help="of contacts, 1/s^2")
     parser.add_argument("--only", default="one_way,both_ways,torus,walls,crossing")
+    parser.add_argument("--depths", action="store_true", help="of all encounters, too")
     given = parser.parse_args()
-    registry, found = discover(allow=()), dict[tuple[str, str], list[tuple[float, float]]]()
+    registry, found = discover(allow=()), dict[tuple[str, str], list[Measured]]()
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "flows.yaml"
         stiffnesses = [float(k) for k in given.stiffness.split(",")]
@@ -137,12 +195,14 @@ def main() -> None:
         rows = found.setdefault((axes["flow"], axes["stiffness"]), [])
         rows.append(measure(engine, given.seconds))
         if len(rows) == given.draws:
-            stuck, deepest = (max(column) for column in zip(*rows, strict=True))
+            stuck, deepest = max(r.standstill for r in rows), max(r.deepest for r in rows)
             stiffness = axes["stiffness"][1:].replace("_", ".")
             print(
                 f"{axes['flow']:10} {stiffness:>6} {len(rows):5} {stuck:8.1f} {deepest:10.3f}",
                 flush=True,
             )
+            if given.depths:
+                _print_depths(rows)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ import os
 import sys
 import threading
 import traceback
-from importlib.metadata import entry_points
 
 from crowdbot.core.registry.plugin_errors import (
     UserInterrupt,
@@ -18,6 +17,8 @@ from crowdbot.errors import printable
 
 def internal_error(error: Exception) -> str:
     """One line; it names the plugins of others, which run in this process and can break it."""
+    from importlib.metadata import entry_points
+
     text = (
         f"internal error {error_text(error)}{culprit(error)}; "
         "run with CROWDBOT_DEBUG=1 for the traceback"

@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli._installed import installed
+
 if TYPE_CHECKING:
     from crowdbot.core.planning.choice import PlannerPlace
-    from crowdbot.core.registry.registry import Registry
+
+__all__ = [
+    "MEMORY_GIB",
+    "InProcess",
+    "NoPlugins",
+    "PlannerMemory",
+    "Plugins",
+    "installed",
+    "planner_place",
+]
 
 Plugins = Annotated[
     list[Path] | None,
@@ -60,39 +69,3 @@ def planner_place(in_process: bool | None, memory: float, *, lenient: bool = Fal
         raise UsageError(f"--planner-memory {memory:g}: 0, or at least {_LEAST_GIB:g} GiB")
     limit = round(memory * 2**30) if memory else None
     return PlannerPlace(in_process=in_process, memory=limit, lenient=lenient)
-
-
-def installed(
-    plugin: Sequence[Path] | None, no_plugins: bool = False, *, strict: bool = True
-) -> Registry:
-    """The registry that a command works with.
-
-    Args:
-        plugin: paths given by hand.
-        no_plugins: leave out all that are installed.
-        strict: refuse a plugin given by hand that failed; otherwise it is listed as such.
-
-    Raises:
-        InputError: there is nothing at a path.
-        PluginError: a plugin given by hand failed.
-    """
-    from crowdbot.core.support.seldom_collected import seldom_collected
-    from crowdbot.core.support.stdout_guard import stdout_to_stderr
-    from crowdbot.errors import InputError, PluginError
-
-    paths = list(plugin or ())
-    for path in paths:
-        if not path.exists():
-            raise InputError(f"--plugin {path}: no such file or folder")
-    with seldom_collected(), stdout_to_stderr():
-        from crowdbot.core.registry.registry import discover
-
-        registry = discover(extra=paths, allow=() if no_plugins else None)
-    log = logging.getLogger("crowdbot")
-    for line in registry.unknown_allowed():
-        log.warning(line)
-    for found in registry.plugins:
-        if strict and found.error and found.given:
-            log.debug(found.traceback)
-            raise PluginError(f"--plugin {found.distribution}: {found.error}")
-    return registry

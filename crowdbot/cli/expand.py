@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.cli._scenario_list import hash_of, print_scenarios
 
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
@@ -49,12 +50,10 @@ def expand(
         typer.echo(_one(expansion, one, registry, as_json=as_json, explain=explain), nl=False)
         return
     scenarios = _matching(expansion, only)
-    if count:
-        typer.echo(len(scenarios))
-    elif as_json:
+    if as_json and not count:
         typer.echo(json.dumps([_row(expansion, s, registry) for s in scenarios], indent=2))
     else:
-        _print_list(scenarios, registry)
+        print_scenarios(scenarios, registry, count=count)
 
 
 def _matching(expansion: Expansion, only: str | None) -> list[Scenario]:
@@ -95,17 +94,4 @@ def _one(
 
 def _row(expansion: Expansion, scenario: Scenario, registry: Registry) -> dict[str, str | None]:
     row = {"suite": expansion.suite_id, "id": scenario.id, "title": scenario.title}
-    return row | {"hash": None if scenario.hidden else _hash(scenario, registry)}
-
-
-def _print_list(scenarios: list[Scenario], registry: Registry) -> None:
-    width = max((len(s.id) for s in scenarios), default=0)
-    for scenario in scenarios:
-        text = "hidden draw" if scenario.hidden else _hash(scenario, registry)
-        typer.echo(f"{scenario.id:<{width}}  {text}")
-
-
-def _hash(scenario: Scenario, registry: Registry) -> str:
-    from crowdbot.dsl.canonical import content_hash
-
-    return content_hash(scenario, registry.spec_versions(scenario))
+    return row | {"hash": None if scenario.hidden else hash_of(scenario, registry)}

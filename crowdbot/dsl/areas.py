@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import Annotated, Any
 
 from pydantic import Discriminator, Field, Tag
@@ -51,8 +52,16 @@ class Area(Spec):
     @property
     def corners(self) -> tuple[tuple[float, float], ...]:
         """The corners, counter-clockwise, m."""
-        a, b = 0.5 * self.size[0], 0.5 * self.size[1]
-        return tuple(self.point(u, v) for u, v in ((-a, -b), (a, -b), (a, b), (-a, b)))
+        return _corners(*self.centre, *self.size, self.rotation)
+
+
+@lru_cache(maxsize=1024)  # a suite names the same few areas in each of its scenarios
+def _corners(
+    x: float, y: float, length: float, width: float, rotation: float
+) -> tuple[tuple[float, float], ...]:
+    a, b, cos, sin = 0.5 * length, 0.5 * width, math.cos(rotation), math.sin(rotation)
+    around = ((-a, -b), (a, -b), (a, b), (-a, b))
+    return tuple((x + cos * u - sin * v, y + sin * u + cos * v) for u, v in around)
 
 
 def places_in(area: Area, radius: float) -> Iterator[tuple[float, float]]:

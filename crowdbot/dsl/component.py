@@ -5,12 +5,13 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib.resources import files
-from importlib.resources.abc import Traversable
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from crowdbot.dsl.spec import ComponentSpec
 from crowdbot.errors import PluginError
+
+if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable
 
 S_co = TypeVar("S_co", bound=ComponentSpec, covariant=True)
 
@@ -87,5 +88,7 @@ class Component(Generic[S_co]):
             raise PluginError(f"{self.kind}: the card cannot be read: {error}") from error
 
     def _card_file(self) -> Traversable:
+        from importlib.resources import files
+
         package, _, path = self.card_place.partition(":")
         return files(package).joinpath(path)

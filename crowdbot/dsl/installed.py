@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from typing import Protocol
 
 from crowdbot.dsl.diagnostics import Diagnostic, Mark
 from crowdbot.dsl.nodes import Node
@@ -12,35 +12,33 @@ from crowdbot.dsl.validation import missing_package
 from crowdbot.errors import did_you_mean, nearest
 
 
-@dataclass(frozen=True, slots=True)
-class Installed:
-    """What is installed, as far as a document speaks of it.
+class Installed(Protocol):
+    """What is installed, as far as a document speaks of it."""
 
-    Attributes:
-        metrics: kinds of the metrics.
-        versions: kind of any component -> its spec_version and the distribution that has it.
-    """
+    @property
+    def metrics(self) -> Collection[str]:
+        """Kinds of the metrics."""
 
-    metrics: Collection[str]
-    versions: Mapping[str, tuple[int, str]]
+    @property
+    def versions(self) -> Mapping[str, tuple[int, str]]:
+        """Kind of any component -> its spec_version and the distribution that has it."""
 
 
-def check_metrics(listed: Node | None, known: Collection[str], problems: list[Diagnostic]) -> None:
+def check_metrics(listed: Node | None, installed: Installed, problems: list[Diagnostic]) -> None:
     """Names and patterns that fit no metric."""
     if listed is None or not isinstance(listed.value, tuple):
         return
     for item in listed.value:
-        name = item.value
+        name, known = item.value, installed.metrics
         if isinstance(name, str) and not any(fnmatchcase(kind, name) for kind in known):
             hint = did_you_mean(nearest(name, known)).removeprefix("; ")
             problems.append(Diagnostic("E121", f"unknown metric '{name}'", item.mark, hint))
 
 
-def check_versions(
-    wanted: Node | None, known: Mapping[str, tuple[int, str]], problems: list[Diagnostic]
-) -> None:
+def check_versions(wanted: Node | None, installed: Installed, problems: list[Diagnostic]) -> None:
     """Components older than those the document was written for."""
     for kind, key, node in _leaves(wanted) if wanted else ():
+        known = installed.versions
         if not kind or type(node.value) is not int or node.value < 1:
             text = "kinds wants a map of kinds with their version, a whole number from 1"
             problems.append(Diagnostic("E111", text, node.mark))

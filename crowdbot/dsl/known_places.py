@@ -11,6 +11,7 @@ from functools import lru_cache
 
 from crowdbot.dsl.component_specs import EnvironmentSpec
 from crowdbot.dsl.place import Place
+from crowdbot.dsl.spec import Rectangle
 from crowdbot.errors import InputError
 
 _MOST = 64
@@ -51,6 +52,25 @@ def known_place(environment: EnvironmentSpec) -> Place | None:
 @lru_cache(maxsize=_MOST)
 def _place(same: _Same) -> Place | None:
     return same.environment.place()
+
+
+def bounds_of(environment: EnvironmentSpec) -> Rectangle | None:
+    """The box around all zones, and around the environment where it knows; m; or None."""
+    return _bounds(_Same(environment))
+
+
+@lru_cache(maxsize=_MOST)
+def _bounds(same: _Same) -> Rectangle | None:
+    zones = list(same.environment.zones.values())
+    try:
+        whole = same.environment.extent()
+    except InputError:  # which is reported with the environment
+        return None
+    zones += [] if whole is None else [whole]
+    if not zones:
+        return None
+    xs, ys = [x for z in zones for x in z.x], [y for z in zones for y in z.y]
+    return Rectangle(x=(min(xs), max(xs)), y=(min(ys), max(ys)))
 
 
 @lru_cache(maxsize=_MOST)

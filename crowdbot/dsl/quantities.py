@@ -15,7 +15,7 @@ import math
 import re
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Annotated, Any
 
 from annotated_types import Ge, Gt
@@ -69,6 +69,8 @@ class Quantity:
     """Annotation that makes a float field accept text with a unit of one dimension."""
 
     dimension: str
+    #: The largest amount, in SI units; None: as `MOST` says.
+    most: float | None = None
 
     @property
     def si_unit(self) -> str:
@@ -95,7 +97,7 @@ class Quantity:
         Raises:
             PydanticKnownError: it is beyond `MOST` of this dimension.
         """
-        most = MOST.get(self.dimension, math.inf)
+        most = self.most or MOST.get(self.dimension, math.inf)
         if math.isfinite(value) and abs(value) > most:
             kind: Any = "less_than_equal" if value > 0.0 else "greater_than_equal"
             raise PydanticKnownError(kind, {kind[0] + "e": math.copysign(most, value)})
@@ -149,13 +151,19 @@ class Quantity:
             above: if 0, neither minus signs nor zeros fit.
             least: if 0, minus signs fit before zeros only.
         """
-        units = [p for u in UNITS[self.dimension] for p in _written(u)]
+        units = _spellings(self.dimension)
         bare = "|".join(re.escape(u) for u in units if not u[0].isdigit())
         blank = "|".join(re.escape(u) for u in units if u[0].isdigit())
         tails = [f" *(?:{bare})" if bare else "", f" +(?:{blank})" if blank else ""]
         sign = {(True, False): r"(?!-)(?=\+?[0-9.]*[1-9])", (False, True): r"(?!-[0-9.]*[1-9])"}
         front = sign.get((above == 0, least == 0), "")
         return f"^{front}{_NUMBER}(?:{'|'.join(t for t in tails if t)})$"
+
+
+@cache
+def _spellings(dimension: str) -> tuple[str, ...]:
+    """All spellings of all units of a dimension."""
+    return tuple(text for unit in UNITS[dimension] for text in _written(unit))
 
 
 def plain_unit(unit: str) -> str:

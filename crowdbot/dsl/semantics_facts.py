@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
 
 from crowdbot.dsl.areas import Area
 from crowdbot.dsl.diagnostics import Diagnostic, Mark
+from crowdbot.dsl.known_places import bounds_of
 from crowdbot.dsl.nodes import Node
 from crowdbot.dsl.scenario import Crowd, Scenario
 from crowdbot.dsl.spec import Rectangle
 from crowdbot.dsl.validation import mark_of
-from crowdbot.errors import InputError, did_you_mean, nearest
+from crowdbot.errors import did_you_mean, nearest
 
 Path = tuple[str | int, ...]
 
@@ -34,20 +34,10 @@ class Facts:
         assert self.scenario.crowd is not None
         return self.scenario.crowd
 
-    @cached_property
+    @property
     def bounds(self) -> Rectangle | None:
         """The box around all zones, or around the environment where it knows; m; or None."""
-        environment = self.scenario.environment
-        zones = list(environment.zones.values())
-        try:
-            whole = environment.extent()
-        except InputError:  # which is reported with the environment
-            return None
-        zones += [] if whole is None else [whole]
-        if not zones:
-            return None
-        xs, ys = [x for z in zones for x in z.x], [y for z in zones for y in z.y]
-        return Rectangle(x=(min(xs), max(xs)), y=(min(ys), max(ys)))
+        return bounds_of(self.scenario.environment)
 
     def mark(self, *path: str | int) -> Mark:
         """Where a value is written, or its nearest parent."""

@@ -198,8 +198,8 @@ def read_suite(
     _, found = validate(model, to_data(root), root)
     problems += found
     if installed is not None:
-        check_metrics(root.child("metrics"), installed.metrics, problems)
-        check_versions(root.child("kinds"), installed.versions, problems)
+        check_metrics(root.child("metrics"), installed, problems)
+        check_versions(root.child("kinds"), installed, problems)
     single = model is ScenarioDocument
     body = root.child("scenario" if single else "base")
     if body is None or not isinstance(body.value, dict):

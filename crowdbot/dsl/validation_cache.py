@@ -13,8 +13,8 @@ from pydantic import BaseModel
 
 from crowdbot.dsl.nodes import Node
 
-#: How deep parts are told apart: ``crowd.costs.reflex`` is one, what is in it is not.
-_DEPTH = 3
+#: How deep parts are told apart: ``crowd.streams.in.origin`` is one, what is in it is not.
+_DEPTH = 4
 
 
 class ValidParts:

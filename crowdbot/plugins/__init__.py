@@ -1,6 +1,7 @@
 """crowdbot's own components, registered through the entry point ``builtin``.
 
 They have the same rights as anybody's: what a third party cannot do, these cannot do either.
+Only what no scenario holds, metrics and planners, is imported when it is first asked for.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from crowdbot.dsl import (
     SensorSpec,
 )
 from crowdbot.hookspecs import API_VERSION, hookimpl
-from crowdbot.plugins import crowd, environments, metrics, noise, planners, robots, sensors
+from crowdbot.plugins import crowd, environments, noise, robots, sensors
 
 CROWDBOT_API = API_VERSION
 
@@ -53,6 +54,8 @@ def crowdbot_noise_generators() -> Sequence[Component[NoiseSpec]]:
 @hookimpl
 def crowdbot_planners() -> Sequence[Component[PlannerSpec]]:
     """Planners."""
+    from crowdbot.plugins import planners
+
     return planners.COMPONENTS
 
 
@@ -71,6 +74,8 @@ def crowdbot_cost_functions() -> Sequence[Component[CostFunctionSpec]]:
 @hookimpl
 def crowdbot_metrics() -> Sequence[Component[MetricSpec]]:
     """Metrics."""
+    from crowdbot.plugins import metrics
+
     return metrics.COMPONENTS
 
 

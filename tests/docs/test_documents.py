@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 import crowdbot
-from crowdbot.cli import _load, command_names, main
+from crowdbot.cli import command_names, main
+from crowdbot.cli._typer_app import load
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.scenarios.library import pick
 from tests.docs.doc_pages import (
@@ -87,7 +88,7 @@ def test_commands_in_the_text_exist() -> None:
     for page, words in found:
         where = f"{page}: {' '.join(words)}"
         assert words[0] in command_names(), where
-        command = _load(words[0])
+        command = load(words[0])
         if words[1:2] and words[1] in getattr(command, "commands", {}):
             command = command.commands[words[1]]
         known = {o for p in command.params for o in (*p.opts, *p.secondary_opts)}

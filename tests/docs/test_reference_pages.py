@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from crowdbot import hookspecs
-from crowdbot.cli import _load, command_names
+from crowdbot.cli import command_names
+from crowdbot.cli._typer_app import load
 from crowdbot.core import interfaces
 from crowdbot.core.crowd.build import build_cost
 from crowdbot.core.registry.registry import discover
@@ -22,7 +23,7 @@ EVERYWHERE = {"--verbose", "-v", "--quiet", "-q"}
 
 def _commands() -> Iterator[tuple[str, Any]]:
     for name in command_names():
-        command = _load(name)
+        command = load(name)
         yield name, command
         for inner, child in getattr(command, "commands", {}).items():
             yield f"{name} {inner}", child
@@ -32,7 +33,7 @@ LIVE = dict(_commands())
 
 
 def _options(command: Any) -> set[str]:
-    params = [p for p in command.params if p.param_type_name == "option"]
+    params = [p for p in command.params if p.param_type_name == "option" and not p.hidden]
     return {o for p in params for o in (*p.opts, *p.secondary_opts)} - EVERYWHERE
 
 

@@ -7,7 +7,7 @@ import re
 import traceback
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from importlib import metadata
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -16,6 +16,7 @@ import pluggy
 from pydantic import Field, TypeAdapter
 
 from crowdbot import hookspecs
+from crowdbot.core.registry.component_list import ComponentList, Components
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.plugin_errors import is_user_interrupt
@@ -37,6 +38,8 @@ HOOKS = {
     "crowdbot_cost_functions": "cost function",
     "crowdbot_metrics": "metric",
 }
+#: Categories of crowdbot's own components that no scenario holds: imported when asked for.
+_LATER = ("planner", "metric")
 _DIRS = "crowdbot_scenario_dirs"
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 #: What follows the plugin's name and a dot in a kind.
@@ -118,11 +121,11 @@ def _ask(plugin: Plugin, module: Any) -> Plugin:
     manager.add_hookspecs(hookspecs)
     manager.register(module, plugin.name)
     _check_hooks(manager, module)
-    components = []
-    for hook, category in HOOKS.items():
-        for item in _returned(manager, hook):
-            _check_component(plugin, hook, category, item)
-            components.append(item)
+    later = _LATER if plugin.name == BUILTIN else ()
+    ask = {c: partial(_components, manager, plugin, hook, c) for hook, c in HOOKS.items()}
+    known = {category: of() for category, of in ask.items() if category not in later}
+    listed = ComponentList(known, {category: ask[category] for category in later})
+    components = listed.known
     _check_twice(components)
     if plugin.name != BUILTIN:  # whose models the tests build
         for category in dict.fromkeys(c.category for c in components):
@@ -135,7 +138,18 @@ def _ask(plugin: Plugin, module: Any) -> Plugin:
                 "/ 'suites', or a pathlib.Path"
             )
     data = _data_digest(components)
-    return replace(plugin, components=tuple(components), scenario_dirs=dirs, data=data)
+    found = listed if later else components
+    return replace(plugin, components=found, scenario_dirs=dirs, data=data)
+
+
+def _components(
+    manager: pluggy.PluginManager, plugin: Plugin, hook: str, category: str
+) -> Components:
+    """What one hook of a plugin lists, checked."""
+    found = tuple(_returned(manager, hook))
+    for item in found:
+        _check_component(plugin, hook, category, item)
+    return found
 
 
 def _data_digest(components: Sequence[Component[Any]]) -> str:
@@ -270,7 +284,7 @@ def _try_models(specs: tuple[type[ComponentSpec], ...]) -> None:
         raise TypeError("a field has a type that is not defined")
 
 
-def _check_twice(components: list[Component[Any]]) -> None:
+def _check_twice(components: Sequence[Component[Any]]) -> None:
     seen: set[tuple[str, str]] = set()
     for component in components:
         key = (component.category, component.kind)

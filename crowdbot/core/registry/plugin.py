@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -37,7 +38,7 @@ class Plugin:
     api: int | None = None
     sha256: str = ""
     data: str = ""
-    components: tuple[Component[Any], ...] = ()
+    components: Sequence[Component[Any]] = ()
     scenario_dirs: tuple[Any, ...] = ()
     error: str = ""
     traceback: str = field(default="", repr=False)

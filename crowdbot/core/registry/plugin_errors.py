@@ -8,14 +8,12 @@ import traceback
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from functools import cache
-from importlib.metadata import entry_points
-from importlib.resources import files
 from pathlib import Path
 
 from crowdbot.errors import Interrupted, PlannerHungError
 
 #: Frames of crowdbot's machinery are not where somebody else's error is.
-_PACKAGE = str(files("crowdbot"))
+_PACKAGE = str(Path(__file__).parents[2])
 #: Modules whose frames every command has.
 _NO_PLUGINS = frozenset(("crowdbot", "click", "typer"))
 _MACHINERY = tuple(f"{_PACKAGE}/{part}/" for part in ("core", "dsl", "cli"))
@@ -41,6 +39,8 @@ def error_text(error: BaseException) -> str:
 @cache
 def _plugin_roots() -> frozenset[str]:
     """First names of the modules of installed plugins; looking for them takes milliseconds."""
+    from importlib.metadata import entry_points
+
     found = entry_points(group="crowdbot")
     return frozenset(e.value.partition(":")[0].partition(".")[0] for e in found)
 

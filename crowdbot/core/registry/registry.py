@@ -18,12 +18,13 @@ from typing import Annotated, Any, TypeVar, Union
 from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
 from crowdbot.core.registry.build_reference import load_build
+from crowdbot.core.registry.component_list import ComponentsByKind, known_components
 from crowdbot.core.registry.entry_points import ALLOW, find_plugins
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
 from crowdbot.core.support.seldom_collected import seldom_collected
 from crowdbot.dsl.component import Component
-from crowdbot.dsl.component_specs import CATEGORIES
+from crowdbot.dsl.component_specs import CATEGORIES, MetricSpec, PlannerSpec
 from crowdbot.dsl.components import components
 from crowdbot.dsl.parts import narrowed, parts_category
 from crowdbot.dsl.scenario import Crowd, NamedPolicy, Robot, Scenario
@@ -34,6 +35,8 @@ __all__ = ["Plugin", "Registry", "assemble", "discover"]
 
 
 Built = TypeVar("Built")
+
+_IN_SCENARIOS = tuple(c.category for c in CATEGORIES if c not in (PlannerSpec, MetricSpec))
 
 #: Specs by category -> what `Registry.scenario_model` made of them, the latest last: pydantic
 #: takes a fifth of a second for it, and a program that looks for plugins again finds the same.
@@ -172,8 +175,8 @@ class Registry:
         """`Scenario`, narrowed to the installed components; one for all registries with these."""
         specs = tuple(
             (category, component.spec)
-            for category, kinds in self._by_category.items()
-            for component in kinds.values()
+            for category in _IN_SCENARIOS
+            for component in self._by_category[category].values()
         )
         if specs not in _scenario_models:
             if len(_scenario_models) == _MODELS_KEPT:
@@ -282,11 +285,10 @@ def assemble(found: Sequence[Plugin]) -> Registry:
     """Disable collisions and sort what is left into a registry."""
     plugins = _disable(found, _name_collisions(found))
     plugins = _disable(plugins, _kind_collisions(plugins))
-    by_category: dict[str, dict[str, Component[Any]]] = {c.category: {} for c in CATEGORIES}
-    for plugin in plugins:
-        for component in plugin.components:
-            by_category[component.category][component.kind] = component
-    return Registry(tuple(plugins), {k: dict(sorted(v.items())) for k, v in by_category.items()})
+    by_category = ComponentsByKind(
+        [c.category for c in CATEGORIES], [p.components for p in plugins]
+    )
+    return Registry(tuple(plugins), by_category)
 
 
 def _name_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
@@ -306,7 +308,7 @@ def _origins(plugins: Sequence[Plugin], name: str) -> str:
 def _kind_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
     owners: dict[tuple[str, str], list[int]] = {}
     for i, plugin in enumerate(plugins):
-        for component in plugin.components:
+        for component in known_components(plugin.components):  # no other's kind is like the rest
             owners.setdefault((component.category, component.kind), []).append(i)
     errors = {}
     for (category, kind), indices in owners.items():

@@ -7,15 +7,13 @@ import logging
 import os
 import re
 import shutil
-import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
-from functools import cache, partial
-from importlib.resources.abc import Traversable
+from functools import cache, cached_property, partial
 from itertools import count
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
@@ -28,6 +26,9 @@ from crowdbot.dsl.lock import LockFiles
 from crowdbot.dsl.scenario import Locked, Scenario
 from crowdbot.dsl.suite import ParsedSuite
 from crowdbot.errors import CrowdbotError, InputError, SpecError, UnknownNameError, nearest
+
+if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable
 
 _LOG = logging.getLogger("crowdbot")
 _BUILTIN = "builtin"
@@ -148,10 +149,23 @@ def _attach(expansion: Expansion, files: LockFiles, origins: _Origins) -> None:
 
 def installed(registry: Registry) -> Installed:
     """What is installed, by the names that documents use."""
-    versions = {
-        c.kind: (c.spec_version, p.distribution) for p in registry.plugins for c in p.components
-    }
-    return Installed(registry.components("metric"), versions)
+    return _InstalledIn(registry)
+
+
+@dataclass(frozen=True)
+class _InstalledIn:
+    """What a registry has, looked up where a document speaks of it."""
+
+    registry: Registry
+
+    @property
+    def metrics(self) -> Collection[str]:
+        return self.registry.components("metric")
+
+    @cached_property
+    def versions(self) -> Mapping[str, tuple[int, str]]:
+        plugins = self.registry.plugins
+        return {c.kind: (c.spec_version, p.distribution) for p in plugins for c in p.components}
 
 
 def suite_names(registry: Registry) -> list[str]:
@@ -269,6 +283,8 @@ def _real(folder: Any) -> Path:
 @cache
 def _unpacked(folder: Traversable) -> Path:
     """A folder of an archive as a real one, which lives as long as the process."""
+    import tempfile
+
     target = Path(tempfile.mkdtemp(prefix=_UNPACKED))
     atexit.register(shutil.rmtree, target, ignore_errors=True)
     _unpack(folder, target, count(1))

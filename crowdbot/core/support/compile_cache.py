@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import os
-from importlib.resources import files
 from pathlib import Path
 
-_PACKAGE = Path(str(files("crowdbot")))
+_PACKAGE = Path(__file__).parents[2]
 _VARIABLE = "NUMBA_CACHE_DIR"
 _LOCATORS = "NUMBA_CACHE_LOCATOR_CLASSES"
 #: What numba asks, in turn: where the first has no file or no folder, numba's own.

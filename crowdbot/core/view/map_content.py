@@ -13,6 +13,7 @@ from crowdbot.core.geometry.rotation import rotation
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.types.arrays import Array, Point
 from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.view.names import MapNames
 from crowdbot.core.view.shapes import SPEEDS, Disc, Path, Shape, Text
 from crowdbot.core.view.ways import Ways
 from crowdbot.core.view.world import Map
@@ -20,7 +21,6 @@ from crowdbot.core.view.world import Map
 _ARC = 120  # corners of a full circle that is drawn as an area
 #: What is not higher is drawn as low, m.
 LOW = 0.4
-_TALL = 1.6  # an area this much taller than wide has its name turned
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -281,30 +281,19 @@ def _robots(content: MapContent, world: Map) -> Iterator[Shape]:
 
 def _names(content: MapContent, world: Map) -> Iterator[Shape]:
     goals = {robot.goal for robot in content.robots}
+    names = MapNames(world)
     for name, polygon in content.parts.zones.items():
         role = "text-goal" if name in goals else "text-zone"
-        yield _name(f"{name} (goal)" if name in goals else name, polygon.tolist(), role, world)
+        yield names.put(f"{name} (goal)" if name in goals else name, polygon.tolist(), role)
     for name, box in content.parts.portals.items():
-        yield _name(f"portal {name}", _corners(box), "text-portal", world)
+        yield names.put(f"portal {name}", _corners(box), "text-portal")
     for role, named in content.areas.items():
         for name, corners in named.items():
-            yield _name(name, corners, "text-route" if role == "goal-area" else "text-muted", world)
+            yield names.put(name, corners, "text-route" if role == "goal-area" else "text-muted")
     for robot in content.robots:
         x, y = world.at(robot.x, robot.y)
         up = robot.radius * world.scale + 8.0
         yield Text(at=(x, y - up), text=robot.name, role="text-robot", anchor="middle")
-
-
-def _name(name: str, corners: Iterable[Point], role: str, world: Map) -> Text:
-    """A name in the upper left corner of an area; along its left side where it is narrow."""
-    paper = [world.at(x, y) for x, y in corners]
-    left, top = min(p[0] for p in paper), min(p[1] for p in paper)
-    width = max(p[0] for p in paper) - left
-    height = max(p[1] for p in paper) - top
-    if width < 7.0 * len(name) + 10.0 and height > _TALL * width:
-        at = (left + 0.5 * width + 4.0, top + 0.5 * height)
-        return Text(at=at, text=name, role=role, anchor="middle", turned=90.0)
-    return Text(at=(left + 6.0, top + 16.0), text=name, role=role)
 
 
 def _corners(box: tuple[float, float, float, float]) -> tuple[Point, ...]:

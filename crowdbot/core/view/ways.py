@@ -14,6 +14,7 @@ from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.scenario import Crowd
 
 if TYPE_CHECKING:
+    from crowdbot.core.crowd.routing.free_space import FreeSpace
     from crowdbot.core.crowd.routing.route_map import RouteMap
 
 #: More links than this are not drawn.
@@ -26,8 +27,9 @@ class Ways:
 
     Attributes:
         of_agents: the way of each agent through its goals; empty without goals.
-        margins: outlines beyond which no centre of a body of the largest radius can be.
-        links: pairs of corners between which ways may lead.
+        margins: outlines beyond which no centre of a body of the largest radius can be, of the
+            parts of the floor where anything is: not behind walls.
+        links: pairs of corners there between which ways may lead.
     """
 
     of_agents: tuple[tuple[Point, ...], ...]
@@ -59,9 +61,13 @@ def ways_of(crowd: Crowd | None, people: Realisation, parts: EnvironmentParts) -
             leg = maps[float(sizes[i])].way(start, goal).tolist()
             way += [(float(x), float(y)) for x, y in leg[1:]]
         found.append(tuple(way))
-    return Ways(
-        of_agents=tuple(found), margins=_margins(maps[largest]), links=_links(maps[largest])
-    )
+    routes = maps[largest]
+    places = [box.mean(axis=0) for box in parts.zones.values()]
+    places += [
+        np.array([0.5 * (x0 + x1), 0.5 * (y0 + y1)]) for x0, x1, y0, y1 in parts.portals.values()
+    ]
+    used = routes.space.holding(np.concatenate([points, np.array(places).reshape(-1, 2)]))
+    return Ways(of_agents=tuple(found), margins=_margins(used), links=_links(routes, used))
 
 
 def _stops(people: Realisation, i: int) -> list[Point]:
@@ -73,20 +79,21 @@ def _stops(people: Realisation, i: int) -> list[Point]:
     return [(float(people.x[i]), float(people.y[i])), *route, *back]
 
 
-def _margins(routes: RouteMap) -> tuple[tuple[Point, ...], ...]:
-    return tuple(tuple((float(x), float(y)) for x, y in ring) for ring in routes.space.rings())
+def _margins(used: FreeSpace) -> tuple[tuple[Point, ...], ...]:
+    return tuple(tuple((float(x), float(y)) for x, y in ring) for ring in used.borders())
 
 
-def _links(routes: RouteMap) -> tuple[tuple[Point, Point], ...]:
+def _links(routes: RouteMap, used: FreeSpace) -> tuple[tuple[Point, Point], ...]:
     corners = routes.corners
     from crowdbot.core.crowd.routing.corners import X, Y
 
     if len(corners.linked) > 2 * _MOST_LINKS:
         return ()
+    here = used.holds(corners.table[:, [X, Y]])
     at = [(float(x), float(y)) for x, y in corners.table[:, [X, Y]]]
     return tuple(
         (at[v], at[w])
-        for v in range(len(at))
+        for v in np.flatnonzero(here).tolist()
         for w in corners.linked[corners.first[v] : corners.first[v + 1]].tolist()
         if v < w
     )

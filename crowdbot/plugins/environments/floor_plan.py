@@ -14,10 +14,10 @@ from crowdbot.dsl import (
     Asset,
     Component,
     EnvironmentSpec,
-    Length,
     NonNegativeLength,
     Place,
     PositiveLength,
+    Quantity,
     Rectangle,
 )
 
@@ -26,6 +26,10 @@ _SUFFIXES: dict[str, Format] = {
     ".geojson": "geojson", ".json": "geojson", ".wkt": "wkt", ".txt": "wkt",
     ".yaml": "ros_map", ".yml": "ros_map",
 }  # fmt: skip
+
+
+#: National grids have numbers of this size.
+_FarLength = Annotated[float, Quantity("length", most=1e8)]
 
 
 class FloorPlanSpec(EnvironmentSpec):
@@ -59,7 +63,7 @@ class FloorPlanSpec(EnvironmentSpec):
         default="m",
         description="Of the numbers in GeoJSON and WKT; `deg`: longitude and latitude.",
     )
-    origin: tuple[Length, Length] = Field(
+    origin: tuple[_FarLength, _FarLength] = Field(
         default=(0.0, 0.0),
         strict=False,
         description="Where the file's (0, 0) lies in the world, m; with `deg`, the longitude and "

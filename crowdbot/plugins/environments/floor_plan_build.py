@@ -18,6 +18,13 @@ from shapely.geometry import shape as shape_of  # type: ignore[import-untyped,un
 from crowdbot.dsl import Face, Place, Solid, outlines
 from crowdbot.errors import InputError
 from crowdbot.plugins.environments.floor_plan import FloorPlanSpec
+from crowdbot.plugins.environments.floor_plan_units_build import (
+    check_numbers,
+    check_place,
+    declared_crs,
+    in_metres,
+    moved,
+)
 from crowdbot.plugins.environments.ros_map_build import (
     free_cells,
     outline_cells,
@@ -26,9 +33,6 @@ from crowdbot.plugins.environments.ros_map_build import (
 )
 
 _LOG = logging.getLogger(__name__)
-_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
-#: Mean radius of the earth, m.
-_EARTH = 6_371_008.8
 #: More corners than this cannot be simulated.
 MOST_CORNERS = 20_000
 #: No plan is longer or wider, m; the usual cause is a wrong unit.
@@ -54,7 +58,8 @@ def place_of(spec: FloorPlanSpec) -> Place:
     file = None if spec.file is None else spec.file.file
     image = None if spec.image is None else spec.image.file
     words = spec.model_dump_json(exclude={"zones", "portals"})
-    return _place_of(words, type(spec), (file, image), tuple(map(_stamp, (file, image))))
+    stamps = tuple(map(_stamp, (file, image)))
+    return _place_of(words, type(spec), (file, image), stamps, "unit" in spec.model_fields_set)
 
 
 def _stamp(file: Path | None) -> tuple[int, int]:
@@ -71,12 +76,13 @@ def _place_of(
     model: type[FloorPlanSpec],
     files: tuple[Path | None, Path | None],
     stamps: tuple[tuple[int, int], ...],
+    told_unit: bool,
 ) -> Place:
     del stamps  # part of the cache's key
     file, image = files
     spec = model.model_validate_json(words)
     name = "wkt" if file is None else file.name
-    plan = _read(spec, file, image, name)
+    plan = _read(spec, file, image, name, told_unit)
     floor = shapely.union_all([_repaired(p, name) for p in plan.walkable])
     floor = _simple(_polygons(floor), spec, name)
     solids = [
@@ -93,6 +99,7 @@ def _place_of(
             "or 'least_area', or cut a part out of it"
         )
     _check_size(floor, spec, name)
+    check_place([*floor, *(s for s, _ in solids)], spec, name)
     heights = (0.0, spec.wall_height)
     return Place(
         faces=tuple(_face(p, heights) for p in floor),
@@ -134,7 +141,9 @@ def _size(shapes: list[Any]) -> tuple[float, float]:
     return float(x1 - x0), float(y1 - y0)
 
 
-def _read(spec: FloorPlanSpec, file: Path | None, image: Path | None, name: str) -> _Plan:
+def _read(
+    spec: FloorPlanSpec, file: Path | None, image: Path | None, name: str, told_unit: bool
+) -> _Plan:
     if spec.read_as == "ros_map":
         return _Plan(walkable=[_read_ros_map(spec, file, image)])
     if file is None:
@@ -145,25 +154,27 @@ def _read(spec: FloorPlanSpec, file: Path | None, image: Path | None, name: str)
         except (OSError, UnicodeDecodeError) as error:
             raise InputError(f"{name}: cannot be read as text: {error}") from error
     if spec.read_as == "wkt":
-        found = [(_from_wkt(text, name), dict[str, Any]())]
+        found, crs = [(_from_wkt(text, name), dict[str, Any]())], ""
     else:
-        found = list(_features(_from_json(text, name), name))
+        content = _from_json(text, name)
+        found, crs = list(_features(content, name)), declared_crs(content)
+    check_numbers([shape for shape, _ in found], spec, name, crs, told_unit)
     plan = _Plan()
     for shape, properties in found:
-        _sort_in(_in_metres(shape, spec, name), properties, spec, plan, name)
+        _sort_in(in_metres(shape, spec, name), properties, spec, plan, name)
     return plan
 
 
 def _read_ros_map(spec: FloorPlanSpec, file: Path | None, image: Path | None) -> Any:
     assert file is not None  # checked with the document
     found = read_map(file)
-    grey = read_grey(image or file.parent / found.image)
+    grey = read_grey(image or file.parent / found.image, see_through=found.mode == "scale")
     cells = free_cells(found, grey, unknown_is_free=spec.unknown == "free")
     if not cells.any():
         raise InputError(f"{file.name}: no cell of its image is free")
     shape = outline_cells(cells, found)
     if spec.origin != (0.0, 0.0) or spec.rotation:
-        shape = shapely.transform(shape, lambda points: _moved(points, spec))
+        shape = shapely.transform(shape, lambda points: moved(points, spec))
     tolerance = found.resolution if spec.tolerance is None else spec.tolerance
     return shapely.simplify(shape, tolerance, preserve_topology=True)
 
@@ -203,31 +214,6 @@ def _features(content: Any, name: str) -> Iterator[tuple[Any, dict[str, Any]]]:
             raise InputError(f"{name}: a {kind} is damaged: {error}") from error
     elif kind not in ("Point", "MultiPoint"):
         raise InputError(f"{name}: is not GeoJSON: a geometry has type {kind!r}")
-
-
-def _in_metres(shape: Any, spec: FloorPlanSpec, name: str) -> Any:
-    if not np.all(np.isfinite(shapely.get_coordinates(shape))):
-        raise InputError(f"{name}: a coordinate is not finite")
-    if spec.unit != "deg":
-        scale = _UNITS[spec.unit]
-        return shapely.transform(shape, lambda points: _moved(scale * points, spec))
-    longitude, latitude = spec.origin
-    east = math.radians(1.0) * _EARTH * math.cos(math.radians(latitude))
-    north = math.radians(1.0) * _EARTH
-
-    def local(points: Any) -> Any:
-        return _turned((points - [longitude, latitude]) * [east, north], spec.rotation)
-
-    return shapely.transform(shape, local)
-
-
-def _moved(points: Any, spec: FloorPlanSpec) -> Any:
-    return _turned(points, spec.rotation) + np.array(spec.origin)
-
-
-def _turned(points: Any, angle: float) -> Any:
-    c, s = math.cos(angle), math.sin(angle)
-    return points @ np.array([[c, s], [-s, c]])
 
 
 def _sort_in(

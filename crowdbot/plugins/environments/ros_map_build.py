@@ -16,12 +16,14 @@ from numpy.typing import NDArray
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
-from crowdbot.errors import InputError
+from crowdbot.errors import InputError, did_you_mean, nearest
 
 #: Larger images than this are a mistake, px.
 MOST_PIXELS = 64_000_000
 #: Thresholds of a map that names none: those of ROS, by which the grey 205 is unknown.
 _OCCUPIED, _FREE = 0.65, 0.196
+#: What pixels mean, the usual first.
+_MODES = ("trinary", "scale", "raw")
 _HEADER = re.compile(rb"(P[25])\s+((?:#[^\n]*\n\s*)*)(\d+)\s+(?:#[^\n]*\n\s*)*(\d+)\s+"
                      rb"(?:#[^\n]*\n\s*)*(\d+)\s")  # fmt: skip
 
@@ -36,6 +38,8 @@ class RosMap:
         origin: x, y (m) and yaw (rad) of the lower left corner of the image.
         negate: whether dark cells are free.
         occupied, free: probability above which a cell is occupied, below which it is free.
+        mode: ``raw``: pixels are per cent, from 0 to 100; ``scale``: as ``trinary``, but what is
+            transparent is unknown.
     """
 
     image: str
@@ -44,9 +48,13 @@ class RosMap:
     negate: bool
     occupied: float
     free: float
+    mode: str = "trinary"
 
     def occupancy(self, grey: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Probability that each pixel (H, W), grey from 0 to 1, is occupied."""
+        """Probability that each pixel (H, W), grey from 0 to 1, is occupied; NaN: unknown."""
+        if self.mode == "raw":
+            share = np.round(255.0 * grey) / 100.0
+            return np.where(share <= 1.0, share, np.nan)
         return grey if self.negate else 1.0 - grey
 
 
@@ -71,6 +79,7 @@ def read_map(file: Path) -> RosMap:
             negate=bool(int(content.get("negate", 0))),
             occupied=_number("occupied_thresh", content.get("occupied_thresh", _OCCUPIED)),
             free=_number("free_thresh", content.get("free_thresh", _FREE)),
+            mode=str(content.get("mode", _MODES[0])),
         )
     except KeyError as error:
         raise InputError(f"{file.name}: {error.args[0]} is missing") from error
@@ -81,6 +90,9 @@ def read_map(file: Path) -> RosMap:
         raise InputError(f"{file.name}: resolution must be above 0, and all numbers finite")
     if not 0.0 <= found.free <= found.occupied <= 1.0:
         raise InputError(f"{file.name}: thresholds must be 0 <= free <= occupied <= 1")
+    if found.mode not in _MODES:
+        known, near = ", ".join(_MODES), did_you_mean(nearest(found.mode, _MODES))
+        raise InputError(f"{file.name}: mode '{found.mode}' is not one of {known}{near}")
     return found
 
 
@@ -99,8 +111,11 @@ def image_of(file: Path) -> str | None:
         return None
 
 
-def read_grey(file: Path) -> NDArray[np.float64]:
+def read_grey(file: Path, *, see_through: bool = False) -> NDArray[np.float64]:
     """A PGM or PNG image as grey values (H, W) from 0 to 1; the first row is on top.
+
+    Args:
+        see_through: what is transparent becomes NaN.
 
     Raises:
         InputError: it is neither.
@@ -112,7 +127,7 @@ def read_grey(file: Path) -> NDArray[np.float64]:
     if content[:2] in (b"P2", b"P5"):
         return _read_pgm(file.name, content)
     if content[:4] == b"\x89PNG":
-        return _read_png(file)
+        return _read_png(file, see_through=see_through)
     raise InputError(f"{file.name}: is neither a PGM (P2, P5) nor a PNG image")
 
 
@@ -136,7 +151,7 @@ def _read_pgm(name: str, content: bytes) -> NDArray[np.float64]:
     return cells.astype(np.float64).reshape(height, width) / most
 
 
-def _read_png(file: Path) -> NDArray[np.float64]:
+def _read_png(file: Path, *, see_through: bool) -> NDArray[np.float64]:
     from matplotlib.image import imread
 
     try:
@@ -146,7 +161,8 @@ def _read_png(file: Path) -> NDArray[np.float64]:
     if image.size > 4 * MOST_PIXELS:
         raise InputError(f"{file.name}: has too many pixels")
     if image.ndim == 3:
-        image = image[..., :3].mean(axis=2)
+        clear = (image[..., 3:] < 1.0).any(axis=2) & see_through
+        image = np.where(clear, np.nan, image[..., :3].mean(axis=2))
     return np.asarray(image, np.float64)
 
 
@@ -155,8 +171,7 @@ def free_cells(
 ) -> NDArray[np.bool_]:
     """Cells (H, W) on which one can walk."""
     probability = found.occupancy(grey)
-    taken = probability > found.occupied if unknown_is_free else probability >= found.free
-    return ~taken
+    return ~(probability > found.occupied) if unknown_is_free else probability < found.free
 
 
 def outline_cells(free: NDArray[np.bool_], found: RosMap) -> Any:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from crowdbot.core.registry.build_reference import load_build
+from crowdbot.core.registry.component_list import ComponentList, ComponentsByKind
 from crowdbot.core.registry.registry import Plugin, Registry, assemble, discover
+from crowdbot.core.support.source_digest import declared_data
+from crowdbot.dsl import Component
 from crowdbot.errors import PluginError, UnknownNameError
 
 PLUGIN = """
@@ -20,7 +23,7 @@ from crowdbot.dsl import PlannerSpec, RobotSpec
 from crowdbot.hookspecs import hookimpl
 CROWDBOT_API = {api}
 
-class Spec(PlannerSpec):
+class Spec({base}):
     kind: Literal["{kind}"] = "{kind}"
     gain: float = 1.0
 
@@ -42,7 +45,14 @@ def _forget() -> Iterator[None]:
 
 
 def plugin(folder: Path, name: str = "acme", **changes: Any) -> Path:
-    given = {"api": 1, "kind": f"{name}.go", "hook": "crowdbot_planners", "name": name, **changes}
+    given = {
+        "api": 1,
+        "kind": f"{name}.go",
+        "hook": "crowdbot_planners",
+        "name": name,
+        "base": "PlannerSpec",
+    }
+    given |= changes
     path = folder / f"{name}.py"
     path.write_text(PLUGIN.format(**given), encoding="utf-8")
     return path
@@ -77,9 +87,46 @@ def test_everything_built_in_is_there() -> None:
 
 def test_equal_registries_have_one_model_of_scenarios(tmp_path: Path) -> None:
     assert found().scenario_model is found().scenario_model
-    more = found(plugin(tmp_path))
+    planner = found(plugin(tmp_path))
+    assert planner.scenario_model is found().scenario_model  # no scenario holds a planner
+    other = plugin(tmp_path, "broken", hook="crowdbot_robots", base="RobotSpec")
+    more = found(other)
     assert more.scenario_model is not found().scenario_model
     assert more.scenario_model is more.scenario_model
+
+
+def test_planners_and_metrics_are_asked_for_once_when_they_are_wanted() -> None:
+    asked: list[str] = []
+
+    def later(category: str) -> Callable[[], tuple[Component[Any], ...]]:
+        def ask() -> tuple[Component[Any], ...]:
+            asked.append(category)
+            return tuple(registry.components(category).values())
+
+        return ask
+
+    registry = found()
+    robots = tuple(registry.components("robot").values())
+    listed = ComponentList({"robot": robots}, {c: later(c) for c in ("planner", "metric")})
+    assert listed.known == robots
+    by_kind = ComponentsByKind(("robot", "planner", "metric"), [listed])
+    assert list(by_kind) == ["robot", "planner", "metric"]
+    assert by_kind["robot"] == registry.components("robot")
+    assert asked == []
+    assert by_kind["planner"] == registry.components("planner")
+    assert list(by_kind["metric"]) == sorted(registry.components("metric"))
+    assert listed.of("planner") == listed[len(robots) : len(robots) + len(listed.of("planner"))]
+    assert len(listed) == sum(len(by_kind[c]) for c in by_kind)
+    assert asked == ["planner", "metric"]
+    with pytest.raises(KeyError):
+        by_kind["planer"]
+
+
+def test_nothing_of_what_is_asked_for_later_declares_data() -> None:
+    """What declares data is hashed with its plugin when that is loaded."""
+    for category in ("planner", "metric"):
+        for component in found().components(category).values():
+            assert declared_data(component.spec) == ()
 
 
 def test_a_plugin_adds_its_components(tmp_path: Path) -> None:

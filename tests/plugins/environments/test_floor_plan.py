@@ -210,6 +210,39 @@ def test_thresholds_decide_what_is_unknown(tmp_path: Path) -> None:
     assert _solid_area(taken) == pytest.approx(2.0)
 
 
+@pytest.mark.parametrize("negate", [0, 1])
+def test_raw_pixels_are_per_cent(tmp_path: Path, negate: int) -> None:
+    """As nav2 reads them: ``negate`` means nothing there, and above 100 nothing is known."""
+    cells = np.zeros((6, 8), np.uint8)
+    cells[[0, -1]], cells[:, [0, -1]], cells[2:4, 3:5], cells[1, 1] = 100, 100, 255, 10
+    _file(tmp_path, "m.pgm", b"P5\n8 6\n255\n" + cells.tobytes())
+    text = f"image: m.pgm\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: {negate}\nmode: raw\n"
+    parts = _plan(file=_file(tmp_path, "map.yaml", text), tolerance=0.0)
+    assert _floor(parts).bounds == pytest.approx((0.5, 0.5, 3.5, 2.5))
+    assert _solid_area(parts) == pytest.approx(1.0)
+    unknown = _plan(file=str(tmp_path / "map.yaml"), tolerance=0.0, unknown="free")
+    assert _solid_area(unknown) == 0.0
+
+
+@pytest.mark.parametrize(("mode", "solid"), [("trinary", 0.0), ("scale", 1.0)])
+def test_what_is_transparent_is_unknown_in_mode_scale(
+    tmp_path: Path, mode: str, solid: float
+) -> None:
+    from matplotlib.image import imsave
+
+    cells = np.ones((6, 8, 4))
+    cells[[0, -1], :, :3], cells[:, [0, -1], :3], cells[2:4, 3:5, 3] = 0.0, 0.0, 0.0
+    imsave(tmp_path / "m.png", cells)
+    text = f"image: m.png\nresolution: 0.5\norigin: [0, 0, 0]\nmode: {mode}\n"
+    parts = _plan(file=_file(tmp_path, "map.yaml", text), tolerance=0.0)
+    assert _solid_area(parts) == pytest.approx(solid)
+
+
+def test_an_unknown_mode_is_said(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"mode 'trinry' is not one of .*did you mean 'trinary'"):
+        _plan(file=_map(tmp_path, mode="trinry"))
+
+
 def test_png_too_and_slanted_walls_become_straight(tmp_path: Path) -> None:
     from matplotlib.image import imsave
 

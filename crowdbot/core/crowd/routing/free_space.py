@@ -18,6 +18,8 @@ _PILLAR_SIDES = 16
 _MITRE = 1.1
 #: Corners that stand out by less are left away, m.
 _SIMPLER = 0.005
+#: What is farther from a part than this is not on its border, m.
+_BESIDE = 1e-6
 #: The floor goes on so far beyond everything that is on it, m.
 _AROUND = 5.0
 
@@ -61,6 +63,28 @@ class FreeSpace:
             shapely.prepare(part)
             inside = shapely.intersects_xy(part, points[open_, 0], points[open_, 1])
             found[open_[inside]] = number
+        return found
+
+    def holding(self, points: Array) -> FreeSpace:
+        """The parts in which some of (M, 2) points lie, with the same that is taken."""
+        numbers = sorted(set(self.part_of(points).tolist()) - {-1})
+        return FreeSpace(self.taken, tuple(self.parts[n] for n in numbers))
+
+    def holds(self, points: Array) -> NDArray[np.bool_]:
+        """Whether each of (M, 2) points is in one of the parts or on its border."""
+        whole = shapely.union_all([shapely.buffer(part, _BESIDE) for part in self.parts])
+        shapely.prepare(whole)
+        inside: NDArray[np.bool_] = shapely.intersects_xy(whole, points[:, 0], points[:, 1])
+        return inside
+
+    def borders(self) -> list[Array]:
+        """Outlines (K, 2) of what is taken as seen from the parts, not closed."""
+        found, outermost = [], shapely.bounds(self.taken)
+        for part in self.parts:
+            low, high = np.split(np.asarray(part.bounds) - outermost, 2)
+            ends_nowhere = np.all(low < 0.0) and np.all(high > 0.0)  # where the floor was cut
+            rings = part.interiors if ends_nowhere else (part.exterior, *part.interiors)
+            found += [np.asarray(ring.coords)[:-1] for ring in rings]
         return found
 
     def rings(self) -> list[Array]:
