@@ -2,8 +2,9 @@
 
     python benchmarks/campaign_kills.py [--kills 10] [--seconds 2] [--seed 1] [--jobs 2]
 
-Three times so many SIGKILLs: of the campaign itself, which is then started again; of one of its
-workers; and of a planner, which runs in a process of its own. A killed worker is replaced and loses
+Three times so many SIGKILLs: of the campaign itself, after it has made at least one run more, which
+is then started again and has to keep every run that was complete; of one of its workers; and of a
+planner, which runs in a process of its own. A killed worker is replaced and loses
 nothing. A killed planner has failed, with the signal by name; such runs are made again in the
 end, by `--force`.
 Ends with 1 when a trajectory hash or a score differs, scores of wall time left out, when a run is
@@ -16,6 +17,7 @@ import argparse
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -78,19 +80,42 @@ def kill_parents(
     start: Start, draw: random.Random, kills: int, length: float, root: Path
 ) -> list[str]:
     """Kill the campaign itself, time after time, and let it end; what is wrong."""
-    wrong = []
+    wrong, out, kept = [], root / "parent", 0
+    runs = len(outcome(root / "whole"))
     for number in range(kills):
+        if len(_stamps(out)) >= runs - 1:  # nothing would be left to be disturbed
+            wrong += [] if start("parent").wait() == 0 else ["the campaign did not end well"]
+            wrong += [] if outcome(out) == outcome(root / "whole") else ["parent: runs differ"]
+            shutil.rmtree(out)
+        before = _stamps(out)
         running = start("parent")
-        time.sleep(draw.uniform(0.0, length))
+        while running.poll() is None and len(_stamps(out)) <= len(before):
+            time.sleep(0.02)
+        time.sleep(draw.uniform(0.0, length / runs))
         everything = _below(running.pid)
-        os.kill(running.pid, signal.SIGKILL)
+        running.kill()  # unless it has ended meanwhile
         running.wait()
         if left := _left(everything):
             wrong.append(f"kill {number + 1} of the campaign left {left}")
-        print(f"campaign, kill {number + 1}: {len(outcome(root / 'parent'))} runs", flush=True)
+        after = _stamps(out)
+        wrong += [f"{name} was made again" for name in before if after.get(name) != before[name]]
+        same = sum(after.get(name) == stamp for name, stamp in before.items())
+        kept += same
+        print(f"campaign, kill {number + 1}: {same} of {len(before)} complete runs kept, "
+              f"{len(after) - len(before)} new", flush=True)  # fmt: skip
+    print(f"campaign: {kept} complete runs found and kept after {kills} kills", flush=True)
     if start("parent").wait() != 0:
         wrong.append("the campaign did not end well")
-    return wrong
+    return wrong + ([] if kept else ["no kill came late enough: nothing was there to be kept"])
+
+
+def _stamps(out: Path) -> dict[str, tuple[int, int]]:
+    """Complete run -> its record's inode and time of writing: who makes it again changes them."""
+    found = {}
+    for name in outcome(out):
+        state = (out / name / "run.json").stat()
+        found[name] = state.st_ino, state.st_mtime_ns
+    return found
 
 
 def kill_parts(

@@ -45,7 +45,9 @@ def bundle(
     ] = None,
     source: Annotated[
         str | None,
-        typer.Option(metavar="FILE.py:CLASS", help="--check: the planner, if not installed."),
+        typer.Option(
+            metavar="FILE.py:CLASS|FILE.yaml", help="--check: the planner, if not installed."
+        ),
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

@@ -17,7 +17,7 @@ from crowdbot.core.support.plural import plural
 
 if TYPE_CHECKING:
     from crowdbot.core.results.rows import Results
-    from crowdbot.core.results.tables import GroupSummary
+    from crowdbot.core.statistics.groups import GroupSummary
 
 results = typer.Typer(
     add_completion=False, invoke_without_command=True, pretty_exceptions_enable=False
@@ -76,7 +76,7 @@ def show(
         return
     from crowdbot.core.results.rows import named_metrics
     from crowdbot.core.results.store import load
-    from crowdbot.core.results.tables import summarise
+    from crowdbot.core.statistics.groups import by_group
     from crowdbot.errors import UsageError
 
     found = _with_scales(_only(load(out), planner, status))
@@ -89,7 +89,7 @@ def show(
     known = {s.metric for s in found.scores}
     first = [*named_metrics(found.runs), *_HEADLINES]
     wanted = [metric] if metric is not None else [m for m in dict.fromkeys(first) if m in known]
-    summaries = [s for m in wanted for s in summarise(found, m, groups, variant)]
+    summaries = [s for m in wanted for s in by_group(found, m, groups, variant)]
     _print([_line(s) for s in summaries], as_csv=as_csv, as_json=as_json)
     if not (as_csv or as_json):
         damaged = f", {len(found.damaged)} damaged" if found.damaged else ""
@@ -223,22 +223,25 @@ def _line(summary: GroupSummary) -> dict[str, Any]:
         "metric": summary.metric,
         "variant": summary.variant,
         "unit": summary.unit,
-        "mean": summary.mean,
-        "low": summary.low,
-        "high": summary.high,
+        "mean": summary.mean.value,
+        "low": summary.mean.low,
+        "high": summary.mean.high,
+        "least": summary.bounds[0],
+        "most": summary.bounds[1],
         "median": summary.median,
-        "n": summary.count,
-        "undefined": summary.undefined,
-        "censored": summary.censored,
+        "n": summary.counts.ok,
+        "undefined": summary.counts.undefined,
+        "censored": summary.counts.censored,
         "failed": summary.failed,
     }
 
 
 def _worst(found: Results, metric: str, variant: str | None, count: int) -> list[dict[str, Any]]:
     """Runs with the worst values of one metric; those without a value come first."""
-    from crowdbot.core.results.tables import score_lines, summarise
+    from crowdbot.core.results.tables import score_lines
+    from crowdbot.core.statistics.groups import by_group
 
-    summaries = summarise(found, metric, (), variant)
+    summaries = by_group(found, metric, (), variant)
     if len(summaries) != 1:
         from crowdbot.errors import InputError
 
@@ -300,8 +303,9 @@ def _print_table(lines: list[dict[str, Any]]) -> None:
             table.add_row(*(Text(_shown(v)) for v in row.values()))
         return table
 
-    table = table_of(lines)
-    if "mean" in lines[0] and Console(width=9999).measure(table).maximum > console.width:
+    is_summary = "mean" in lines[0]
+    table = table_of([_with_interval(line) for line in lines] if is_summary else lines)
+    if is_summary and Console(width=9999).measure(table).maximum > console.width:
         rows = [_narrow(line) for line in lines]
         if console.width < _WHOLE_NAMES:
             rows = [_broken(row) for row in rows]
@@ -309,17 +313,32 @@ def _print_table(lines: list[dict[str, Any]]) -> None:
     console.print(table)
 
 
+def _with_interval(line: dict[str, Any]) -> dict[str, Any]:
+    """A line of `_line` with mean and interval in one cell, as report and leaderboard have them."""
+    from crowdbot.core.statistics import Estimate
+    from crowdbot.core.statistics.estimate_text import joined_text, range_text
+
+    bounds = line["least"], line["most"]
+    all_runs = "" if bounds == (line["mean"],) * 2 else range_text(bounds)
+    mean = Estimate(value=line["mean"], low=line["low"], high=line["high"])
+    cells = {
+        "mean": {"mean [95 %]": joined_text(mean)}, "low": {}, "high": {}, "least": {},
+        "most": {"mean of all": all_runs},
+    }  # fmt: skip
+    return {k: v for name, value in line.items() for k, v in cells.get(name, {name: value}).items()}
+
+
 def _narrow(line: dict[str, Any]) -> dict[str, Any]:
     """A line of `_line` in fewer columns, for terminals that are not wide enough for all."""
-    told = {"metric", "variant", "unit", "mean", "low", "high", "n", *_WITHOUT}
+    told = {"metric", "variant", "unit", "n", "median", "mean [95 %]", "mean of all", *_WITHOUT}
     variant = "" if line["variant"] == "corrected" else f" {line['variant']}"
     unit = "" if line["unit"] == "1" else f", {line['unit']}"
-    ends = f" [{_shown(line['low'])}, {_shown(line['high'])}]" if line["low"] is not None else ""
     missing = [f"{line[name]} {name}" for name in _WITHOUT if line[name]]
+    cells = _with_interval(line)
     return {
-        **{name: value for name, value in line.items() if name not in (*told, "median")},
+        **{name: value for name, value in cells.items() if name not in told},
         "metric": f"{line['metric']}{variant}{unit}",
-        "mean [95 %]": f"{_shown(line['mean'])}{ends}",
+        "mean [95 %]": cells["mean [95 %]"],
         "median": line["median"],
         "n": ", ".join([str(line["n"]), *missing]),
     }

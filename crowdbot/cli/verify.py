@@ -50,12 +50,13 @@ def verify(
         int | None,
         typer.Option(min=0, metavar="S", help="Which runs; default: a new one each time."),
     ] = None,
-    planner: Annotated[
+    source: Annotated[
         str | None,
         typer.Option(
             metavar="FILE.py:CLASS|FILE.yaml", help="The planner, where it is not installed."
         ),
     ] = None,
+    planner: Annotated[str | None, typer.Option(hidden=True, help="The same, as before.")] = None,
     suite: Annotated[
         str | None, typer.Option(metavar="SPEC", help="The suite, where it is not a packaged one.")
     ] = None,
@@ -77,7 +78,7 @@ def verify(
     place = planner_place(in_process, planner_memory)
     registry = installed(plugin, no_plugins)
     size = None if everything else sample
-    document = verify_bundle(bundle, registry, suite, (planner, place), size, seed)
+    document = verify_bundle(bundle, registry, suite, (source or planner, place), size, seed)
     if save:
         save_verification(bundle, document)
     if as_json:
@@ -101,7 +102,7 @@ def verify_bundle(
         bundle: the archive.
         registry: the installed components.
         suite: as the option of the same name.
-        planner: as the option of the same name, and where it runs.
+        planner: what the option ``--source`` names, and where it runs.
         sample: how many runs to make again; None: all.
         seed: which ones; None: a new one.
     """

@@ -6,7 +6,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.crowd import CrowdView
 from crowdbot.core.crowd.velocity_search.agent_costs import (
@@ -23,6 +22,7 @@ from crowdbot.core.crowd.velocity_search.cost_calls import call_excess, call_low
 from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
 from crowdbot.core.crowd.velocity_search.surroundings import describe
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
 #: Shares of the true excess that are tried as budgets.
@@ -110,7 +110,7 @@ def _each_agent(costs: WeightedCosts, view: CrowdView) -> list[tuple[int, Array]
     return found
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _fill_bases(
     agent: Array, functions: Functions, weights: Array, velocities: Array, out: Array
 ) -> None:
@@ -119,7 +119,7 @@ def _fill_bases(
         out[s] = base_cost(along, across, agent[PREFERRED], agent[MAX_SPEED], functions, weights)
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _excess(ux: float, uy: float, budget: float, agent: Array, functions: Functions) -> float:
     return float(
         call_excess(
@@ -129,7 +129,7 @@ def _excess(ux: float, uy: float, budget: float, agent: Array, functions: Functi
     )  # fmt: skip
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _fill_lower_bounds(
     ux: Array, uy: Array, agent: Array, functions: Functions, out: Array
 ) -> None:

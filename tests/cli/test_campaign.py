@@ -18,7 +18,7 @@ from crowdbot import cli
 from crowdbot.cli._campaign_run import read_seeds
 from crowdbot.core.results.rows import FailureRow, Results, RunRow, ScoreRow
 from crowdbot.core.results.store import INDEX, load
-from crowdbot.core.results.tables import summarise
+from crowdbot.core.statistics.groups import by_group
 from crowdbot.errors import UsageError
 from tests.cli.campaign_cases import TINY, outcome, run, start
 from tests.examples import THOROUGH
@@ -312,13 +312,13 @@ def test_tables_of_results_count_failures() -> None:
         for p in ("a", "b")
     ]
     found = Results(runs=tuple(runs), scores=tuple(scores), failures=tuple(failures))
-    summaries = summarise(found, "success", ["planner"])
-    assert [(s.group["planner"], s.count, s.failed) for s in summaries] == [
+    summaries = by_group(found, "success", ["planner"])
+    assert [(s.group["planner"], s.counts.ok, s.failed) for s in summaries] == [
         ("a", 3, 2),
         ("b", 1, 1),
     ]
-    assert summaries[0].mean == pytest.approx(1 / 3)
-    by_status = {s.group["status"]: s.count for s in summarise(found, "success", ["status"])}
+    assert summaries[0].mean.value == pytest.approx(1 / 3)
+    by_status = {s.group["status"]: s.counts.ok for s in by_group(found, "success", ["status"])}
     assert by_status == {"arrived": 1, "planner_failed": 1, "failed": 2}
 
 

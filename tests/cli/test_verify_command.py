@@ -86,7 +86,7 @@ def world(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def verify(world: Path, capsys: pytest.CaptureFixture[str]) -> Verify:
     def call(bundle: Path, *more: str, planner: bool = True) -> tuple[int, dict[str, Any]]:
-        own = ["--planner", f"{world / 'mine.py'}:Steady"] if planner else []
+        own = ["--source", f"{world / 'mine.py'}:Steady"] if planner else []
         capsys.readouterr()
         code = cli.main(["verify", str(bundle), "--suite", str(world / "tiny.yaml"), "--json",
                          *own, *more])  # fmt: skip
@@ -173,7 +173,7 @@ def test_a_planner_that_is_not_here_cannot_be_re_run(world: Path, verify: Verify
     (world / "other").mkdir(exist_ok=True)
     (world / "other" / "mine.py").write_text(PLANNER.replace("0.1", "0.2"), encoding="utf-8")
     other = f"{world / 'other' / 'mine.py'}:Steady"
-    code, found = verify(world / "team.cbz", "--planner", other, planner=False)
+    code, found = verify(world / "team.cbz", "--source", other, planner=False)
     assert "is not the file that the bundle was made with" in found["findings"][0]
     code, found = verify(
         world / "team.cbz", "--planner", f"{world / 'mine.py'}:Other", planner=False

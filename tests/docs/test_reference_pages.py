@@ -33,7 +33,7 @@ LIVE = dict(_commands())
 
 
 def _options(command: Any) -> set[str]:
-    params = [p for p in command.params if p.param_type_name == "option"]
+    params = [p for p in command.params if p.param_type_name == "option" and not p.hidden]
     return {o for p in params for o in (*p.opts, *p.secondary_opts)} - EVERYWHERE
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from importlib import metadata
 
 from crowdbot.core.bundle.archive import Archive
 from crowdbot.core.bundle.check_edition import edition_problems
@@ -15,6 +16,7 @@ from crowdbot.core.runs import run_directory as files
 from crowdbot.core.scenarios.lock_check import spec_of
 from crowdbot.core.scoring.scores_csv import parse_scores
 from crowdbot.dsl.canonical import dump_scenario_yaml
+from crowdbot.dsl.crowd_likeness import fingerprint
 from crowdbot.dsl.expand import Expansion
 from crowdbot.dsl.scenario import Scenario
 from crowdbot.errors import InputError
@@ -74,7 +76,7 @@ def check_suite(archive: Archive, expansion: Expansion, registry: Registry) -> I
         if run.scenario not in known:
             yield f"{run.scenario[:200]} is not a scenario of {expansion.suite_id}"
             continue
-        yield from _scenario_problems(archive, run, known[run.scenario], registry)
+        yield from _scenario_problems(archive, run, expansion, registry)
 
 
 def _claimed(archive: Archive, entry: BundledRun) -> ClaimedRun:
@@ -126,9 +128,29 @@ def _strangers(manifest: Manifest, names: set[str]) -> Iterator[str]:
         yield f"recordings of some runs are there, not of all: {some}"
 
 
+def _place_problems(run: ClaimedRun, scenario: Scenario, axes: Mapping[str, str]) -> Iterator[str]:
+    """Labels and crowd that are not those of the scenario; intervals and orders rest on them.
+
+    How a crowd is told by a text of its own may change with the version.
+    """
+    record, crowd = run.record, scenario.crowd
+    if record.get("axes", {}) != dict(axes):
+        labels, wanted = _labels(record.get("axes")), _labels(dict(axes))
+        yield f"its axes are {labels}; the scenario's are {wanted}"
+    said, versions = record.get("crowd"), record.get("versions")
+    same = isinstance(versions, dict) and versions.get("crowdbot") == metadata.version("crowdbot")
+    if same and said is not None and said != ("" if crowd is None else fingerprint(crowd)):
+        yield f"its crowd is said to be {str(said)[:40]!r}, which the scenario's is not"
+
+
+def _labels(axes: object) -> str:
+    return str(axes)[:100] if axes else "{}"
+
+
 def _scenario_problems(
-    archive: Archive, run: BundledRun, scenario: Scenario, registry: Registry
+    archive: Archive, run: BundledRun, expansion: Expansion, registry: Registry
 ) -> Iterator[str]:
+    scenario = next(s for s in expansion.scenarios if s.id == run.scenario)
     name = f"{run.directory}/{files.SCENARIO}"
     try:
         claimed = _claimed(archive, run)
@@ -136,6 +158,8 @@ def _scenario_problems(
     except InputError:
         return  # told already
     yield from (f"{run.directory}: {text}" for text in declared_problems(claimed, registry))
+    axes = expansion.axes.get(run.scenario, {})
+    yield from (f"{run.directory}: {text}" for text in _place_problems(claimed, scenario, axes))
     hashes = claimed.record.get("hashes")
     hashes = hashes if isinstance(hashes, dict) else {}
     locked = scenario.locked.files.lock.scenarios.get(run.scenario) if scenario.locked else None

@@ -115,6 +115,12 @@ def _ending_problems(run: ClaimedRun) -> Iterator[str]:
     if run.record["status"] == "arrived" and run.record["goal_time"] is None:
         yield "its status is 'arrived', but it has no time of arrival"
     alone = not run.record.get("robots")
+    for key in ("goal_time", "toppled_time"):
+        time = run.record.get(key)
+        if time is not None and time > run.record["sim_time"]:
+            yield f"its {key} is {time:g} s, but it ended after {run.record['sim_time']:g} s"
+    if run.record["status"] != "arrived" and alone and run.record["goal_time"] is not None:
+        yield f"its status is '{run.record['status']}', but it has a time of arrival"
     if run.record["status"] == "toppled" and alone and run.record.get("toppled_time") is None:
         yield "its status is 'toppled', but it has no toppled_time"
     arrived = arrivals(run.record)

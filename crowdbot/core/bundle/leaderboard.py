@@ -15,7 +15,8 @@ from crowdbot.core.bundle.standings import Standings
 from crowdbot.core.results.rows import processes
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main
-from crowdbot.core.statistics import OUTCOMES, Estimate
+from crowdbot.core.statistics import OUTCOMES
+from crowdbot.core.statistics.estimate_text import NOTHING, estimate_text, range_text
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import render_page
 
@@ -78,10 +79,9 @@ def _mains(
     found = []
     for name, row in zip(names, rows, strict=True):
         cell = row["cells"][ranked.index(entry.name)] if entry.name in ranked else {}
-        value = cell.get("value", "—")
         found.append({
-            "name": name, "value": value, "interval": cell.get("interval", ""),
-            "sort": "" if value == "—" else value,
+            "name": name, "value": cell.get("value", NOTHING),
+            "interval": cell.get("interval", ""), "sort": cell.get("sort", ""),
         })  # fmt: skip
     return found
 
@@ -163,25 +163,20 @@ def _groups(table: Standings) -> dict[str, list[dict[str, Any]]]:
 def _cell(table: Standings, metric: str, entry: LeaderboardEntry) -> dict[str, Any]:
     score, rank = table.score(metric, entry), table.rank(metric, entry)
     if score is None or metric in entry.outdated:
-        return {"rank": "", "value": "—", "interval": "", "note": "an older version of the metric"}
+        return {
+            "rank": "", "value": NOTHING, "interval": "", "sort": "",
+            "note": "an older version of the metric",
+        }  # fmt: skip
     others = {k: getattr(score.counts, k) for k in OUTCOMES if k != "ok"}
     notes = [f"{n} {k}" for k, n in others.items() if n]
     if score.counts.censored:
-        notes.append(f"mean of all runs {_number(score.bounds[0])} to {_number(score.bounds[1])}")
+        notes.append(f"mean of all runs {range_text(score.bounds)}")
     notes += ["scored again"] * (metric in entry.rescored)
+    value, interval = estimate_text(score.mean)
     return {
         "rank": "" if rank is None else f"{rank}{'=' * table.shares_rank(metric, entry)}",
-        "value": _number(score.mean.value),
-        "interval": _interval(score.mean),
+        "value": value,
+        "interval": interval,
+        "sort": "" if score.mean.value is None else repr(score.mean.value),
         "note": ", ".join(notes),
     }
-
-
-def _interval(found: Estimate) -> str:
-    if found.low is None or found.high is None:
-        return ""
-    return f"{_number(found.low)} to {_number(found.high)}"
-
-
-def _number(value: float | None) -> str:
-    return "—" if value is None else f"{value:.4g}"

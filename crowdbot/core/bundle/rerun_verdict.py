@@ -125,7 +125,11 @@ def same_platform(claimed: Mapping[str, Any], record: Mapping[str, Any]) -> bool
 
 # ----------------------------------------------------------------------------- records
 #: Keys of run.json that follow from the trajectory and the planner.
-_ENDING = ("status", "goal_time", "sim_time", "density", "privileged")
+_ENDING = (
+    "status", "goal_time", "toppled_time", "sim_time", "density", "privileged", "clamped_commands",
+)  # fmt: skip
+#: Those that follow from the suite.
+_OF_SUITE = ("axis_words", "suite_metrics", "crowd")
 
 
 def _other_ending(rerun: Rerun) -> Iterator[str]:
@@ -201,7 +205,14 @@ def _other_conditions(rerun: Rerun) -> Iterator[str]:
 
 
 def _other_role(rerun: Rerun) -> Iterator[str]:
-    """A role that the planner does not declare; nobody can see it in what it did."""
+    """A role that the planner does not declare; nobody can see it in what it did.
+
+    Also what the same software says of the same suite: words, named metrics, the crowd.
+    """
+    if rerun.claimed.record.get("versions") == rerun.record.get("versions"):
+        for key in _OF_SUITE:
+            if rerun.claimed.record.get(key) != rerun.record.get(key):
+                yield f"{rerun.claimed.name}: {key} is not that of the suite"
     said, found = (r.get("role", "candidate") for r in (rerun.claimed.record, rerun.record))
     if said != found:
         yield f"{rerun.claimed.name}: role is claimed to be {said!r}, but is {found!r}"

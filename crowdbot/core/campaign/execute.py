@@ -15,15 +15,16 @@ from crowdbot.core.campaign.population_cache import cached_population
 from crowdbot.core.planning.choice import PlannerPlace
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
 from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.runs.identity import Populate, prepare, references_of
+from crowdbot.core.runs.identity import Populate, Prepared, prepare, references_of, run_identity
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.runs.request import Request
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.scenarios.with_crowds import with_crowds
 from crowdbot.core.sim.references import make_reference
 from crowdbot.dsl.expand import Expansion
-from crowdbot.errors import CrowdbotError, InputError, SimulationError
+from crowdbot.errors import CrowdbotError, InputError, PlannerError, SimulationError
 
 
 def execute(
@@ -66,6 +67,7 @@ def _execute(
     request = replace(_request(job), progress=progress, on_hang=on_hang)
     registry, populate = _registry(job.source), _populate(job.source)
     prepared = prepare(request.scenario, registry, populate=populate)
+    _check_loaded(job, request, prepared)
     if job.kind == "run":
         if prepared.run.spec != job.spec_hash:
             raise InputError(f"{job.source.spec} changed since the campaign began")
@@ -78,6 +80,19 @@ def _execute(
             there = files.read_record(reference.directory) if complete else None
             return str(there["status"]) if there else make_reference(request, reference).status
     raise InputError(f"{job.source.spec} changed since the campaign began")
+
+
+def _check_loaded(job: Job, request: Request, prepared: Prepared) -> None:
+    """Refuse a run that would be recorded as that of another planner than the campaign planned.
+
+    Raises:
+        PlannerError: the planner's process died before it said what it is.
+    """
+    if not request.choice.died:
+        return
+    identity = provenance.digest(run_identity(request, prepared.run))
+    if job.key not in (identity, *(r.run_id for r in references_of(request, prepared))):
+        raise PlannerError(request.choice.died)
 
 
 def _request(job: Job) -> Request:
@@ -131,8 +146,17 @@ def _populate(source: SuiteSource) -> Populate:
     return cached_population()
 
 
-@cache
 def _choice(
     planner: str, settings: tuple[str, ...], source: SuiteSource, place: PlannerPlace
 ) -> PlannerChoice:
-    return resolve_planner(planner, _registry(source), settings, place)
+    """Loaded once, but again where its process died: that is one run's misfortune, not of all."""
+    key = (planner, settings, source, place)
+    if key not in _loaded:
+        choice = resolve_planner(planner, _registry(source), settings, place)
+        if choice.died:
+            return choice
+        _loaded[key] = choice
+    return _loaded[key]
+
+
+_loaded: dict[tuple[str, tuple[str, ...], SuiteSource, PlannerPlace], PlannerChoice] = {}

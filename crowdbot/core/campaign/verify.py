@@ -75,7 +75,7 @@ def choose_planner(
     if given is None and digest is not None:
         raise NotRunnable(
             f"the planner is the class {kind} of a file that is not installed; get the file from "
-            "the team and name it: --planner FILE.py:CLASS"
+            "the team and name it: --source FILE.py:CLASS"
         )
     try:
         text, settings = _named(record)
@@ -83,7 +83,7 @@ def choose_planner(
     except InputError as error:
         raise NotRunnable(
             f"{error}; install the planner, load it with --plugin DIR, or name its class with "
-            "--planner FILE.py:CLASS"
+            "--source FILE.py:CLASS"
         ) from None
     if digest is not None and choice.spec_dump.get("sha256") != digest:
         raise NotRunnable(

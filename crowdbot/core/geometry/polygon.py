@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def inside(zone: Array, x: float, y: float) -> bool:
     """Whether a point lies in a polygon; even-odd rule."""
     odd = False
@@ -21,7 +20,7 @@ def inside(zone: Array, x: float, y: float) -> bool:
     return odd
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def entry_fraction(zone: Array, x0: float, y0: float, x1: float, y1: float) -> float:
     """Fraction of the way from p0 to p1 at which it first crosses the border.
 
@@ -40,7 +39,7 @@ def entry_fraction(zone: Array, x0: float, y0: float, x1: float, y1: float) -> f
     return first
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def distance_to(zone: Array, x: float, y: float) -> float:
     """Distance from a point to a polygon, zero inside, m."""
     if inside(zone, x, y):

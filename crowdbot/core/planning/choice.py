@@ -87,6 +87,16 @@ class PlannerChoice:
         return self.fleet.get(robot, self)
 
     @property
+    def died(self) -> str:
+        """How its process, or one of its fleet's, died while it was loaded; empty: it did not.
+
+        Such a choice fails in every run, and nothing is known of what the planner says of itself;
+        chosen again, it may well be loaded.
+        """
+        found = (getattr(choice.build, "died", "") for choice in (self, *self.fleet.values()))
+        return next(filter(None, found), "")
+
+    @property
     def process(self) -> str:
         """Where it runs, as records say it."""
         return IN_PROCESS if self.in_process else OWN

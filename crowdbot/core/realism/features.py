@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.realism.bins import DENSITY_EDGES, DISC, DT, NEVER, REACH
 from crowdbot.core.realism.tracks import Tracks
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compile import array_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: Columns of rows of people: cell of the density, then the features.
@@ -58,7 +57,7 @@ def features(tracks: Tracks) -> tuple[Array, Array]:
     return people[: found[0]], spaces[: found[1]]
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _features(
     position: Array, velocity: Array, acceleration: Array, direction: Array, width: float,
     windows: Array, period: float, edges: Array, first: int, last: int,

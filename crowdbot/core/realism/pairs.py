@@ -10,10 +10,10 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.realism.bins import CELLS, DENSITY_EDGES, PAIR_EDGES
 from crowdbot.core.realism.tracks import Tracks
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
 #: Shifts in time that stand for chance, as shares of the compared frames.
@@ -39,7 +39,7 @@ def pair_correlation(tracks: Sequence[Tracks]) -> Array:
     return np.asarray(found)
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _count(
     position: Array, width: float, windows: Array, period: float, edges: Array, bin_width: float,
     first: int, last: int, shift: int, counts: Array,

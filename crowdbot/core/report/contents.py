@@ -21,7 +21,6 @@ from crowdbot.core.statistics import (
     SampleSize,
     Table,
     check_floors,
-    headline_names,
     sample_size,
 )
 from crowdbot.core.statistics.audit import Audit, suspicion
@@ -143,10 +142,7 @@ def gather(
     results = replace(results, scales=score_scales(registry))
     axes = axes_of(results)
     found = cards(registry, dict.fromkeys(s.metric for s in results.scores))
-    ranges = {metric: dict(card["head"]).get("range", "") for metric, card in found.items()}
-    series = all_series(
-        results.scores, headline_names(Table(results)), ranges, named_metrics(results.runs)
-    )
+    series = all_series(Table(results), named_metrics(results.runs))
     worked_out = figures(results, series, axes)
     return Contents(
         heading=heading,

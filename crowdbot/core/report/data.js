@@ -15,12 +15,12 @@ async function inflate(name) {
   return new Response(plain).arrayBuffer();
 }
 
-/** Doubles whose four highest bytes are given: all first bytes, then all second ones, and so on. */
-function numbersOf(bytes) {
-  const count = bytes.length / 4;
+/** Doubles whose highest bytes are given: all first bytes, then all second ones, and so on. */
+function numbersOf(bytes, kept) {
+  const count = bytes.length / kept;
   const doubles = new DataView(new ArrayBuffer(8 * count));
   for (let i = 0; i < count; i++) {
-    for (let k = 0; k < 4; k++) doubles.setUint8(8 * i + k, bytes[k * count + i]);
+    for (let k = 0; k < kept; k++) doubles.setUint8(8 * i + k, bytes[k * count + i]);
   }
   return Float64Array.from({ length: count }, (_, i) => doubles.getFloat64(8 * i));
 }
@@ -29,7 +29,7 @@ async function decode() {
   report = JSON.parse(new TextDecoder().decode(await inflate("meta")));
   const names = ["values", "lower", "upper", "intervals", "pairs", "effects"];
   const blobs = await Promise.all(names.map(inflate));
-  names.forEach((name, i) => { report[name] = numbersOf(new Uint8Array(blobs[i])); });
+  names.forEach((name, i) => { report[name] = numbersOf(new Uint8Array(blobs[i]), name === "intervals" ? 8 : 4); });
   report.codes = new Uint16Array(await inflate("codes"));
   const count = report.runs.count;
   report.byPlanner = report.planners.map((_, p) =>
@@ -54,18 +54,25 @@ function quantile(sorted, q) {
   return sorted[k] + (place - k) * ((sorted[k + 1] ?? sorted[k]) - sorted[k]);
 }
 
-const mean = (sorted) => sorted.reduce((sum, x) => sum + x, 0) / sorted.length;
-
-/** Mean of the middle half of sorted numbers; those at its ends count in part. */
-function interquartileMean(sorted) {
-  const [from, to] = [sorted.length / 4, (3 * sorted.length) / 4];
-  let sum = 0;
-  sorted.forEach((x, k) => { sum += x * Math.max(0, Math.min(k + 1, to) - Math.max(k, from)); });
-  return sorted.length ? sum / (to - from) : NaN;
+/** The mean of a series in some runs, or of a rate that of all of them together: `centre.py`. */
+function centreOf(series, runs) {
+  const { metric, over } = report.series[series];
+  const whole = over ? report.series.findIndex((s) => s.metric === metric && s.variant === over) : -1;
+  let [above, below] = [0, 0];
+  for (const run of runs) {
+    const weight = whole < 0 ? 1 : report.values[at(whole, run)];
+    if (report.codes[at(series, run)] !== OK || (whole >= 0 && report.codes[at(whole, run)] !== OK) || !(weight > 0)) continue;
+    above += weight * report.values[at(series, run)];
+    below += weight;
+  }
+  return below ? above / below : NaN;
 }
 
-/** What a series is like in some runs; nothing is dropped: what has no value is counted. */
-function describe(series, runs) {
+/**
+ * What a series is like in some runs; nothing is dropped: what has no value is counted.
+ * `known` is the estimate with its interval, where Python has worked it out for these runs.
+ */
+function describe(series, runs, known = null) {
   const values = [];
   const others = { undefined: 0, censored: 0, failed: 0, absent: 0 };
   for (const run of runs) {
@@ -79,11 +86,19 @@ function describe(series, runs) {
     runs: runs.length,
     ok: sorted.length,
     sorted,
-    centre: report.series[series].centre === "interquartile mean" ? interquartileMean(sorted) : mean(sorted),
+    centre: known ? known.estimate : centreOf(series, runs),
+    low: known?.low ?? NaN,
+    high: known?.high ?? NaN,
+    known: known !== null,
     q1: quantile(sorted, 0.25),
     median: quantile(sorted, 0.5),
     q3: quantile(sorted, 0.75),
   };
+}
+
+/** What a series of a planner is like in the runs that are selected. */
+function describeSelected(series, planner) {
+  return describe(series, selectedRuns(planner), intervalOf(selectionName(), series, planner));
 }
 
 /** What sums up a series, with its interval, where Python has worked it out for this selection. */

@@ -7,7 +7,7 @@ function drawDistribution() {
   const series = report.series[state.series];
   const rows = shownPlanners().map((p) => {
     const runs = selectedRuns(p);
-    return { planner: p, runs, about: describe(state.series, runs) };
+    return { planner: p, runs, about: describeSelected(state.series, p) };
   });
   const frame = frameOf(box, rows);
   const values = rows.flatMap(({ runs, about }) => [...about.sorted, ...runs.flatMap(boundsOf)]);
@@ -52,7 +52,7 @@ function label(text, x, y, kind = "label", anchor = "start") {
 
 function distributionText(series, rows) {
   const parts = rows.map(({ planner, about }) => `${report.planners[planner].label}: ` +
-    `${series.centre} ${digits(about.centre)}, quartiles ${digits(about.q1)}, ${digits(about.median)}, ` +
+    `${series.centre} ${estimateText(about).join(" ").trim()}, quartiles ${digits(about.q1)}, ${digits(about.median)}, ` +
     `${digits(about.q3)}, ${about.ok} values, ${about.censored} censored, ${about.undefined} undefined`);
   return `${words(series.metric)}, ${words(series.variant)}. ${parts.join(". ")}.`;
 }

@@ -25,6 +25,11 @@ function fill(node, { text, ...attributes }, children) {
   return node;
 }
 
+/** A name that a narrow column may break after its marks, and nowhere else. */
+function foldable(name) {
+  return name.split(/(?<=[_+-])/).flatMap((part, i) => (i ? [el("wbr"), part] : [part]));
+}
+
 const SHAPES = [
   (r) => `M${-r} 0a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0z`,
   (r) => `M${-r * 0.9} ${-r * 0.9}h${1.8 * r}v${1.8 * r}h${-1.8 * r}z`,
@@ -56,11 +61,15 @@ const round = (x) => Math.round(10 * x) / 10;
 /** Decimals that show three digits of the largest number, and two of what the numbers differ by. */
 function decimalsFor(numbers) {
   const known = numbers.filter(Number.isFinite);
-  const places = (size, shown) => (size > 0 ? shown - 1 - Math.floor(Math.log10(size)) : 0);
-  const largest = Math.max(0, ...known.map(Math.abs));
-  const spread = known.length ? Math.max(...known) - Math.min(...known) : 0;
-  const seen = spread > 1e-6 * largest ? places(spread, 2) : 0;
-  return Math.min(9, Math.max(0, places(largest, 3), seen));
+  return decimalsOf(Math.max(0, ...known.map(Math.abs)), known.length ? Math.max(...known) - Math.min(...known) : 0);
+}
+
+/** Three digits of a size, and two of a spread that is more than rounding. */
+function decimalsOf(size, spread) {
+  const power = (x) => Number(x.toExponential().split("e")[1]);
+  const places = (x, shown) => (x > 0 && Number.isFinite(x) ? shown - 1 - power(x) : 0);
+  const seen = spread > 1e-6 * size ? places(spread, 2) : 0;
+  return Math.min(9, Math.max(0, places(Math.max(size, spread), 3), seen));
 }
 
 /** With so many decimals; what they would hide, the very large and the very small, as a power of ten. */
@@ -81,6 +90,13 @@ function digits(number) {
 
 const interval = (low, high, decimals) =>
   Number.isFinite(low) ? `[${format(low, decimals)}, ${format(high, decimals)}]` : "";
+
+/** A centre and its interval, the same on every page: `estimate_text.py` has this rule, too. */
+function estimateText({ centre, low, high }) {
+  const width = Number.isFinite(high - low) ? high - low : NaN;
+  const decimals = decimalsOf(Math.abs(centre), width || 0);
+  return [format(centre, decimals), Number.isFinite(centre) && Number.isFinite(width) ? interval(low, high, decimals) : ""];
+}
 
 /** Copies a text; without the permission it is shown, to be copied by hand. */
 async function copyText(text, button) {

@@ -28,7 +28,7 @@ from crowdbot.core.statistics import (
     summarise,
 )
 from crowdbot.core.statistics.axes import REALISED_DENSITY
-from crowdbot.core.statistics.clusters import bootstrap, mean, trimmed_mean
+from crowdbot.core.statistics.centre import planner_mean
 
 #: What the page is told of a comparison, in this order.
 FIELDS = (
@@ -50,7 +50,7 @@ class Figures:
         headline: of the scores that stand for their metrics: the four are one family of tests,
             the others another; all other variants are a third.
         selections: ``""`` for all runs, ``axis=label`` for a part.
-        intervals: (selection, series, planner, 3): interquartile mean, low, high.
+        intervals: (selection, series, planner, 3): mean, share or rate, and its interval.
         pairs: (series, pair, field).
         effects: (axis, series, planner): eta squared; the last axis is the realised density.
         whys: reasons of verdicts by number.
@@ -107,25 +107,13 @@ def _intervals(
     found = np.full((len(selections), len(series), len(table.planners), 3), np.nan)
     for score in (score for summary in summaries for score in summary.scores):
         row = place[score.metric, score.variant], table.planners.index(score.planner)
-        whole = series[row[0]].centre != "interquartile mean"
-        found[0][row] = _numbers(score.mean if whole else score.iqm)
+        found[0][row] = _numbers(score.mean)
     inside = [_inside(table, planner, selections) for planner in table.planners]
     for s, one in enumerate(series):
         for p, planner in enumerate(table.planners):
             for k, numbers in _by_label(table, one, planner, inside[p]):
                 found[k, s, p] = numbers
-    _clip(found, series)
     return found
-
-
-def _clip(intervals: _Numbers, series: Sequence[Series]) -> None:
-    """A share is not below 0 or above 1, and a count not below 0, whatever its standard error."""
-    for s, one in enumerate(series):
-        ends = intervals[:, s, :, 1:]
-        if one.centre == "share":
-            np.clip(ends, 0.0, 1.0, out=ends)
-        elif one.centre == "mean" and not (intervals[:, s, :, 0] < 0).any():
-            np.maximum(ends, 0.0, out=ends)
 
 
 def _inside(table: Table, planner: str, selections: Sequence[str]) -> NDArray[np.bool_]:
@@ -141,15 +129,8 @@ def _by_label(
     """What sums up the runs of each label of each axis."""
     column = table.column(one.name, planner)
     for k in range(1, len(inside)):
-        chosen = column.known & inside[k]
-        if not chosen.any():
-            continue
-        draws = table.clusters.part(chosen)
-        values = column.low[chosen]
-        if one.centre == "interquartile mean":
-            yield k, _numbers(bootstrap(trimmed_mean(values), draws))
-        else:
-            yield k, _numbers(mean(values, draws))
+        if (column.known & inside[k]).any():
+            yield k, _numbers(planner_mean(table, one.name, planner, rows=inside[k]))
 
 
 def _pairs(

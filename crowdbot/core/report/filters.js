@@ -84,7 +84,7 @@ function shownPlanners() {
   const shown = report.planners.map((_, p) => p).filter((p) => !state.hidden.has(p));
   if (state.sort !== "value" || !report.series.length) return shown;
   const bad = new Map(shown.map((p) => {
-    const about = describe(state.series, selectedRuns(p));
+    const about = describeSelected(state.series, p);
     return [p, about.ok ? badness(state.series, { status: "ok", value: about.centre }) : Infinity];
   }));
   return shown.sort((a, b) => (bad.get(a) === bad.get(b) ? a - b : bad.get(a) - bad.get(b)));

@@ -8,8 +8,9 @@ from collections.abc import Sequence
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.methods import methods
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main
-from crowdbot.core.statistics import Comparison, Estimate, PlannerScore, Summary
+from crowdbot.core.statistics import Comparison, PlannerScore, Summary
 from crowdbot.core.statistics.crowds import CrowdRanks
+from crowdbot.core.statistics.estimate_text import joined_text, range_text
 
 
 def markdown(contents: Contents) -> str:
@@ -46,7 +47,7 @@ def _by_crowd(ranks: CrowdRanks) -> list[str]:
         (
             _plain(o.crowd),
             "not measured" if o.realism is None else f"{o.realism:.2f}",
-            ", ".join(f"{_plain(p)} {v:.4g}" for p, v in o.means.items()),
+            ", ".join(f"{_plain(p)} {joined_text(v)}" for p, v in o.means.items()),
             str(o.pairs),
         )
         for o in ranks.orders
@@ -67,9 +68,10 @@ def alike(tau: float) -> str:
 
 def _meaning(summary: Summary) -> str:
     return (
-        "Interquartile mean over all runs with a value (of counts and rare events the mean, of "
-        f"yes or no the share), and its {100 * summary.level:g} % interval; whole crowd draws "
-        f"were resampled. {chance(summary)} Runs without a value are counted, not dropped."
+        "Mean over all runs with a value (of yes or no the share, of rates that of all runs "
+        f"together), and its {100 * summary.level:g} % interval by Student's t over crowd draws, "
+        f"within the bounds of the score. {chance(summary)} Runs without a value are counted, "
+        "not dropped."
     )
 
 
@@ -125,14 +127,13 @@ def _scores(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
     for metric, variant in names:
         here = [scores[metric, variant, planner] for planner in summary.planners]
         unit = "" if here[0].unit == "1" else here[0].unit
-        intervals = contents.figures.intervals[0, places[metric, variant]].tolist()
-        cells = [_score_cell(s, found) for s, found in zip(here, intervals, strict=True)]
+        cells = [_score_cell(s) for s in here]
         head = map(_plain, (f"{metric} {variant}".removesuffix(" corrected"), here[0].symbol, unit))
         rows.append((*head, here[0].better, *cells))
     return ("score", "symbol", "unit", "better", *map(_plain, summary.planners)), rows
 
 
-def _score_cell(score: PlannerScore, centre: Sequence[float]) -> str:
+def _score_cell(score: PlannerScore) -> str:
     counts = score.counts
     missing = [
         f"{count} {name}"
@@ -143,26 +144,14 @@ def _score_cell(score: PlannerScore, centre: Sequence[float]) -> str:
         )
         if count
     ]
-    return "; ".join([_numbers(*centre), *missing, *_whole(score)])
+    return "; ".join([joined_text(score.mean), *missing, *_whole(score)])
 
 
 def _whole(score: PlannerScore) -> list[str]:
     """Between which bounds the mean of all runs lies, where that of some says too little."""
     if not score.counts.censored:
         return []
-    low, high = ("?" if x is None else f"{x:.4g}" for x in score.bounds)
-    return [f"mean of all in [{low}, {high}]"]
-
-
-def _estimate(found: Estimate) -> str:
-    return _numbers(*(math.nan if x is None else x for x in (found.value, found.low, found.high)))
-
-
-def _numbers(value: float, low: float, high: float) -> str:
-    if math.isnan(value):
-        return "–"
-    interval = f" [{low:.4g}, {high:.4g}]" if math.isfinite(low) and math.isfinite(high) else ""
-    return f"{value:.4g}{interval}"
+    return [f"mean of all {range_text(score.bounds)}"]
 
 
 def _comparisons(summary: Summary) -> tuple[Sequence[str], list[Sequence[str]]]:
@@ -174,7 +163,7 @@ def _comparison(found: Comparison) -> Sequence[str]:
     verdict = f"a is {found.verdict}" if found.verdict in ("better", "worse") else found.verdict
     score = f"{found.metric} {found.variant}".removesuffix(" corrected")
     p_holm = "–" if found.p_holm is None else f"{found.p_holm:.3g}"
-    estimates = (_estimate(found.difference), _estimate(found.improvement))
+    estimates = (joined_text(found.difference), joined_text(found.improvement))
     return (*map(_plain, (score, found.a, found.b)), *estimates, p_holm, verdict)
 
 

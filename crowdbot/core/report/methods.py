@@ -67,11 +67,11 @@ def _ended(contents: Contents) -> str:
 def _summed_up(contents: Contents) -> str:
     summary = contents.figures.headline
     return (
-        "We report the interquartile mean of each score over the runs in which it is defined, "
-        "the mean of counts and of scores that are zero in most runs, and the share of yes-or-no "
-        f"scores, with {100 * summary.level:g} % confidence intervals by a bias-corrected and "
-        "accelerated bootstrap (of means by Student's t) over whole crowd draws, because runs in "
-        "one crowd are not independent."
+        "We report the mean of each score over the runs in which it is defined, the share of "
+        "yes-or-no scores, and rates as the sum of what was counted over the sum of what it is a "
+        f"rate over, with {100 * summary.level:g} % confidence intervals by Student's t over "
+        "whole crowd draws, because runs in one crowd are not independent; intervals of bounded "
+        "scores are score intervals (Wilson), which do not leave the bounds."
     )
 
 

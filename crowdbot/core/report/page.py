@@ -13,9 +13,10 @@ from crowdbot.core.report.encode import encode_runs, encode_scores
 from crowdbot.core.report.figures import FIELDS, VERDICTS
 from crowdbot.core.report.markdown import alike, chance, family, markdown
 from crowdbot.core.report.methods import methods
-from crowdbot.core.report.packing import pack, pack_document
+from crowdbot.core.report.packing import pack, pack_document, pack_whole
 from crowdbot.core.results.rows import RunRow, processes
 from crowdbot.core.scoring.scores_csv import write_table
+from crowdbot.core.statistics.estimate_text import joined_text
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import render_page
 
@@ -51,7 +52,8 @@ def render(contents: Contents) -> str:
     """The page as text."""
     states, blobs = encode_scores(contents.results, contents.attempts, contents.series)
     figures, runs = contents.figures, contents.results.runs
-    blobs |= {name: pack(getattr(figures, name)) for name in ("intervals", "pairs", "effects")}
+    blobs |= {name: pack(getattr(figures, name)) for name in ("pairs", "effects")}
+    blobs["intervals"] = pack_whole(figures.intervals)  # texts are to be those of other pages
     blobs["meta"] = pack_document({**_meta(contents), "states": states})
     return render_page(
         __package__,
@@ -68,6 +70,7 @@ def render(contents: Contents) -> str:
         summary=figures.headline,
         chance=chance(figures.headline),
         alike=alike,
+        joined_text=joined_text,
         blobs=blobs,
     )
 

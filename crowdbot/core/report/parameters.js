@@ -8,7 +8,7 @@ function drawParameters() {
   const planners = shownPlanners();
   const panels = report.axes.map((axis, a) => panelRows(axis, a, planners));
   const numbers = panels.flatMap((rows) => rows.flatMap((row) =>
-    row.cells.flatMap(({ about, known }) => (about.ok ? [about.centre, known?.low, known?.high] : []))));
+    row.cells.flatMap(({ about }) => (about.ok ? [about.centre, about.low, about.high] : []))));
   const { reference } = report.series[state.series];
   const y = scale(wholeSpan(numbers, reference ? [reference.value] : []), [PANEL.height - PANEL.bottom, PANEL.top], 4);
   const width = panelWidth(byId("panels").clientWidth || 900);
@@ -25,7 +25,7 @@ function panelRows(axis, a, planners) {
     const chosen = { ...state.axes, [axis.name]: text };
     const cells = planners.map((planner) => {
       const runs = report.byPlanner[planner].filter(inside);
-      return { about: describe(state.series, runs), known: intervalOf(selectionName(chosen), state.series, planner), runs };
+      return { about: describe(state.series, runs, intervalOf(selectionName(chosen), state.series, planner)), runs };
     });
     return { axis, text, word, l, cells, density: densityOf(cells.flatMap((c) => c.runs)) };
   });
@@ -83,9 +83,9 @@ function trend(planner, cells, place, y) {
   const points = cells.map(({ about }, l) => (about.ok ? [round(place(l)), inside(about.centre)] : null));
   const path = points.map((p, l) => (p ? `${points[l - 1] ? "L" : "M"}${p[0]} ${p[1]}` : "")).join("");
   group.append(svg("path", { class: `trend ${kind}`, d: path || "M0 0" }));
-  cells.forEach(({ about, known }, l) => {
-    if (known && Number.isFinite(known.low)) {
-      group.append(svg("line", { class: "whisker", x1: round(place(l)), x2: round(place(l)), y1: inside(known.low), y2: inside(known.high) }));
+  cells.forEach(({ about }, l) => {
+    if (Number.isFinite(about.low)) {
+      group.append(svg("line", { class: "whisker", x1: round(place(l)), x2: round(place(l)), y1: inside(about.low), y2: inside(about.high) }));
     }
     if (about.ok) group.append(marker(planner, place(l), inside(about.centre), 4.5, "ringed"));
   });
@@ -95,8 +95,8 @@ function trend(planner, cells, place, y) {
 /** The numbers of one picture. */
 function parameterRows(rows, planners) {
   const head = ["parameter", "label", "value", "planner", "centre", "low", "high", "q1", "q3", "runs", "with_value"];
-  return [head, ...rows.flatMap((row) => row.cells.map(({ about, known }, i) => [row.axis.title, row.text, row.word,
-    report.planners[planners[i]].label, about.centre, known?.low, known?.high, about.q1, about.q3, String(about.runs), String(about.ok)]))];
+  return [head, ...rows.flatMap((row) => row.cells.map(({ about }, i) => [row.axis.title, row.text, row.word,
+    report.planners[planners[i]].label, about.centre, about.low, about.high, about.q1, about.q3, String(about.runs), String(about.ok)]))];
 }
 
 /** How much each parameter matters for each planner, from all runs. */
@@ -107,7 +107,6 @@ function axisEffectText(a, planners) {
 }
 
 function drawParameterTable(rows, planners) {
-  const decimals = decimalsFor(rows.flatMap((row) => row.cells.map((c) => c.about.centre)));
   const columns = [
     { text: "parameter", key: (row) => row.axis.title },
     { text: "value", key: (row) => row.word },
@@ -117,16 +116,14 @@ function drawParameterTable(rows, planners) {
   sortable(byId("parameters-table"), columns, rows, (row) => el("tr", {},
     el("th", { scope: "row", text: row.axis.title }), el("td", { text: wordAndLabel(row.axis, row.l) }),
     row.density ? numberCell(format(row.density.mean, 3), interval(row.density.low, row.density.high, 3)) : numberCell("–"),
-    row.cells.map(({ about, known }) => el("td", { class: "number" }, el("b", { text: format(about.centre, decimals) }),
-      el("small", { text: known ? interval(known.low, known.high, decimals) : quartileText(about, report.series[state.series], decimals), class: known ? null : "quartile" }),
-      missingChips(about)))));
+    row.cells.map(({ about }) => centreCell(about, report.series[state.series]))));
 }
 
 function parametersNote() {
   const other = Object.values(state.axes).some(Boolean) || state.seed;
   const set = other ? "The other parameters are filtered as above. " : "";
   const effects = report.axes.length ? "Percentages: how much of the spread between runs goes with the parameter (η²), always of all runs. " : "";
-  return `Interquartile means with ${report.stats.level} % intervals where they are worked out, else quartiles in italics. ${set}${effects}${densityText()}` +
+  return `${centreWord(report.series[state.series])} with ${report.stats.level} % intervals where they are worked out, else quartiles in italics. ${set}${effects}${densityText()}` +
     "Realised density: mean over the runs, and in brackets the least and the largest.";
 }
 

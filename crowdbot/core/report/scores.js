@@ -9,7 +9,7 @@ const SPREAD = 260;
 function drawScores(choose) {
   const planners = shownPlanners();
   const runs = Object.fromEntries(planners.map((p) => [p, selectedRuns(p)]));
-  const all = shownSeries().map((s) => scoreRow(s, planners, runs));
+  const all = shownSeries().map((s) => scoreRow(s, planners));
   const rows = all.filter((row) => row.abouts.some((a) => a.ok || a.censored));
   const compared = rows.some((row) => row.verdicts.length);
   const columns = [
@@ -36,36 +36,34 @@ function scoreRows(rows, planners) {
   return [head, ...rows.flatMap((row) => row.abouts.map((about, i) => {
     const series = report.series[row.series];
     return [series.metric, series.variant, series.unit, series.better, report.planners[planners[i]].label, about.centre,
-      row.known[i]?.low, row.known[i]?.high, about.q1, about.median, about.q3, String(about.runs), String(about.ok)];
+      about.low, about.high, about.q1, about.median, about.q3, String(about.runs), String(about.ok)];
   }))];
 }
 
-function scoreRow(series, planners, runs) {
-  const abouts = planners.map((p) => describe(series, runs[p]));
-  const known = planners.map((p) => intervalOf(selectionName(), series, p));
+function scoreRow(series, planners) {
+  const abouts = planners.map((p) => describeSelected(series, p));
   const verdicts = verdictsOf(series, planners);
   const evidence = Math.min(...verdicts.map((v) => v.p_holm).filter(Number.isFinite), Infinity);
-  return { series, abouts, known, verdicts, evidence: Number.isFinite(evidence) ? evidence : null };
+  return { series, abouts, verdicts, evidence: Number.isFinite(evidence) ? evidence : null };
 }
 
 function drawScoreRow(row, planners, choose) {
   const series = report.series[row.series];
-  const decimals = decimalsFor(row.abouts.flatMap((a) => (series.centre === "share" ? [a.centre] : [a.centre, a.q1, a.q3])));
-  const cells = row.abouts.map((about, i) => {
-    const known = row.known[i];
-    const range = known ? interval(known.low, known.high, decimals) : quartileText(about, series, decimals);
-    return el("td", { class: "number" }, el("b", { text: format(about.centre, decimals) }),
-      el("small", { text: range, class: known ? null : "quartile" }), missingChips(about));
-  });
+  const cells = row.abouts.map((about) => centreCell(about, series));
   return el("tr", { "data-score": `${series.metric}.${series.variant}`, class: row.series === state.series ? "chosen" : null },
     scoreHead(row.series, choose), cells, el("td", { class: "spread" }, spreadPicture(row, planners)),
     row.verdicts.length ? el("td", { class: "verdict" }, verdictText(row.verdicts)) : null);
 }
 
-/** Quartiles of yes and no say nothing. */
-function quartileText(about, series, decimals) {
-  return series.centre === "share" ? "" : interval(about.q1, about.q3, decimals);
+/** What sums up some runs, with its interval, or the quartiles where there is none. */
+function centreCell(about, series) {
+  const range = about.known || series.centre === "share" ? about : { ...about, low: about.q1, high: about.q3 };
+  const [value, ends] = estimateText(range); // quartiles of yes and no say nothing
+  return el("td", { class: "number" }, el("b", { text: value }),
+    el("small", { text: ends, class: about.known ? null : "quartile" }), missingChips(about));
 }
+
+const centreWord = (series) => ({ share: "Shares", rate: "Rates of all runs together", mean: "Means" })[series.centre];
 
 /** Name, symbol, unit and direction of a score; opens its card, and shows it below. */
 function scoreHead(s, choose) {
@@ -76,11 +74,11 @@ function scoreHead(s, choose) {
   const variant = series.variant === "corrected" ? null : el("span", { class: "variant", text: words(series.variant) });
   return el("th", { scope: "row" }, button, variant, el("span", { class: "about" },
     el("i", { text: series.symbol }), series.unit === "1" ? "" : ` in ${series.unit}`,
-    series.centre === "interquartile mean" ? "" : ` · ${series.centre}`,
+    series.centre === "mean" ? "" : ` · ${series.centre}`,
     arrow ? el("span", { class: "arrow", title: meaning, role: "img", "aria-label": meaning, text: arrow }) : null));
 }
 
-/** For each planner the middle half of its runs and its interquartile mean on one scale. */
+/** For each planner the middle half of its runs and its mean on one scale. */
 function spreadPicture(row, planners) {
   const height = 8 + 13 * planners.length;
   const { reference, centre } = report.series[row.series];
@@ -143,8 +141,8 @@ function scoresNote() {
   const { stats } = report;
   const range = selectionName() === null
     ? "in brackets, in italics, the quartiles of the runs: intervals are worked out for all runs and for one value of one parameter, not for this selection"
-    : `in brackets its ${stats.level} % interval, for which whole crowd draws were resampled`;
-  return `Interquartile mean over the runs with a value; where it says so the mean, of counts and of what is zero in most runs, or the share of yes; ${range}. Hatched: runs without a value, which no number beside them counts. Runs in which the planner failed count with the values that they have, and where planners are compared as worse than any other. ${differenceNote()}`;
+    : `in brackets its ${stats.level} % interval over whole crowd draws`;
+  return `Mean over the runs with a value; where it says so the share of yes, or the rate of all runs together; ${range}. Hatched: runs without a value, which no number beside them counts. Runs in which the planner failed count with the values that they have, and where planners are compared as worse than any other. ${differenceNote()}`;
 }
 
 function differenceNote() {

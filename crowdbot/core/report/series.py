@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
-from typing import Literal, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
-from crowdbot.core.results.rows import ScoreRow
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main, main_first
+from crowdbot.core.statistics import Table, headline_names
+from crowdbot.core.statistics.centre import Centre, centre_of
 
 #: Categories that come first; the others follow by name.
 _FIRST = (
@@ -25,14 +26,13 @@ _LAST = ("shared control", "questionnaire")
 #: Category of the metrics that the suite names.
 NAMED = "named by the suite"
 
-Centre = Literal["share", "mean", "interquartile mean"]
-
 
 class Series(NamedTuple):
     """One variant of one metric.
 
     ``plain``: the corrected variant, or one of a metric that has no such variant. ``headline``:
-    shown before anybody asks for more. ``centre``: what its runs are summed up by.
+    shown before anybody asks for more. ``centre``: what its runs are summed up by. ``over``: of a
+    rate, the variant of the same metric that it is over.
     """
 
     metric: str
@@ -44,6 +44,7 @@ class Series(NamedTuple):
     plain: bool
     headline: bool
     centre: Centre
+    over: str = ""
 
     @property
     def name(self) -> tuple[str, str]:
@@ -51,28 +52,20 @@ class Series(NamedTuple):
         return self.metric, self.variant
 
 
-def all_series(
-    scores: Sequence[ScoreRow],
-    headlines: Collection[tuple[str, str]],
-    ranges: Mapping[str, str],
-    named: Sequence[str] = (),
-) -> list[Series]:
-    """Every variant of every metric in some scores; those of the seed first in their category.
+def all_series(table: Table, named: Sequence[str] = ()) -> list[Series]:
+    """Every variant of every metric in some runs; those of the seed first in their category.
 
     The four scores are a category of their own, and come before all others; before them come the
     metrics that the suite names, with the variants that stand for them.
 
     Args:
-        scores: of all runs.
-        headlines: (metric, variant) that stand for their metrics; a metric without one is
-            represented by its plain variants.
-        ranges: metric -> its range, as its card says.
+        table: of all runs. A metric without a headline is represented by its plain variants.
         named: metrics of the suite, in its order.
     """
-    labels = {(s.metric, s.variant): s for s in reversed(scores)}
+    headlines = set(headline_names(table))
+    labels = {name: table.label(name) for name in table.names}
     represented = {metric for metric, _ in headlines}
-    values = _values(scores)
-    seeds = {s.metric for s in scores if s.variant == "literal"}
+    seeds = {metric for metric, variant in table.names if variant == "literal"}
     found = []
     for name, label in labels.items():
         has_corrected = (label.metric, "corrected") in labels
@@ -88,7 +81,8 @@ def all_series(
                 better=label.better,
                 plain=plain,
                 headline=headline,
-                centre=_centre(ranges.get(label.metric, ""), values.get(name, [])),
+                centre=centre_of(table, name),
+                over=(table.exposure_name(name) or ("", ""))[1],
             )
         )
     found.sort(key=lambda s: (*_rank(s.category), s.metric not in seeds, *_place(s)))
@@ -101,27 +95,6 @@ def _named_first(found: list[Series], named: Sequence[str]) -> list[Series]:
     first.sort(key=lambda s: places[s.metric])
     taken = {s.name for s in first}
     return [*first, *(s for s in found if s.name not in taken)]
-
-
-def _centre(range_: str, values: Sequence[float]) -> Centre:
-    """What sums up a series.
-
-    The middle half has no room for rare events: nine runs without a collision and one with three
-    would be no collision at all. So counts, and what is zero in most runs, have their mean. So have
-    scores that are 0 for a failure ("0, or ..."): a quarter of failures would be trimmed off.
-    """
-    if range_.startswith("0 or 1"):
-        return "share"
-    rare = sum(value == 0 for value in values) > len(values) / 2
-    return "mean" if rare or range_.startswith("0, ") else "interquartile mean"
-
-
-def _values(scores: Sequence[ScoreRow]) -> dict[tuple[str, str], list[float]]:
-    found: dict[tuple[str, str], list[float]] = {}
-    for s in scores:
-        if s.value is not None:
-            found.setdefault((s.metric, s.variant), []).append(s.value)
-    return found
 
 
 def _rank(category: str) -> tuple[int, str]:

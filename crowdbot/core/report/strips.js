@@ -50,15 +50,14 @@ function bound(x, y, lower, upper) {
     }));
 }
 
-/** The middle half of the runs, their median, and the interquartile mean with its interval. */
+/** The middle half of the runs, their median, and the mean with its interval. */
 function boxOf(planner, about, x, y) {
   const inside = (v) => round(Math.min(x.place(x.high), Math.max(x.place(x.low), x.place(v))));
   const group = svg("g", { class: `p${planner % SHAPES.length}` },
     svg("rect", { class: "quartiles", x: inside(about.q1), y: y - 4, height: 8, width: Math.max(1, inside(about.q3) - inside(about.q1)) }),
     svg("line", { class: "median", x1: inside(about.median), x2: inside(about.median), y1: y - 7, y2: y + 7 }));
-  const known = intervalOf(selectionName(), state.series, planner);
-  if (known && Number.isFinite(known.low)) {
-    group.append(svg("line", { class: "whisker", x1: inside(known.low), x2: inside(known.high), y1: y, y2: y }));
+  if (Number.isFinite(about.low)) {
+    group.append(svg("line", { class: "whisker", x1: inside(about.low), x2: inside(about.high), y1: y, y2: y }));
   }
   group.append(marker(planner, inside(about.centre), y, 5, "ringed"));
   return group;

@@ -16,7 +16,7 @@ class ScoreScale:
 
     Attributes:
         minimum, maximum: bounds of every value, inclusive.
-        integer: values are whole numbers; of a rate, what is counted.
+        integer: values are whole numbers; of a rate, what is counted: contacts are, work is not.
         rate_over: variant of the same metric that the value is a rate over; empty: not a rate.
     """
 
@@ -39,9 +39,14 @@ def score_scales(registry: Registry) -> Scales:
         (kind, name): ScoreScale(
             minimum=variant.invariants.minimum,
             maximum=variant.invariants.maximum,
-            integer=variant.invariants.integer or bool(variant.rate_over),
+            integer=variant.invariants.integer or _counts(variant.rate_over, variant.unit),
             rate_over=variant.rate_over,
         )
         for kind, metric in metrics.items()
         for name, variant in metric.variants.items()
     }
+
+
+def _counts(rate_over: str, unit: str) -> bool:
+    """Whether a rate is one of things that are counted, which have no unit: 1/km, not J/m."""
+    return bool(rate_over) and unit.startswith("1/")

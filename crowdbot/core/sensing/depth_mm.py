@@ -5,14 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from crowdbot.core.support.compile import array_kernel
 
 _FARTHEST = np.float32(65.535)  # m, in millimetres of 16 bits
 _PER_METRE = np.float32(1000.0)
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def depth_mm(depth: NDArray[np.floating[Any]]) -> NDArray[np.uint16]:
     """Millimetres (H, W) of depths in m, rounded to even; 0 for too far and for NaN."""
     found = np.empty(depth.shape, np.uint16)

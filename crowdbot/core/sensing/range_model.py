@@ -28,6 +28,9 @@ from crowdbot.core.types.motion import Pose
 from crowdbot.dsl.range_sensor import RangeSensorSpec
 
 _KEPT = np.zeros(0, dtype=np.bool_)
+#: Of the range: errors beyond it leave nothing of a distance. Readings are recorded and published
+#: as single floats of 24 bits, so that the sum would be the error.
+_LARGEST = 2.0**24
 
 
 class RangeModel:
@@ -86,18 +89,21 @@ class RangeModel:
         """
         spec, lost = self._spec, _KEPT
         for generator in self._noise:
-            distance += _errors(generator, distance, rng)
+            distance += _errors(generator, distance, rng, spec.range_max * _LARGEST)
         if spec.dropout > 0.0:
             lost = rng.random(len(distance)) < spec.dropout
         _finish(distance, lost, spec.range_min, spec.range_max, self._step)
         return distance
 
 
-def _errors(generator: NoiseGenerator, distance: Array, rng: np.random.Generator) -> Array:
+def _errors(
+    generator: NoiseGenerator, distance: Array, rng: np.random.Generator, largest: float
+) -> Array:
     """Errors (N,) of one generator, m; of what was not hit they may be anything.
 
     Raises:
-        ValueError: they are not one number for each beam; named after the generator's class.
+        ValueError: they are not one number of at most ``largest`` for each beam; named after the
+            generator's class.
     """
     answer = generator.errors(immutable(distance), rng)
     who = f"noise of {type(generator).__module__}.{type(generator).__name__}"
@@ -107,9 +113,25 @@ def _errors(generator: NoiseGenerator, distance: Array, rng: np.random.Generator
         raise ValueError(f"{who}: errors returned {error}") from None
     if found.shape != distance.shape:
         raise ValueError(f"{who}: errors returned shape {found.shape} for {distance.shape}")
-    if not np.isfinite(found).all() and not np.isfinite(found[distance < np.inf]).all():
-        raise ValueError(f"{who}: errors returned something that is not finite for what was hit")
+    if not np.abs(found).max(initial=0.0) <= largest:  # or NaN
+        _check_hits(found[distance < np.inf], largest, who)
     return found
+
+
+def _check_hits(errors: Array, largest: float, who: str) -> None:
+    """Refuse errors (hits,) of what was hit.
+
+    Raises:
+        ValueError: one is not finite, or larger than any error can be.
+    """
+    if not np.isfinite(errors).all():
+        raise ValueError(f"{who}: errors returned something that is not finite for what was hit")
+    wrong = errors[np.abs(errors) > largest]
+    if len(wrong):
+        raise ValueError(
+            f"{who}: errors returned {wrong[0]:.3g} m for what was hit; {largest:.3g} m, which no "
+            "distance within the sensor's range adds anything to, is too much"
+        )
 
 
 @kernel

@@ -10,18 +10,18 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
 #: Ends of a wall are longer by this fraction, so that no ray slips through a corner.
 _OVERLAP = 1e-9
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def segment_gap(wall: Array, x: float, y: float) -> float:
     """Distance from a point to a segment, m."""
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
@@ -33,7 +33,7 @@ def segment_gap(wall: Array, x: float, y: float) -> float:
     return math.hypot(px - s * ex, py - s * ey)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _near_walls(walls: Array, x: float, y: float, max_range: float, out: NDArray[np.int64]) -> int:
     """Write the indices of the walls within range; return how many there are."""
     count = 0
@@ -44,7 +44,7 @@ def _near_walls(walls: Array, x: float, y: float, max_range: float, out: NDArray
     return count
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _near_discs(
     discs: Array, x: float, y: float, max_range: float, gap: Array, out: NDArray[np.int64]
 ) -> int:
@@ -67,7 +67,7 @@ def _near_discs(
     return count
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def hit_wall(wall: Array, heights: Array, o: Array, dx: float, dy: float, dz: float) -> float:
     """Distance of one ray to one wall; inf if it misses."""
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
@@ -83,14 +83,14 @@ def hit_wall(wall: Array, heights: Array, o: Array, dx: float, dy: float, dz: fl
     return float(t)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def wall_incidence(wall: Array, dx: float, dy: float) -> float:
     """Angle between a ray and the normal of a wall that it hits."""
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
     return math.acos(min(1.0, abs(dx * ey - dy * ex) / math.hypot(ex, ey)))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def hit_cylinder(
     px: float,
     py: float,
@@ -131,7 +131,7 @@ def hit_cylinder(
     return max(enter, 0.0), lateral  # 0: the origin is inside or on the surface
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def cylinder_incidence(
     px: float, py: float, r: float, t: float, lateral: bool, dx: float, dy: float, dz: float
 ) -> float:
@@ -144,7 +144,7 @@ def cylinder_incidence(
     return math.acos(min(1.0, cosine))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def cast_rays(
     origins: Array,
     directions: Array,

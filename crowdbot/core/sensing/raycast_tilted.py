@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
@@ -24,7 +23,7 @@ from crowdbot.core.sensing.raycast import (
     wall_incidence,
 )
 from crowdbot.core.sensing.raycast_columns import RayGrid
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compile import array_kernel, kernel
 from crowdbot.core.types.arrays import Array
 
 Indices = NDArray[np.int64]
@@ -73,7 +72,7 @@ def _bins_of(px: float, py: float, qx: float, qy: float, r: float) -> tuple[int,
     return first, min(_BINS, math.floor(span / _WIDTH) + 4)
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _sort_bodies(
     x: float, y: float, max_range: float, walls: Array, discs: Array
 ) -> tuple[Indices, Array]:
@@ -89,7 +88,7 @@ def _sort_bodies(
     return order, gap
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _fill_bins(
     x: float, y: float, walls: Array, discs: Array, order: Indices, gap: Array
 ) -> tuple[Indices, Indices]:
@@ -120,7 +119,7 @@ def _fill_bins(
     return begin, members
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def cast_tilted_rays(
     x: float, y: float, z: float, turn: Array, rays: Array, max_range: float,
     walls: Array, wall_heights: Array, discs: Array, owner: Indices,

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 
-import numba
-
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.contact.robot_contact import from_outline
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
 #: Points that touch at once belong to one contact: the side of a box flush with a wall, m.
 _AT_ONCE = 1e-3
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def gap_to_walls(walls: Array, pillars: Array, x: float, y: float) -> float:
     """Distance from a point to the nearest wall or pillar's surface, m; inf without any."""
     nearest = math.inf
@@ -31,7 +30,7 @@ def gap_to_walls(walls: Array, pillars: Array, x: float, y: float) -> float:
     return nearest
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def outline_gap(
     walls: Array, pillars: Array, outline: Array, x: float, y: float, yaw: float
 ) -> float:
@@ -56,7 +55,7 @@ def outline_gap(
     return nearest
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def touched_at(
     walls: Array, pillars: Array, outline: Array, x: float, y: float, yaw: float
 ) -> tuple[float, float]:
@@ -91,14 +90,14 @@ def touched_at(
     return (sum_x / count, sum_y / count) if count else (math.nan, math.nan)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _into(px: float, py: float, x: float, y: float, yaw: float) -> tuple[float, float]:
     """A point of the world in the frame of a pose."""
     c, s = math.cos(yaw), math.sin(yaw)
     return c * (px - x) + s * (py - y), c * (py - y) - s * (px - x)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _to_segment(outline: Array, ax: float, ay: float, bx: float, by: float) -> float:
     """Distance from an outline of at least two points to segment a-b, m; 0 where they overlap."""
     nearest = min(from_outline(outline, ax, ay)[0], from_outline(outline, bx, by)[0])
@@ -113,7 +112,7 @@ def _to_segment(outline: Array, ax: float, ay: float, bx: float, by: float) -> f
     return max(0.0, nearest)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _cross(
     ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
 ) -> bool:

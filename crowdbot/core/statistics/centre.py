@@ -1,14 +1,16 @@
 """What a score of a planner is in the mean, and how far two planners are apart: one estimator.
 
-Report, leaderboard, floors and audit all call it. Means of runs stay within the bounds of the
-score. Rates are those of all runs together: the sum of what was counted over the sum of what it is
-a rate over, and not the mean of each run's quotient, which those runs rule that hardly got
-anywhere.
+Report, leaderboard, ``results``, ranks by crowd, floors and audit all call it. Means of runs stay
+within the bounds of the score. Rates are those of all runs together: the sum of what was counted
+over the sum of what it is a rate over, and not the mean of each run's quotient, which those runs
+rule that hardly got anywhere. `data.js` of the report does the same for runs that a reader chooses.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,20 +20,59 @@ from crowdbot.core.statistics.clusters import Bounds, Floats
 from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.core.statistics.table import Name, Table
 
+#: What a score is summed up by: the share of yes, the rate of all runs together, or the mean.
+Centre = Literal["share", "rate", "mean"]
 
-def planner_mean(table: Table, name: Name, planner: str, level: float = 0.95) -> Estimate:
-    """Mean of one planner's values, or the rate of all its runs, with its interval."""
-    column, scale = table.column(name, planner), table.scale(name)
-    bounds = scale.minimum, scale.maximum
-    step = 1.0 if scale.integer else 0.0
-    exposure = table.exposure(name, planner)
+
+def centre_of(table: Table, name: Name) -> Centre:
+    """What sums up a score, which its metric alone decides: not the values, nor who else ran."""
+    scale = table.scale(name)
+    if table.exposure_name(name) is not None:
+        return "rate"
+    return "share" if scale.integer and (scale.minimum, scale.maximum) == (0.0, 1.0) else "mean"
+
+
+def planner_mean(
+    table: Table,
+    name: Name,
+    planner: str,
+    level: float = 0.95,
+    rows: NDArray[np.bool_] | None = None,
+) -> Estimate:
+    """Mean of one planner's values, or the rate of its runs together, with its interval.
+
+    Args:
+        table: of the runs.
+        name: the score.
+        planner: whose.
+        level: of the interval.
+        rows: (n,) of the table to look at; default all.
+    """
+    whole = np.ones(len(table.keys), np.bool_)
+    return mean_of_rows(table, name, {planner: whole if rows is None else rows}, level)
+
+
+def mean_of_rows(
+    table: Table, name: Name, rows: Mapping[str, NDArray[np.bool_]], level: float = 0.95
+) -> Estimate:
+    """The same of runs of several planners: planner -> (n,) its rows."""
+    scale = table.scale(name)
+    bounds, step = (scale.minimum, scale.maximum), 1.0 if scale.integer else 0.0
+    parts = [_values(table, name, planner, chosen) for planner, chosen in rows.items()]
+    above, below, places = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return c.ratio(above, below, table.clusters.part(places), level, bounds, step)
+
+
+def _values(
+    table: Table, name: Name, planner: str, chosen: NDArray[np.bool_]
+) -> tuple[Floats, Floats, NDArray[np.intp]]:
+    """What is summed up above and below the line, and in which rows it stands."""
+    column, exposure = table.column(name, planner), table.exposure(name, planner)
+    known = column.known & chosen
     if exposure is None:
-        values = column.low[column.known]
-        return c.mean(values, table.clusters.part(column.known), level, bounds, step)
-    known = column.known & np.isfinite(exposure)
-    below = exposure[known]
-    above = column.low[known] * below
-    return c.ratio(above, below, table.clusters.part(known), level, bounds, step)
+        return column.low[known], np.ones(int(known.sum())), np.flatnonzero(known)
+    known &= np.isfinite(exposure)
+    return column.low[known] * exposure[known], exposure[known], np.flatnonzero(known)
 
 
 def rate_difference(

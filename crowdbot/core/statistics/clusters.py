@@ -86,8 +86,8 @@ class Clusters:
         """(count,) draws in the stratum of each draw."""
         return np.bincount(self.stratum)[self.stratum].astype(np.float64)
 
-    def part(self, chosen: NDArray[np.bool_]) -> Clusters:
-        """Of some of the runs; draws without any of them are gone."""
+    def part(self, chosen: NDArray[np.bool_] | NDArray[np.intp]) -> Clusters:
+        """Of some of the runs, by mask or place; draws without any of them are gone."""
         left, index = np.unique(self.index[chosen], return_inverse=True)
         kept = self.stratum[left]
         if len(kept) and np.bincount(kept)[kept].min() < 2:  # one draw tells nothing of chance
@@ -318,23 +318,5 @@ def weighted(function: Callable[..., Any], *arrays: Floats) -> Statistic:
     def statistic(weights: Floats) -> Floats:
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(function(*(weights @ stacked).T), dtype=float)
-
-    return statistic
-
-
-def trimmed_mean(values: Floats) -> Statistic:
-    """Interquartile mean: of the middle half of the weight, runs at its ends counted in part.
-
-    Equal to ``scipy.stats.trim_mean(values, 0.25)`` where the number of runs is divisible by 4.
-    """
-    order = np.argsort(values, kind="stable")
-    ordered = values[order]
-
-    def statistic(weights: Floats) -> Floats:
-        upto = np.cumsum(weights[:, order], axis=1)
-        total = upto[:, -1:]
-        inside = np.diff(np.clip(upto, total / 4, 3 * total / 4), axis=1, prepend=total / 4)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray(inside @ ordered / (total[:, 0] / 2))
 
     return statistic

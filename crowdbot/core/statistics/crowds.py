@@ -12,11 +12,16 @@ from dataclasses import dataclass
 from itertools import combinations, permutations
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from crowdbot.core.realism.crowds import realism_by_name
-from crowdbot.core.results.rows import Results, RunRow
+from crowdbot.core.results.rows import Results
+from crowdbot.core.statistics.centre import planner_mean
+from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.core.statistics.floors import PRIMARY
 from crowdbot.core.statistics.summary import headline_names
-from crowdbot.core.statistics.table import Table
+from crowdbot.core.statistics.table import Name, Table
 
 AXIS = "crowd"
 
@@ -28,14 +33,19 @@ class CrowdOrder:
     Attributes:
         crowd: label.
         realism: index of the crowd, None where it was not measured.
-        means: planner -> mean over ``pairs`` scenarios and seeds that all planners have, the best
-            first.
+        means: planner -> mean over ``pairs`` scenarios and seeds that all planners have, as
+            `planner_mean` has it, the best first.
     """
 
     crowd: str
     realism: float | None
-    means: Mapping[str, float]
+    means: Mapping[str, Estimate]
     pairs: int
+
+    def value(self, planner: str) -> float:
+        """The mean of one planner."""
+        found = self.means[planner].value
+        return math.nan if found is None else found
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,7 +101,12 @@ class CrowdRanks:
         return {
             "metric": self.metric,
             "orders": [
-                {"crowd": o.crowd, "realism": o.realism, "means": dict(o.means), "pairs": o.pairs}
+                {
+                    "crowd": o.crowd,
+                    "realism": o.realism,
+                    "means": {p: o.value(p) for p in o.means},
+                    "pairs": o.pairs,
+                }
                 for o in self.orders
             ],
             "kendall_tau": [
@@ -124,11 +139,12 @@ def crowd_ranks(results: Results, metric: str | None = None) -> CrowdRanks | Non
     planners = sorted({r.planner for r in results.runs})
     if len(labels) < 2 or len(planners) < 2:
         return None
-    chosen = metric or _primary(results)
-    values, better = _values(results, chosen)
-    if better not in ("higher", "lower"):
+    chosen, table = metric or _primary(results), Table(results)
+    name = next((n for n in headline_names(table) if n[0] == chosen), None)
+    better = "" if name is None else table.label(name).better
+    if name is None or better not in ("higher", "lower"):
         return None
-    orders = [_order(label, planners, results.runs, values, better == "higher") for label in labels]
+    orders = [_order(label, planners, table, name) for label in labels]
     found = [o for o in orders if o.pairs]
     if len(found) < 2:
         return None
@@ -139,7 +155,7 @@ def crowd_ranks(results: Results, metric: str | None = None) -> CrowdRanks | Non
         orders=tuple(found),
         taus={
             (a.crowd, b.crowd): kendall(
-                [a.means[p] for p in planners], [b.means[p] for p in planners]
+                [a.value(p) for p in planners], [b.value(p) for p in planners]
             )
             for a, b in combinations(found, 2)
         },
@@ -163,33 +179,25 @@ def _primary(results: Results) -> str:
     return next((m for m in PRIMARY if m in there), "")
 
 
-def _values(results: Results, metric: str) -> tuple[dict[str, float], str]:
-    """Run id -> value in the metric's headline variant, and which direction is better."""
-    variants = dict(headline_names(Table(results)))
-    rows = [s for s in results.scores if (s.metric, s.variant) == (metric, variants.get(metric))]
-    if not rows:
-        return {}, ""
-    kept = [s for s in rows if s.value is not None]
-    return {s.run_id: float(s.value or 0.0) for s in kept}, rows[0].better
+def _order(label: str, planners: Sequence[str], table: Table, name: Name) -> CrowdOrder:
+    shared = _shared(label, planners, table, name)
+    pairs = int(shared.sum())
+    means = {p: planner_mean(table, name, p, rows=shared) for p in planners} if pairs else {}
+    sign = -1.0 if table.label(name).better == "higher" else 1.0
+    ordered = sorted(means.items(), key=lambda item: (sign * (item[1].value or 0.0), item[0]))
+    return CrowdOrder(crowd=label, realism=realism_by_name(label), means=dict(ordered), pairs=pairs)
 
 
-def _order(
-    label: str,
-    planners: Sequence[str],
-    runs: Sequence[RunRow],
-    values: Mapping[str, float],
-    higher: bool,
-) -> CrowdOrder:
-    found: dict[tuple[str, int], dict[str, float]] = {}
-    for run in runs:
-        if run.axes.get(AXIS) == label and run.run_id in values:
-            found.setdefault((run.scenario, run.seed), {})[run.planner] = values[run.run_id]
-    shared = [row for row in found.values() if len(row) == len(planners)]
-    means = {p: sum(row[p] for row in shared) / len(shared) for p in planners} if shared else {}
-    ordered = sorted(means.items(), key=lambda item: (-item[1] if higher else item[1], item[0]))
-    return CrowdOrder(
-        crowd=label, realism=realism_by_name(label), means=dict(ordered), pairs=len(shared)
-    )
+def _shared(label: str, planners: Sequence[str], table: Table, name: Name) -> NDArray[np.bool_]:
+    """Which rows of the table are of a crowd, and have a value of every planner, (n,)."""
+    runs = [[table.runs.get((p, key)) for p in planners] for key in table.keys]
+    there = [all(r is not None and r.axes.get(AXIS) == label for r in row) for row in runs]
+    parts = [np.array(there, np.bool_)]
+    for planner in planners:
+        exposure = table.exposure(name, planner)
+        parts += [table.column(name, planner).known]
+        parts += [] if exposure is None else [np.isfinite(exposure)]
+    return np.asarray(np.all(parts, axis=0))
 
 
 def _verdict(a: str, b: str, orders: Sequence[CrowdOrder], sign: float) -> CrowdVerdict:
@@ -197,7 +205,7 @@ def _verdict(a: str, b: str, orders: Sequence[CrowdOrder], sign: float) -> Crowd
     weights = _weights(orders)
     ways = []
     for first, second in permutations((a, b)):
-        lead = {o.crowd: _sign(sign * (o.means[first] - o.means[second])) for o in orders}
+        lead = {o.crowd: _sign(sign * (o.value(first) - o.value(second))) for o in orders}
         before = tuple(c for c, s in lead.items() if s > 0)
         against = tuple(c for c, s in lead.items() if s < 0)
         weighted = sum(weights[c] for c in before)

@@ -10,9 +10,9 @@ import numpy as np
 
 from crowdbot.core.results.rows import Results
 from crowdbot.core.scoring.four_scores import is_main, main_first
-from crowdbot.core.statistics import clusters as c
 from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, axis_effects, densities
 from crowdbot.core.statistics.centre import planner_mean
+from crowdbot.core.statistics.clusters import Floats
 from crowdbot.core.statistics.comparison import Comparison, compare, with_verdict
 from crowdbot.core.statistics.estimate import Counts, Estimate
 from crowdbot.core.statistics.signed_rank import holm
@@ -30,8 +30,8 @@ class PlannerScore:
     Attributes:
         counts: how the runs ended; ``reasons`` says why values are missing -> how often.
         draws: independent crowd draws among the values.
-        mean, iqm: over the values that exist (``counts.ok``), with intervals; the mean of a rate is
-            that of all runs together.
+        mean: over the values that exist (``counts.ok``), with its interval; that of a rate is the
+            rate of all runs together.
         bounds: of the mean over all runs, if undefined and censored values are anywhere within
             their bounds; None on a side where there is no bound. Who arrives seldom may have a
             good ``mean`` of the runs in which he did; this says what it is worth.
@@ -50,7 +50,6 @@ class PlannerScore:
     draws: int
     mean: Estimate
     bounds: tuple[float | None, float | None]
-    iqm: Estimate
     least: float | None
     quartiles: tuple[float, float, float] | None
     most: float | None
@@ -183,7 +182,6 @@ def _planner_score(table: Table, name: Name, planner: str, level: float) -> Plan
     values = column.low[column.known]
     groups = table.clusters.part(column.known)
     quartiles = np.quantile(values, [0.25, 0.5, 0.75]).tolist() if len(values) else None
-    nothing = Estimate(reason=c.NO_RUNS)
     centre, exposure = planner_mean(table, name, planner, level), table.exposure(name, planner)
     return PlannerScore(
         planner=planner,
@@ -198,7 +196,6 @@ def _planner_score(table: Table, name: Name, planner: str, level: float) -> Plan
         draws=groups.count,
         mean=centre,
         bounds=_bounds(column) if exposure is None else _of_rate(column, centre),
-        iqm=c.bootstrap(c.trimmed_mean(values), groups, level) if len(values) else nothing,
         least=float(values.min()) if len(values) else None,
         quartiles=(quartiles[0], quartiles[1], quartiles[2]) if quartiles else None,
         most=float(values.max()) if len(values) else None,
@@ -214,10 +211,15 @@ def _of_rate(column: Column, centre: Estimate) -> tuple[float | None, float | No
 def _bounds(column: Column) -> tuple[float | None, float | None]:
     """Of the mean over all runs that were tried."""
     tried = column.outcome != MISSING
-    if not tried.any():
+    return bounds_of_mean(column.low[tried], column.high[tried])
+
+
+def bounds_of_mean(low: Floats, high: Floats) -> tuple[float | None, float | None]:
+    """Of the mean over runs of which each has a least and a greatest value, (n,)."""
+    if not len(low):
         return None, None
-    low, high = float(column.low[tried].mean()), float(column.high[tried].mean())
-    return low if np.isfinite(low) else None, high if np.isfinite(high) else None
+    least, most = float(low.mean()), float(high.mean())
+    return least if np.isfinite(least) else None, most if np.isfinite(most) else None
 
 
 def _is_asked(table: Table, name: Name) -> bool:

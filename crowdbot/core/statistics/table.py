@@ -56,8 +56,7 @@ class Column:
     @property
     def counts(self) -> Counts:
         """How many of each."""
-        found = np.bincount(self.outcome, minlength=len(OUTCOMES))
-        return Counts(**dict(zip(OUTCOMES, map(int, found), strict=True)))
+        return counts_of(self.outcome)
 
 
 class Table:
@@ -114,13 +113,18 @@ class Table:
         """Bounds of a score, and what it is a rate over."""
         return self.scales.get(name, UNKNOWN)
 
+    def exposure_name(self, name: Name) -> Name | None:
+        """The score that a rate is over; None where it is not a rate, or the runs lack that."""
+        over = name[0], self.scale(name).rate_over
+        return over if over[1] and over in self._rows else None
+
     def exposure(self, name: Name, planner: str) -> Floats | None:
         """What a rate of one planner is over in each row, (n,); NaN where that is not known.
 
         None where the score is not a rate, or the runs do not have what it is over.
         """
-        over = name[0], self.scale(name).rate_over
-        if not over[1] or over not in self._rows:
+        over = self.exposure_name(name)
+        if over is None:
             return None
         column = self.column(over, planner)
         return np.where(column.known & (column.low > 0.0), column.low, np.nan)
@@ -147,6 +151,12 @@ class Table:
             outcome[place], (low[place], high[place]) = kind, bounds
             reasons.update([why] if why else [])
         return Column(outcome, low, high, failed, dict(sorted(reasons.items())))
+
+
+def counts_of(outcome: NDArray[np.int8]) -> Counts:
+    """How many of each outcome."""
+    found = np.bincount(outcome, minlength=len(OUTCOMES))
+    return Counts(**dict(zip(OUTCOMES, map(int, found), strict=True)))
 
 
 def _by_score(scores: Sequence[ScoreRow]) -> dict[Name, dict[str, ScoreRow]]:

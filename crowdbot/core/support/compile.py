@@ -10,11 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
-from numba import njit
+import numba
+
+from crowdbot.core.support.compile_parts import KernelDispatcher
 
 F = TypeVar("F", bound=Callable[..., Any])
-# The last is not in numba's documentation, but how numba compiles its own such functions.
-_OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy", "_nrt": False}
+# `_nrt`, below, is not in numba's documentation, but how numba compiles its own such functions.
+_OPTIONS: dict[str, Any] = {"error_model": "numpy"}
 
 
 def kernel(function: F) -> F:
@@ -22,7 +24,12 @@ def kernel(function: F) -> F:
 
     Numba refuses one that makes an array when it compiles it.
     """
-    return cast(F, njit(**_OPTIONS)(function))
+    return cast(F, _compiled(function, {**_OPTIONS, "_nrt": False}))
+
+
+def array_kernel(function: F) -> F:
+    """Compile a function that makes arrays, or calls one that does."""
+    return cast(F, _compiled(function, _OPTIONS))
 
 
 def inline_kernel(function: F) -> F:
@@ -31,7 +38,14 @@ def inline_kernel(function: F) -> F:
     For a part of a loop that takes named tuples of arrays: handing over a hundred numbers would
     cost as much as the part itself.
     """
-    return cast(F, njit(inline="always", **_OPTIONS)(function))
+    return cast(F, _compiled(function, {"inline": "always", **_OPTIONS, "_nrt": False}))
 
 
-__all__ = ["inline_kernel", "kernel"]
+def _compiled(function: Callable[..., Any], options: dict[str, Any]) -> Any:
+    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+        return function
+    whole = {**options, "nopython": True, "boundscheck": None}
+    return KernelDispatcher(function, targetoptions=whole)
+
+
+__all__ = ["array_kernel", "inline_kernel", "kernel"]

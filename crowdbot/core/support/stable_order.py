@@ -6,10 +6,10 @@ again for each function that calls them. This one is compiled once for all.
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
 Order = NDArray[np.int64]
@@ -17,7 +17,7 @@ Order = NDArray[np.int64]
 _SHORT = 16
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def stable_order(values: Array) -> Order:
     """As ``np.argsort(values, kind="stable")``: equal ones keep their order, NaN come last.
 
@@ -41,12 +41,12 @@ def stable_order(values: Array) -> Order:
     return order
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _before(a: float, b: float) -> bool:
     return bool(a < b or (b != b and a == a))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _sort_short(values: Array, order: Order, first: int, end: int) -> None:
     """Write the order of values [first, end) there, by insertion."""
     for i in range(first, end):
@@ -57,7 +57,7 @@ def _sort_short(values: Array, order: Order, first: int, end: int) -> None:
         order[place] = i
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _merge(values: Array, order: Order, merged: Order, first: int, middle: int, end: int) -> None:
     """Merge the sorted parts [first, middle) and [middle, end) of an order."""
     i, j = first, middle

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Array
+from crowdbot.core.support.compile import array_kernel
 
 #: Side of a cell (m) and cells from the centre of the map to its border.
 CELL, HALF = 0.1, 60
@@ -46,7 +46,7 @@ def remembered(memory: Array, seen: Array, x: float, y: float, reach: float) -> 
     return points[first]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def islands(points: Array, link: float, size: float) -> Array:
     """Middles of what stands alone and is small: pillars, and people who stand; (K, 2).
 
@@ -86,7 +86,7 @@ def _polar(points: Array, x: float, y: float) -> tuple[NDArray[np.int64], Array]
     return (turn * _SECTORS).astype(np.int64) % _SECTORS, np.hypot(dx, dy)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _blocked(points: Array, x: float, y: float, radius: float) -> NDArray[np.bool_]:
     """Cells of the map around (x, y) in which the centre of a disc would touch a point."""
     out = np.zeros((_SIDE, _SIDE), dtype=np.bool_)
@@ -101,7 +101,7 @@ def _blocked(points: Array, x: float, y: float, radius: float) -> NDArray[np.boo
     return out
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _relax(cost: Array, blocked: NDArray[np.bool_], i: int, j: int) -> bool:
     """Take the best neighbour's cost plus the step; whether that is less than before."""
     if blocked[i, j]:
@@ -116,7 +116,7 @@ def _relax(cost: Array, blocked: NDArray[np.bool_], i: int, j: int) -> bool:
     return False
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _cost_to_go(blocked: NDArray[np.bool_], gx: float, gy: float) -> Array:
     """Length of the way from each free cell to the goal, by sweeps in four orders; m.
 
@@ -141,7 +141,7 @@ def _cost_to_go(blocked: NDArray[np.bool_], gx: float, gy: float) -> Array:
     return cost
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def way_out(
     points: Array, x: float, y: float, gx: float, gy: float, radius: float
 ) -> tuple[bool, float]:

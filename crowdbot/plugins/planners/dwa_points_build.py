@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
 from crowdbot.core.interfaces import Array, Indices, Mask
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.support.stable_order import stable_order
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def unsigned(angle: float) -> float:
     """The size of an angle, in [0, pi] rad."""
     return abs(angle - 2.0 * math.pi * round(angle / (2.0 * math.pi)))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def minimum(values: Array) -> float:
     """The least of (N,) numbers, none of them NaN; inf for none. Overwrites them.
 
@@ -34,7 +34,7 @@ def minimum(values: Array) -> float:
     return float(values[0]) if count else math.inf
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def nearest_per_sector(points: Array, sectors: int, reach: float) -> Array:
     """Thin points out to the nearest one of each sector around the origin.
 
@@ -67,7 +67,7 @@ def nearest_per_sector(points: Array, sectors: int, reach: float) -> Array:
     return out[:count]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def apparent_velocity(
     now: Array, before: Array, dt: float, slowest: float, fastest: float
 ) -> Array:
@@ -111,7 +111,7 @@ def apparent_velocity(
     return out
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _first_from(points: Array, order: Indices, least: float) -> int:
     """The first place in an order of points by x whose x is not below ``least``."""
     first, end = 0, order.shape[0]
@@ -124,7 +124,7 @@ def _first_from(points: Array, order: Indices, least: float) -> int:
     return first
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def apart(points: Array, others: Array, distance: float) -> Mask:
     """Which points are farther than a distance from all others.
 
@@ -148,7 +148,7 @@ def apart(points: Array, others: Array, distance: float) -> Mask:
     return out
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def free_time(
     points: Array, velocities: Array, vx: float, vy: float, radius: float, limit: float
 ) -> float:
@@ -173,7 +173,7 @@ def free_time(
     return best
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def choose_direction(
     points: Array,
     velocities: Array,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Array
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.planners.dwa_points_build import minimum, unsigned
 from crowdbot.plugins.planners.robot_outline_build import nearest_to_core
 
@@ -29,12 +29,12 @@ _SLACK = 1e-3
 _ROUNDING = 1e-9
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _slewed(value: float, target: float, change: float) -> float:
     return min(max(target, value - change), value + change)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _slewed_planar(
     v: float, vy: float, vt: float, vyt: float, change: float
 ) -> tuple[float, float]:
@@ -47,7 +47,7 @@ def _slewed_planar(
     return v + ahead * share, vy + aside * share
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def foreseen(points: Array, velocities: Array, p: Array) -> Array:
     """Where points are at each step of a rollout, the first of which is now; (S + 1, 2, K), m."""
     steps = math.ceil(p[HORIZON] / STEP)
@@ -59,7 +59,7 @@ def foreseen(points: Array, velocities: Array, p: Array) -> Array:
     return out
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _nearest(
     points: Array, core: Array, x: float, y: float, angle: float, spin: float, square: Array
 ) -> float:
@@ -82,7 +82,7 @@ def _nearest(
     return math.sqrt(minimum(square))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def reachable(points: Array, velocities: Array, p: Array) -> NDArray[np.bool_]:
     """(K,) which points can come near the robot within the horizon."""
     out = np.empty(points.shape[0], dtype=np.bool_)
@@ -93,7 +93,7 @@ def reachable(points: Array, velocities: Array, p: Array) -> NDArray[np.bool_]:
     return out
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def rollouts(ahead: Array) -> tuple[Array, Array]:
     """What rollouts among points as `foreseen` may share: known distances, and scratch.
 
@@ -104,7 +104,7 @@ def rollouts(ahead: Array) -> tuple[Array, Array]:
     return known, np.empty(ahead.shape[2])
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def roll(
     ahead: Array,
     p: Array,
@@ -160,14 +160,14 @@ def roll(
     return x, y, angle, p[HORIZON], close
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _closeness(gap: float, t: float, p: Array) -> float:
     """How much a gap (m) at a time (s) counts; falls as the gap grows."""
     doubt = 1.0 - (gap - p[GROWTH] * t) / p[COMFORT]
     return float(min(1.0, doubt) * (1.0 - 0.5 * t / p[HORIZON]))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _evenly(first: float, last: float, values: Array) -> None:
     """Fill (N,) with even steps from the first to the last, N > 1."""
     steps = values.shape[0] - 1
@@ -176,7 +176,7 @@ def _evenly(first: float, last: float, values: Array) -> None:
     values[steps] = last
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def candidates(
     low: float, high: float, speeds: int, left: float, right: float, rates: int, wish: float
 ) -> Array:
@@ -208,7 +208,7 @@ def candidates(
     return out[:count]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def candidates_aside(
     now: tuple[float, float], change: float, top: float, speeds: int, direction: float, rates: Array
 ) -> Array:
@@ -238,7 +238,7 @@ def candidates_aside(
     return out
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def evaluate(
     points: Array,
     velocities: Array,

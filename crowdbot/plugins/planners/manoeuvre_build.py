@@ -11,11 +11,11 @@ from __future__ import annotations
 import heapq
 import math
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Array
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.planners.robot_outline_build import core_gap
 
 #: Side of a cell (m), and cells from the middle of the map to its border.
@@ -36,7 +36,7 @@ _LOOKS = np.column_stack(
 _BACK, _TURN = 2.0, 0.25
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def blocked_poses(
     points: Array, core: Array, rounding: float, reach: float, margin: float
 ) -> NDArray[np.bool_]:
@@ -66,7 +66,7 @@ def blocked_poses(
     return out
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _after(at: int, move: int) -> tuple[int, int, int, float]:
     """Heading, cell and cost after a move from a pose: 0 ahead, 1 back, 2 left, 3 right."""
     h, i, j = at // (_SIDE * _SIDE), at // _SIDE % _SIDE, at % _SIDE
@@ -78,7 +78,7 @@ def _after(at: int, move: int) -> tuple[int, int, int, float]:
     return h, i + way * di, j + way * dj, length
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def search(blocked: NDArray[np.bool_], yaw: float, gx: float, gy: float) -> NDArray[np.int64]:
     """Poses from the middle of the map to the goal, or to the border on the way there.
 

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Array
+from crowdbot.core.support.compile import array_kernel
 
 #: Points farther apart than this, and a share of their distance, belong to two bodies, m.
 _GAP, _GAP_SHARE = 0.1, 0.015
@@ -32,7 +32,7 @@ _NEAR = 0.8
 _ARC = 15
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _runs(points: Array, first: NDArray[np.int64]) -> int:
     """Write where each run of neighbouring points begins; return how many there are."""
     count = 0
@@ -47,7 +47,7 @@ def _runs(points: Array, first: NDArray[np.int64]) -> int:
     return count
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _hidden(points: Array, edge: int, beside: int) -> bool:
     """Whether the end of a run is where something nearer begins to cover it."""
     if beside < 0 or beside >= points.shape[0]:
@@ -57,7 +57,7 @@ def _hidden(points: Array, edge: int, beside: int) -> bool:
     return turn < 0.05 and math.hypot(p, q) < math.hypot(x, y) - _IN_FRONT
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _legs(points: Array, reach: float) -> Array:
     """Runs that may be legs, (L, 5).
 
@@ -85,7 +85,7 @@ def _legs(points: Array, reach: float) -> Array:
     return out[:count]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _middles(legs: Array) -> Array:
     """Middles of pairs of legs, and of legs whose other one is not seen; (K, 2)."""
     used = np.zeros(legs.shape[0], dtype=np.bool_)
@@ -108,7 +108,7 @@ def _middles(legs: Array) -> Array:
     return out[:count]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def people_in(points: Array, reach: float) -> tuple[Array, Array]:
     """Where people stand, and what else there is.
 
@@ -127,7 +127,7 @@ def people_in(points: Array, reach: float) -> tuple[Array, Array]:
     return _middles(legs), points[kept]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def with_discs(points: Array, people: Array, radius: float) -> Array:
     """Points, and those that a lidar at the origin would see of discs (K, 2) of a radius.
 
@@ -155,7 +155,7 @@ def with_discs(points: Array, people: Array, radius: float) -> Array:
     return out[:count]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def carry(points: Array, velocities: Array, people: Array, going: Array, radius: float) -> None:
     """Give the points on people's discs, in place, the velocities (K, 2) of the people."""
     for i in range(points.shape[0]):

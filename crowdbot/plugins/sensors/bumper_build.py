@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import (
@@ -21,6 +20,7 @@ from crowdbot.core.interfaces import (
     nearest_on_segment,
     sensor_pose_in_world,
 )
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.sensors.bumper import BumperSpec
 
 _EDGE = 1e-9  # rad; what presses the very edge of the outer sectors is felt
@@ -64,7 +64,7 @@ class Bumper:
         return pressed
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _press(
     x: float, y: float, begin: float, span: float, ring: float, height: float,
     people: Array, radius: Array, present: NDArray[np.bool_], pillars: Array,
@@ -86,7 +86,7 @@ def _press(
             _mark(px - x, py - y, begin, span, pressed)
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _mark(px: float, py: float, begin: float, span: float, pressed: Array) -> None:
     """Press the sector that looks towards (px, py), if any does."""
     way = (math.atan2(py, px) - begin) % (2.0 * math.pi)

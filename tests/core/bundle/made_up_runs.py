@@ -28,6 +28,7 @@ from crowdbot.core.scoring.score_factory import ScoreFactory
 from crowdbot.core.scoring.scores_csv import write_scores_csv
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.canonical import dump_scenario_yaml
+from crowdbot.dsl.crowd_likeness import fingerprint
 from crowdbot.dsl.metric_component import MetricComponent
 
 TINY = """\
@@ -100,7 +101,9 @@ def make_runs(
                 "pinned": choice.pinned, "privileged": choice.privileged, "status": "arrived",
                 "goal_time": 0.5, "reason": "", "sim_time": 1.0, "wall_time": 0.1,
                 "metrics": versions(), "density": 0.1, "reference_hashes": {},
-                "machine": provenance.machine(), "references": {}, **more,
+                "machine": provenance.machine(), "references": {},
+                "axes": dict(expansion.axes.get(scenario.id, {})),
+                "crowd": fingerprint(scenario.crowd) if scenario.crowd else "", **more,
             }  # fmt: skip
             files.write_json(folder / files.RECORD, record)
             text = dump_scenario_yaml(scenario, registry().spec_versions(scenario))

@@ -367,3 +367,32 @@ def test_something_that_nobody_thought_of_is_one_line(
     monkeypatch.setattr("crowdbot.core.bundle.entries.claimed_runs", lambda _: 1 / 0)
     _, left_out = load_entries(tmp_path, registry())
     assert left_out == {"a.cbz": "malformed: ZeroDivisionError: division by zero"}
+
+
+# ------------------------------------------------- what other numbers of a page rest on
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"axes": {"crowd": "mine"}}, "its axes are {'crowd': 'mine'}; the scenario's are {'flow'"),
+        ({"axes": {}}, "its axes are {}; the scenario's are {'flow'"),
+        ({"crowd": "x" * 64}, "its crowd is said to be 'xxx"),
+        ({"goal_time": 99.0}, "its goal_time is 99 s, but it ended after 1 s"),
+        ({"toppled_time": 2.0}, "its toppled_time is 2 s, but it ended after 1 s"),
+        ({"sim_time": 0.25}, "its goal_time is 0.5 s, but it ended after 0.25 s"),
+        ({"status": "timeout"}, "its status is 'timeout', but it has a time of arrival"),
+    ],
+)
+def test_records_that_contradict_suite_or_themselves_are_named(
+    bundle: Path, change: dict[str, Any], why: str
+) -> None:
+    names = members(bundle, "run.json")
+    found = problems(rewrite(bundle, {n: in_json(**change) for n in names[:1]}, honest=True))
+    assert any(why in p for p in found), found
+
+
+def test_a_crowd_of_another_version_is_told_in_its_own_way(bundle: Path) -> None:
+    """Its text may be made otherwise there, so that only making the run again tells."""
+    name = members(bundle, "run.json")[0]
+    change = in_json(crowd="x" * 64, versions={"crowdbot": "0.0.1"})
+    found = problems(rewrite(bundle, {name: change}, honest=True))
+    assert not any("crowd is said" in p for p in found)

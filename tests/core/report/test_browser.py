@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from crowdbot.core.report import Contents, write_report
+from crowdbot.core.statistics import Estimate
+from crowdbot.core.statistics.estimate_text import estimate_text
 from tests.browser import PROGRAM, Visit, axe_findings, needs_axe, needs_browser
 from tests.core.report.report_cases import AXES, campaign, contents, full
 from tests.core.report.test_page import EVIL, hostile, small
@@ -53,12 +55,6 @@ def values(report: Contents, metric: str, variant: str, planner: str, **axes: st
     return np.sort(np.array(found))
 
 
-def middle_mean(values: NDArray[Any]) -> float:
-    """Mean of the middle half: every value four times, a quarter cut off at each end."""
-    four = np.repeat(values, 4)
-    return float(four[len(values) : -len(values)].mean())
-
-
 def shown(page: Page, score: str) -> list[tuple[float, str]]:
     """Number and brackets in the cells of a row of the table of scores."""
     cells = page.query_selector_all(f'tr[data-score="{score}"] td.number')
@@ -69,6 +65,12 @@ def shown(page: Page, score: str) -> list[tuple[float, str]]:
         )
         for c in cells
     ]
+
+
+def texts(value: float, low: float, high: float) -> tuple[float, str]:
+    """What `shown` finds of an estimate."""
+    value_text, ends = estimate_text(Estimate(value=value, low=low, high=high))
+    return float(value_text), ends
 
 
 def number(element: Any) -> float:
@@ -89,7 +91,7 @@ def test_a_filter_changes_the_numbers_to_those_of_its_runs(
     report = full()
     with Visit(browser, path) as page:
         everything = shown(page, "risk.rate")
-        expected = [middle_mean(values(report, "risk", "rate", p)) for p in report.planners]
+        expected = [values(report, "risk", "rate", p).mean() for p in report.planners]
         assert [v for v, _ in everything] == pytest.approx(expected, abs=0.005)
 
         page.select_option("#axis-density", "d0500")
@@ -99,8 +101,8 @@ def test_a_filter_changes_the_numbers_to_those_of_its_runs(
             place = report.figures.selections.index("density=d0500")
             series = next(i for i, s in enumerate(report.series) if s.name == ("risk", "rate"))
             value, low, high = report.figures.intervals[place, series, p]
-            assert middle_mean(chosen) == pytest.approx(value)
-            assert one[p] == (round(value, 2), f"[{low:.2f}, {high:.2f}]")
+            assert chosen.mean() == pytest.approx(value)
+            assert one[p] == texts(value, low, high)
         assert one != everything
         assert page.inner_text("#shown") == "162 of 486 runs"
 
@@ -108,7 +110,7 @@ def test_a_filter_changes_the_numbers_to_those_of_its_runs(
         two = shown(page, "risk.rate")
         chosen = values(report, "risk", "rate", "dwa", density="d0500", flow="counter")
         q1, q3 = np.quantile(chosen, [0.25, 0.75])
-        assert two[0] == (round(middle_mean(chosen), 2), f"[{q1:.2f}, {q3:.2f}]")
+        assert two[0] == texts(chosen.mean(), q1, q3)
         assert page.query_selector('tr[data-score="risk.rate"] .quartile')
         assert page.inner_text("#filter-text") == "Only flow = counter; density = d0500."
         assert not page.is_visible("#pairs-table")  # nobody has worked that out

@@ -23,6 +23,7 @@ from crowdbot.core.report.markdown import markdown
 from crowdbot.core.report.page import render
 from crowdbot.core.report.tables import csv_rows
 from crowdbot.core.results.rows import FailureRow, Results
+from crowdbot.core.statistics.estimate_text import joined_text
 from crowdbot.errors import InputError
 from tests.core.report.report_cases import campaign, contents, full
 
@@ -239,8 +240,9 @@ def test_markdown_says_what_the_page_says() -> None:
         s for s in report.figures.headline.scores
         if (s.metric, s.planner) == ("relative_time_to_goal", "straight_on")
     )  # fmt: skip
-    assert score.iqm.low is not None
-    assert f"{score.iqm.value:.4g} [{score.iqm.low:.4g}, {score.iqm.high:.4g}]; 14 censored" in line
+    assert score.mean.low is not None
+    assert f"{score.mean.value:.3f} [{score.mean.low:.3f}, " in line
+    assert f"{joined_text(score.mean)}; 14 censored" in line
     assert "not distinguishable" in text
     assert "a is better" in text
 
@@ -249,8 +251,8 @@ def test_yes_or_no_is_told_as_a_share() -> None:
     report = full()
     place = next(i for i, s in enumerate(report.series) if s.metric == "success")
     assert report.series[place].centre == "share"
-    assert {s.centre for s in report.series if s.metric == "risk"} == {"interquartile mean"}
-    assert {s.centre for s in report.series if s.metric == "collision_count"} == {"mean"}
+    assert {s.centre for s in report.series if s.metric in ("risk", "collision_count")} == {"mean"}
+    assert next(s for s in report.series if s.metric == "contacts_per_km").centre == "rate"
     arrived = [
         s.value for s in report.results.scores if s.metric == "success"
         and s.run_id in {r.run_id for r in report.results.runs if r.planner == "dwa"}

@@ -36,6 +36,8 @@ def measured(answer: object) -> Any:
         (np.zeros(3) * 1j, r"_Noise: errors returned an array of complex128"),
         ([0.0, np.inf, 0.0], "not finite for what was hit"),
         ([np.nan, 0.0, 0.0], "not finite for what was hit"),
+        ([1e300, 0.0, 0.0], r"_Noise: errors returned 1e\+300 m for what was hit; 1\.\d+e\+08 m"),
+        ([0.0, -1e9, 0.0], r"_Noise: errors returned -1e\+09 m"),
     ],
 )
 def test_errors_that_are_none_are_named(answer: object, why: str) -> None:
@@ -45,3 +47,9 @@ def test_errors_that_are_none_are_named(answer: object, why: str) -> None:
 
 def test_of_what_was_not_hit_they_may_be_anything() -> None:
     assert measured([0.5, -0.5, np.inf]).tolist() == [1.5, 1.5, np.inf]
+    assert measured([0.5, -0.5, -1e300]).tolist() == [1.5, 1.5, np.inf]
+
+
+def test_an_error_that_leaves_something_of_the_distance_is_one() -> None:
+    spec = Lidar2dSpec()
+    assert measured([1e6, -1e6, 0.0]).tolist() == [spec.range_max, spec.range_min, np.inf]

@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from crowdbot.core.registry.registry import discover
-from crowdbot.core.results import tables
 from crowdbot.core.results.rows import Results
 from crowdbot.core.scoring.score_scale import ScoreScale, score_scales
 from crowdbot.core.statistics import clusters as c
 from crowdbot.core.statistics import summarise
 from crowdbot.core.statistics.centre import planner_mean, rate_difference
 from crowdbot.core.statistics.clusters import Bounds, Clusters
+from crowdbot.core.statistics.groups import by_group
 from crowdbot.core.statistics.table import Table
 from tests.core.statistics.made_up_results import pairs, score
 from tests.core.statistics.test_strata import CONDITIONS, covers, crossed, nested
@@ -189,8 +189,9 @@ def test_without_the_way_it_is_the_mean_of_quotients() -> None:
 
 
 def test_the_table_of_a_terminal_has_the_same_rate() -> None:
-    (a, _) = tables.summarise(rates(COUNTS, WAYS), "contacts_per_km", ["planner"], "corrected")
-    assert a.mean == pytest.approx(1.0 / 0.361)
+    (a, _) = by_group(rates(COUNTS, WAYS), "contacts_per_km", ["planner"], "corrected")
+    assert a.mean.value == pytest.approx(1.0 / 0.361)
+    assert a.mean == planner_mean(Table(rates(COUNTS, WAYS)), NAME, "a")
 
 
 @pytest.mark.slow

@@ -6,7 +6,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.core.crowd.velocity_search.neighbour_discs import (
@@ -15,7 +14,7 @@ from crowdbot.core.crowd.velocity_search.neighbour_discs import (
     write_discs,
 )
 from crowdbot.core.crowd.velocity_search.neighbours import INDEX, X
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compile import array_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 #: Centres that are farther apart do not matter to any part, m.
@@ -63,7 +62,7 @@ def around(view: CrowdView) -> Around:
     return Around(discs, row, heading, decides)
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _face(position: Array, velocity: Array, goal: Array, heading: Array) -> None:
     """Half where one wants to go and half where one walks."""
     for i in range(position.shape[0]):

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.crowd.velocity_search.cost import (
     FASTEST,
@@ -28,7 +27,7 @@ from crowdbot.core.crowd.velocity_search.cost import (
     Pointer,
 )
 from crowdbot.core.crowd.velocity_search.minstd import between, following
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array
 
 # Codes of the options of `Sampling`.
@@ -174,7 +173,7 @@ _C1, _C2, _C3, _C4, _C5, _C6, _C7, _C8 = (
 )
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inline_kernel
 def turn(angle: float) -> tuple[float, float]:
     """Cosine and sine of an angle in [-pi, pi], by Taylor series of a quarter of it."""
     q = 0.25 * angle

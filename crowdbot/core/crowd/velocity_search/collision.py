@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from crowdbot.core.crowd.contact.geometry import crossing_time, time_to_disc, time_to_segment
 from crowdbot.core.crowd.velocity_search.cost import (
     AX,
@@ -28,6 +26,7 @@ from crowdbot.core.crowd.velocity_search.cost import (
     wall_table,
     work_table,
 )
+from crowdbot.core.support.compile import array_kernel
 
 # Entries of row 0 of ``work``: discs, wall segments after them, and how many of both touch the
 # agent already (they are not listed).
@@ -40,7 +39,7 @@ _SAFE = 1.0 - 1e-12
 _FEW = 3
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def list_obstacles(
     agent: Pointer,
     near: Pointer,
@@ -100,7 +99,7 @@ def list_obstacles(
     return row
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def first_collision(ux: float, uy: float, until: float, agent: Pointer, work: Pointer) -> float:
     """Time until a collision with what `list_obstacles` wrote, s; ``inf`` if there is none.
 
@@ -133,7 +132,7 @@ def first_collision(ux: float, uy: float, until: float, agent: Pointer, work: Po
     return first
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def soonest_disc(
     count: int,
     ux: Pointer,
@@ -168,7 +167,7 @@ def soonest_disc(
             out[c] = max(out[c], rate if touches else 0.0)
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def first_contact(ux: float, uy: float, agent: Pointer, work: Pointer) -> float:
     """As `first_collision`, but 0 where something touches the agent already.
 

@@ -7,10 +7,10 @@ x <- 16807 x mod (2^31 - 1). The original scales in single precision, and so doe
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.velocity_search.cost import RANDOM, Pointer
+from crowdbot.core.support.compile import array_kernel, inline_kernel
 
 _MODULUS = 2147483647
 
@@ -21,7 +21,7 @@ def seeds(ids: NDArray[np.int64]) -> NDArray[np.float64]:
     return np.where(state == 0, 1, state).astype(np.float64)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inline_kernel
 def following(state: int) -> int:
     """The next state."""
     product = np.int64(state) * np.int64(16807)
@@ -29,7 +29,7 @@ def following(state: int) -> int:
     return int(folded - np.int64(_MODULUS) if folded >= np.int64(_MODULUS) else folded)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inline_kernel
 def between(state: int, low: float, high: float) -> float:
     """The number in [low, high) that belongs to a state."""
     unit = np.float32(state - 1) * np.float32(1.0 / 2147483648.0)  # a power of two: exact
@@ -37,7 +37,7 @@ def between(state: int, low: float, high: float) -> float:
     return float(np.float32(unit * (np.float32(high) - np.float32(low))) + np.float32(low))
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def draw(agent: Pointer, low: float, high: float) -> float:
     """Advance the generator of an ``agent`` vector and return a number in [low, high)."""
     state = following(int(agent[RANDOM]))

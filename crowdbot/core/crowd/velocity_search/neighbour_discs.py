@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.velocity_search.neighbours import (
@@ -20,6 +19,7 @@ from crowdbot.core.crowd.velocity_search.neighbours import (
     X,
     Y,
 )
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
 
@@ -28,7 +28,7 @@ def most_discs(people: int, others: int, periodic: bool) -> int:
     return people * (9 if periodic else 1) + others
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def write_discs(
     position: Array,
     velocity: Array,
@@ -87,7 +87,7 @@ def write_discs(
     return count
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _write_images(
     discs: Array, people: int, count: int, box: Array, diagonal: bool, reach: float
 ) -> int:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
@@ -26,7 +25,7 @@ from crowdbot.core.crowd.velocity_search.cost import (
     STATIC,
     WALL_D2,
 )
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compile import array_kernel, kernel
 from crowdbot.core.support.stable_order import stable_order
 from crowdbot.core.types.arrays import Array
 
@@ -50,7 +49,7 @@ def strip_height(discs: Array, count: int, reach: float) -> float:
     return max(height, (high - low) / (_MOST_STRIPS - 1))
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def sort_discs(discs: Array, count: int, height: float, table: Array) -> tuple[float, Starts]:
     """Write the first ``count`` discs to ``table``, strip by strip, each sorted by x.
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.crowd.velocity_search.agent_costs import (
     LOWER_BOUNDS,
@@ -21,14 +20,14 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
 from crowdbot.core.crowd.velocity_search.candidates import draw_candidates
 from crowdbot.core.crowd.velocity_search.cost import BROKEN, MAX_SPEED, PREFERRED, PVX, PVY
 from crowdbot.core.crowd.velocity_search.cost_calls import call_lower_bound
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: What rounding may make of a cost, as a fraction of it.
 _ROUNDING = 1e-9
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inline_kernel
 def in_world(frame: Array, candidates: Array, c: int) -> tuple[float, float]:
     """A candidate of the unit fan in the world frame (or in that of the given frame), m/s."""
     return (

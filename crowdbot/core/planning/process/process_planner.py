@@ -70,6 +70,31 @@ class ProcessLostError(PlannerError):
     """A planner's process died, hung or said something that is not an answer."""
 
 
+class ProcessDiedError(ProcessLostError):
+    """A planner's process died: by itself, by a signal, for want of memory."""
+
+
+@dataclass(frozen=True, slots=True)
+class NotLoaded:
+    """Stands for what makes a planner that could not be loaded: fails in its place.
+
+    Attributes:
+        text: why.
+        died: the same where its process died, so that it may well load the next time; or empty.
+    """
+
+    text: str
+    died: str = ""
+
+    def __call__(self) -> NoReturn:
+        """Fail as it did.
+
+        Raises:
+            PlannerError: always.
+        """
+        raise PlannerError(self.text)
+
+
 def describe(
     plan: ProcessPlan, *, lenient: bool = False
 ) -> tuple[PlannerDescription, Callable[[], Planner]]:
@@ -90,13 +115,10 @@ def describe(
     except PlannerError as error:
         if not (lenient or isinstance(error, ProcessLostError)):
             raise
-        return PlannerDescription(needs=()), partial(_fail, str(error))
+        died = str(error) if isinstance(error, ProcessDiedError) else ""
+        return PlannerDescription(needs=()), NotLoaded(str(error), died)
     planner.close()
     return planner.description, partial(ProcessPlanner, plan)
-
-
-def _fail(text: str) -> NoReturn:
-    raise PlannerError(text)
 
 
 class ProcessPlanner:
@@ -225,7 +247,7 @@ class ProcessPlanner:
             where = self._end(ask=True)[1]
             self._raise(f"did not {doing} within {limit:g} s; its process was ended{where}")
         except LineClosed:
-            self._raise(self._gone(doing))
+            raise ProcessDiedError(printable(f"{self._plan.who}: {self._gone(doing)}")) from None
         except WrongAnswer as error:
             self._fail(f"{error}")
         except BaseException:  # the user's interrupt

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 from pydrake.systems.framework import (
     Context,
@@ -24,6 +23,7 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.control.controlled import ControlledRobot, Push
 from crowdbot.core.sim.outline_gap import outline_gap
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
@@ -130,7 +130,7 @@ def arc(
     )
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def _gap_on_arc(
     walls: Array,
     pillars: Array,
@@ -153,7 +153,7 @@ def _gap_on_arc(
     return float(outline_gap(walls, pillars, outline, x, y, yaw + turn))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@array_kernel
 def free_share(
     walls: Array,
     pillars: Array,

@@ -33,6 +33,7 @@ from crowdbot.core.interfaces import (
     wall_table,
     work_table,
 )
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.foe_avoidance import FoeAvoidanceSpec
 from crowdbot.plugins.crowd.cost_functions.force_build import no_base
 
@@ -73,7 +74,7 @@ def _prepare(
     return row
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _obstacle(row: int, ux: float, uy: float, radius: float, work: Pointer) -> tuple[float, ...]:
     """Offset, relative velocity and reach: of a neighbour, or of the wall point hit first."""
     table = work_table(work)
@@ -88,7 +89,7 @@ def _obstacle(row: int, ux: float, uy: float, radius: float, work: Pointer) -> t
     return x, y, -ux, -uy, radius
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _terms(row: int, ux: float, uy: float, agent: Pointer, work: Pointer) -> tuple[float, ...]:
     """Focus, bearing, spread, importance times proximity, closing speed of one obstacle."""
     x, y, wx, wy, reach = _obstacle(row, ux, uy, agent[RADIUS], work)

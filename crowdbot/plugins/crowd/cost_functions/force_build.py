@@ -22,12 +22,13 @@ from crowdbot.core.interfaces import (
     WEIGHT,
     Pointer,
 )
+from crowdbot.core.support.compile import array_kernel
 
 #: No force is larger, m/s^2: a target has to stay finite when squared.
 _LARGEST = 1e9
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def aim(fx: float, fy: float, agent: Pointer, work: Pointer) -> int:
     """Write the target velocity of a force per mass (m/s^2)."""
     size = math.hypot(fx, fy)

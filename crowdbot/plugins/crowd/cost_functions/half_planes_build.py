@@ -11,28 +11,27 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from crowdbot.core.interfaces import Pointer
+from crowdbot.core.support.compile import array_kernel
 
 _PARALLEL = 1e-10
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def put(work: Pointer, k: int, nx: float, ny: float, c: float) -> None:
     """Write half-plane k; rows of ``work`` have eight columns, row 0 is kept free."""
     at = 8 + 4 * k
     work[at], work[at + 1], work[at + 2] = nx, ny, c
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def violation(work: Pointer, k: int, ux: float, uy: float) -> float:
     """How far u is outside half-plane k, m/s."""
     at = 8 + 4 * k
     return float(work[at + 2] - work[at] * ux - work[at + 1] * uy)
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _constraint(work: Pointer, j: int, pivot: int) -> tuple[float, float, float]:
     at = 8 + 4 * j
     ax, ay, c = work[at], work[at + 1], work[at + 2]
@@ -42,7 +41,7 @@ def _constraint(work: Pointer, j: int, pivot: int) -> tuple[float, float, float]
     return ax, ay, c
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _on_border(
     work: Pointer, i: int, pivot: int, speed: float, gx: float, gy: float, furthest: bool
 ) -> tuple[bool, float, float]:
@@ -76,7 +75,7 @@ def _on_border(
     return True, px + s * tx, py + s * ty
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _search(
     work: Pointer, count: int, pivot: int, speed: float, gx: float, gy: float, furthest: bool
 ) -> tuple[int, float, float]:
@@ -95,7 +94,7 @@ def _search(
     return count, ux, uy
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def best_velocity(
     work: Pointer, count: int, speed: float, px: float, py: float
 ) -> tuple[float, float]:

@@ -26,6 +26,7 @@ from crowdbot.core.interfaces import (
     list_obstacles,
     work_table,
 )
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.karamouzas import KaramouzasSpec
 
 _ALPHA, _BETA, _GAMMA, _DELTA, _T_MAX = range(2, 7)  # entries of params
@@ -44,7 +45,7 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Poin
     return float(params[_ALPHA] * (1.0 - 0.5 * ahead) + params[_GAMMA] * deviation)
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _allowed(t: float, preferred: float, max_speed: float, parity: bool) -> tuple[float, ...]:
     """Largest deviation in heading, slowest and fastest speed when a collision is t away."""
     sixth = math.pi / 6.0

@@ -25,12 +25,13 @@ from crowdbot.core.interfaces import (
     first_contact,
     list_obstacles,
 )
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.moussaid import MoussaidSpec
 
 _D_MAX = 2  # entry of params
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _least_course(ahead: float, d_max: float) -> float:
     ahead = max(0.0, ahead)
     return 1.0 + d_max * d_max * (1.0 - ahead * ahead)

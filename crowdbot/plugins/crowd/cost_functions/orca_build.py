@@ -36,6 +36,7 @@ from crowdbot.core.interfaces import (
     near_table,
     wall_table,
 )
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.half_planes_build import best_velocity, put, violation
 from crowdbot.plugins.crowd.cost_functions.orca import OrcaSpec
 
@@ -48,7 +49,7 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Poin
     return min(math.hypot(ux - preferred, uy), 2.0 * max_speed)
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _change(
     rx: float,
     ry: float,
@@ -85,7 +86,7 @@ def _change(
     return nx, ny, -(wx * nx + wy * ny)
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _put_walls(
     agent: Pointer, walls: Pointer, wall_count: int, params: Pointer, work: Pointer, count: int
 ) -> int:

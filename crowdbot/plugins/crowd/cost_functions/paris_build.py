@@ -43,6 +43,7 @@ from crowdbot.core.interfaces import (
     wall_table,
     work_table,
 )
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.paris import ParisSpec
 
 _W_A, _W_B, _T_MAX = range(2, 5)  # entries of params
@@ -96,7 +97,7 @@ def _prepare(
     return 1
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _time(rx: float, ry: float, vx: float, vy: float, reach: float, parity: bool) -> float:
     """Until a point with velocity v is within reach of (rx, ry)."""
     gap2 = rx * rx + ry * ry - reach * reach
@@ -105,7 +106,7 @@ def _time(rx: float, ry: float, vx: float, vy: float, reach: float, parity: bool
     return float(time_to_disc(rx, ry, vx, vy, gap2))
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _ratio(a: float, b: float) -> float:
     """Quotient; 0 / 0 is 0, which the original leaves undefined."""
     if b != 0.0:
@@ -113,7 +114,7 @@ def _ratio(a: float, b: float) -> float:
     return 0.0 if a == 0.0 else math.copysign(math.inf, a)
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _window(
     row: int, ex: float, ey: float, agent: Pointer, work: Pointer, t_max: float
 ) -> tuple[float, float, float]:
@@ -135,7 +136,7 @@ def _window(
     return t1, _ratio(abs(along), t1), _ratio(abs(along), t2)
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _free_way(row: int, ex: float, ey: float, agent: Pointer, work: Pointer) -> float:
     """Way in direction e before pillar or wall `row` is touched, m."""
     table, radius = work_table(work), agent[RADIUS]
@@ -147,7 +148,7 @@ def _free_way(row: int, ex: float, ey: float, agent: Pointer, work: Pointer) -> 
     return float(time_to_segment(ex, ey, radius, ax, ay, bx, by))
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _single_unit(x: float, y: float) -> tuple[float, float]:
     """Unit vector in single precision; zero where that knows no length."""
     a, b = float32(x), float32(y)
@@ -157,7 +158,7 @@ def _single_unit(x: float, y: float) -> tuple[float, float]:
     return float(float32(a / size)), float(float32(b / size))
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _rounding(ux: float, uy: float, agent: Pointer) -> float:
     """Error of 1 - cos(u, v_preferred) in the original's single precision.
 

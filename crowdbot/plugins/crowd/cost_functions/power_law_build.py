@@ -27,6 +27,7 @@ from crowdbot.core.interfaces import (
     near_table,
     wall_table,
 )
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.force_build import (
     aim,
     from_target,
@@ -41,7 +42,7 @@ _K, _TAU0 = range(2, 4)  # entries of params
 _SOONEST = 0.001  # s; collisions sooner than this exert no force
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _repulsion(
     rx: float, ry: float, wx: float, wy: float, reach: float, params: Pointer
 ) -> tuple[float, float]:

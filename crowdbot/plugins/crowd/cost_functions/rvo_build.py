@@ -23,13 +23,14 @@ from crowdbot.core.interfaces import (
     list_obstacles,
     soonest_disc,
 )
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 
 _W = 2  # entry of params
 _ROUNDING = 1.0 + 1e-6
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _too_fast(ux: float, uy: float, max_speed: float) -> bool:
     """In single precision, which decides about candidates at exactly the largest speed."""
     x, y = np.float32(ux), np.float32(uy)

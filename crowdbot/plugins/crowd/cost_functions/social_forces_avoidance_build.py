@@ -39,6 +39,7 @@ from crowdbot.core.interfaces import (
     near_table,
     wall_table,
 )
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.force_build import (
     aim,
     from_target,
@@ -54,7 +55,7 @@ _CLOSEST = 0.001  # m; nothing nearer exerts a force
 _SEEN = math.cos(math.radians(100.0))  # half the field of view
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _people(agent: Pointer, near: Pointer, j: int, params: Pointer) -> tuple[float, float]:
     """Force per mass by neighbour j: along the line of centres, by the ellipse of its stride."""
     near, parity = near_table(near), agent[PARITY] != 0.0
@@ -89,7 +90,7 @@ def _people(agent: Pointer, near: Pointer, j: int, params: Pointer) -> tuple[flo
     return size * xx, size * xy
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _wall(
     yx: float, yy: float, distance: float, parity: bool, params: Pointer
 ) -> tuple[float, ...]:
@@ -102,7 +103,7 @@ def _wall(
     return size * yx, size * yy
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _faces(s: int, agent: Pointer, walls: Pointer, params: Pointer) -> bool:
     """Whether the original counts edge s: seen from outside, and not nearest at its second end."""
     table = wall_table(walls)

@@ -43,6 +43,7 @@ from crowdbot.core.interfaces import (
     wall_table,
     work_table,
 )
+from crowdbot.core.support.compile import inline_kernel
 from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
 from crowdbot.plugins.crowd.cost_functions.ttca_dca_gradient_build import gradient
 from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
@@ -69,7 +70,7 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Poin
     return 1.0 - 0.5 * (ahead + math.exp(-0.5 * slower * slower))
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inline_kernel
 def _add(
     rx: float,
     ry: float,

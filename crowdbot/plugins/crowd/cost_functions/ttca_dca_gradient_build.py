@@ -11,6 +11,7 @@ import math
 from numba import njit
 
 from crowdbot.core.interfaces import GRADIENT, PREFERRED, PVX, PVY, Pointer, work_table
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
     INV_DCA2,
     INV_TTCA2,
@@ -23,7 +24,7 @@ from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
 _STILL = 1e-3  # relative speeds squared (m^2/s^2), times (s), distances (m) that count as zero
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def _by_neighbours(ux: float, uy: float, work: Pointer, params: Pointer) -> tuple[float, float]:
     work = work_table(work)
     by_time, by_distance = params[INV_TTCA2], params[INV_DCA2]

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from numba import njit
-
 from crowdbot.core.interfaces import NX, NY, RADIUS, WALL_D2, Pointer, in_range, wall_table
+from crowdbot.core.support.compile import array_kernel
 
 #: Points that are nearer to each other are one, m.
 SAME = 1e-9
 
 
-@njit(cache=True, error_model="numpy")
+@array_kernel
 def counts(s: int, agent: Pointer, walls: Pointer, params: Pointer) -> bool:
     """Whether wall s is in range and its nearest point is not that of a wall before it."""
     walls = wall_table(walls)

@@ -1,0 +1,150 @@
+"""Scores by groups of runs: by planner, by axes of the suite, by how they ended."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.results.rows import PLANNER_FAILED, FailureRow, Results, RunRow
+from crowdbot.core.results.tables import axes_of
+from crowdbot.core.statistics.centre import mean_of_rows
+from crowdbot.core.statistics.clusters import Floats
+from crowdbot.core.statistics.estimate import Counts, Estimate
+from crowdbot.core.statistics.summary import bounds_of_mean, headline_names
+from crowdbot.core.statistics.table import MISSING, OK, Key, Name, Table, counts_of
+from crowdbot.errors import UnknownNameError
+
+#: Labels of a group, and planner -> (n,) its rows of the table.
+_Rows = Mapping[str, NDArray[np.bool_]]
+_Group = tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GroupSummary:
+    """Scores of one metric and variant in one group of runs.
+
+    Attributes:
+        group: axis -> label.
+        counts: how the runs of the group ended, as this score sees it.
+        failed: runs whose planner failed, which may have values, and attempts that left no run.
+        mean: of the values there are, or the rate of all these runs together, with its interval:
+            what report and leaderboard say of the same runs.
+        bounds: of the mean of all runs, if those without a value are anywhere within their bounds;
+            None where there is no bound.
+        median: of the values there are.
+    """
+
+    group: Mapping[str, str]
+    metric: str
+    variant: str
+    unit: str
+    better: str
+    counts: Counts
+    failed: int
+    mean: Estimate
+    bounds: tuple[float | None, float | None]
+    median: float | None
+
+
+def by_group(
+    results: Results, metric: str, by: Sequence[str], variant: str | None = None
+) -> list[GroupSummary]:
+    """Scores by groups of runs.
+
+    Args:
+        results: what to look at.
+        metric: pattern of names.
+        by: axes, or ``planner``, ``suite``, ``scenario``, ``seed``, ``status``.
+        variant: None takes the one that stands for its metric in a report (`headline_names`).
+
+    Raises:
+        UnknownNameError: no such axis or metric.
+    """
+    _check_names(results, metric, by)
+    table = Table(results)
+    groups = _groups(table, results, by)
+    failed = Counter(
+        tuple(_label(one, axis) for axis in by)
+        for one in _tried(table, results)
+        if isinstance(one, FailureRow) or one.status == PLANNER_FAILED
+    )
+    return [
+        _summary(table, name, dict(zip(by, group, strict=True)), rows, failed[group])
+        for name in _names(table, metric, variant)
+        for group, rows in groups.items()
+    ]
+
+
+def _names(table: Table, metric: str, variant: str | None) -> Iterator[Name]:
+    first = {name[0]: name for name in reversed(table.names)}
+    usual = {**first, **{name[0]: name for name in headline_names(table)}}
+    for name in table.names:
+        if fnmatchcase(name[0], metric) and name == (name[0], variant or usual[name[0]][1]):
+            yield name
+
+
+def _groups(table: Table, results: Results, by: Sequence[str]) -> Mapping[_Group, _Rows]:
+    """Labels -> rows, in the order of the runs."""
+    places = {key: i for i, key in enumerate(table.keys)}
+    found: dict[_Group, dict[str, NDArray[np.bool_]]] = {}
+    for one in _tried(table, results):
+        group = found.setdefault(tuple(_label(one, name) for name in by), {})
+        rows = group.setdefault(one.planner, np.zeros(len(places), np.bool_))
+        rows[places[_key(one)]] = True
+    return found
+
+
+def _key(one: RunRow | FailureRow) -> Key:
+    return one.suite, one.scenario, one.seed
+
+
+def _tried(table: Table, results: Results) -> list[RunRow | FailureRow]:
+    """The runs, and the attempts that left none and that no run has made good."""
+    lost = [f for f in results.failures if (f.planner, _key(f)) in table.failures]
+    return [*results.runs, *lost]
+
+
+def _summary(
+    table: Table, name: Name, group: Mapping[str, str], rows: _Rows, failed: int
+) -> GroupSummary:
+    label, mean = table.label(name), mean_of_rows(table, name, rows)
+    low, high, outcome = _gathered(table, name, rows)
+    values, tried = low[outcome == OK], outcome != MISSING
+    bounds = bounds_of_mean(low[tried], high[tried])
+    if table.exposure_name(name) is not None:
+        bounds = (mean.value, mean.value) if len(values) == tried.sum() else (None, None)
+    return GroupSummary(
+        group=group, metric=name[0], variant=name[1], unit=label.unit, better=label.better,
+        counts=counts_of(outcome),
+        failed=failed, mean=mean, bounds=bounds,
+        median=float(np.median(values)) if len(values) else None,
+    )  # fmt: skip
+
+
+def _gathered(table: Table, name: Name, rows: _Rows) -> tuple[Floats, Floats, NDArray[np.int8]]:
+    """Least and greatest value, and outcome, of each run of a group, (runs,)."""
+    columns = [(table.column(name, planner), chosen) for planner, chosen in rows.items()]
+    parts = [(column.low[r], column.high[r], column.outcome[r]) for column, r in columns]
+    low, high, outcome = zip(*parts, strict=True)
+    return np.concatenate(low), np.concatenate(high), np.concatenate(outcome)
+
+
+def _label(run: RunRow | FailureRow, name: str) -> str:
+    if name == "status" and isinstance(run, FailureRow):
+        return "failed"
+    return run.axes[name] if name in run.axes else str(getattr(run, name, ""))
+
+
+def _check_names(results: Results, metric: str, by: Sequence[str]) -> None:
+    known = [*axes_of(results), "planner", "suite", "scenario", "seed", "status"]
+    for name in by:
+        if name not in known:
+            raise UnknownNameError("axis", name, known)
+    metrics = {s.metric for s in results.scores}
+    if results.scores and not any(fnmatchcase(m, metric) for m in metrics):
+        raise UnknownNameError("metric", metric, metrics)
