@@ -22,6 +22,7 @@ function start() {
   byId("methods-copy").onclick = (event) => copyText(byId("methods").textContent, event.target);
   byId("theme").onclick = switchTheme;
   for (const name of document.querySelectorAll("[data-planner]")) {
+    name.lastElementChild.replaceChildren(...foldable(name.textContent));
     name.prepend(badge(Number(name.dataset.planner)));
   }
   for (const link of document.querySelectorAll("a[data-to]")) {

@@ -25,6 +25,11 @@ function fill(node, { text, ...attributes }, children) {
   return node;
 }
 
+/** A name that a narrow column may break after its marks, and nowhere else. */
+function foldable(name) {
+  return name.split(/(?<=[_+-])/).flatMap((part, i) => (i ? [el("wbr"), part] : [part]));
+}
+
 const SHAPES = [
   (r) => `M${-r} 0a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0z`,
   (r) => `M${-r * 0.9} ${-r * 0.9}h${1.8 * r}v${1.8 * r}h${-1.8 * r}z`,

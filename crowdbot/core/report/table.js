@@ -56,5 +56,5 @@ function missingChips(about) {
 
 /** A planner's mark and name. */
 function planned(planner) {
-  return el("span", { class: "planner" }, badge(planner), el("span", { text: report.planners[planner].label }));
+  return el("span", { class: "planner" }, badge(planner), el("span", {}, foldable(report.planners[planner].label)));
 }
