@@ -20,22 +20,24 @@ BIN := .venv/bin
 WORKERS = $(shell $(PYTHON) -c "import os; print(1 + (os.cpu_count() or 1))")
 READY := .venv/ready-$(shell cat requirements.lock pyproject.toml | cksum | cut -d' ' -f1)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+# pip would use one core for this, for half of the set-up; a third are tests of packages. It fails
+# where a package has templates, which are not Python.
+BYTE_CODE := $(BIN)/python -m compileall -qq -j 0 -x '/tests?/'
 
 JS := scripts/js
 JS_READY := $(JS)/node_modules/.package-lock.json
 
-.PHONY: demo check test test-all durations lint kernels coverage docs pictures changelog check-js js-where-node-is setup lock clean
+.PHONY: demo check test test-all durations lint types style kernels coverage docs pictures changelog check-js js-where-node-is setup lock clean
 
 demo: setup
 	$(BIN)/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
 
 check: setup
-	@$(MAKE) --no-print-directory -j2 --output-sync lint kernels
+	@$(MAKE) --no-print-directory -j2 --output-sync kernels types style
 	$(BIN)/pytest -n auto --dist worksteal -q -m "not slow and not jupedsim"
 
 test: setup
-	@$(MAKE) --no-print-directory -j2 --output-sync lint kernels
-	@$(MAKE) --no-print-directory js-where-node-is
+	@$(MAKE) --no-print-directory -j2 --output-sync kernels types style js-where-node-is
 	$(BIN)/pytest -n $(WORKERS) --dist worksteal
 
 # What numba compiles, while mypy has the other core: or else each test process would compile it.
@@ -44,12 +46,16 @@ kernels: setup
 		--planner dwa --set robots.robot.task.time_limit=1 --out $$out > $$out/printed 2>&1 \
 		|| { cat $$out/printed; exit 1; }; rm -rf $$out
 
-lint: setup
+lint: style types
+
+types: setup
+	$(BIN)/mypy
+
+style: setup
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/codespell
 	$(BIN)/python scripts/check_vocabulary.py
-	$(BIN)/mypy
 	$(BIN)/lint-imports
 
 # With the longest tests too, which tests/long_tests.py lists, and all examples of properties.
@@ -90,8 +96,9 @@ $(READY): requirements.lock pyproject.toml
 	@$(PYTHON) scripts/check_machine.py
 	@echo "setting up .venv (about a minute)"
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
-	@$(PIP) install --require-hashes -r requirements.lock
-	@$(PIP) install --no-deps --no-build-isolation -e .
+	@$(PIP) install --no-compile --require-hashes -r requirements.lock
+	@$(PIP) install --no-compile --no-deps --no-build-isolation -e .
+	@$(BYTE_CODE) .venv/lib || true
 	@rm -f .venv/ready-* && touch $@
 
 lock:

@@ -93,7 +93,7 @@ def kill_parents(
             time.sleep(0.02)
         time.sleep(draw.uniform(0.0, length / runs))
         everything = _below(running.pid)
-        os.kill(running.pid, signal.SIGKILL)
+        running.kill()  # unless it has ended meanwhile
         running.wait()
         if left := _left(everything):
             wrong.append(f"kill {number + 1} of the campaign left {left}")

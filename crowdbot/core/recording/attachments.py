@@ -65,7 +65,8 @@ def attached(path: Path) -> list[tuple[str, bytes]]:
                 raise ValueError("it has no index")
             return [_content(file, place) for place in summary.attachment_indexes]
     except (McapError, OSError, ValueError, EOFError, struct.error) as error:
-        raise InputError(f"{path}: its attachments cannot be read: {error}") from error
+        why = str(error) or "it ends within a record"  # which is all that the reader means
+        raise InputError(f"{path}: its attachments cannot be read: {why}") from error
 
 
 def _content(file: IO[bytes], place: AttachmentIndex) -> tuple[str, bytes]:

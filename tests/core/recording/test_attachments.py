@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from mcap.reader import make_reader
+from mcap.exceptions import EndOfFile
+from mcap.reader import SeekingReader, make_reader
 
 from crowdbot.core.recording import read_trajectories
-from crowdbot.core.recording.attachments import attach
+from crowdbot.core.recording.attachments import attach, attached
 from crowdbot.core.recording.contents import contents
 from crowdbot.core.recording.records import Records
 from crowdbot.errors import InputError
@@ -71,3 +72,17 @@ def test_cut_inside_it_is_as_good_as_one_cut_off(path: Path, cut: int) -> None:
     path.write_bytes(whole[: whole.index(bytes(1000)) + cut])
     assert not contents(path).finished
     assert bits(read_trajectories(path)) == plain
+
+
+def test_why_they_cannot_be_read_is_never_empty(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The reader has no words for a record that goes on after the end of the file."""
+    attach(path, FILES)
+
+    def ends(_: SeekingReader) -> None:
+        raise EndOfFile
+
+    monkeypatch.setattr(SeekingReader, "get_summary", ends)
+    with pytest.raises(InputError, match="cannot be read: it ends within a record"):
+        attached(path)
