@@ -211,11 +211,12 @@ def _other_role(rerun: Rerun) -> Iterator[str]:
     """
     if rerun.claimed.record.get("versions") == rerun.record.get("versions"):
         for key in _OF_SUITE:
-            if rerun.claimed.record.get(key) != rerun.record.get(key):
+            said = rerun.claimed.record.get(key)  # nothing of a run that was made from Python
+            if said and said != rerun.record.get(key):
                 yield f"{rerun.claimed.name}: {key} is not that of the suite"
-    said, found = (r.get("role", "candidate") for r in (rerun.claimed.record, rerun.record))
-    if said != found:
-        yield f"{rerun.claimed.name}: role is claimed to be {said!r}, but is {found!r}"
+    role, found = (r.get("role", "candidate") for r in (rerun.claimed.record, rerun.record))
+    if role != found:
+        yield f"{rerun.claimed.name}: role is claimed to be {role!r}, but is {found!r}"
 
 
 def _other_version(a: Any, b: Any) -> bool:

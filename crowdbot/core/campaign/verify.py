@@ -143,6 +143,7 @@ def _simulate(setup: RerunSetup, claimed: ClaimedRun) -> Rerun:
             out=Path(folder),
             suite=setup.expansion.folder,
             metrics=setup.expansion.metrics,
+            words=setup.expansion.words_of(scenario.id),
             record="none",
             references=compared,
             replay=False,
