@@ -37,7 +37,7 @@ from numba.core.types import Omitted
 
 from crowdbot.core.support.seldom_collected import seldom_collected
 
-_PART = "part"
+_PART, _WHOLE = "part", "whole"
 
 
 class _NoEngine:
@@ -94,11 +94,24 @@ class _PartContext:
 
 
 class _CacheFiles(CompileResultCacheImpl):
+    """Keeps, with a function that is whole, all constants that it looks up.
+
+    A part and what was made of it share one environment. Who has read that of the part, be it with
+    one of its callers, lacks the constants that are needed to hand Python an array.
+    """
+
+    def reduce(self, result: Any) -> Any:
+        payload = super().reduce(result)
+        return payload if _is_part(result) else (*payload, tuple(result.environment.consts))
+
     def rebuild(self, target_context: Any, payload: Any) -> Any:
-        if payload[0][1] != _PART:
-            return super().rebuild(target_context, payload)
-        part: Any = super().rebuild(_PartContext(target_context), payload)
-        return part._replace(target_context=target_context)
+        if payload[0][1] == _PART:
+            part: Any = super().rebuild(_PartContext(target_context), payload)
+            return part._replace(target_context=target_context)
+        *rest, constants = payload
+        known = rest[2].consts
+        known.extend(constants[len(known) :])
+        return super().rebuild(target_context, rest)
 
 
 class _Cache(FunctionCache):
@@ -137,7 +150,7 @@ class _Cache(FunctionCache):
 
     def _index_key(self, sig: Any, codegen: Any) -> Any:
         key = super()._index_key(sig, codegen)
-        return (*key, _PART) if self._as_part else key
+        return (*key, _PART if self._as_part else _WHOLE)
 
 
 @cache
@@ -226,7 +239,7 @@ class KernelDispatcher(CPUDispatcher):
             part = self._parts.get(arguments) or self._cache.load(sig, self.targetctx, as_part=True)
         about = {"dispatcher": self, "args": arguments, "return_type": None}
         with event.trigger_event("numba:compile", data=about):
-            result = self._translated(sig, as_part) if part is None else _whole(part)
+            result = self._translated(sig, as_part) if part is None else self._whole(part)
         self._keep(result)
         self._cache.save(sig, result, as_part)
         return result
@@ -239,6 +252,23 @@ class KernelDispatcher(CPUDispatcher):
             raise error.bind_fold_arguments(
                 lambda given, named: self._compiler.fold_argument_types(given, named)[1]
             ) from None
+
+    def _whole(self, part: Any) -> Any:
+        """A part with what Python and C call; the part itself is not translated again."""
+        # A part read from the cache has a context of all functions, which hands out no new array.
+        makes_arrays = self.targetoptions.get("_nrt", True)
+        context = part.target_context.subtarget(enable_nrt=makes_arrays)
+        description, environment = part.fndesc, part.environment
+        library = context.codegen().create_library(description.qualname)
+        library.enable_object_caching()
+        library.add_linking_library(part.library)
+        context.create_cpython_wrapper(library, description, environment, None)
+        if not any(isinstance(a, Omitted) for a in part.signature.args):
+            context.create_cfunc_wrapper(library, description, environment, None)
+        entry = context.get_executable(library, description, environment)
+        whole = part._replace(library=library, entry_point=entry, target_context=context)
+        _let_others_call(whole)
+        return whole
 
     def _keep(self, result: Any) -> None:
         """For callers; a part is nothing that Python could call."""
@@ -259,21 +289,6 @@ def _let_others_call(result: Any) -> None:
     """What numba does by itself with what it has just translated."""
     context, library = result.target_context, result.library
     context.insert_user_function(result.entry_point, result.fndesc, [library])
-
-
-def _whole(part: Any) -> Any:
-    """A part with what Python and C call; the part itself is not translated again."""
-    context, description, environment = part.target_context, part.fndesc, part.environment
-    library = context.codegen().create_library(description.qualname)
-    library.enable_object_caching()
-    library.add_linking_library(part.library)
-    context.create_cpython_wrapper(library, description, environment, None)
-    if not any(isinstance(a, Omitted) for a in part.signature.args):
-        context.create_cfunc_wrapper(library, description, environment, None)
-    entry = context.get_executable(library, description, environment)
-    whole = part._replace(library=library, entry_point=entry)
-    _let_others_call(whole)
-    return whole
 
 
 __all__ = ["KernelDispatcher"]

@@ -21,7 +21,7 @@ BASE: dict[str, Any] = {
     "trip_agent": [0], "trip_t0": [0.0], "trip_t1": [0.2], "trip_reached": [False],
     "contacts": {"t0": [0.1], "t1": [0.15], "agent": [0], "impulse": [1.0], "peak_force": [5.0],
                  "relative_speed": [0.3]},
-    "signals": {"gap": [1.0, 2.0]},
+    "signals": {"gap": [[0.0, 1.0], [0.1, 2.0]]},
 }  # fmt: skip
 
 
@@ -51,8 +51,8 @@ def test_equal_runs_have_equal_hashes() -> None:
         {"trip_reached": [True]},
         {"trip_t1": [0.19]},
         {"contacts": None},
-        {"signals": {"gap": [1.0, 2.5]}},
-        {"signals": {"gaps": [1.0, 2.0]}},
+        {"signals": {"gap": [[0.0, 1.0], [0.1, 2.5]]}},
+        {"signals": {"gaps": [[0.0, 1.0], [0.1, 2.0]]}},
     ],
 )
 def test_every_bit_counts(change: dict[str, Any]) -> None:

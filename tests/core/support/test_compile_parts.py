@@ -92,11 +92,12 @@ class Listener(event.Listener):
         pass
 event.register("numba:compile", Listener())
 for name in sys.argv[2:]:
-    print(getattr(loops, name)(np.arange(3.0)), file=sys.stderr)
+    print(np.ravel(getattr(loops, name)(np.arange(3.0)))[0], file=sys.stderr)
 ours = [n for n in Listener.names if hasattr(loops, n)]
 print(json.dumps(ours))
 """
 LOOPS = """
+import numpy as np
 from crowdbot.core.support.compile import array_kernel, kernel
 @kernel
 def inner(values):
@@ -107,6 +108,15 @@ def outer(values):
 @kernel
 def other(values):
     return inner(values) - 1.0
+@array_kernel
+def array(values):
+    return np.full(1, values[2])
+@array_kernel
+def of_array(values):
+    return array(values)[0] * 2.0
+@array_kernel
+def also_of_array(values):
+    return array(values)[0] * 3.0
 """
 
 
@@ -131,6 +141,16 @@ def test_each_is_kept_as_a_part_and_whole(tmp_path: Path) -> None:
     # Another function finds the part; Python wants more, which is added to the part.
     assert _ended(_started(tmp_path, "other", "inner")) == (["other", "inner"], [2.0, 3.0])
     assert _ended(_started(tmp_path, "outer", "other", "inner")) == ([], [4.0, 2.0, 3.0])
+
+
+@pytest.mark.slow
+def test_python_gets_an_array_from_what_was_a_part_before(tmp_path: Path) -> None:
+    """To make Python's array takes constants that the part has not."""
+    assert _ended(_started(tmp_path, "of_array")) == (["of_array", "array"], [4.0])
+    assert _ended(_started(tmp_path, "array")) == (["array"], [2.0])
+    # The part comes first, with its caller, then what another process has made of it.
+    assert _ended(_started(tmp_path, "of_array", "array")) == ([], [4.0, 2.0])
+    assert _ended(_started(tmp_path, "also_of_array", "array"))[1] == [6.0, 2.0]
 
 
 @pytest.mark.slow
