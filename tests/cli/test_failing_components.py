@@ -118,7 +118,8 @@ def options(folder: Path, **code: str) -> list[str]:
     path = folder / "faulty.py"
     path.write_text(PLUGIN.format(**{**FINE, **code}), encoding="utf-8")
     changes = [word for setting in SETTINGS for word in ("--set", setting)]
-    return ["--plugin", str(path), "--planner", "goal_seek", "--no-references", *changes]
+    return ["--plugin", str(path), "--planner", "goal_seek", "--no-references", "--record", "all",
+            *changes]  # fmt: skip
 
 
 @pytest.mark.parametrize("case", FAILING)

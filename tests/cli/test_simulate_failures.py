@@ -243,7 +243,8 @@ def _wait_for(out: Path, size: int, running: subprocess.Popen[str]) -> Path:
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
 def test_interrupted_runs_can_be_read(number: signal.Signals, tmp_path: Path) -> None:
     out = tmp_path / "runs"
-    running = process(out, "--planner", "goal_seek", "--no-references", seconds=170.0)
+    options = ("--planner", "goal_seek", "--no-references", "--record", "all")
+    running = process(out, *options, seconds=170.0)
     recording = _wait_for(out, 400_000, running)
     os.kill(running.pid, number)
     answer = finished(running)

@@ -180,7 +180,7 @@ def odd(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
     Path("odd.py").write_text(PLUGIN)
     Path("odd.yaml").write_text(SUITE)
     yield ["simulate", "odd.yaml", "only", "--planner", "goal_seek", "--out", "runs",
-           "--no-references", "--plugin", "odd.py"]  # fmt: skip
+           "--no-references", "--record", "all", "--plugin", "odd.py"]  # fmt: skip
     sys.modules.pop("odd", None)
 
 

@@ -41,18 +41,19 @@ function drawPairs(choosePair) {
     numberCell(format(v.difference, decimals), interval(v.low, v.high, decimals)),
     numberCell(format(v.effect, 2), interval(v.effect_low, v.effect_high, 2)),
     numberCell(format(v.improvement, 2), interval(v.improvement_low, v.improvement_high, 2)),
-    numberCell(probability(v.p_holm)), numberCell(format(v.detectable, decimals), neededText(v)),
+    numberCell(probability(v.p_holm)),
+    el("td", { class: "number" }, format(v.detectable, decimals), el("small", { class: "folds", text: neededText(v) })),
     numberCell(format(v.pairs, 0), v.undecided ? `${v.undecided} undecided` : ""),
-    el("td", { class: isClear(v) ? "verdict clear" : "verdict" }, sentence(v), el("small", { text: v.why }))));
+    el("td", { class: isClear(v) ? "verdict clear" : "verdict" }, foldable(sentence(v)), el("small", { text: v.why }))));
   byId("pairs-table").hidden = !rows.length;
   byId("pairs-note").textContent = pairsNote(rows);
   drawForest(planners, choosePair);
 }
 
-/** Crowd draws that would find this difference, and how many there are. */
+/** Crowd draws that would find this difference, and how many there are; breaks at the comma only. */
 function neededText({ needed, draws, verdict }) {
   if (isClear({ verdict }) || !Number.isFinite(needed)) return "";
-  return `${plural(needed, "draw")}, now ${draws}`;
+  return [plural(needed, "draw"), `now ${draws}`].map((part) => part.replaceAll(" ", "\u00a0")).join(", ");
 }
 
 function sentence({ a, b, verdict }) {

@@ -86,4 +86,4 @@ def _rounded(number: float, last: int) -> Decimal:
 
 def _places(size: float, shown: int) -> int:
     """Decimals that show so many digits of a size."""
-    return shown - 1 - Decimal(repr(size)).adjusted() if 0 < size < math.inf else 0
+    return shown - 1 - Decimal(repr(float(size))).adjusted() if 0 < size < math.inf else 0

@@ -224,6 +224,13 @@ def test_the_script_says_it_with_the_same_letters(tmp_path: Path) -> None:
         assert found == pytest.approx(expected, rel=1e-4, nan_ok=True)
 
 
+@pytest.mark.parametrize("value", [2.75, 0.0, -1.5e-8, 3e7])
+def test_numbers_of_numpy_are_written_as_those_of_python(value: float) -> None:
+    low, high = value - 0.25, value + 0.25
+    from_numpy = Estimate(value=np.float64(value), low=np.float64(low), high=np.float64(high))
+    assert estimate_text(from_numpy) == estimate_text(Estimate(value=value, low=low, high=high))
+
+
 def test_digits_are_those_that_the_interval_is_worth() -> None:
     widths = [1000.0, 10.0, 0.1, 1e-3]
     decimals = [decimals_for([100.0, 100.0 + w]) for w in widths]

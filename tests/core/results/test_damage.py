@@ -127,7 +127,7 @@ def test_reading_writes_nothing(
     assert len(load(root).runs) == 5
     out = tmp_path / "page.html"
     assert cli.main(["report", str(root), "--out", str(out)]) == 0
-    assert "damaged: 1 runs are left out: tiny/" in out.read_text(encoding="utf-8")
+    assert "damaged: 1 run left out: tiny/" in out.read_text(encoding="utf-8")
     assert cli.main(["results", "--out", str(root)]) == 0
     said = capsys.readouterr()
     assert "5 runs, 0 failures, 1 damaged" in said.out

@@ -90,6 +90,10 @@ class Memory:
     def reading(self, name: str, reading: Reading) -> None:
         self.readings.setdefault(name, []).append(reading)
 
+    def wants_frame(self, camera: str, stamp: float) -> bool:
+        del camera, stamp
+        return self.images
+
     def frame(self, name: str, frame: CameraFrame) -> None:
         self.frames.setdefault(name, []).append(frame)
 

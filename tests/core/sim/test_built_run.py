@@ -16,7 +16,8 @@ from crowdbot.core.live.session import LiveSession
 from crowdbot.core.planning.planner import Observation
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
 from crowdbot.core.recording.records import Record, Records
-from crowdbot.core.runs.request import Request
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs.request import Recorded, Request
 from crowdbot.core.sim.built_run import build_run
 from crowdbot.core.sim.session import Session
 from crowdbot.core.sim.simulate import simulate
@@ -31,28 +32,26 @@ from tests.core.sim.sim_worlds import scenario
 SHORT = "robots.robot.task.time_limit=0.25"
 
 
-class Counting:
+class Counting(Registry):
     """The registry, counting what is built of it."""
 
     def __init__(self) -> None:
+        vars(self).update(vars(registry()))
         self.built: Counter[str] = Counter()
 
     def build(self, spec: Any, *more: Any, **options: Any) -> Any:
         if isinstance(spec, EnvironmentSpec | RobotSpec | SensorSpec):
             self.built[f"{spec.category} {spec.kind}"] += 1
-        return registry().build(spec, *more, **options)
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(registry(), name)
+        return super().build(spec, *more, **options)
 
 
 def counted(
-    world: Scenario, out: Path, record: str, *, references: bool
+    world: Scenario, out: Path, record: Recorded, *, references: bool
 ) -> tuple[Counter[str], Counter[str]]:
     """How often each kind was built by a run, and how often the scenario names it."""
     counting = Counting()
     simulate(
-        world, counting, planner="goal_seek", out=out, record=record,  # type: ignore[arg-type]
+        world, counting, planner="goal_seek", out=out, record=record,
         references=references, replay=False,
     )  # fmt: skip
     one = world.robots["robot"]
@@ -62,7 +61,7 @@ def counted(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("record", ["all", "used", "none"])
-def test_one_recording_is_built_once(tmp_path: Path, record: str) -> None:
+def test_one_recording_is_built_once(tmp_path: Path, record: Recorded) -> None:
     built, named = counted(scenario(SHORT), tmp_path, record, references=False)
     assert built == named
 
@@ -118,7 +117,7 @@ def test_several_robots_share_one_environment(tmp_path: Path) -> None:
     counting = Counting()
     world = fleet_scenario(tmp_path, registry(), robots)
     simulate(
-        world, counting, planner="goal_seek", out=tmp_path, replay=False,  # type: ignore[arg-type]
+        world, counting, planner="goal_seek", out=tmp_path, replay=False,
     )  # fmt: skip
     assert counting.built == {
         "environment floor": 1, "robot turtlebot2": 2, "sensor lidar2d": 2,
@@ -130,7 +129,7 @@ def test_several_robots_share_one_environment(tmp_path: Path) -> None:
 def test_a_session_builds_what_each_of_its_runs_needs() -> None:
     """Its first run takes what the session looked at; another one does not get used sensors."""
     world, counting = scenario(SHORT), Counting()
-    with Session(world, sensors=["lidar"], registry=counting) as session:  # type: ignore[arg-type]
+    with Session(world, sensors=["lidar"], registry=counting) as session:
         session.reset()
         place = f"environment {world.environment.kind}"
         assert counting.built[place] == 1
@@ -145,7 +144,7 @@ def test_a_live_run_shows_clients_what_is_simulated(tmp_path: Path) -> None:
 
     def request(scenario: Scenario, choice: PlannerChoice, seed: int) -> Request:
         return Request(
-            scenario=scenario, choice=choice, registry=counting,  # type: ignore[arg-type]
+            scenario=scenario, choice=choice, registry=counting,
             seed=seed, out=tmp_path, references=False, replay=False,
         )  # fmt: skip
 

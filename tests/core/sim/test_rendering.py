@@ -229,7 +229,8 @@ def test_a_run_that_cannot_draw_ends_before_it_starts(
     check_egl.cache_clear()
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere.json")
     try:
-        assert main([*arguments, "--set", extra, "--out", str(tmp_path / "runs")]) == 4
+        more = ["--set", extra, "--out", str(tmp_path / "runs"), "--record", "all"]
+        assert main([*arguments, *more]) == 4
     finally:
         check_egl.cache_clear()
     assert "colour images need EGL" in capsys.readouterr().err

@@ -100,7 +100,7 @@ def test_head_on_they_push_each_other_equally(tmp_path: Path) -> None:
 def test_the_lidar_of_one_sees_the_other(tmp_path: Path) -> None:
     two = {"a": robot(0.0, 0.0, 0.0, "east", 0.5), "b": robot(2.0, 0.0, 0.0, "west", 0.5)}
     made = scenario(tmp_path, REGISTRY, two)
-    done = run(made, REGISTRY, tmp_path / "out", planner="stand_still")
+    done = run(made, REGISTRY, tmp_path / "out", planner="stand_still", record="all")
     seen = read_fleet(done.directory / "run.mcap")
     (ahead,), (behind,) = seen["a"].scans, seen["b"].scans
     front = np.argmin(np.abs(ahead.angles))
@@ -128,7 +128,7 @@ def test_a_robot_that_has_ended_stays_or_leaves(tmp_path: Path, when_ended: str)
 def test_topics_and_frames_are_those_of_each_robot(tmp_path: Path) -> None:
     two = {"a": robot(-6.0, -1.5, 0.0, "east", 0.5), "b": robot(6.0, 1.5, 0.0, "west", 0.5)}
     made = scenario(tmp_path, REGISTRY, two, PEOPLE)
-    done = run(made, REGISTRY, tmp_path / "out")
+    done = run(made, REGISTRY, tmp_path / "out", record="all")
     frames: dict[str, set[str]] = {}
     with (done.directory / "run.mcap").open("rb") as file:
         for _, channel, message in make_reader(file).iter_messages():
