@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+import crowdbot
 from crowdbot import cli
 from crowdbot.core.bundle import entries as entries_module
 from crowdbot.core.bundle.entries import load_entries
@@ -272,6 +273,24 @@ def test_changed_metrics_are_scored_again_from_recordings(
     assert after.keys() == before.keys()
     for name, score in after.items():
         assert (score.status, score.value) == (before[name].status, before[name].value), name
+
+
+def test_runs_made_from_python_are_verified(world: Path, verify: Verify, tmp_path: Path) -> None:
+    """They know nothing of the suite's axes, and the recordings hold their records."""
+    suite = str(world / "tiny.yaml")
+    for scenario in open_spec(suite, registry()).scenarios:
+        made = crowdbot.simulate(
+            scenario, planner=f"{world / 'mine.py'}:Steady", planner_settings={"speed": 0.4},
+            out=tmp_path / "runs", suite="tiny", record="none",
+        )  # fmt: skip
+    assert made.record["axes"] == {}
+    bundle = tmp_path / "team.cbz"
+    assert cli.main([
+        "bundle", str(tmp_path / "runs"), "--suite", suite, "--planner", made.directory.parent.name,
+        "--out", str(bundle), "--team", "Us", "--recordings",
+    ]) == 0  # fmt: skip
+    code, found = verify(bundle, "--all")
+    assert (code, found["outcome"], found["findings"]) == (0, "verified", [])
 
 
 def test_suites_that_are_not_installed_must_be_named(

@@ -136,8 +136,7 @@ def _place_problems(run: ClaimedRun, scenario: Scenario, axes: Mapping[str, str]
     record, crowd = run.record, scenario.crowd
     if record.get("axes", {}) != dict(axes):
         labels, wanted = _labels(record.get("axes")), _labels(dict(axes))
-        hint = "" if record.get("axes") else "; crowdbot simulate and campaign write them"
-        yield f"its axes are {labels}; the scenario's are {wanted}{hint}"
+        yield f"its axes are {labels}; the scenario's are {wanted}"
     said, versions = record.get("crowd"), record.get("versions")
     same = isinstance(versions, dict) and versions.get("crowdbot") == metadata.version("crowdbot")
     if same and said is not None and said != ("" if crowd is None else fingerprint(crowd)):

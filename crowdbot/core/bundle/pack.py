@@ -56,10 +56,11 @@ class Submission:
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """One complete run: name of its folder below the root, and its record."""
+    """One complete run: name of its folder below the root, its record, and the suite's axes."""
 
     folder: PurePosixPath
     record: dict[str, Any]
+    axes: Mapping[str, str]
 
 
 def pack(
@@ -123,7 +124,8 @@ def _runs(submission: Submission, expansion: Expansion) -> list[_Found]:
             record = files.read_record(place)
             if record is not None:
                 name = PurePosixPath(place.relative_to(submission.root).as_posix())
-                found.append(_Found(name, _checked(record, place)))
+                axes = expansion.axes.get(scenario.id, {})
+                found.append(_Found(name, _checked(record, place), axes))
     if not found:
         seeds = other_seeds(submission, expansion)
         if seeds:
@@ -193,6 +195,9 @@ def _members(submission: Submission, found: Sequence[_Found]) -> dict[str, Path 
         members |= {f"runs/{run.folder}/{name}": folder / name for name in names}
         if submission.recordings:
             members |= dict(_references(submission.root, folder, run))
+        if run.axes and not run.record.get("axes"):  # a run made from Python knows of no suite
+            whole = files.json_text({**run.record, "axes": dict(run.axes)})
+            members[f"runs/{run.folder}/{files.RECORD}"] = whole.encode()
     for name, place in members.items():
         if isinstance(place, Path) and not place.is_file():
             raise InputError(f"{place}: missing; run {name} again")

@@ -99,7 +99,12 @@ def damage(directory: Path, record: Mapping[str, Any]) -> str:
 
 def write_json(path: Path, document: Mapping[str, Any]) -> None:
     """Write a document under a temporary name, then rename it."""
-    atomic_write(path, json.dumps(document, indent=2, ensure_ascii=False) + "\n")
+    atomic_write(path, json_text(document))
+
+
+def json_text(document: Mapping[str, Any]) -> str:
+    """A document as it is written."""
+    return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
 
 
 @contextmanager

@@ -51,6 +51,15 @@ def test_a_whole_set_is_packed_and_fits(tmp_path: Path) -> None:
     assert manifest.edition.name.startswith("tiny · ")
 
 
+def test_runs_made_from_python_get_the_axes_of_the_suite(tmp_path: Path) -> None:
+    """They are whole and of its scenarios, but `crowdbot.simulate` knows of one scenario only."""
+    make_runs(tmp_path / "runs", write_suite(tmp_path), axes={})
+    packed(tmp_path, tmp_path / "runs")
+    assert problems(tmp_path / "team.cbz") == []
+    record = next((tmp_path / "runs").rglob("run.json"))
+    assert json.loads(record.read_text())["axes"] == {}  # what lies there stays as it is
+
+
 def test_missing_runs_are_listed_and_refused(tmp_path: Path, runs: Path) -> None:
     gone = sorted((runs / "tiny").iterdir())[2]
     shutil.rmtree(gone)
