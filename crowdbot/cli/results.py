@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import sys
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -12,13 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 from typer.core import TyperGroup
 
+from crowdbot.cli._results_lines import line_of, print_lines
 from crowdbot.core.scoring.four_scores import MAIN_SCORES
-from crowdbot.core.support.name_lines import in_lines
 from crowdbot.core.support.plural import plural
 
 if TYPE_CHECKING:
     from crowdbot.core.results.rows import Results
-    from crowdbot.core.statistics.groups import GroupSummary
 
 
 class _Tables(TyperGroup):
@@ -43,12 +40,6 @@ _Out = Annotated[
 ]
 _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 _ROOT = Path("runs")
-#: Wide enough for every table; a terminal wraps what it cannot hold.
-_WIDTH = 240
-#: Columns of names in terminals that are narrower than the second.
-_NAME_WIDTH, _WHOLE_NAMES = 10, 80
-#: Counts of runs without a value.
-_WITHOUT = ("undefined", "censored", "failed")
 #: What is shown of every planner when nobody asks for more.
 _HEADLINES = (
     *(s.metric for s in MAIN_SCORES),
@@ -98,14 +89,14 @@ def show(
     if worst:
         if metric is None:
             raise UsageError("--worst needs --metric NAME")
-        _print(_worst(found, metric, variant, worst), as_csv=as_csv, as_json=as_json)
+        print_lines(_worst(found, metric, variant, worst), as_csv=as_csv, as_json=as_json)
         return
     groups = [name.strip() for name in by.split(",") if name.strip()]
     known = {s.metric for s in found.scores}
     first = [*named_metrics(found.runs), *_HEADLINES]
     wanted = [metric] if metric is not None else [m for m in dict.fromkeys(first) if m in known]
     summaries = [s for m in wanted for s in by_group(found, m, groups, variant)]
-    _print([_line(s) for s in summaries], as_csv=as_csv, as_json=as_json)
+    print_lines([line_of(s) for s in summaries], as_csv=as_csv, as_json=as_json)
     if not (as_csv or as_json):
         damaged = f", {len(found.damaged)} damaged" if found.damaged else ""
         runs, failures = plural(len(found.runs), "run"), plural(len(found.failures), "failure")
@@ -232,25 +223,6 @@ def _only(found: Results, planners: list[str] | None, status: str | None) -> Res
     )
 
 
-def _line(summary: GroupSummary) -> dict[str, Any]:
-    return {
-        **summary.group,
-        "metric": summary.metric,
-        "variant": summary.variant,
-        "unit": summary.unit,
-        "mean": summary.mean.value,
-        "low": summary.mean.low,
-        "high": summary.mean.high,
-        "least": summary.bounds[0],
-        "most": summary.bounds[1],
-        "median": summary.median,
-        "n": summary.counts.ok,
-        "undefined": summary.counts.undefined,
-        "censored": summary.counts.censored,
-        "failed": summary.failed,
-    }
-
-
 def _worst(found: Results, metric: str, variant: str | None, count: int) -> list[dict[str, Any]]:
     """Runs with the worst values of one metric; those without a value come first."""
     from crowdbot.core.results.tables import score_lines
@@ -276,95 +248,3 @@ def _worst(found: Results, metric: str, variant: str | None, count: int) -> list
         {**{k: line[k] for k in kept}, "directory": directories[line["run_id"]]}
         for line in lines[:count]
     ]
-
-
-def _print(lines: list[dict[str, Any]], *, as_csv: bool, as_json: bool) -> None:
-    if as_json:
-        typer.echo(json.dumps(lines, indent=2))
-    elif as_csv:
-        _print_csv(lines)
-    elif lines:
-        _print_table(lines)
-
-
-def _print_csv(lines: list[dict[str, Any]]) -> None:
-    import csv
-    import sys
-
-    from crowdbot.core.scoring.scores_csv import safe_cell
-
-    writer = csv.writer(sys.stdout)
-    if lines:
-        writer.writerow(map(safe_cell, lines[0]))
-    for line in lines:
-        cells = ["" if v is None else v for v in line.values()]
-        writer.writerow([safe_cell(c) if isinstance(c, str) else c for c in cells])
-
-
-def _print_table(lines: list[dict[str, Any]]) -> None:
-    from rich.box import SIMPLE_HEAD
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    seen = sys.stdout.isatty() or "COLUMNS" in os.environ  # elsewhere nothing need be folded
-    console = Console() if seen else Console(width=_WIDTH)
-
-    def table_of(rows: list[dict[str, Any]], padding: int = 1) -> Table:
-        table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, padding))
-        for name in rows[0]:
-            table.add_column(name, overflow="fold", no_wrap=not seen)
-        for row in rows:
-            table.add_row(*(Text(_shown(v)) for v in row.values()))
-        return table
-
-    is_summary = "mean" in lines[0]
-    table = table_of([_with_interval(line) for line in lines] if is_summary else lines)
-    if is_summary and Console(width=9999).measure(table).maximum > console.width:
-        rows = [_narrow(line) for line in lines]
-        if console.width < _WHOLE_NAMES:
-            rows = [_broken(row) for row in rows]
-        table = table_of(rows, padding=0)
-    console.print(table)
-
-
-def _with_interval(line: dict[str, Any]) -> dict[str, Any]:
-    """A line of `_line` with mean and interval in one cell, as report and leaderboard have them."""
-    from crowdbot.core.statistics import Estimate
-    from crowdbot.core.statistics.estimate_text import joined_text, range_text
-
-    bounds = line["least"], line["most"]
-    all_runs = "" if bounds == (line["mean"],) * 2 else range_text(bounds)
-    mean = Estimate(value=line["mean"], low=line["low"], high=line["high"])
-    cells = {
-        "mean": {"mean [95 %]": joined_text(mean)}, "low": {}, "high": {}, "least": {},
-        "most": {"mean of all": all_runs},
-    }  # fmt: skip
-    return {k: v for name, value in line.items() for k, v in cells.get(name, {name: value}).items()}
-
-
-def _narrow(line: dict[str, Any]) -> dict[str, Any]:
-    """A line of `_line` in fewer columns, for terminals that are not wide enough for all."""
-    told = {"metric", "variant", "unit", "n", "median", "mean [95 %]", "mean of all", *_WITHOUT}
-    variant = "" if line["variant"] == "corrected" else f" {line['variant']}"
-    unit = "" if line["unit"] == "1" else f", {line['unit']}"
-    missing = [f"{line[name]} {name}" for name in _WITHOUT if line[name]]
-    cells = _with_interval(line)
-    return {
-        **{name: value for name, value in cells.items() if name not in told},
-        "metric": f"{line['metric']}{variant}{unit}",
-        "mean [95 %]": cells["mean [95 %]"],
-        "median": line["median"],
-        "n": ", ".join([str(line["n"]), *missing]),
-    }
-
-
-def _broken(line: dict[str, Any]) -> dict[str, Any]:
-    """A line whose names are broken between their words."""
-    return {n: in_lines(v, _NAME_WIDTH) if isinstance(v, str) else v for n, v in line.items()}
-
-
-def _shown(value: Any) -> str:
-    if value is None:
-        return "–"
-    return f"{value:.4g}" if isinstance(value, float) else str(value)

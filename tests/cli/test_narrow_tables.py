@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from crowdbot.cli._plugin_table import table
+from crowdbot.cli._results_lines import print_table
 from crowdbot.cli.info import _show
-from crowdbot.cli.results import _print_table
 from crowdbot.core.recording.contents import RecordingContents, TopicContents
 
 LINE: dict[str, Any] = {
@@ -23,7 +23,7 @@ def test_results_fit_and_say_everything(
     width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("COLUMNS", str(width))
-    _print_table([LINE])
+    print_table([LINE])
     text = capsys.readouterr().out
     assert max(map(len, text.splitlines())) <= width
     told = "".join(text.split())

@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from playwright.sync_api import sync_playwright
 
-from crowdbot.cli.results import _line, _with_interval
+from crowdbot.cli._results_lines import line_of, with_interval
 from crowdbot.core.bundle.leaderboard import write_leaderboard
 from crowdbot.core.bundle.standings import standings
 from crowdbot.core.registry.registry import discover
@@ -117,7 +117,7 @@ def in_page_data(report: Contents) -> _Told:
 def in_terminal(results: Results) -> _Told:
     scaled = replace(results, scales=score_scales(discover(allow=())))
     return {
-        (s.metric, s.group["planner"]): _with_interval(_line(s))["mean [95 %]"]
+        (s.metric, s.group["planner"]): with_interval(line_of(s))["mean [95 %]"]
         for s in by_group(scaled, "*", ["planner"])
     }
 
