@@ -98,7 +98,8 @@ def evaluate(
     Example: crowdbot evaluate runs/challenge-2020/counter-d0500-fast-c20-r05/dwa/seed-0
     """
     from crowdbot.core.runs.recordings import expand_paths
-    from crowdbot.core.runs.rescore import RescoreRequest, available_cores
+    from crowdbot.core.runs.rescore import RescoreRequest
+    from crowdbot.core.support.cores import available_cores
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
     paths: list[Path | None] = [*expand_paths(runs or [])] or [None]
