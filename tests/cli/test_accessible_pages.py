@@ -42,7 +42,8 @@ def report(path: Path) -> None:
 
 def leaderboard(path: Path) -> None:
     for i, planner in enumerate(("dwa", "goal_seek")):
-        make_bundle(path.parent, planner, f"{planner}.cbz", team=planner, value=lambda k, i=i: k + i)
+        name = f"{planner}.cbz"
+        make_bundle(path.parent, planner, name, team=planner, value=lambda k, i=i: k + i)
     assert cli.main(["leaderboard", str(path.parent), "--out", str(path)]) == 0
 
 

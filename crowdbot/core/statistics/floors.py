@@ -78,15 +78,18 @@ class FloorCheck:
         return f"{self.planner} does not beat the floors in {score}: {_told(lost)}"
 
 
-def check_floors(results: Results, *, level: float = 0.95) -> tuple[FloorCheck, ...]:
+def check_floors(
+    results: Results, *, level: float = 0.95, table: Table | None = None
+) -> tuple[FloorCheck, ...]:
     """Each planner against every floor, by name; floors themselves are not checked.
 
     Args:
         results: runs that may be compared.
         level: of the intervals.
+        table: of these results, for a caller who has it.
     """
     roles = {run.planner: run.role for run in results.runs}
-    table = Table(results)
+    table = table or Table(results)
     floors = [p for p in table.planners if roles.get(p) == "floor"]
     name = primary_name(table)
     return tuple(
