@@ -179,7 +179,7 @@ class ThroughStream(_Populated):
 
 
 class DirectionsStream(Stream):
-    """Two-dimensional flow: everybody walks in a direction of his own.
+    """Two-dimensional flow: each person walks in a direction that is drawn.
 
     On a torus for ever; elsewhere to the border of the area, where each turns to a new direction.
     """
