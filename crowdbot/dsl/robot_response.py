@@ -26,11 +26,11 @@ from crowdbot.dsl.spec import Spec
 
 
 class RobotResponse(Spec):
-    """How people take the robot: behaviour, not contact.
+    """How people respond to the robot: their behaviour, not contact.
 
-    Those who yield see it and keep clear of it, in the way that `kind` says. Those who ignore it
-    walk as if it were not there, until they touch it; those who are distracted do so while it
-    moves, and stop short of one that stands, as of anything that stands in their way.
+    People who yield see it and keep clear of it, in the way that `kind` says. People who ignore it
+    walk as if it were not there, until they touch it. People who are distracted ignore a robot that
+    moves, but stop short of one that stands, as of anything that stands in their way.
     """
 
     category: ClassVar[str] = "robot response"
@@ -82,10 +82,10 @@ class RobotResponse(Spec):
 
 
 class HumanResponse(RobotResponse):
-    """People notice a robot, react after a while, and evade it within what legs can do.
+    """People notice a robot, react after a while, and evade it no faster than legs can.
 
-    They look ahead, step aside in time and brake. Some notice late. Nobody throws himself aside;
-    a robot that stands is walked into by nobody who takes notice of it.
+    They look ahead, step aside in time and brake. Some notice late. Nobody is thrown aside, and
+    nobody who takes notice of the robot walks into it while it stands.
     """
 
     kind: Literal["human"] = Field(default="human", description="Name of the response.")

@@ -160,7 +160,7 @@ class Crowd(Spec):
         "straight ahead of where they come in or start.",
     )
     robot_response: RobotResponseChoice = Field(
-        default=HumanResponse(), description="How people take the robot."
+        default=HumanResponse(), description="How people respond to the robot."
     )
     routing: RoutingChoice | None = Field(
         default=None,
@@ -181,7 +181,7 @@ class Crowd(Spec):
 
 
 class Goal(Spec):
-    """Where the robot has to get: its centre inside a zone."""
+    """The zone in which the robot's centre has to be."""
 
     zone: str = Field(description="Name of the goal zone.")
 

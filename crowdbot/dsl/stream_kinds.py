@@ -142,7 +142,7 @@ class ThroughStream(_Populated):
 
     kind: Literal["through"] = Field(default="through", description="Pattern of the stream.")
     origin: Place = Field(
-        description="Where they come from: name of a zone or portal, or an area of its own."
+        description="Where they come from: name of a zone or portal, or an area written here."
     )
     destination: Place = Field(description="Where they go: named or given likewise.")
     via: tuple[Place, ...] = Field(
@@ -185,7 +185,7 @@ class DirectionsStream(Stream):
     """
 
     kind: Literal["directions"] = Field(default="directions", description="Pattern of the stream.")
-    area: Place = Field(description="Where they walk: name of a zone, or an area of its own.")
+    area: Place = Field(description="Where they walk: name of a zone, or an area written here.")
     density: PositiveDensity | None = Field(
         default=None, description="People per area, 1/m^2; this or `count`."
     )
@@ -241,7 +241,7 @@ class TalkingStream(Stream):
 
     kind: Literal["talking"] = Field(default="talking", description="Pattern of the stream.")
     count: Count = Field(description="How many people there are.")
-    area: Place = Field(description="Where they stand: name of a zone, or an area of its own.")
+    area: Place = Field(description="Where they stand: name of a zone, or an area written here.")
     groups: Annotated[tuple[GroupSize, ...], MinLen(1)] = Field(
         strict=False, description="Sizes of the circles."
     )
@@ -264,7 +264,7 @@ class WanderingStream(_Populated):
     """People who stroll from goal area to goal area, by chance, and linger there."""
 
     kind: Literal["wandering"] = Field(default="wandering", description="Pattern of the stream.")
-    area: Place = Field(description="Where they start: name of a zone, or an area of its own.")
+    area: Place = Field(description="Where they start: name of a zone, or an area written here.")
     areas: Annotated[tuple[str, ...], MinLen(1)] = Field(
         strict=False, description="Names of goal areas; where they have `next`, that follows."
     )
