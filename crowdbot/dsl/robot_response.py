@@ -125,20 +125,20 @@ class HumanResponse(RobotResponse):
         default=2.0, description="Largest acceleration sideways, m/s^2."
     )
     braking: PositiveAcceleration = Field(
-        default=3.0, description="Largest acceleration against the own way, m/s^2."
+        default=3.0, description="Largest deceleration of a person, m/s^2."
     )
     total_acceleration: PositiveAcceleration = Field(
         default=3.0,
-        description="Largest acceleration by own will and evasion together, m/s^2.",
+        description="Largest acceleration by policy and evasion together, m/s^2.",
     )
     stop_gap: NonNegativeLength = Field(
         default=0.25, description="Surface gap at which those who brake come to rest, m."
     )
     standing_speed: NonNegativeSpeed = Field(
-        default=0.05, description="A robot that is not faster stands, m/s."
+        default=0.05, description="A robot at most this fast stands, m/s."
     )
     moving_speed: PositiveSpeed = Field(
-        default=0.3, description="A robot that is not slower moves, m/s."
+        default=0.3, description="A robot at least this fast moves, m/s."
     )
     standing_gap: NonNegativeLength = Field(
         default=0.2, description="Surface gap that people keep to a robot that stands, m."

@@ -97,7 +97,8 @@ class Body(Spec):
     mass: PositiveMass = Field(default=75.0, description="Mass in the physics, kg.")
     max_speed: PositiveSpeed = Field(default=3.0, description="Largest walking speed, m/s.")
     max_acceleration: PositiveAcceleration = Field(
-        default=5.0, description="Largest acceleration by own will, m/s^2."
+        default=5.0,
+        description="Largest acceleration that people choose, m/s^2; pushes may exceed it.",
     )
     height: PositiveLength = Field(default=1.7, description="Height, m.")
 

@@ -141,7 +141,8 @@ class Spawn(Spec):
     mass: MassSample | None = Field(default=None, description="Mass in the physics, kg.")
     max_speed: SpeedSample | None = Field(default=None, description="Largest walking speed, m/s.")
     max_acceleration: AccelerationSample | None = Field(
-        default=None, description="Largest acceleration by own will, m/s^2."
+        default=None,
+        description="Largest acceleration that people choose, m/s^2; pushes may exceed it.",
     )
     start_time: DurationSample = Field(
         default=DurationSample(value=0.0), description="When each enters the world, s."

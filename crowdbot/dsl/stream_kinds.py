@@ -49,7 +49,7 @@ class Arrivals(Spec):
         default=(), strict=False, description="Scheduled arrivals, s; in any order."
     )
     begin: NonNegativeDuration = Field(
-        default=0.0, description="With `rate` and `every`: nobody arrives before, s."
+        default=0.0, description="With `rate` and `every`: nobody arrives before this time, s."
     )
     until: PositiveDuration | None = Field(
         default=None, description="With `rate` and `every`: nobody arrives from then on, s."
@@ -74,7 +74,8 @@ class StreamBody(Spec):
     mass: PositiveMass | None = Field(default=None, description="Mass in the physics, kg.")
     max_speed: PositiveSpeed | None = Field(default=None, description="Largest speed, m/s.")
     max_acceleration: PositiveAcceleration | None = Field(
-        default=None, description="Largest acceleration by own will, m/s^2."
+        default=None,
+        description="Largest acceleration that people choose, m/s^2; pushes may exceed it.",
     )
 
 
@@ -157,8 +158,8 @@ class ThroughStream(_Populated):
     )
     at_destination: StreamEnd | None = Field(
         default=None,
-        description="return: come in again at the origin, so that their number stays; leave the "
-        "world; stop there. Without it arrivals leave, others return.",
+        description="return: come in again at the origin, so that their number stays the same; "
+        "leave the world; stop there. By default people with arrivals leave, others return.",
     )
 
     @property
