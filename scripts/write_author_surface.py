@@ -57,11 +57,12 @@ _TOGETHER: Mapping[str, str] = {
         "Signatures of the functions of a `CompiledCost`."
     ),
     "PX PY VX VY RADIUS PREFERRED FASTEST TIME_STEP GX GY PVX PVY MAX_SPEED MAX_ACCELERATION "
-    "RELAXATION WEIGHT PARITY RANDOM DESCENDS AGENT_SIZE": (
+    "RELAXATION WEIGHT PARITY RANDOM DESCENDS ASKED_X ASKED_Y ASKED_RADIUS AGENT_SIZE": (
         "Entries of the vector `agent`: position, velocity, radius, preferred speed, greatest "
         "speed that is searched, time between decisions; goal, preferred velocity, largest speed "
         "and acceleration, relaxation time; weight, parity with the original, random numbers, "
-        "whether the search descends; and how many there are."
+        "whether the search descends; centre and radius of the disc of velocities that holds all "
+        "that are searched; and how many there are."
     ),
     "D2 RX RY NVX NVY REACH NPX NPY STATIC NEAR_COLUMNS": (
         "Columns of `near`: squared distance, relative position, velocity, sum of radii, preferred "
