@@ -63,7 +63,10 @@ _Answers = Annotated[
 ]
 _Jobs = Annotated[int, typer.Option(metavar="N", min=0, help="Processes; 0: one for each core.")]
 _Incomplete = Annotated[
-    bool, typer.Option("--allow-incomplete", help="Score cut recordings as far as they go.")
+    bool,
+    typer.Option(
+        "--allow-incomplete", help="Score recordings that were cut off, as far as they go."
+    ),
 ]
 _Out = Annotated[
     Path | None, typer.Option(metavar="FILE", help="Write all scores to FILE.csv or FILE.json.")

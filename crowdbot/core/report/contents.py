@@ -142,8 +142,9 @@ def gather(
     results = replace(results, scales=score_scales(registry))
     axes = axes_of(results)
     found = cards(registry, dict.fromkeys(s.metric for s in results.scores))
-    series = all_series(Table(results), named_metrics(results.runs))
-    worked_out = figures(results, series, axes)
+    table = Table(results)
+    series = all_series(table, named_metrics(results.runs))
+    worked_out = figures(results, table, series, axes)
     return Contents(
         heading=heading,
         results=results,
@@ -153,9 +154,9 @@ def gather(
         figures=worked_out,
         cards=found,
         replays=replays,
-        floors=check_floors(results),
+        floors=check_floors(results, table=table),
         suspicion=suspicion(heading.audit, results.runs),
         crowds=tuple(crowd_lines(results.runs)),
         sample=sample_size(worked_out.headline),
-        ranks=crowd_ranks(results),
+        ranks=crowd_ranks(results, table=table),
     )

@@ -70,20 +70,23 @@ class Figures:
 
 
 def figures(
-    results: Results, series: Sequence[Series], axes: Sequence[Mapping[str, Any]]
+    results: Results,
+    table: Table,
+    series: Sequence[Series],
+    axes: Sequence[Mapping[str, Any]],
 ) -> Figures:
     """Work out everything.
 
     Args:
         results: runs that may be compared.
+        table: of them.
         series: what the page shows.
         axes: ``name`` and ``labels`` of each axis of the suite.
     """
-    table = Table(results)
     chosen = headline_names(table)
     rest = [s.name for s in series if s.name not in chosen and _has_values(table, s.name)]
-    headline = summarise(results, chosen)
-    both = [headline, summarise(results, rest)] if rest else [headline]
+    headline = summarise(results, chosen, table=table)
+    both = [headline, summarise(results, rest, table=table)] if rest else [headline]
     whys = tuple(dict.fromkeys(["", *(c.reason for s in both for c in s.comparisons)]))
     selections = ("", *(f"{axis['name']}={label}" for axis in axes for label in axis["labels"]))
     return Figures(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from operator import attrgetter
 
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import Attempt, status_of
@@ -14,6 +15,8 @@ _SCORE = (
     "category", "metric", "symbol", "variant", "value", "unit", "better", "status", "reason",
     "lower", "upper",
 )  # fmt: skip
+
+_cells = attrgetter(*_SCORE)
 
 
 def csv_rows(contents: Contents) -> Iterator[Sequence[str]]:
@@ -28,7 +31,7 @@ def csv_rows(contents: Contents) -> Iterator[Sequence[str]]:
         head = (*_run_cells(attempt), *labels)
         found = scores.get(attempt.run_id, []) if isinstance(attempt, RunRow) else []
         for row in found:
-            yield (*head, *(_cell(getattr(row, name)) for name in _SCORE))
+            yield (*head, *map(_cell, _cells(row)))
         if not found:
             yield (*head, *_without_scores(attempt))
 
@@ -53,6 +56,6 @@ def _without_scores(attempt: Attempt) -> tuple[str, ...]:
 
 
 def _cell(value: str | float | None) -> str:
-    if value is None:
-        return ""
-    return value if isinstance(value, str) else repr(float(value))
+    if isinstance(value, str):
+        return value
+    return "" if value is None else repr(float(value))

@@ -13,6 +13,7 @@ import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, suppress
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -190,9 +191,11 @@ class Store:
         runs = self._database.execute(f"SELECT * FROM runs {order}").fetchall()
         ids = {row["directory"]: row["run_id"] for row in runs}
         scores: dict[str, list[ScoreRow]] = {d: [] for d in ids}
-        query = "SELECT * FROM scores ORDER BY directory, metric, variant, row"
-        for row in self._database.execute(query):
-            scores[row["directory"]].append(_score(row, ids[row["directory"]]))
+        query = f"SELECT directory, {', '.join(_SCORE)} FROM scores"
+        for row in self._database.execute(f"{query} ORDER BY directory, metric, variant, row"):
+            directory, *cells = row  # by place: there are hundreds of thousands
+            named = dict(zip(_SCORE, cells, strict=True))
+            scores[directory].append(ScoreRow(run_id=ids[directory], **named))
         failures = self._database.execute(f"SELECT * FROM failures {order}").fetchall()
         return Results(
             runs=tuple(_run(row) for row in runs),
@@ -226,9 +229,10 @@ class Store:
             self._damaged.append(DamagedRun(directory=directory, reason=reason))
             return
         self._put("runs", {"directory": directory, "stamp": stamp, **columns})
-        for number, row in enumerate(rows):
-            values = {n: getattr(row.score, n) for n in _SCORE}
-            self._put("scores", {"directory": directory, "row": number, **values})
+        self._database.executemany(
+            _INSERT_SCORE,
+            ((directory, number, *_cells(row.score)) for number, row in enumerate(rows)),
+        )
 
     def _insert_failure(self, directory: str, stamp: str) -> None:
         failure = read_failure(self._root / directory)
@@ -250,6 +254,11 @@ _SCORE = (
     "category", "metric", "symbol", "variant", "value", "unit", "better", "status", "reason",
     "lower", "upper",
 )  # fmt: skip
+_INSERT_SCORE = (
+    f"INSERT INTO scores (directory, row, {', '.join(_SCORE)}) "
+    f"VALUES ({', '.join('?' * (2 + len(_SCORE)))})"
+)
+_cells = attrgetter(*_SCORE)
 _FAILURE = ("suite", "scenario", "position", "planner", "seed", "axes", "error", "traceback")
 
 
@@ -366,10 +375,6 @@ def _run(row: sqlite3.Row) -> RunRow:
         record=record,
         role=str(record.get("role", "candidate")),
     )
-
-
-def _score(row: sqlite3.Row, run_id: str) -> ScoreRow:
-    return ScoreRow(run_id=run_id, **{name: row[name] for name in _SCORE})
 
 
 def _failure(row: sqlite3.Row) -> FailureRow:

@@ -7,6 +7,7 @@ import io
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -75,8 +76,8 @@ def write_table(path: Path, rows: Iterable[Sequence[str]]) -> None:
     Raises:
         InputError: it cannot be written there.
     """
-    text = io.StringIO(newline="")
-    csv.writer(text).writerows([safe_cell(cell) for cell in row] for row in rows)
+    text, safe = io.StringIO(newline=""), _SafeCells()
+    csv.writer(text).writerows([safe[cell] for cell in row] for row in rows)
     atomic_write(path, text.getvalue())
 
 
@@ -89,6 +90,14 @@ def safe_cell(cell: str) -> str:
     except ValueError:
         return f"'{cell}"
     return cell
+
+
+class _SafeCells(dict[str, str]):
+    """`safe_cell` of each different text, worked out once: most stand in every run."""
+
+    def __missing__(self, cell: str) -> str:
+        self[cell] = safe = safe_cell(cell)
+        return safe
 
 
 def read_scores_csv(path: str | os.PathLike[str]) -> list[RunScore]:
@@ -153,6 +162,10 @@ def _plain(number: str) -> str:
     return number
 
 
+#: The same few texts stand in every run.
+_hidden = lru_cache(maxsize=4096)(hidden_character)
+
+
 def _score(cells: Mapping[str, Any]) -> Score:
     for name, known in (
         ("status", ("ok", "undefined", "censored")),
@@ -161,7 +174,7 @@ def _score(cells: Mapping[str, Any]) -> Score:
         if cells[name] not in known:
             raise ValueError(f"{name} '{cells[name]}' is not one of {', '.join(known)}")
     for name in _TEXTS:
-        if hidden := hidden_character(cells[name]):
+        if hidden := _hidden(cells[name]):
             raise ValueError(f"{name} has the character {hidden}, which nobody sees")
     values: dict[str, Any] = {name: cells[name] for name in _TEXTS}
     values |= {name: float(_plain(cells[name])) if cells[name] else None for name in _NUMBERS}

@@ -128,18 +128,21 @@ class CrowdRanks:
         }
 
 
-def crowd_ranks(results: Results, metric: str | None = None) -> CrowdRanks | None:
+def crowd_ranks(
+    results: Results, metric: str | None = None, *, table: Table | None = None
+) -> CrowdRanks | None:
     """Orders by crowd; None where runs are of fewer than two crowds or planners.
 
     Args:
         results: of one suite.
         metric: that decides the order; by default the primary score.
+        table: of these results, for a caller who has it.
     """
     labels = list(dict.fromkeys(r.axes[AXIS] for r in results.runs if AXIS in r.axes))
     planners = sorted({r.planner for r in results.runs})
     if len(labels) < 2 or len(planners) < 2:
         return None
-    chosen, table = metric or _primary(results), Table(results)
+    chosen, table = metric or _primary(results), table or Table(results)
     name = next((n for n in headline_names(table) if n[0] == chosen), None)
     better = "" if name is None else table.label(name).better
     if name is None or better not in ("higher", "lower"):

@@ -6,8 +6,8 @@ correction for the others (Berger 1982, intersection-union test).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -75,19 +75,21 @@ class FloorCheck:
         if not lost:
             names = ", ".join(x.other for x in self.leads)
             return f"{self.planner} beats the floors in {score}: {_by(self.leads[0])} ({names})"
-        told = "; ".join(_by(lead) for lead in lost)
-        return f"{self.planner} does not beat the floors in {score}: {told}"
+        return f"{self.planner} does not beat the floors in {score}: {_told(lost)}"
 
 
-def check_floors(results: Results, *, level: float = 0.95) -> tuple[FloorCheck, ...]:
+def check_floors(
+    results: Results, *, level: float = 0.95, table: Table | None = None
+) -> tuple[FloorCheck, ...]:
     """Each planner against every floor, by name; floors themselves are not checked.
 
     Args:
         results: runs that may be compared.
         level: of the intervals.
+        table: of these results, for a caller who has it.
     """
     roles = {run.planner: run.role for run in results.runs}
-    table = Table(results)
+    table = table or Table(results)
     floors = [p for p in table.planners if roles.get(p) == "floor"]
     name = primary_name(table)
     return tuple(
@@ -171,8 +173,18 @@ def _low(lead: Lead) -> float:
     return float("-inf") if lead.by.low is None else lead.by.low
 
 
+def _told(leads: Sequence[Lead]) -> str:
+    """All leads; a reason that they share is said once."""
+    reasons = {lead.reason for lead in leads}
+    if len(leads) == 1 or len(reasons) > 1 or reasons == {""}:
+        return "; ".join(map(_by, leads))
+    every = "both" if len(leads) == 2 else "all"
+    said = "; ".join(_by(replace(lead, reason="")) for lead in leads)
+    return f"{said} ({every}: {leads[0].reason})"
+
+
 def _by(lead: Lead) -> str:
-    """Such as ``0.31 [0.22, 0.40] ahead of stop_and_go in 18 pairs``."""
+    """Such as ``+0.31 [0.22, 0.40] against stop_and_go, 18 pairs, 6 crowd draws``."""
     why = f" ({lead.reason})" if lead.reason else ""
     counts = f"{plural(lead.pairs, 'pair')}, {plural(lead.draws, 'crowd draw')}"
     place = f"{lead.other}, {counts}"

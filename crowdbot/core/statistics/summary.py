@@ -124,6 +124,7 @@ def summarise(
     *,
     level: float = 0.95,
     alpha: float = 0.05,
+    table: Table | None = None,
 ) -> Summary:
     """All statistics of some results.
 
@@ -134,8 +135,9 @@ def summarise(
             others are a family of their own, and so are comparisons with floors and ceilings.
         level: of intervals.
         alpha: chance of any false verdict in a family.
+        table: of these results, for a caller who has it.
     """
-    table = Table(results)
+    table = table or Table(results)
     chosen = headline_names(table) if names is None else tuple(names)
     pairs = list(combinations(table.planners, 2))
     found = [compare(table, name, a, b, level=level) for name in chosen for a, b in pairs]

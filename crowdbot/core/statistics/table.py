@@ -76,6 +76,7 @@ class Table:
         self.scales = results.scales
         self._rows = _by_score(results.scores)
         self._columns: dict[tuple[Name, str], Column] = {}
+        self._attempts: dict[str, list[tuple[RunRow | None, bool]]] = {}
 
     @cached_property
     def names(self) -> tuple[Name, ...]:
@@ -136,21 +137,26 @@ class Table:
         return self._columns[name, planner]
 
     def _column(self, name: Name, planner: str) -> Column:
-        rows, reasons = self._rows.get(name, {}), Counter[str]()
-        outcome = np.full(len(self.keys), MISSING, dtype=np.int8)
-        low, high = np.full(len(self.keys), -math.inf), np.full(len(self.keys), math.inf)
-        failed = np.zeros(len(self.keys), dtype=np.bool_)
-        for place, key in enumerate(self.keys):
-            run = self.runs.get((planner, key))
-            if run is None and (planner, key) in self.failures:
-                kind, why, bounds = _without_run(name[0])
-                failed[place] = True
-            else:
-                kind, why, bounds = _read(run, rows.get(run.run_id) if run else None)
-                failed[place] = run is not None and run.status == PLANNER_FAILED
-            outcome[place], (low[place], high[place]) = kind, bounds
-            reasons.update([why] if why else [])
-        return Column(outcome, low, high, failed, dict(sorted(reasons.items())))
+        rows, tried = self._rows.get(name, {}), self._tried(planner)
+        found = [
+            _without_run(name[0]) if lost else _read(run, rows.get(run.run_id) if run else None)
+            for run, lost in tried
+        ]
+        outcome = np.array([kind for kind, _, _ in found], dtype=np.int8)
+        low, high = np.array([bounds for *_, bounds in found], dtype=np.float64).reshape(-1, 2).T
+        failed = [lost or (run is not None and run.status == PLANNER_FAILED) for run, lost in tried]
+        reasons = Counter(why for _, why, _ in found if why)
+        return Column(
+            outcome, low.copy(), high.copy(), np.array(failed, np.bool_),
+            dict(sorted(reasons.items())),
+        )  # fmt: skip
+
+    def _tried(self, planner: str) -> list[tuple[RunRow | None, bool]]:
+        """For each row the run of a planner, and whether it could not be made."""
+        if planner not in self._attempts:
+            places = [(planner, key) for key in self.keys]
+            self._attempts[planner] = [(self.runs.get(p), p in self.failures) for p in places]
+        return self._attempts[planner]
 
 
 def counts_of(outcome: NDArray[np.int8]) -> Counts:

@@ -7,11 +7,13 @@ covariance; a list of people with positions; so packages that nobody installed c
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.trajectories.raw_table import RawTable
+import numpy as np
+
+from crowdbot.core.trajectories.raw_table import Cells, RawTable
 from crowdbot.errors import InputError, UnknownNameError
 
 #: Where messages of people have their list, in the order of looking.
@@ -79,12 +81,12 @@ def _messages(path: Path, topics: set[str] | None = None) -> Iterator[tuple[str,
         raise InputError(f"{path}: not a bag that can be read: {error}") from error
 
 
-def _stamp(message: Any, ns: int) -> float:
-    """Seconds; of the header where it has one that was filled in."""
+def _stamp(message: Any, ns: int) -> int:
+    """Nanoseconds; of the header where it has one that was filled in."""
     header = getattr(message, "header", None)
     if header is not None and (header.stamp.sec or header.stamp.nanosec):
-        return float(header.stamp.sec) + float(header.stamp.nanosec) / 1e9
-    return ns / 1e9
+        return 10**9 * int(header.stamp.sec) + int(header.stamp.nanosec)
+    return ns
 
 
 def _robot_row(path: Path, topic: str, message: Any) -> dict[str, float]:
@@ -146,7 +148,8 @@ def _table(path: Path, topic: str | None, rows: list[dict[str, Any]]) -> RawTabl
         raise InputError(f"{path}: {topic} holds nobody")
     once = {(row["t"], row.get("id")): row for row in sorted(rows, key=lambda row: row["t"])}
     rows = list(once.values())  # a message that was sent again says nothing new
-    columns: Mapping[str, list[Any]] = {
+    columns: dict[str, Cells] = {
         n: [row.get(n, math.nan) for row in rows] for n in dict.fromkeys(k for r in rows for k in r)
     }
+    columns["t"] = np.array(columns["t"], dtype="datetime64[ns]")
     return RawTable(f"{path}: {topic}", columns)

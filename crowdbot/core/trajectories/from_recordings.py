@@ -284,7 +284,6 @@ class FromRecordings:
         return _made(
             cls,
             {"robot": own_robot, "agents": others},
-            from_zero=True,
             agent_radius=agent_radius,
             agent_mass=agent_mass,
             resample=resample,
@@ -493,7 +492,6 @@ def _made(
     clock_offset: float,
     max_gap: float,
     robot_goal_time: GoalTime,
-    from_zero: bool = False,
     **told: Any,
 ) -> _Run:
     """The run of some tables, and of what was told beside them; warns of what cannot be."""
@@ -510,7 +508,6 @@ def _made(
         resample=resample,
         clock_offset=number_of("clock_offset", clock_offset, "s"),
         max_gap=number_of("max_gap", max_gap, "s"),
-        from_zero=from_zero,
     )
     arrived = robot_goal_time
     if arrived == "derived":

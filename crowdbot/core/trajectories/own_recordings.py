@@ -29,6 +29,8 @@ AGENT = ("t", "id", "x", "y", "vx", "vy", "radius", "mass", "jump")
 TRIP = ("agent", "t0", "t1", "reached")
 CONTACT = ("t0", "t1", "agent", "impulse", "peak_force", "relative_speed", "bearing")
 
+_TWO_CLOCKS = "{}: one table has stamps, the other seconds: their clocks cannot be compared"
+_LATEST = np.iinfo(np.int64).max
 #: The samples: those of the robot; or times with a steady rate, Hz.
 Samples = float | Literal["robot"] | None
 
@@ -44,7 +46,6 @@ def columns_of(
     resample: Samples,
     clock_offset: float,
     max_gap: float,
-    from_zero: bool = False,
 ) -> dict[str, Any]:
     """Columns by the names of `Trajectories.from_arrays`.
 
@@ -54,45 +55,52 @@ def columns_of(
         resample: see `Samples`; None takes times as they are.
         clock_offset: added to the times of people, s.
         max_gap: people are not interpolated over a longer time without a row, s.
-        from_zero: whether times are counted from the first, as those of stamps are.
 
     Raises:
         InputError: a table does not fit the others, or there is no table.
     """
-    rows = None if robot is None else _robot_rows(robot)
+    for what, table, columns in (("robot", robot, ROBOT[:3]), ("agents", agents, AGENT[:4])):
+        if table is not None:
+            table.require(what, *columns)
+    stamps = [t.stamps() for t in (robot, agents) if t is not None]
+    if not stamps:
+        raise InputError("trajectories: neither a robot nor agents")
+    if len({found is None for found in stamps}) > 1:
+        raise InputError(_TWO_CLOCKS.format(agents.name if agents else ""))
+    origin = None if stamps[0] is None else int(stamps[0].min(initial=_LATEST))
+    rows = None if robot is None else _robot_rows(robot, origin)
     ids = None
     people: dict[str, Any] | None = None
-    stamped = [t.times()[1] for t in (robot, agents) if t is not None]
-    if not stamped:
-        raise InputError("trajectories: neither a robot nor agents")
-    if len(set(stamped)) > 1:
-        raise InputError(
-            f"{agents.name if agents else ''}: one table has stamps, the other seconds: "
-            "their clocks cannot be compared"
-        )
     if agents is not None:
-        agents.require("agents", "t", "id", "x", "y")
         ids = Ids(agents)
         people = {n: agents.numbers(n) for n in AGENT[2:] if n in agents}
-        people |= {"t": agents.times()[0] + clock_offset, "id": ids.rows}
-    zero = _zero(rows, people) if stamped[0] or from_zero else 0.0
+        people |= {"t": _seconds(agents, "t", origin) + clock_offset, "id": ids.rows}
+    zero = 0.0 if origin is None else _zero(rows, people)
     for table in (rows, people):
         if table is not None:
             table["t"] = table["t"] - zero
     t = _samples(rows, people, resample)
-    columns: dict[str, Any] = {"t": t}
+    made: dict[str, Any] = {"t": t}
     if rows is not None:
         rows = _resampled_robot(rows, t) if resample is not None else rows
-        columns |= {f"robot_{n}": v for n, v in rows.items() if n != "t"}
+        made |= {f"robot_{n}": v for n, v in rows.items() if n != "t"}
     if agents is not None and people is not None:
         defaults = {"radius": agent_radius, "mass": agent_mass}
         gap = max_gap if resample is not None else None
-        columns |= _people_columns(agents, people, t, defaults, gap)
+        made |= _people_columns(agents, people, t, defaults, gap)
     if trips is not None:
-        columns |= _trips(trips, ids, zero)
+        made |= _trips(trips, ids, origin, zero)
     if contacts is not None:
-        columns["contacts"] = _contacts(contacts, ids, zero)
-    return columns
+        made["contacts"] = _contacts(contacts, ids, origin, zero)
+    return made
+
+
+def _seconds(table: RawTable, column: str, origin: int | None) -> Array:
+    """(K,) times, s; of stamps since ``origin``, ns since 1970."""
+    times, stamped = table.times(column, origin or 0)
+    if stamped != (origin is not None):
+        raise InputError(_TWO_CLOCKS.format(table.name))
+    return times
 
 
 def _zero(rows: Mapping[str, Array] | None, people: Mapping[str, Array] | None) -> float:
@@ -102,12 +110,11 @@ def _zero(rows: Mapping[str, Array] | None, people: Mapping[str, Array] | None) 
     return float(np.min(table["t"]))
 
 
-def _robot_rows(robot: RawTable) -> dict[str, Array]:
-    robot.require("robot", "t", "x", "y")
+def _robot_rows(robot: RawTable, origin: int | None) -> dict[str, Array]:
     if ("vx" in robot) != ("vy" in robot):
         robot.require("robot", "vx", "vy")
     rows = {n: robot.numbers(n) for n in ROBOT[1:] if n in robot}
-    rows["t"] = robot.times()[0]
+    rows["t"] = _seconds(robot, "t", origin)
     if not len(rows["t"]):
         raise InputError(f"{robot.name}: the table has no rows")
     back = np.flatnonzero(np.diff(rows["t"]) <= 0)
@@ -222,21 +229,21 @@ def _on_samples(
     return made
 
 
-def _trips(table: RawTable, ids: Ids | None, zero: float) -> dict[str, Any]:
+def _trips(table: RawTable, ids: Ids | None, origin: int | None, zero: float) -> dict[str, Any]:
     table.require("trips", *TRIP)
     agent = table.numbers("agent").astype(np.int64) if ids is None else ids.of(table, "agent")
     return {
         "trip_agent": agent,
-        "trip_t0": table.times("t0")[0] - zero,
-        "trip_t1": table.times("t1")[0] - zero,
+        "trip_t0": _seconds(table, "t0", origin) - zero,
+        "trip_t1": _seconds(table, "t1", origin) - zero,
         "trip_reached": table.numbers("reached") != 0,
     }
 
 
-def _contacts(table: RawTable, ids: Ids | None, zero: float) -> dict[str, Any]:
+def _contacts(table: RawTable, ids: Ids | None, origin: int | None, zero: float) -> dict[str, Any]:
     table.require("contacts", *CONTACT[:-1])
     columns: dict[str, Any] = {n: table.numbers(n) for n in CONTACT[3:] if n in table}
-    columns |= {n: table.times(n)[0] - zero for n in ("t0", "t1")}
+    columns |= {n: _seconds(table, n, origin) - zero for n in ("t0", "t1")}
     if ids is not None:
         return columns | {"agent": ids.of(table, "agent")}
     agent = table.numbers("agent")

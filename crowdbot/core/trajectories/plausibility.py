@@ -24,6 +24,7 @@ _FEW = 5
 _STEPS = (1e-4, 5.0)  # s; a median time between samples outside is not one in seconds
 _UNITS, _USUAL = {"millimetres": 1000, "centimetres": 100}, 0.8  # m/s, of robots and people
 _CREEPING, _FRAMES = 0.15, 25  # m/s, slower than anybody walks or drives; frames per second, usual
+_AGREED, _NEARLY_ALL = 0.8, 0.95  # shares of samples in which headings agree with the motion
 _HEADINGS = 0.7  # rad; a heading that is farther from the motion does not agree with it
 
 
@@ -101,7 +102,7 @@ def _headings(run: Trajectories) -> Iterator[str]:
         return
     motion, theta = np.arctan2(vy, vx)[moving], robot.theta[moving]
     as_radians = _agreement(motion, theta)
-    if as_radians >= 0.5:
+    if as_radians >= _AGREED:
         return
     seen = f"the heading agrees with the motion in {100 * as_radians:.0f} % of the samples"
     others = {
@@ -113,10 +114,12 @@ def _headings(run: Trajectories) -> Iterator[str]:
     }
     best = max(others, key=lambda name: _agreement(motion, others[name]))
     agreed = _agreement(motion, others[best])
-    if agreed > max(0.8, 2.0 * as_radians):
+    # On curved ways a wrong heading agrees in half of the samples by chance: then the other
+    # reading must agree nearly everywhere.
+    if agreed > max(_AGREED, min(2.0 * as_radians, _NEARLY_ALL)):
         seen = f"{seen}; {best}, in {100 * agreed:.0f} %"
         yield f"the robot: {seen}: theta is in radians, from x to y"
-    elif float(np.max(np.abs(theta))) > 4.0 * np.pi:
+    elif as_radians < 0.5 and float(np.max(np.abs(theta))) > 4.0 * np.pi:
         yield f"the robot: {seen}, and reaches {np.max(np.abs(theta)):.0f} rad: degrees?"
 
 

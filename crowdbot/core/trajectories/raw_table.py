@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,8 @@ from crowdbot.errors import InputError, did_you_mean, kind_of, nearest
 ColumnNames = Mapping[str, str]
 #: The cells of a column.
 Cells = Sequence[Any] | NDArray[Any]
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+_BEYOND = re.compile(r"[.,]\d{6}(\d{1,3})")
 _COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 
 
@@ -82,26 +84,46 @@ class RawTable:
         cells = self.columns[column]
         return np.array([self._number(column, i, cell) for i, cell in enumerate(cells)])
 
-    def times(self, column: str = "t") -> tuple[Array, bool]:
-        """(K,) times in s, and whether they are stamps: seconds since 1970.
+    def stamps(self, column: str = "t") -> NDArray[np.int64] | None:
+        """(K,) ns since 1970, UTC; None where the column holds numbers.
 
         Stamps are ISO 8601 texts or dates of Python or numpy; without a zone they are UTC.
 
         Raises:
-            InputError: a cell is neither a number nor a stamp, or empty.
+            InputError: a cell is no stamp, or empty.
         """
         cells = self.columns[column]
         if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
-            return cells.astype("datetime64[ns]").astype(np.int64) / 1e9, True
+            self._all_there(column, ~np.isnat(cells))
+            return cells.astype("datetime64[ns]").astype(np.int64)
+        if not any(_is_stamp(cell) for cell in cells[:1]):
+            return None
+        return np.array([self._stamp(column, i, cell) for i, cell in enumerate(cells)], np.int64)
+
+    def times(self, column: str = "t", origin: int = 0) -> tuple[Array, bool]:
+        """(K,) times in s, and whether they are stamps, which are counted from an instant.
+
+        Args:
+            column: which.
+            origin: ns since 1970; subtracted before stamps become s, which from 1970 on would be
+                rounded to a quarter of a microsecond.
+
+        Raises:
+            InputError: a cell is neither a number nor a stamp, or empty.
+        """
+        cells, stamps = self.columns[column], self.stamps(column)
+        if stamps is not None:
+            return (stamps - origin) / 1e9, True
         if isinstance(cells, np.ndarray) and cells.dtype.kind == "m":
             return cells.astype("timedelta64[ns]").astype(np.int64) / 1e9, False
-        stamped = any(_is_stamp(cell) for cell in cells[:1])
-        read = self._stamp if stamped else self._number
-        times = np.array([read(column, i, cell) for i, cell in enumerate(cells)], dtype=float)
-        unknown = np.flatnonzero(~np.isfinite(times))
+        times = np.array([self._number(column, i, cell) for i, cell in enumerate(cells)], float)
+        self._all_there(column, np.isfinite(times))
+        return times, False
+
+    def _all_there(self, column: str, there: NDArray[np.bool_]) -> None:
+        unknown = np.flatnonzero(~there)
         if len(unknown):
             raise InputError(f"{self.where(int(unknown[0]))}: a row has no {column}")
-        return times, stamped
 
     def _number(self, column: str, row: int, cell: Any) -> float:
         try:
@@ -109,7 +131,7 @@ class RawTable:
         except (TypeError, ValueError) as error:
             raise InputError(f"{self.where(row)}: {column}: {error}") from error
 
-    def _stamp(self, column: str, row: int, cell: Any) -> float:
+    def _stamp(self, column: str, row: int, cell: Any) -> int:
         try:
             return _as_stamp(cell)
         except (TypeError, ValueError) as error:
@@ -312,12 +334,16 @@ def _is_stamp(cell: Any) -> bool:
     return isinstance(cell, str) and bool(re.match(r"\s*\d{4}-\d\d-\d\d[T ]", cell))
 
 
-def _as_stamp(cell: Any) -> float:
+def _as_stamp(cell: Any) -> int:
+    """Nanoseconds since 1970."""
     if isinstance(cell, np.datetime64):
-        return float(cell.astype("datetime64[ns]").astype(np.int64)) / 1e9
+        return int(cell.astype("datetime64[ns]").astype(np.int64))
     at = cell if isinstance(cell, datetime) else datetime.fromisoformat(str(cell).strip())
     at = at if at.tzinfo else at.replace(tzinfo=UTC)
-    return at.timestamp()
+    # Dates of Python end at microseconds; those of pandas, and texts, may go on.
+    rest = _BEYOND.search(cell) if isinstance(cell, str) else None
+    more = int(rest[1].ljust(3, "0")) if rest else int(getattr(at, "nanosecond", 0))
+    return 1000 * int((at - _EPOCH) // timedelta(microseconds=1)) + more
 
 
 def _label(cell: Any) -> str:

@@ -93,6 +93,13 @@ def pixels(page: Page, selector: str) -> Any:
     return (picture * 255).round().astype(int)
 
 
+def commonest(picture: Any) -> list[int]:
+    """The colour of most pixels, red, green and blue, 0 to 255: the floor."""
+    colours = picture[..., :3].round().astype(int).reshape(-1, 3)
+    found, counts = np.unique(colours, axis=0, return_counts=True)
+    return [int(part) for part in found[counts.argmax()]]
+
+
 def test_it_opens_offline_and_lists_what_happened(browser: Browser, one: Path) -> None:
     with Visit(browser, one, "#paused", offline=True) as page:
         events = [e.inner_text() for e in page.query_selector_all("#event-list button")]
@@ -214,6 +221,25 @@ def test_plots_show_any_signal(browser: Browser, one: Path) -> None:
         assert len(np.unique(pixels(page, ".plot canvas").reshape(-1, 4), axis=0)) > 3
 
 
+@pytest.mark.parametrize(
+    ("values", "low", "high", "ticks"),
+    [
+        ([-1.17, 0.86], -1.5, 1.0, [-1.0, 0.0, 1.0]),
+        ([0.0, 0.65], 0.0, 0.7, [0.0, 0.5]),
+        ([0.28, 2.8], 0.0, 3.0, [0.0, 1.0, 2.0, 3.0]),
+        ([7.0, 7.0], 7.0, 8.0, [7.0, 7.5, 8.0]),
+        ([], 0.0, 1.0, [0.0, 1.0]),
+    ],
+)
+def test_axes_of_plots_have_round_numbers(
+    values: list[float], low: float, high: float, ticks: list[float], browser: Browser, one: Path
+) -> None:
+    with Visit(browser, one, "#paused") as page:
+        axis = page.evaluate("(values) => axisOf([{ values }])", values)
+    assert [axis["low"], axis["high"]] == pytest.approx([low, high])
+    assert axis["ticks"] == pytest.approx(ticks)
+
+
 def test_cameras_show_the_latest_image(browser: Browser, one: Path) -> None:
     with Visit(browser, one, "#paused&t=1") as page:
         assert (pixels(page, ".camera canvas") == [204, 0, 0, 255]).all()
@@ -248,7 +274,7 @@ def test_pictures_and_clips_are_saved(browser: Browser, two: Path) -> None:
             with page.expect_download() as download:
                 page.click("#clip")
             data = download.value.path().read_bytes()
-            assert download.value.suggested_filename.endswith(f".{kind}")
+            assert download.value.suggested_filename == f"compared-3.00-3.40s.{kind}"
             if kind == "webm":
                 assert data[:4] == b"\x1a\x45\xdf\xa3"
                 assert len(data) > 5000
@@ -259,6 +285,7 @@ def test_pictures_and_clips_are_saved(browser: Browser, two: Path) -> None:
             for k in (0, 4):
                 clip.seek(k)
                 frames.append(np.array(clip.convert("RGB")))
+            assert commonest(frames[0]) == pytest.approx(commonest(picture * 255), abs=2)
             shown = (frames[0] != frames[1]).any(axis=2).mean()
             assert 0.0005 < shown < 0.5
         until(page, "byId('said').textContent.startsWith('The clip is saved')")
@@ -335,11 +362,20 @@ def test_paper_keeps_circles(browser: Browser, two: Path) -> None:
             )
             assert stretch == pytest.approx(1.0, abs=0.02)
         assert not page.is_visible("#play")
+        assert not page.is_visible("#plots")
+        assert not page.is_visible("#variants")
         assert page.is_visible("#legend")
         assert page.evaluate("document.documentElement.scrollWidth") <= 700
         page.evaluate("dispatchEvent(new Event('afterprint'))")
         assert page.get_attribute("html", "data-theme") == "dark"
         assert len(page.pdf(format="A4")) > 30_000
+
+
+def test_plots_that_are_open_are_printed(browser: Browser, one: Path) -> None:
+    with Visit(browser, one, "#paused&t=4&plot=speed") as page:
+        page.emulate_media(media="print")
+        assert page.is_visible(".plot canvas")
+        assert not page.is_visible("#plot-choice")
 
 
 @needs_axe

@@ -170,3 +170,15 @@ def test_equal_planners_are_seldom_told_apart() -> None:
         a, b = (rng.random((2, 18)) < 0.6).astype(float).tolist()
         ahead += check("mine", results({"mine": a, "blind": b})).beats_all
     assert ahead <= 12  # 5 are expected; more than 12 with probability 0.002
+
+
+def test_a_reason_that_leads_share_is_said_once() -> None:
+    values = {"mine": [1.0, 0.0], "blind": [0.0, 0.0], "still": [0.0, 0.0], "slow": [0.0, 1.0]}
+    shared = check("mine", results(values, draws=["d", "d"])).text
+    assert shared.count("(") == 1
+    assert shared.endswith("(all: one crowd draw: its chance cannot be told from a difference)")
+    alone = check("mine", results({"mine": [1.0], "blind": [0.0]})).text
+    assert alone.endswith("(one crowd draw: its chance cannot be told from a difference)")
+    values = {"mine": [1.0] * 3, "blind": [0.0] * 3, "still": [0.0, None, None]}
+    apart = check("mine", results(values)).text
+    assert apart.count("(") == 2

@@ -211,6 +211,14 @@ def _frames() -> dict[str, Any]:
     return {"t": k, "x": 3 * np.cos(k / 125), "y": 3 * np.sin(k / 125)}
 
 
+def _winding() -> dict[str, Any]:
+    """To the north-east in curves: exchanging x and y changes the direction little."""
+    t = np.arange(300) * 0.1
+    theta = 0.25 * np.pi + 0.42 * np.sin(t / 2)
+    x, y = (np.cumsum(0.06 * part) for part in (np.cos(theta), np.sin(theta)))
+    return {"t": t, "x": x, "y": y, "theta": theta}
+
+
 def _people(x: Any, y: Any, t: Any) -> dict[str, Any]:
     return {"t": t, "id": np.zeros(len(t)), "x": x, "y": y}
 
@@ -219,6 +227,7 @@ def _wrong() -> dict[str, tuple[dict[str, Any], dict[str, Any] | None, str]]:
     good = _circle()
     t, x, y = good["t"], good["x"], good["y"]
     theta = t / 5 + 0.5 * np.pi
+    winding = _winding()
     far = _people(0.5 * t, np.full(len(t), 50.0), t)
     return {
         "mm": (_circle(1000.0 * 3), None, "the robot: median speed 1.8e.03 m/s.*millimetres"),
@@ -229,6 +238,11 @@ def _wrong() -> dict[str, tuple[dict[str, Any], dict[str, Any] | None, str]]:
         "frames": (_frames(), None, "whole numbers.*frame_rate=25 it would be 0.6 m/s"),
         "degrees": ({**good, "theta": np.degrees(theta)}, None, "taken as degrees, in 100 %"),
         "y first": ({**good, "theta": 0.5 * np.pi - theta}, None, "x and y exchanged, in 100 %"),
+        "winding": (
+            {**winding, "x": winding["y"], "y": winding["x"]},
+            None,
+            "in 6. % of the samples; with x and y exchanged, in 100 %",
+        ),
         "north": ({**good, "theta": theta - 0.5 * np.pi}, None, "turned by (-)?90 degrees"),
         "own frame": (
             {**good, "theta": theta, "vx": np.full(len(t), 0.6), "vy": 0 * t},
@@ -264,6 +278,40 @@ def test_times_may_be_numbers_of_frames(tmp_path: Path) -> None:
     np.testing.assert_allclose(np.diff(run.robot.x) / np.diff(run.t), 0.5)
     with pytest.raises(InputError, match="frame_rate is a number of frames per second, not 0"):
         crowdbot.Trajectories.from_csv(robot, columns={"robot": names}, frame_rate=0, **BODY)
+
+
+@pytest.mark.parametrize("kind", ["text", "numpy", "pandas"])
+def test_stamps_keep_their_nanoseconds(kind: str) -> None:
+    """As seconds since 1970 they would be 119 ns off; the robot would jerk."""
+    ns = 1_777_629_600_123_456_789 + np.arange(5) * 33_333_333
+    stamps: Any = ns.astype("datetime64[ns]")
+    if kind == "text":
+        stamps = [f"{stamp}Z" for stamp in stamps]
+    elif kind == "pandas":
+        pandas = pytest.importorskip("pandas")
+        stamps = [pandas.Timestamp(stamp, tz="Europe/Vienna") for stamp in stamps]
+    robot = {"t": stamps, "x": np.arange(5.0), "y": np.zeros(5)}
+    trips = {"agent": [1], "t0": stamps[:1], "t1": stamps[-1:], "reached": [1]}
+    people = {"t": stamps, "id": [1] * 5, "x": np.arange(5.0), "y": np.ones(5)}
+    run = crowdbot.Trajectories.from_pandas(robot, people, trips, **BODY)
+    assert run.t.tolist() == [0.0, 0.033333333, 0.066666666, 0.099999999, 0.133333332]
+    assert run.trips is not None
+    assert run.trips.t1.tolist() == [0.133333332]
+
+
+def test_trips_have_the_clock_of_the_run() -> None:
+    stamps = np.array([0, 10**9], "datetime64[ns]")
+    robot = {"t": stamps, "x": [0.0, 1.0], "y": [0.0, 0.0]}
+    trips = {"agent": [1], "t0": [0.0], "t1": [1.0], "reached": [1]}
+    people = {"t": stamps, "id": [1, 1], "x": [0.0, 1.0], "y": [1.0, 1.0]}
+    with pytest.raises(InputError, match="one table has stamps, the other seconds"):
+        crowdbot.Trajectories.from_pandas(robot, people, trips, **BODY)
+
+
+def test_a_missing_stamp_is_told() -> None:
+    robot = {"t": np.array([0, "NaT"], "datetime64[ns]"), "x": [0.0, 1.0], "y": [0.0, 0.0]}
+    with pytest.raises(InputError, match="a row has no t"):
+        crowdbot.Trajectories.from_pandas(robot, **BODY)
 
 
 def test_stamps_are_no_frames(tmp_path: Path) -> None:

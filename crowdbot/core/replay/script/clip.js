@@ -80,7 +80,7 @@ async function saveClip() {
   saving = true;
   byId("clip").textContent = "Stop";
   const blob = await (format === "gif" ? makeGif : makeVideo)(from, to);
-  if (saving) download(blob, fileName(format));
+  if (saving) download(blob, fileName(format, from, to));
   say(saving ? `The clip is saved: ${Math.round(blob.size / 1000)} kB.` : "Stopped.");
   byId("clip").textContent = "Save clip";
   saving = false;

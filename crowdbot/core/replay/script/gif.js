@@ -2,32 +2,41 @@
 
 const CLEAR = 255; // the transparent index: as it was
 const FULL = 4096; // codes of LZW
+const GROUPS = 32768; // of colours: five bits a channel
 
-/** The commonest colours of some images, four bits a channel, and the index of every colour. */
+/** The means of the commonest groups of colours of some images, and the index of every group. */
 function paletteOf(images) {
-  const counts = new Uint32Array(FULL);
+  const counts = new Uint32Array(GROUPS);
+  const sums = [0, 1, 2].map(() => new Float64Array(GROUPS));
   for (const data of images) {
-    for (let i = 0; i < data.length; i += 4) counts[codeOf(data, i)]++;
+    for (let i = 0; i < data.length; i += 4) {
+      const group = groupOf(data, i);
+      counts[group]++;
+      for (let k = 0; k < 3; k++) sums[k][group] += data[i + k];
+    }
   }
-  const used = [...counts.keys()].filter((code) => counts[code]).sort((a, b) => counts[b] - counts[a]);
+  const used = [...counts.keys()].filter((group) => counts[group]).sort((a, b) => counts[b] - counts[a]);
   const chosen = used.slice(0, CLEAR);
-  const parts = (code) => [code >> 8, (code >> 4) & 15, code & 15];
-  const nearest = new Uint8Array(FULL);
-  for (let code = 0; code < FULL; code++) {
-    const [r, g, b] = parts(code);
-    let least = Infinity;
-    chosen.forEach((other, i) => {
-      const [x, y, z] = parts(other);
-      const apart = (r - x) ** 2 + (g - y) ** 2 + (b - z) ** 2;
-      if (apart < least) [least, nearest[code]] = [apart, i];
-    });
-  }
   const bytes = new Uint8Array(3 * 256);
-  chosen.forEach((code, i) => bytes.set(parts(code).map((c) => 17 * c), 3 * i));
-  return { bytes, nearest };
+  chosen.forEach((group, i) => bytes.set(sums.map((sum) => Math.round(sum[group] / counts[group])), 3 * i));
+  return { bytes, nearest: nearestTo(bytes, chosen) };
 }
 
-const codeOf = (data, i) => ((data[i] >> 4) << 8) | (data[i + 1] & 0xf0) | (data[i + 2] >> 4);
+function nearestTo(bytes, chosen) {
+  const nearest = new Uint8Array(GROUPS);
+  for (let group = 0; group < GROUPS; group++) {
+    const [r, g, b] = [group >> 10, (group >> 5) & 31, group & 31].map((c) => 8 * c + 4);
+    let least = Infinity;
+    for (let i = 0; i < chosen.length; i++) {
+      const apart = (r - bytes[3 * i]) ** 2 + (g - bytes[3 * i + 1]) ** 2 + (b - bytes[3 * i + 2]) ** 2;
+      if (apart < least) [least, nearest[group]] = [apart, i];
+    }
+  }
+  chosen.forEach((group, i) => { nearest[group] = i; });
+  return nearest;
+}
+
+const groupOf = (data, i) => ((data[i] >> 3) << 10) | ((data[i + 1] >> 3) << 5) | (data[i + 2] >> 3);
 
 /** Takes images one by one; `finish` gives the file. */
 function gifWriter(width, height, palette, delay) {
@@ -37,7 +46,7 @@ function gifWriter(width, height, palette, delay) {
   let last = null;
   return {
     add(data) {
-      const indices = Uint8Array.from({ length: width * height }, (_, i) => palette.nearest[codeOf(data, 4 * i)]);
+      const indices = Uint8Array.from({ length: width * height }, (_, i) => palette.nearest[groupOf(data, 4 * i)]);
       const changed = last ? indices.map((index, i) => (index === last[i] ? CLEAR : index)) : indices;
       last = indices;
       parts.push(new Uint8Array([0x21, 0xf9, 4, 0x05, ...low(delay), CLEAR, 0, 0x2c, 0, 0, 0, 0,

@@ -56,9 +56,11 @@ function paintLabel({ canvas }, run) {
 }
 
 /** A file name that says what and when. */
-function fileName(suffix) {
+/** Of a moment, or of a span of time. */
+function fileName(suffix, ...times) {
   const title = document.querySelector("h1").textContent.replace(/[^\w.-]+/g, "-").replace(/^-+|-+$/g, "");
-  return `${title || "replay"}-${state.time.toFixed(2)}s.${suffix}`;
+  const when = (times.length ? times : [state.time]).map((t) => t.toFixed(2)).join("-");
+  return `${title || "replay"}-${when}s.${suffix}`;
 }
 
 function download(blob, name) {

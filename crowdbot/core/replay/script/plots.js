@@ -66,7 +66,7 @@ function drawPlot({ canvas, all, axis }, time) {
   g.textAlign = "right";
   g.fillStyle = colours.ink;
   g.strokeStyle = colours["grid-strong"];
-  for (const v of [axis.low, (axis.low + axis.high) / 2, axis.high]) {
+  for (const v of axis.ticks) {
     g.fillText(digits(v), MARGIN - 6, clamp(up(v) + 4, 10, height - 2));
     g.beginPath();
     g.moveTo(MARGIN, up(v));

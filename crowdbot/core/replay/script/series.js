@@ -47,7 +47,7 @@ function valueAt(series, time) {
   return k < 0 ? NaN : series.values[k];
 }
 
-/** Ends of an axis that holds all values and has round ends. */
+/** An axis that holds all values: round ends, and round ticks between them. */
 function axisOf(all) {
   let [low, high] = [Infinity, -Infinity];
   for (const { values } of all) {
@@ -57,12 +57,23 @@ function axisOf(all) {
       high = Math.max(high, v);
     }
   }
-  if (low > high) return { low: 0, high: 1 };
+  if (low > high) return { low: 0, high: 1, ticks: [0, 1] };
   if (low > 0 && low < 0.5 * high) low = 0;
   if (high < 0 && high > 0.5 * low) high = 0;
   const span = high - low || Math.abs(high) || 1;
   const power = 10 ** Math.floor(Math.log10(span));
   const round = span / power < 2 ? power / 5 : span / power < 5 ? power / 2 : power;
   const ends = [Math.floor(low / round + 1e-9) * round, Math.ceil(high / round - 1e-9) * round];
-  return { low: ends[0], high: ends[1] > ends[0] ? ends[1] : ends[0] + round };
+  if (ends[1] <= ends[0]) ends[1] = ends[0] + round;
+  return { low: ends[0], high: ends[1], ticks: ticksOf(...ends) };
+}
+
+/** Two to four multiples of a round number. */
+function ticksOf(low, high) {
+  const least = (high - low) / 3;
+  const power = 10 ** Math.floor(Math.log10(least) + 1e-9);
+  const apart = [1, 2, 5, 10].find((m) => m * power >= least * (1 - 1e-9)) * power;
+  const ticks = [];
+  for (let k = Math.ceil(low / apart - 1e-9); k * apart <= high + 1e-9 * apart; k++) ticks.push(k * apart);
+  return ticks.length > 1 ? ticks : [low, high];
 }

@@ -1,0 +1,104 @@
+"""Every kind of page that a command writes: axe-core finds nothing, phone or wide, light or dark.
+
+Replays and reports are tried with menus open, and at more widths, by the tests of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, sync_playwright
+
+from crowdbot import cli
+from crowdbot.core.realism.measure import measure_tracks
+from crowdbot.core.realism.page import render
+from crowdbot.core.realism.reference import shipped
+from crowdbot.core.replay import write_replay
+from crowdbot.core.report import write_report
+from tests.browser import PROGRAM, axe_findings, needs_axe, needs_browser
+from tests.core.bundle.made_up_runs import make_bundle
+from tests.core.realism.test_compare import people
+from tests.core.replay.replay_cases import passing
+from tests.core.report.report_cases import contents
+from tests.core.statistics.test_floors import results
+from tests.paths import ROOT
+
+
+def replay(path: Path) -> None:
+    write_replay(path, passing())
+
+
+def comparison(path: Path) -> None:
+    write_replay(path, passing("dwa"), passing("stop_and_go", speed=0.4), title="compared")
+
+
+def report(path: Path) -> None:
+    write_report(path, contents(results({"mine": [1, 1, 0, 1], "blind": [0, 0, 1, 0]})))
+
+
+def leaderboard(path: Path) -> None:
+    for i, planner in enumerate(("dwa", "goal_seek")):
+        name = f"{planner}.cbz"
+        make_bundle(path.parent, planner, name, team=planner, value=lambda k, i=i: k + i)
+    assert cli.main(["leaderboard", str(path.parent), "--out", str(path)]) == 0
+
+
+def realism(path: Path) -> None:
+    places = np.array([[-4.0, 0.0], [4.0, 0.6], [-4.0, 0.6]])
+    tracks = people(np.array([[1.0, 0.0], [-1.0, 0.0], [1.0, 0.0]]), places, 34)
+    path.write_text(render("people", [measure_tracks("people", [[tracks]], shipped())]))
+
+
+def scenario(path: Path) -> None:
+    words = ["view", "social-guidelines", "crossing_left", "--out", str(path)]
+    assert cli.main(words) == 0
+
+
+#: All kinds of pages: the package that holds the parts -> who makes one.
+PAGES: dict[str, tuple[Callable[[Path], None], ...]] = {
+    "core/bundle": (leaderboard,),
+    "core/realism": (realism,),
+    "core/replay": (replay, comparison),
+    "core/report": (report,),
+    "core/view": (scenario,),
+}
+MAKERS = [maker for makers in PAGES.values() for maker in makers]
+
+
+def test_every_kind_of_page_is_listed() -> None:
+    product = ROOT / "crowdbot"
+    parts = {p.parent.relative_to(product).as_posix() for p in product.rglob("*.html.j2")}
+    assert parts == set(PAGES)
+    # Nobody writes a page in another way.
+    of_their_own = [p for p in product.rglob("*.py") if "<!doctype" in p.read_text().lower()]
+    assert of_their_own == []
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=PROGRAM, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.mark.slow
+@needs_browser
+@needs_axe
+@pytest.mark.parametrize("make", MAKERS, ids=lambda make: make.__name__)
+def test_axe_finds_nothing(make: Callable[[Path], None], browser: Browser, tmp_path: Path) -> None:
+    path = tmp_path / "page.html"
+    make(path)
+    schemes: tuple[Literal["light", "dark"], ...] = ("light", "dark")
+    for scheme in schemes:
+        page = browser.new_page(color_scheme=scheme, offline=True)
+        page.goto(path.as_uri())
+        for width in (360, 1280):
+            page.set_viewport_size({"width": width, "height": 900})
+            assert axe_findings(page) == [], (scheme, width)
+            assert page.evaluate("document.documentElement.scrollWidth") <= width
+        page.close()
