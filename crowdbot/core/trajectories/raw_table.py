@@ -90,7 +90,7 @@ class RawTable:
         Stamps are ISO 8601 texts or dates of Python or numpy; without a zone they are UTC.
 
         Raises:
-            InputError: a cell is no stamp, or empty.
+            InputError: a cell is not a stamp, or is empty.
         """
         cells = self.columns[column]
         if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":

@@ -28,8 +28,8 @@ from crowdbot.core.interfaces import (
     RobotLimits,
     SensorInfo,
     Task,
+    kernel,
 )
-from crowdbot.core.support.compile import kernel
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import GoalSeek, bearing
 from crowdbot.plugins.planners.heading_by_walls_build import HeadingByWalls, compile_heading
