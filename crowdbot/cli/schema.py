@@ -39,7 +39,7 @@ def schema(
         typer.Option("--canonical", help="Of what crowdbot writes: numbers only, every field."),
     ] = False,
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write there instead of stdout.")
+        Path | None, typer.Option(metavar="FILE", help="File to write; default: standard output.")
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
