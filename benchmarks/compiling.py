@@ -2,8 +2,9 @@
 
 Simulates one second of a challenge scenario with ``dwa`` into an empty folder of compiled
 functions; what is compiled already stays as it is. Run: ``python benchmarks/compiling.py
-[--all] [--again]``: all files instead of the dearest twenty; each function; a second run in the
-same folder, which should compile nothing.
+[--all] [--again] [--ahead]``: all files instead of the dearest twenty, and each function; a second
+run in the same folder, which should compile nothing; with the second process that a first run
+starts where it has two cores, which leaves the crowd's functions out of the list.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
+import resource
 import subprocess
 import sys
 import tempfile
@@ -49,10 +51,14 @@ class Compilations:
         self.count[key] += 1
 
 
-def measure(every: bool) -> None:
+def measure(every: bool, ahead: bool) -> None:
     """Simulate in this process and print what was compiled."""
     import crowdbot
     import crowdbot.core  # tells numba where compiled functions go, before it is imported
+    from crowdbot.core.support import compile_ahead
+
+    if not ahead:
+        setattr(compile_ahead, "available_cores", lambda: 1)  # noqa: B010
 
     event = importlib.import_module("numba.core.event")
 
@@ -79,6 +85,9 @@ def measure(every: bool) -> None:
         f"{sum(files.values()):7.2f} s {sum(numbers.values()):4d}  all; the run with it "
         f"{cpu:.2f} s of processor time, {wall:.2f} s elapsed"
     )
+    if ahead:
+        other = resource.getrusage(resource.RUSAGE_CHILDREN)
+        print(f"{other.ru_utime + other.ru_stime:7.2f} s       in the second process")
 
 
 def _dearest(seconds: Mapping[T, float]) -> list[tuple[T, float]]:
@@ -89,16 +98,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--all", action="store_true")
     parser.add_argument("--again", action="store_true")
+    parser.add_argument("--ahead", action="store_true")
     parser.add_argument("--here", action="store_true", help=argparse.SUPPRESS)
     asked = parser.parse_args()
     if asked.here:
-        measure(asked.all)
+        measure(asked.all, asked.ahead)
         return
     print(f"load {os.getloadavg()[0]:.1f}", flush=True)
     with tempfile.TemporaryDirectory() as kernels:
         environment = {**os.environ, "NUMBA_CACHE_DIR": str(Path(kernels))}
         for _ in range(1 + asked.again):
-            command = [sys.executable, __file__, "--here", *["--all"] * asked.all]
+            options = [f"--{name}" for name in ("all", "ahead") if getattr(asked, name)]
+            command = [sys.executable, __file__, "--here", *options]
             subprocess.run(command, env=environment, check=True)
 
 

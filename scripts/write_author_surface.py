@@ -24,13 +24,13 @@ _HEAD = """\
 
 Two modules hold all that a package of components needs: `crowdbot.dsl` for the modules with specs,
 which are imported to list and to validate, and `crowdbot.core.interfaces` for the modules with
-build functions. Beside them there are `crowdbot` (the [Python API](../howto/score_own_data.md)),
+build functions. Beside them there are `crowdbot` (the [Python API](python_api.md)),
 `crowdbot.errors`, `crowdbot.hookspecs` and `crowdbot.testing`. Everything else may change from one
 version to the next. crowdbot's own components import from here, too.
 
 `crowdbot.dsl` imports no numpy. Names of `crowdbot.core.interfaces` are imported when they are
-first used: who asks for `Command` does not wait for numba. What a component is, and what its
-methods are called with, is on the page [plugins](plugins.md).
+first used: a module that needs only `Command` does not wait for numba. The page
+[plugins](plugins.md) says what a component is, and what its methods are called with.
 """
 #: What has no docstring of its own.
 _SAID = {
@@ -57,11 +57,12 @@ _TOGETHER: Mapping[str, str] = {
         "Signatures of the functions of a `CompiledCost`."
     ),
     "PX PY VX VY RADIUS PREFERRED FASTEST TIME_STEP GX GY PVX PVY MAX_SPEED MAX_ACCELERATION "
-    "RELAXATION WEIGHT PARITY RANDOM DESCENDS AGENT_SIZE": (
+    "RELAXATION WEIGHT PARITY RANDOM DESCENDS ASKED_X ASKED_Y ASKED_RADIUS AGENT_SIZE": (
         "Entries of the vector `agent`: position, velocity, radius, preferred speed, greatest "
         "speed that is searched, time between decisions; goal, preferred velocity, largest speed "
         "and acceleration, relaxation time; weight, parity with the original, random numbers, "
-        "whether the search descends; and how many there are."
+        "whether the search descends; centre and radius of the disc of velocities that holds all "
+        "that are searched; and how many there are."
     ),
     "D2 RX RY NVX NVY REACH NPX NPY STATIC NEAR_COLUMNS": (
         "Columns of `near`: squared distance, relative position, velocity, sum of radii, preferred "

@@ -76,8 +76,8 @@ def page(rows: Sequence[dict[str, Any]], reference: RealismReference) -> str:
     lines = [
         "# Validation of the crowds",
         "",
-        "Every crowd that comes with crowdbot beside people who were recorded in corridors: what "
-        "the columns are is in [realism](../realism.md). Written by "
+        "This page compares every crowd that comes with crowdbot with people who were recorded in "
+        "corridors; [realism](../realism.md) explains the columns. Written by "
         "`scripts/write_crowd_validation.py`; `crowdbot realism NAME --out page.html` shows the "
         "curves of one of them.",
         "",

@@ -32,7 +32,7 @@ def read_seeds(text: str) -> list[int]:
 
 def worker_count(jobs: int) -> int:
     """So many, or one for each core."""
-    from crowdbot.core.runs.rescore import available_cores
+    from crowdbot.core.support.cores import available_cores
 
     return jobs or available_cores()
 

@@ -38,13 +38,13 @@ InProcess = Annotated[
     bool | None,
     typer.Option(
         "--in-process/--own-process",
-        help="Where planners run; default: crowdbot's own inside, all others in their own.",
+        help="Where planners run; default: crowdbot's own inside, others in separate processes.",
         show_default=False,
     ),
 ]
 PlannerMemory = Annotated[
     float,
-    typer.Option(metavar="GIB", min=0.0, help="Memory of a planner's process; 0: any."),
+    typer.Option(metavar="GIB", min=0.0, help="Memory of a planner's process; 0: no limit."),
 ]
 #: A Python with numpy needs about a third of it.
 _LEAST_GIB = 0.5

@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
 from crowdbot.core.support.compile_cache import USUAL, compiled, nothing_compiled
+from crowdbot.core.support.cores import available_cores
 
 if TYPE_CHECKING:
     from crowdbot.core.runs.outcome import Progress as Report
@@ -52,7 +53,8 @@ def _tell_of_compiling(done: threading.Event) -> None:
     """A line at once, and one now and then with how far it is, until all is compiled."""
     if done.wait(PATIENCE):
         return
-    print(f"preparing: {_COMPILES}, about a minute", file=sys.stderr)
+    time = "half a minute" if available_cores() > 1 else "a minute"
+    print(f"preparing: {_COMPILES}, about {time}", file=sys.stderr)
     before = 0
     while not done.wait(_LINE_EVERY):
         now = compiled()

@@ -9,7 +9,7 @@ import typer
 
 
 class ClockChoice(StrEnum):
-    """Who says what time it is."""
+    """Where simulated time comes from."""
 
     internal = "internal"
     external = "external"
@@ -33,13 +33,14 @@ class MissedChoice(StrEnum):
 
 
 Host = Annotated[
-    str, typer.Option(help="Address to listen on; one that others reach needs a token.")
+    str, typer.Option(help="Address to listen on; from other machines clients need a token.")
 ]
 Port = Annotated[
     int, typer.Option(min=0, max=65535, help="Port of the rosbridge server; 0: a free one.")
 ]
 Token = Annotated[
-    str | None, typer.Option(help="What clients must know; default on the network: a new one.")
+    str | None,
+    typer.Option(help="Token that clients must give; default on the network: a new one."),
 ]
 Connect = Annotated[
     str | None, typer.Option(metavar="ws://HOST:PORT", help="Be a client of this rosbridge server.")
@@ -64,7 +65,7 @@ Rate = Annotated[
     float | None,
     typer.Option(metavar="FACTOR", help="Keep to real time, times FACTOR; else lockstep."),
 ]
-Clock = Annotated[ClockChoice, typer.Option(help="Who says what time it is.")]
+Clock = Annotated[ClockChoice, typer.Option(help="Where simulated time comes from.")]
 Budget = Annotated[float, typer.Option(metavar="SECONDS", help="Lockstep: how long a step waits.")]
 Missed = Annotated[MissedChoice, typer.Option(help="What a step without a command does.")]
 Hold = Annotated[
@@ -77,7 +78,7 @@ Wait = Annotated[
 Epoch = Annotated[int, typer.Option(min=0, metavar="SECONDS", help="Time at which stamps begin.")]
 RosVersion = Annotated[int, typer.Option(min=1, max=2, help="ROS 1 or ROS 2 messages.")]
 PlannerName = Annotated[str, typer.Option(help="Name of the planner that drives.")]
-Stay = Annotated[bool, typer.Option("--stay", help="Go on after a run: reset, next_scenario.")]
+Stay = Annotated[bool, typer.Option("--stay", help="After a run, wait for reset or next_scenario.")]
 References = Annotated[
-    bool, typer.Option(help="Drive alone first, and run people alone, to compare with.")
+    bool, typer.Option(help="Make the calibration runs first: robot alone, people alone.")
 ]

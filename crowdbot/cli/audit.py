@@ -24,7 +24,9 @@ def audit(
     suite: Annotated[str, typer.Argument(metavar="SUITE", help="File or name.")],
     scenarios: Annotated[
         int | None,
-        typer.Option(min=1, metavar="N", help="Only so many, drawn; default: all of them."),
+        typer.Option(
+            min=1, metavar="N", help="Only N scenarios, with many different crowds; default: all."
+        ),
     ] = None,
     only: Annotated[
         str | None, typer.Option(metavar="GLOB", help="Only scenarios that match.")

@@ -26,22 +26,28 @@ def bundle(
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="File to write; default: SUITE-PLANNER.cbz.")
     ] = None,
-    team: Annotated[str, typer.Option(metavar="NAME", help="For the leaderboard.")] = "",
-    contact: Annotated[str, typer.Option(metavar="TEXT", help="Whom to ask.")] = "",
+    team: Annotated[
+        str, typer.Option(metavar="NAME", help="Name of the team, for the leaderboard.")
+    ] = "",
+    contact: Annotated[
+        str, typer.Option(metavar="TEXT", help="Whom to ask about the bundle.")
+    ] = "",
     partial: Annotated[
-        bool, typer.Option("--partial", help="Pack what is there, though runs are missing.")
+        bool,
+        typer.Option("--partial", help="Pack the runs that are there, even if some are missing."),
     ] = False,
     recordings: Annotated[
         bool, typer.Option("--recordings", help="Pack the recordings, too.")
     ] = False,
     check: Annotated[
-        bool, typer.Option("--check", help="Do what the organiser's verify does, too.")
+        bool, typer.Option("--check", help="Also do what the organiser's verify does.")
     ] = False,
     sample: Annotated[
         int, typer.Option(min=0, metavar="N", help="--check: how many runs to make again.")
     ] = 5,
     seed: Annotated[
-        int | None, typer.Option(min=0, metavar="S", help="--check: which ones; default: new.")
+        int | None,
+        typer.Option(min=0, metavar="S", help="--check: seed of the sample; default: a new one."),
     ] = None,
     source: Annotated[
         str | None,

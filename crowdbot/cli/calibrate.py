@@ -46,9 +46,11 @@ def calibrate(
     ] = None,
     generations: Annotated[int, typer.Option(min=1, metavar="N", help="Steps of the fit.")] = 40,
     population: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Crowds in each step; 0: by their numbers.")
+        int, typer.Option(min=0, metavar="N", help="Crowds in each step; 0: 4 + 3 ln(numbers).")
     ] = 0,
-    seed: Annotated[int, typer.Option(min=1, help="Of the fit; equal seeds, equal fits.")] = 1,
+    seed: Annotated[
+        int, typer.Option(min=1, help="Seed of the fit; equal seeds give equal fits.")
+    ] = 1,
     jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
     out: Annotated[
         Path,

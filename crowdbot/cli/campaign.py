@@ -69,7 +69,7 @@ def campaign(
         typer.Option(help="Run floors and ceilings besides, in at most 18 scenarios of a suite."),
     ] = True,
     retry_failed: Annotated[
-        bool, typer.Option("--retry-failed", help="Run again where the planner failed.")
+        bool, typer.Option("--retry-failed", help="Run again the runs whose planner failed.")
     ] = False,
     force: Annotated[
         bool, typer.Option("--force", help="Run everything again, calibration runs too.")

@@ -30,9 +30,10 @@ def docs(
         str | None, typer.Argument(metavar="[PAGE]", help="Such as howto/score_own_data.")
     ] = None,
     search: Annotated[
-        str | None, typer.Option(metavar="TEXT", help="Lines of all pages that hold a text.")
+        str | None,
+        typer.Option(metavar="TEXT", help="Print the lines of all pages that contain a text."),
     ] = None,
-    path: Annotated[bool, typer.Option("--path", help="Print where the page is, no more.")] = False,
+    path: Annotated[bool, typer.Option("--path", help="Print only where the page is.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
     """List the pages of the documentation, print one, or search them. Needs no network.

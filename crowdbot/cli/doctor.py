@@ -13,7 +13,7 @@ import typer
 
 def doctor(
     out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Where runs would go: its disk is looked at.")
+        Path, typer.Option(metavar="DIR", help="Where runs would go; its disk is checked.")
     ] = Path("runs"),
     self_test: Annotated[
         bool, typer.Option(help="Simulate for a moment; takes about 10 s, more the first time.")

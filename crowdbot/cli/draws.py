@@ -48,7 +48,7 @@ def commit(
     no_plugins: NoPlugins = False,
     as_json: _Json = False,
 ) -> None:
-    """Choose seed and salt, keep them in a file apart, and write their hash into the suite.
+    """Choose seed and salt, keep them in a separate file, and write their hash into the suite.
 
     Example: crowdbot draws commit my_suite.yaml --secret ../my_suite.secret.json
     """
@@ -83,7 +83,7 @@ def reveal(
     no_plugins: NoPlugins = False,
     as_json: _Json = False,
 ) -> None:
-    """Write seed and salt into the suite, if they are those that it was committed to.
+    """Write seed and salt into the suite, if they fit its commitment.
 
     Example: crowdbot draws reveal my_suite.yaml --secret ../my_suite.secret.json
     """

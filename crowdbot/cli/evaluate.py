@@ -63,7 +63,10 @@ _Answers = Annotated[
 ]
 _Jobs = Annotated[int, typer.Option(metavar="N", min=0, help="Processes; 0: one for each core.")]
 _Incomplete = Annotated[
-    bool, typer.Option("--allow-incomplete", help="Score cut recordings as far as they go.")
+    bool,
+    typer.Option(
+        "--allow-incomplete", help="Score recordings that were cut off, as far as they go."
+    ),
 ]
 _Out = Annotated[
     Path | None, typer.Option(metavar="FILE", help="File to write, .csv or .json: all scores.")
@@ -98,7 +101,8 @@ def evaluate(
     Example: crowdbot evaluate runs/challenge-2020/counter-d0500-fast-c20-r05/dwa/seed-0
     """
     from crowdbot.core.runs.recordings import expand_paths
-    from crowdbot.core.runs.rescore import RescoreRequest, available_cores
+    from crowdbot.core.runs.rescore import RescoreRequest
+    from crowdbot.core.support.cores import available_cores
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
     paths: list[Path | None] = [*expand_paths(runs or [])] or [None]

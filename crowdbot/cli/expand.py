@@ -25,7 +25,7 @@ def expand(
         str | None, typer.Option(metavar="ID", help="Print one scenario with every default.")
     ] = None,
     explain: Annotated[
-        bool, typer.Option("--explain", help="With --one: say where each value is written.")
+        bool, typer.Option("--explain", help="With --one: say where each value comes from.")
     ] = False,
     count: Annotated[bool, typer.Option("--count", help="Print only how many there are.")] = False,
     plugin: Plugins = None,

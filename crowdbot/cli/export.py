@@ -58,7 +58,11 @@ def export(
         bool, typer.Option(help="Bags: add people and contacts as markers, one for each.")
     ] = True,
     names: Annotated[
-        bool, typer.Option("--ros-names/--own-names", help="Bags: /scan, /imu/data, color.")
+        bool,
+        typer.Option(
+            "--ros-names/--own-names",
+            help="Bags: names usual in ROS, such as /scan, or the recording's.",
+        ),
     ] = True,
     robot: Annotated[
         str | None, typer.Option(metavar="NAME", help="Tables: which of several robots.")

@@ -22,7 +22,7 @@ def export_urdf(
         str, typer.Argument(help="Kind of a robot; with --spec, name of a robot in a scenario.")
     ],
     spec: Annotated[
-        str | None, typer.Option("--spec", help="Scenario whose robot, with its sensors, is meant.")
+        str | None, typer.Option("--spec", help="Scenario or suite that has the robot.")
     ] = None,
     id_: Annotated[
         str | None, typer.Option("--id", help="Id in a suite; default: its first scenario.")

@@ -14,7 +14,7 @@ from crowdbot.errors import printable
 
 
 def leaderboard(
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="With bundles (*.cbz).")],
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder with bundles (*.cbz).")],
     out: Annotated[Path, typer.Option(metavar="FILE", help="File to write, .html: the page.")] = (
         Path("leaderboard.html")
     ),

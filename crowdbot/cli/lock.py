@@ -22,7 +22,7 @@ def lock(
         bool, typer.Option("--check", help="Write nothing; exit 1 if the lock does not fit.")
     ] = False,
     redraw: Annotated[
-        bool, typer.Option("--redraw", help="Draw all agents anew, also those that need not be.")
+        bool, typer.Option("--redraw", help="Draw all agents anew, also where nothing changed.")
     ] = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

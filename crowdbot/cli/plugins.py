@@ -80,7 +80,7 @@ def check(
     no_plugins: NoPlugins = False,
     as_json: _Json = False,
 ) -> None:
-    """Hold components to what crowdbot promises about them; exit code 1 when a check fails.
+    """Check that components keep crowdbot's contracts; exit code 1 when a check fails.
 
     Without NAME, the plugins given by --plugin are checked.
 
@@ -108,7 +108,7 @@ def check(
 @plugins.command()
 def new(
     name: Annotated[
-        str, typer.Argument(metavar="NAME", help="Of the plugin: a word such as acme.")
+        str, typer.Argument(metavar="NAME", help="Name of the plugin: a word such as acme.")
     ],
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Folder to write; default: crowdbot-NAME.")

@@ -53,14 +53,19 @@ def report(
     ] = Path("report.html"),
     accept: Annotated[
         list[str] | None,
-        typer.Option(metavar="CONFOUND", help="Compare though this differs; repeatable, printed."),
+        typer.Option(
+            metavar="CONFOUND", help="Compare although this differs; the page says so; repeatable."
+        ),
     ] = None,
     audit: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Audit of the suite; default: ROOT/ID/audit.json."),
     ] = None,
     no_replay_links: Annotated[
-        bool, typer.Option("--no-replay-links", help="For a page that is moved elsewhere.")
+        bool,
+        typer.Option(
+            "--no-replay-links", help="Leave out links to replays, for a page that is moved."
+        ),
     ] = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

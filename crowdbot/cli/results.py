@@ -74,7 +74,7 @@ def show(
     as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
     as_json: _Json = False,
 ) -> None:
-    """Show what planners reached, by metric and group.
+    """Show the scores of planners, by metric and group.
 
     Example: crowdbot results --runs runs --metric 'collision*' --by planner,density
     """
@@ -131,7 +131,9 @@ def export(
 @results.command()
 def failures(
     out: _Out = _ROOT,
-    traceback: Annotated[bool, typer.Option("--traceback", help="What Python said.")] = False,
+    traceback: Annotated[
+        bool, typer.Option("--traceback", help="Print Python's tracebacks, too.")
+    ] = False,
     as_json: _Json = False,
 ) -> None:
     """List the runs that a campaign could not make.
@@ -163,7 +165,7 @@ def atlas(
     md: Annotated[Path | None, typer.Option(metavar="FILE", help="Write Markdown.")] = None,
     as_json: _Json = False,
 ) -> None:
-    """Tell what moves each score, whether it tells floors from planners, and what repeats it.
+    """Say what changes each score, whether it tells floors from planners, and what repeats it.
 
     Example: crowdbot results atlas --runs runs --floor goal_seek --md atlas.md
     """

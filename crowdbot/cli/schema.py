@@ -36,7 +36,9 @@ def schema(
     ],
     canonical: Annotated[
         bool,
-        typer.Option("--canonical", help="Of what crowdbot writes: numbers only, every field."),
+        typer.Option(
+            "--canonical", help="Schema of what crowdbot writes: numbers only, every field."
+        ),
     ] = False,
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="File to write; default: standard output.")

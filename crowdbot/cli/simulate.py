@@ -51,7 +51,9 @@ def simulate(
     references: Annotated[
         bool, typer.Option(help="Run robot_alone and crowd_alone where they are missing.")
     ] = True,
-    force: Annotated[bool, typer.Option("--force", help="Run again what is complete.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Run again even what is complete.")
+    ] = False,
     step_budget: Annotated[
         float | None,
         typer.Option(metavar="SECONDS", help="Wall time that a planner step may take."),

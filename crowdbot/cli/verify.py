@@ -41,14 +41,16 @@ _SAYS = {
 
 
 def verify(
-    bundle: Annotated[Path, typer.Argument(metavar="BUNDLE", help="From crowdbot bundle.")],
+    bundle: Annotated[
+        Path, typer.Argument(metavar="BUNDLE", help="A bundle, made by crowdbot bundle.")
+    ],
     sample: Annotated[
         int, typer.Option(min=0, metavar="N", help="How many runs to make again; 0: none.")
     ] = 5,
     everything: Annotated[bool, typer.Option("--all", help="Make all runs again.")] = False,
     seed: Annotated[
         int | None,
-        typer.Option(min=0, metavar="S", help="Which runs; default: a new one each time."),
+        typer.Option(min=0, metavar="S", help="Seed of the sample; default: a new one each time."),
     ] = None,
     source: Annotated[
         str | None,

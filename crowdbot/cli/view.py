@@ -56,7 +56,7 @@ def view(
 
     Nothing is simulated.
 
-    With --foxglove a run is played in Foxglove, whose controls search in it.
+    With --foxglove a run is played in Foxglove, with Foxglove's own controls.
 
     Example: crowdbot view challenge-2020 counter-d0500-fast-c20-r05 --out scenario.png
 

@@ -90,7 +90,7 @@ Place = Annotated[
 class GoalArea(Spec):
     """An area in which goals are drawn, evenly."""
 
-    area: Place = Field(description="Name of a zone, or an area of its own.")
+    area: Place = Field(description="Name of a zone, or an area written here.")
     next: tuple[str, ...] = Field(
         default=(), strict=False, description="Goal areas that may follow in a `linked` walk."
     )

@@ -18,7 +18,7 @@ S_co = TypeVar("S_co", bound=ComponentSpec, covariant=True)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Component(Generic[S_co]):
-    """Something pluggable.
+    """What a plugin provides: a spec, the name of its build function, a summary.
 
     Attributes:
         spec: pydantic model whose ``kind`` is a Literal, e.g. ``Literal["acme.swarm"]``.

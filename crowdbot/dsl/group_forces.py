@@ -15,14 +15,14 @@ Strength = Annotated[float, Ge(0), Le(100)]
 
 
 class GroupForces(Spec):
-    """Accelerations that keep groups together, laid over what any policy wants.
+    """Accelerations that keep groups together, added to those of any policy.
 
     Source of strengths, angle and distance: Moussaïd et al., PLoS ONE 5(4), 2010, e10047.
     """
 
     gaze: Strength = Field(
         default=4.0,
-        description="β1, 1/s: slows down who would have to turn the head to see the others.",
+        description="β1, 1/s: slows down people who would have to turn the head to see the others.",
     )
     cohesion: Strength = Field(
         default=3.0, description="β2, m/s^2: towards the middle of the group."

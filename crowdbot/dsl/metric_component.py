@@ -102,7 +102,7 @@ def declare_metric(
     exceptions: Mapping[str, str] | None = None,
     **invariants: Unpack[InvariantOptions],
 ) -> MetricComponent[_S]:
-    """Declare a metric; what is usual need not be said.
+    """Declare a metric; arguments with defaults may be left out.
 
     Args:
         spec: its parameters; the first line of the docstring says what it measures.

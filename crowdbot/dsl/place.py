@@ -76,7 +76,7 @@ class Pillar:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Place:
-    """All of it; what is not filled is floor.
+    """Everything that a place is made of; what is not filled is floor.
 
     Told apart by identity, so that what was found out about a place is remembered at no cost.
 

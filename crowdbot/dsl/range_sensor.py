@@ -44,7 +44,8 @@ class RangeSensorSpec(SensorSpec):
         description="Surfaces struck at a larger angle to their normal return nothing, rad.",
     )
     bits: Annotated[int, Ge(0), Le(32)] = Field(
-        default=0, description="Readings are rounded down to 2^bits steps of the range; 0: not."
+        default=0,
+        description="Readings are rounded down to 2^bits steps of the range; 0: no rounding.",
     )
     dropout: Annotated[float, Ge(0), Lt(1)] = Field(
         default=0.0, description="Probability that a reading is lost."

@@ -26,11 +26,11 @@ from crowdbot.dsl.spec import Spec
 
 
 class RobotResponse(Spec):
-    """How people take the robot: behaviour, not contact.
+    """How people respond to the robot: their behaviour, not contact.
 
-    Those who yield see it and keep clear of it, in the way that `kind` says. Those who ignore it
-    walk as if it were not there, until they touch it; those who are distracted do so while it
-    moves, and stop short of one that stands, as of anything that stands in their way.
+    People who yield see it and keep clear of it, in the way that `kind` says. People who ignore it
+    walk as if it were not there, until they touch it. People who are distracted ignore a robot that
+    moves, but stop short of one that stands, as of anything that stands in their way.
     """
 
     category: ClassVar[str] = "robot response"
@@ -82,10 +82,10 @@ class RobotResponse(Spec):
 
 
 class HumanResponse(RobotResponse):
-    """People notice a robot, react after a while, and evade it within what legs can do.
+    """People notice a robot, react after a while, and evade it no faster than legs can.
 
-    They look ahead, step aside in time and brake. Some notice late. Nobody throws himself aside;
-    a robot that stands is walked into by nobody who takes notice of it.
+    They look ahead, step aside in time and brake. Some notice late. Nobody is thrown aside, and
+    nobody who takes notice of the robot walks into it while it stands.
     """
 
     kind: Literal["human"] = Field(default="human", description="Name of the response.")
@@ -125,20 +125,20 @@ class HumanResponse(RobotResponse):
         default=2.0, description="Largest acceleration sideways, m/s^2."
     )
     braking: PositiveAcceleration = Field(
-        default=3.0, description="Largest acceleration against the own way, m/s^2."
+        default=3.0, description="Largest deceleration of a person, m/s^2."
     )
     total_acceleration: PositiveAcceleration = Field(
         default=3.0,
-        description="Largest acceleration by own will and evasion together, m/s^2.",
+        description="Largest acceleration by policy and evasion together, m/s^2.",
     )
     stop_gap: NonNegativeLength = Field(
         default=0.25, description="Surface gap at which those who brake come to rest, m."
     )
     standing_speed: NonNegativeSpeed = Field(
-        default=0.05, description="A robot that is not faster stands, m/s."
+        default=0.05, description="A robot at most this fast stands, m/s."
     )
     moving_speed: PositiveSpeed = Field(
-        default=0.3, description="A robot that is not slower moves, m/s."
+        default=0.3, description="A robot at least this fast moves, m/s."
     )
     standing_gap: NonNegativeLength = Field(
         default=0.2, description="Surface gap that people keep to a robot that stands, m."

@@ -35,11 +35,11 @@ class MeshRouting(Routing):
     kind: Literal["mesh"] = Field(default="mesh", description="Name of the routing.")
     spread: NonNegativeLength = Field(
         default=0.5,
-        description="How far aside of a corner people pass it at most, each as it draws, m; never "
-        "more than the opening has room for.",
+        description="Largest distance from a corner at which people pass it, drawn "
+        "for each person, m; never more than the opening has room for.",
     )
     patience: PositiveDuration = Field(
-        default=5.0, description="Without headway for so long, people look for another way, s."
+        default=5.0, description="After this time without progress people look for another way, s."
     )
     detour: Annotated[float, Ge(1)] = Field(
         default=1.5, description="Another way is at most so many times as long as the shortest."

@@ -97,7 +97,8 @@ class Body(Spec):
     mass: PositiveMass = Field(default=75.0, description="Mass in the physics, kg.")
     max_speed: PositiveSpeed = Field(default=3.0, description="Largest walking speed, m/s.")
     max_acceleration: PositiveAcceleration = Field(
-        default=5.0, description="Largest acceleration by own will, m/s^2."
+        default=5.0,
+        description="Largest acceleration that people choose, m/s^2; pushes may exceed it.",
     )
     height: PositiveLength = Field(default=1.7, description="Height, m.")
 
@@ -160,7 +161,7 @@ class Crowd(Spec):
         "straight ahead of where they come in or start.",
     )
     robot_response: RobotResponseChoice = Field(
-        default=HumanResponse(), description="How people take the robot."
+        default=HumanResponse(), description="How people respond to the robot."
     )
     routing: RoutingChoice | None = Field(
         default=None,
@@ -181,7 +182,7 @@ class Crowd(Spec):
 
 
 class Goal(Spec):
-    """Where the robot has to get: its centre inside a zone."""
+    """The zone in which the robot's centre has to be."""
 
     zone: str = Field(description="Name of the goal zone.")
 

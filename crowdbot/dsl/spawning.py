@@ -113,7 +113,7 @@ class Goals(Spec):
 class Spawn(Spec):
     """People who start in one area. What is left out is as in the crowd."""
 
-    area: Place = Field(description="Name of a zone, or an area of its own; bodies lie inside.")
+    area: Place = Field(description="Name of a zone, or an area written here; bodies lie inside.")
     count: Count | None = Field(default=None, description="How many; this or `density`.")
     density: PositiveDensity | None = Field(
         default=None, description="People per area, 1/m^2; this or `count`."
@@ -141,7 +141,8 @@ class Spawn(Spec):
     mass: MassSample | None = Field(default=None, description="Mass in the physics, kg.")
     max_speed: SpeedSample | None = Field(default=None, description="Largest walking speed, m/s.")
     max_acceleration: AccelerationSample | None = Field(
-        default=None, description="Largest acceleration by own will, m/s^2."
+        default=None,
+        description="Largest acceleration that people choose, m/s^2; pushes may exceed it.",
     )
     start_time: DurationSample = Field(
         default=DurationSample(value=0.0), description="When each enters the world, s."
@@ -166,7 +167,9 @@ class Spawn(Spec):
 class Agent(Spec):
     """One explicit agent; what is left out is as in the crowd."""
 
-    id: Annotated[int, Ge(0), Le(2**31 - 1)] = Field(description="Number of its own.")
+    id: Annotated[int, Ge(0), Le(2**31 - 1)] = Field(
+        description="Number of this agent; no other has it."
+    )
     x: Length = Field(description="Start, m.")
     y: Length = Field(description="Start, m.")
     heading: Angle | None = Field(

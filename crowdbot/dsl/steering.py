@@ -28,15 +28,16 @@ def unset(value: Any) -> bool:
 class TimeGapSpec(Spec):
     """Nobody walks faster than the room ahead allows: (distance ahead - room) / time."""
 
-    time: PositiveDuration = Field(default=1.0, description="Gap kept to who is ahead, s.")
+    time: PositiveDuration = Field(default=1.0, description="Time gap kept to people ahead, s.")
     oncoming_time: PositiveDuration = Field(
-        default=0.023, description="The same to who comes the other way, s; nearly off."
+        default=0.023,
+        description="The same to people who come the other way, s; the default is nearly 0.",
     )
     room: NonNegativeLength = Field(
         default=0.27, description="Distance between centres, ahead, at which people stand, m."
     )
     half_width: PositiveLength = Field(
-        default=0.28, description="Who is farther to the side does not count, m."
+        default=0.28, description="People farther to the side do not count, m."
     )
 
 
@@ -58,7 +59,7 @@ class PersonalSpaceSpec(Spec):
 
 
 class LanesSpec(Spec):
-    """Among people who come the other way: a step behind those who walk one's own way."""
+    """Among people who come the other way, a person steps behind those who walk the same way."""
 
     strength: PositiveAcceleration = Field(
         default=1.0, description="Largest acceleration to the side, m/s^2."
@@ -67,7 +68,7 @@ class LanesSpec(Spec):
         default=2.0, description="Distance ahead over which others matter e times less, m."
     )
     half_width: PositiveLength = Field(
-        default=0.6, description="Who is farther to the side does not count, m."
+        default=0.6, description="People farther to the side do not count, m."
     )
     follow: Annotated[float, Ge(0)] = Field(
         default=1.0, description="How much those who walk along count beside those who come."

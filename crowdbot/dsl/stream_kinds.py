@@ -49,7 +49,7 @@ class Arrivals(Spec):
         default=(), strict=False, description="Scheduled arrivals, s; in any order."
     )
     begin: NonNegativeDuration = Field(
-        default=0.0, description="With `rate` and `every`: nobody arrives before, s."
+        default=0.0, description="With `rate` and `every`: nobody arrives before this time, s."
     )
     until: PositiveDuration | None = Field(
         default=None, description="With `rate` and `every`: nobody arrives from then on, s."
@@ -74,7 +74,8 @@ class StreamBody(Spec):
     mass: PositiveMass | None = Field(default=None, description="Mass in the physics, kg.")
     max_speed: PositiveSpeed | None = Field(default=None, description="Largest speed, m/s.")
     max_acceleration: PositiveAcceleration | None = Field(
-        default=None, description="Largest acceleration by own will, m/s^2."
+        default=None,
+        description="Largest acceleration that people choose, m/s^2; pushes may exceed it.",
     )
 
 
@@ -142,7 +143,7 @@ class ThroughStream(_Populated):
 
     kind: Literal["through"] = Field(default="through", description="Pattern of the stream.")
     origin: Place = Field(
-        description="Where they come from: name of a zone or portal, or an area of its own."
+        description="Where they come from: name of a zone or portal, or an area written here."
     )
     destination: Place = Field(description="Where they go: named or given likewise.")
     via: tuple[Place, ...] = Field(
@@ -157,8 +158,8 @@ class ThroughStream(_Populated):
     )
     at_destination: StreamEnd | None = Field(
         default=None,
-        description="return: come in again at the origin, so that their number stays; leave the "
-        "world; stop there. Without it arrivals leave, others return.",
+        description="return: come in again at the origin, so that their number stays the same; "
+        "leave the world; stop there. By default people with arrivals leave, others return.",
     )
 
     @property
@@ -179,13 +180,13 @@ class ThroughStream(_Populated):
 
 
 class DirectionsStream(Stream):
-    """Two-dimensional flow: everybody walks in a direction of his own.
+    """Two-dimensional flow: each person walks in a direction that is drawn.
 
     On a torus for ever; elsewhere to the border of the area, where each turns to a new direction.
     """
 
     kind: Literal["directions"] = Field(default="directions", description="Pattern of the stream.")
-    area: Place = Field(description="Where they walk: name of a zone, or an area of its own.")
+    area: Place = Field(description="Where they walk: name of a zone, or an area written here.")
     density: PositiveDensity | None = Field(
         default=None, description="People per area, 1/m^2; this or `count`."
     )
@@ -241,7 +242,7 @@ class TalkingStream(Stream):
 
     kind: Literal["talking"] = Field(default="talking", description="Pattern of the stream.")
     count: Count = Field(description="How many people there are.")
-    area: Place = Field(description="Where they stand: name of a zone, or an area of its own.")
+    area: Place = Field(description="Where they stand: name of a zone, or an area written here.")
     groups: Annotated[tuple[GroupSize, ...], MinLen(1)] = Field(
         strict=False, description="Sizes of the circles."
     )
@@ -264,7 +265,7 @@ class WanderingStream(_Populated):
     """People who stroll from goal area to goal area, by chance, and linger there."""
 
     kind: Literal["wandering"] = Field(default="wandering", description="Pattern of the stream.")
-    area: Place = Field(description="Where they start: name of a zone, or an area of its own.")
+    area: Place = Field(description="Where they start: name of a zone, or an area written here.")
     areas: Annotated[tuple[str, ...], MinLen(1)] = Field(
         strict=False, description="Names of goal areas; where they have `next`, that follows."
     )

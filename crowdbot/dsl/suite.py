@@ -65,10 +65,12 @@ _Versions = Annotated[
 
 
 class SuiteHead(Spec):
-    """Who a suite is."""
+    """Name, title and seed of a suite."""
 
     id: PathName = Field(pattern=r"^[A-Za-z0-9_.-]+$", description="Name of the suite.")
-    title: str = Field(default="", description="For people.")
+    title: str = Field(
+        default="", description="What the suite is about, for people who read a list of suites."
+    )
     seed: Annotated[int, Ge(0), Le(2**63 - 1)] = Field(
         default=0, description="Root of every crowd's random numbers."
     )

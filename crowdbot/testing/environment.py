@@ -78,7 +78,7 @@ def check_zones_are_on_the_floor(
 def check_free_side_is_on_the_left(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """Who stands in a zone, or in the middle of the floor, sees the left side of every wall.
+    """From a zone, or the middle of the floor, one sees the left side of every wall.
 
     If this fails, swap the ends of the wall that is named: sensors do not mind, but the robot and
     people are kept on its left.

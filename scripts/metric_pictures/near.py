@@ -80,7 +80,9 @@ def _neighbour_count(world: World, metric: str) -> Figure:
     return world.lines(metric, "people", [(world.t, count, PERSON, "people within 3 m")])
 
 
-@draws("local_density", "Who is within 3 m of the robot, at the moment when most are.")
+@draws(
+    "local_density", "People within 3 m of the robot, at the moment when there are most of them."
+)
 def _local_density(world: World, metric: str) -> Figure:
     k = int(np.argmax(world.near.sum(axis=1)))
     figure = world.bodies(world.plane(metric), k, who=lambda j: bool(world.near[k, j]))

@@ -24,7 +24,7 @@ def _jerk(t: Array, v: Array) -> tuple[Array, Array]:
 
 
 # ------------------------------------------------------------------------- motion
-@draws("speed", "Speed of the robot; least, mean and greatest are told.")
+@draws("speed", "Speed of the robot; its least, mean and greatest value are the scores.")
 @draws("stalled_time", "Time during which the robot is slower than 0.05 m/s.")
 @draws("time_not_moving", "Time during which the robot neither drives nor turns.")
 def _speed(world: World, metric: str) -> Figure:
@@ -38,14 +38,14 @@ def _speed(world: World, metric: str) -> Figure:
     return figure.line(world.t, world.speed, ROBOT, "speed of the robot")
 
 
-@draws("acceleration", "Change of the forward speed, step by step; its magnitude is told.")
+@draws("acceleration", "Change of the forward speed, step by step; the scores are its magnitude.")
 def _accelerate(world: World, metric: str) -> Figure:
     each = np.abs(_acceleration(world.t, world.robot.v))
     row = (_middles(world.t), each, ROBOT, "magnitude of the acceleration")
     return world.lines(metric, "acceleration in m/s²", [row])
 
 
-@draws("jerk", "Change of the acceleration, step by step; its magnitude is told.")
+@draws("jerk", "Change of the acceleration, step by step; the scores are its magnitude.")
 @draws("dimensionless_jerk", "Squared jerk; its area is made free of duration and speed.")
 def _jerks(world: World, metric: str) -> Figure:
     at, each = _jerk(world.t, world.robot.v)

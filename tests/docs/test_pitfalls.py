@@ -148,7 +148,7 @@ def test_two_seeds(tmp_path: Path) -> None:
     assert digest(before["in-few-far-n01"]) != digest(after["in-few-far-n01"])
 
 
-def test_from_where_a_range_counts() -> None:
+def test_a_range_counts_from_centre_to_centre() -> None:
     costs = spec(hall("crowd.costs.reflex={kind: rvo, range: 0.3 m}").crowd).costs
     assert costs["reflex"].range.measure == "centre"
     assert spec(hall().crowd).costs["reflex"].range.measure == "surface"

@@ -78,7 +78,7 @@ def _standing(pillars: Array) -> Array:
 
 
 class AcceleratingPolicy(Protocol):
-    """Compute all, then apply all: the result does not depend on the agents' order.
+    """A policy that returns accelerations; the result must not depend on the agents' order.
 
     A policy of either kind may have an attribute ``contact_stiffness``: the push between
     overlapping people, walls and pillars, 1/s^2; without it, `CONTACT_STIFFNESS`. One that chooses
@@ -94,7 +94,7 @@ class AcceleratingPolicy(Protocol):
 
 
 class VelocityPolicy(Protocol):
-    """The same for models that choose velocities."""
+    """A policy that returns velocities; the result must not depend on the agents' order."""
 
     def velocities(self, view: CrowdView, dt: float) -> Array:
         """Velocities (N, 2) to be reached within ``dt`` (s) at the latest decision, m/s.

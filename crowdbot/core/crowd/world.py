@@ -20,7 +20,7 @@ _COLUMNS = {"walls": 4, "pillars": 3, "entrance": 4, "out": 4}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrowdWorld:
-    """Where a crowd walks and how it takes robots; by default an endless empty floor.
+    """Where a crowd walks and how it responds to robots; by default an endless empty floor.
 
     A single row stands for a table of one.
 

@@ -33,11 +33,15 @@ if TYPE_CHECKING:
     from crowdbot.core.crowd.velocity_search.collision import (
         first_collision,
         first_contact,
+        list_approaching,
         list_obstacles,
         soonest_disc,
     )
     from crowdbot.core.crowd.velocity_search.cost import (
         AGENT_SIZE,
+        ASKED_RADIUS,
+        ASKED_X,
+        ASKED_Y,
         AX,
         AY,
         BASE,
@@ -173,10 +177,11 @@ _HOMES = {
     ),
     "crowdbot.core.crowd.recorded": "RecordedCrowd read_record",
     "crowdbot.core.crowd.velocity_search.collision": (
-        "first_collision first_contact list_obstacles soonest_disc"
+        "first_collision first_contact list_approaching list_obstacles soonest_disc"
     ),
     "crowdbot.core.crowd.velocity_search.cost": (
-        "AGENT_SIZE AX AY BASE BX BY D2 DESCENDS EXCESS FASTEST FROM_SURFACE GRADIENT GX GY "
+        "AGENT_SIZE ASKED_RADIUS ASKED_X ASKED_Y AX AY BASE BX BY D2 DESCENDS EXCESS FASTEST "
+        "FROM_SURFACE GRADIENT GX GY "
         "LOWER_BOUND MAX_ACCELERATION MAX_SPEED NEAR_COLUMNS NPX NPY NVX NVY NX NY OPTIMUM "
         "PARITY PREFERRED PREPARE PVX PVY PX PY RADIUS RANDOM RANGE REACH RELAXATION RX RY "
         "STATIC TIME_STEP VX VY WALL_COLUMNS WALL_D2 WEIGHT WORK_COLUMNS AgentView "
@@ -223,6 +228,9 @@ _HOMES = {
 
 __all__ = [
     "AGENT_SIZE",
+    "ASKED_RADIUS",
+    "ASKED_X",
+    "ASKED_Y",
     "AX",
     "AY",
     "BASE",
@@ -347,6 +355,7 @@ __all__ = [
     "forward_speed",
     "in_range",
     "kernel",
+    "list_approaching",
     "list_obstacles",
     "mount_pose",
     "mount_tilt",

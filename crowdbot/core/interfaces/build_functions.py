@@ -68,7 +68,7 @@ class BuildSensor(Protocol[SensorSpecT]):
 
 
 class BuildRangeSensor(Protocol[RangeSensorSpecT]):
-    """The same for sensors of distances, whose specs derive from `RangeSensorSpec`.
+    """As `BuildSensor`, for sensors of distances: their specs derive from `RangeSensorSpec`.
 
     So it is for every component whose spec says that it has parts (``parts_field``): they are
     built first and come second.
@@ -108,7 +108,7 @@ class BuildPolicy(Protocol[PolicySpecT]):
 
 
 class BuildCost(Protocol[CostSpecT]):
-    """Called before the policy that is handed it."""
+    """Called before the policy that uses the cost function is built."""
 
     def __call__(self, spec: CostSpecT, /) -> CompiledCost | NumpyCost:
         """Compiled functions with their parameters, or one vectorised function."""

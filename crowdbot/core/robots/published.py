@@ -33,7 +33,7 @@ _NAMED = 4
 
 
 class PublishedWheel(NamedTuple):
-    """What a published description says of a wheel by its mesh only, or not at all.
+    """What a published description does not say about a wheel, or only by its mesh.
 
     Attributes:
         radius: m.

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
 
 from crowdbot.core.recording import fleet_names, read_fleet
 from crowdbot.core.recording.commands import read_commands
@@ -235,9 +233,3 @@ def _commands(
 
 def _answers(file: Path | None) -> Questionnaires | None:
     return None if file is None else Questionnaires.from_csv(file)
-
-
-def available_cores() -> int:
-    """Cores that this process may use."""
-    affinity: Any = getattr(os, "sched_getaffinity", None)
-    return len(affinity(0)) if affinity else os.cpu_count() or 1

@@ -29,7 +29,7 @@ class Sensor(Protocol):
 
 @runtime_checkable
 class DepthCamera(Protocol):
-    """A camera that has an image in whole millimetres with less work than a reading in m.
+    """A camera that makes an image in whole millimetres with less work than a reading in m.
 
     A camera need not be one: where it is recorded, its reading is rounded.
     """

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any, get_args
 
+from crowdbot.core.crowd.compile_ahead import crowd_compiled_ahead
 from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.planning.given_planner import GivenPlanner, choose_planner
 from crowdbot.core.planning.watchdog import STEP_LIMIT
@@ -134,7 +136,8 @@ def simulate(
         step_budget=step_budget,
         watchers=watchers,
     )
-    return make_run(request, prepare(scenario, registry, references=request.references), keep)
+    with crowd_compiled_ahead() if scenario.crowd else nullcontext():
+        return make_run(request, prepare(scenario, registry, references=request.references), keep)
 
 
 def _check_callbacks(progress: object, stop: object) -> None:

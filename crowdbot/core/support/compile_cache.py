@@ -22,7 +22,7 @@ def use_kernel_cache() -> None:
 
 
 #: So many compiled functions a first run with people, sensors and dwa leaves.
-USUAL = 211
+USUAL = 190
 
 
 def nothing_compiled() -> bool:

@@ -17,6 +17,7 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import os
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -38,6 +39,8 @@ from numba.core.types import Omitted
 from crowdbot.core.support.seldom_collected import seldom_collected
 
 _PART, _WHOLE = "part", "whole"
+#: Held while a function is written to the cache.
+SAVING = threading.Lock()
 
 
 class _NoEngine:
@@ -126,7 +129,8 @@ class _Cache(FunctionCache):
 
     def save(self, sig: Any, result: Any, as_part: bool) -> None:
         self._as_part = as_part
-        self.save_overload(sig, result)
+        with SAVING:
+            self.save_overload(sig, result)
 
     @contextmanager
     def turn(self) -> Iterator[None]:
@@ -291,4 +295,4 @@ def _let_others_call(result: Any) -> None:
     context.insert_user_function(result.entry_point, result.fndesc, [library])
 
 
-__all__ = ["KernelDispatcher"]
+__all__ = ["SAVING", "KernelDispatcher"]

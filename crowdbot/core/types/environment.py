@@ -13,7 +13,7 @@ from crowdbot.core.types.arrays import Array
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EnvironmentParts:
-    """Plain geometry; core makes plant boxes, ray targets, crowd obstacles and drawings of it.
+    """Plain geometry; core makes plant boxes, ray targets, crowd obstacles and drawings from it.
 
     Attributes:
         walls: (S, 4) segments x0, y0, x1, y1, m; the free side is on their left.

@@ -93,7 +93,7 @@ class RobotModel:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotBody:
-    """What a planner is told of the robot that it drives.
+    """What a planner is told about the robot that it drives.
 
     Attributes:
         drive: ``differential``, or ``holonomic``, which also goes sideways.

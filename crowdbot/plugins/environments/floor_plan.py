@@ -81,7 +81,7 @@ class FloorPlanSpec(EnvironmentSpec):
         "and one cell in a grid.",
     )
     least_area: Annotated[float, Le(100)] = Field(
-        default=0.02, ge=0.0, description="Smaller pieces and holes are left away, m^2."
+        default=0.02, ge=0.0, description="Smaller pieces and holes are left out, m^2."
     )
     thickness: PositiveLength = Field(default=0.1, description="Of lines that are walls, m.")
     wall_height: PositiveLength = Field(default=2.5, description="Height of the walls, m.")

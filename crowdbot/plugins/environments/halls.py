@@ -95,10 +95,10 @@ class ShedSpec(_HallSpec):
     wall_height: PositiveLength = Field(default=6.0, description="Of the outer walls, m.")
     gates: dict[str, WallSpec] | None = Field(
         default=None,
-        description="Raised barriers, from 0.3 m to 1.1 m where nothing is said; without it two.",
+        description="Raised barriers, by default from 0.3 m to 1.1 m; without this field two.",
     )
     low_walls: dict[str, WallSpec] | None = Field(
-        default=None, description="Low walls, 0.3 m where nothing is said; without it two."
+        default=None, description="Low walls, by default 0.3 m high; without this field two."
     )
 
     def solids(self) -> tuple[Solid, ...]:

@@ -60,8 +60,8 @@ class StreetSpec(WalkwaySpec):
     pavement: PositiveLength = Field(default=3.0, description="Width of each pavement, m.")
     kerbs: Literal["step", "flush"] = Field(
         default="step",
-        description="step: people step over them, wheels are stopped but at crossings; flush: "
-        "nobody is.",
+        description="step: people step over them, and they stop "
+        "wheels except at crossings; flush: they stop nobody.",
     )
     kerb_height: PositiveLength = Field(default=0.12, description="Of a step, m.")
     crossings: dict[str, CrossingSpec] = Field(

@@ -86,7 +86,7 @@ COLLISION_RATE = declare(
 
 
 class CollisionsAtFaultSpec(MetricSpec):
-    """Contacts with people that the robot, or that the person ran into."""
+    """Contacts with people, split by who ran into whom."""
 
     kind: Literal["collisions_at_fault"] = "collisions_at_fault"
     contact_tol: ContactTol

@@ -54,7 +54,7 @@ NeighbourRadius = Annotated[
 ]
 EvasionReach = Annotated[
     PositiveLength,
-    Field(default=2.0, description="Who is farther off, centre to centre, does not evade, m."),
+    Field(default=2.0, description="People farther off, centre to centre, do not evade, m."),
 ]
 RiskHorizon = Annotated[
     PositiveDuration, Field(default=5.0, description="Contacts farther ahead carry no risk, s.")
@@ -79,12 +79,15 @@ HeadingMinSpeed = Annotated[
 ]
 OvertakeLateral = Annotated[
     PositiveLength,
-    Field(default=3.0, description="Who passes farther to the side does not overtake, m."),
+    Field(default=3.0, description="People who pass farther to the side do not overtake, m."),
 ]
 OvertakeAngle = Annotated[
     NonNegativeDuration,
     PositiveAngle,
-    Field(default=math.pi / 4, description="Who walks another way by more is not overtaken, rad."),
+    Field(
+        default=math.pi / 4,
+        description="People whose direction differs by more are not overtaken, rad.",
+    ),
 ]
 OvertakeEps = Annotated[
     NonNegativeLength,
@@ -133,19 +136,21 @@ FaultSpeed = Annotated[
 ]
 FaultReaction = Annotated[
     NonNegativeDuration,
-    Field(default=0.3, description="A robot may go on so long when a contact is foreseeable, s."),
+    Field(
+        default=0.3, description="A robot may go on for so long once a contact is foreseeable, s."
+    ),
 ]
 FaultBraking = Annotated[
     PositiveAcceleration,
-    Field(default=1.0, description="So hard it must brake then, m/s²."),
+    Field(default=1.0, description="It must brake with this deceleration then, m/s²."),
 ]
 FaultMargin = Annotated[
     NonNegativeLength,
-    Field(default=0.1, description="Who is going to pass closer may be touched, m."),
+    Field(default=0.1, description="People who are going to pass closer may be touched, m."),
 ]
 ForcedPush = Annotated[
     _Number,
-    Field(default=0.25, description="Who is pushed more, per mass, is driven aside, J/kg."),
+    Field(default=0.25, description="People pushed by more, per mass, are driven aside, J/kg."),
 ]
 ForcedFactor = Annotated[
     float,
@@ -156,29 +161,29 @@ ForcedFactor = Annotated[
 ForcedHeadway = Annotated[
     PositiveDuration,
     Field(
-        default=0.5, description="Who would be reached sooner if he stood still is forced away, s."
+        default=0.5, description="People who, standing, would be reached sooner are forced away, s."
     ),
 ]
 TimeGap = Annotated[
     PositiveDuration,
-    Field(default=1.0, description="Who would be reached sooner if he stood still is crowded, s."),
+    Field(default=1.0, description="People who, standing, would be reached sooner are crowded, s."),
 ]
 LeastWay = Annotated[
     PositiveLength, Field(default=1.0, description="Less way counts as this much, m.")
 ]
 SameStart = Annotated[
     NonNegativeLength,
-    Field(default=0.1, description="Who is farther from where he would be is left out, m."),
+    Field(default=0.1, description="People farther from where they would be are left out, m."),
 ]
 AfterMeeting = Annotated[
     NonNegativeDuration,
-    Field(default=2.0, description="A meeting goes on so long after the robot is out of reach, s."),
+    Field(default=2.0, description="A meeting ends so long after the robot is out of reach, s."),
 ]
 MuchDisplacement = Annotated[
-    NonNegativeLength, Field(default=0.5, description="Who is displaced by more is counted, m.")
+    NonNegativeLength, Field(default=0.5, description="People displaced by more are counted, m.")
 ]
 MuchDelay = Annotated[
-    NonNegativeDuration, Field(default=0.5, description="Who is delayed by more is counted, s.")
+    NonNegativeDuration, Field(default=0.5, description="People delayed by more are counted, s.")
 ]
 DtwThreshold = Annotated[
     PositiveLength,

@@ -22,12 +22,14 @@ from crowdbot.core.interfaces import (
     Array,
     Command,
     LidarPoints,
+    Mask,
     Observation,
     Pose,
     RobotLimits,
     SensorInfo,
     Task,
 )
+from crowdbot.core.support.compile import kernel
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import GoalSeek, bearing
 from crowdbot.plugins.planners.heading_by_walls_build import HeadingByWalls, compile_heading
@@ -87,7 +89,8 @@ class StopAndGo:
         compile_heading()
         self._motion = PeopleMotion(self._spec.look_back)
         for t in (0.0, self._spec.look_back):  # so that no step of the run waits for the compiler
-            self._scene(t, Pose(0.0, 0.0, 0.0), np.full((1, 2), 2.0 + t))
+            scene = self._scene(t, Pose(0.0, 0.0, 0.0), np.full((1, 2), 2.0 + t))
+            time_to_contact(scene.points, scene.velocities, 1.0, 0.0, self._half_width)
         self._motion = PeopleMotion(self._spec.look_back)
 
     def step(self, obs: Observation) -> Command:
@@ -208,14 +211,23 @@ def time_to_contact(
         radius: of the disc that is to stay clear, m.
     """
     ahead = np.array([math.cos(heading), math.sin(heading)])
-    before = points @ ahead > 0.0
-    at, going = points[before], velocities[before] - speed * ahead
-    a, b = np.sum(going * going, axis=1), -np.sum(at * going, axis=1)
-    c = np.sum(at * at, axis=1) - radius * radius
-    root = b * b - a * c
-    meets = (b > 0.0) & (root >= 0.0)
-    times = (b[meets] - np.sqrt(root[meets])) / a[meets]
-    return float(np.maximum(times, 0.0).min(initial=math.inf))
+    going = velocities - speed * ahead
+    return float(_first_contact(points, going, points @ ahead > 0.0, radius))
+
+
+@kernel
+def _first_contact(points: Array, going: Array, before: Mask, radius: float) -> float:
+    """Of `time_to_contact`; ``going`` is relative to the robot, ``before`` says what counts."""
+    first = math.inf
+    for k in range(points.shape[0]):
+        if not before[k]:
+            continue
+        x, y, vx, vy = points[k, 0], points[k, 1], going[k, 0], going[k, 1]
+        a, b = vx * vx + vy * vy, -(x * vx + y * vy)
+        root = b * b - a * (x * x + y * y - radius * radius)
+        if b > 0.0 and root >= 0.0:
+            first = min(first, max(0.0, (b - math.sqrt(root)) / a))
+    return first
 
 
 def build(spec: StopAndGoSpec) -> StopAndGo:

@@ -20,7 +20,7 @@ from crowdbot.plugins.robots.limits import (
 class CuybotSpec(LimitedRobotSpec):
     """Size and weight after the original's prefab; nothing else about it is published.
 
-    It gives way: who pushes harder than `yield_force` moves it, and it brakes with that force when
+    It gives way: a push harder than `yield_force` moves it, and it brakes with that force when
     the push is over. Its skin is a spring in series with the person's body.
     """
 

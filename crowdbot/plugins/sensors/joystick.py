@@ -59,7 +59,7 @@ class JoystickSpec(SensorSpec):
         default=0.1, description="Standard deviation of the hand, a fraction of full deflection."
     )
     noise_time: PositiveDuration = Field(
-        default=0.5, description="Time after which the hand's error is another one, s."
+        default=0.5, description="Correlation time of the hand's error, s."
     )
     recorded: Annotated[tuple[RecordedCommand, ...], MinLen(1)] | None = Field(
         default=None,

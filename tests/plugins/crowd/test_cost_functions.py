@@ -125,10 +125,11 @@ class Probe:
 
 
 def _agent(s: Scene, seed: int) -> Array:
-    agent = np.full(c.AGENT_SIZE, np.nan)
+    agent, fastest = np.full(c.AGENT_SIZE, np.nan), max(s.s_max, abs(s.v), 4.0)
     given = {
         c.PX: s.p.real, c.PY: s.p.imag, c.VX: s.v.real, c.VY: s.v.imag, c.RADIUS: s.r,
-        c.PREFERRED: s.s, c.FASTEST: max(s.s_max, abs(s.v), 4.0), c.TIME_STEP: s.dt,
+        c.PREFERRED: s.s, c.FASTEST: fastest, c.TIME_STEP: s.dt,
+        c.ASKED_X: 0.0, c.ASKED_Y: 0.0, c.ASKED_RADIUS: fastest,
         c.GX: s.goal.real, c.GY: s.goal.imag, c.PVX: s.v_pref.real, c.PVY: s.v_pref.imag,
         c.MAX_SPEED: s.s_max, c.MAX_ACCELERATION: 5.0, c.RELAXATION: s.tau, c.WEIGHT: s.mass,
         c.PARITY: float(s.parity), c.RANDOM: float(seed),

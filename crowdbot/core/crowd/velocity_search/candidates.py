@@ -13,6 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from crowdbot.core.crowd.velocity_search.cost import (
+    ASKED_RADIUS,
+    ASKED_X,
+    ASKED_Y,
     FASTEST,
     MAX_ACCELERATION,
     MAX_SPEED,
@@ -134,7 +137,7 @@ def direction_of(agent: Pointer, kind: int) -> tuple[float, float]:
 
 @kernel
 def frame_of(agent: Array, options: FanOptions, frame: Array) -> float:
-    """Where an agent's candidates are; sets the greatest speed asked for; returns the radius.
+    """Where an agent's candidates are; notes it in ``agent``, too; returns the radius.
 
     Args:
         frame: (4,) output: base, and base direction times radius, m/s.
@@ -143,7 +146,11 @@ def frame_of(agent: Array, options: FanOptions, frame: Array) -> float:
     ex, ey = direction_of(agent, options.direction)
     frame[0], frame[1] = (agent[VX], agent[VY]) if options.base == CURRENT else (0.0, 0.0)
     frame[2], frame[3] = scale * ex, scale * ey
-    agent[FASTEST] = (1.0 + 1e-9) * (scale + math.hypot(frame[0], frame[1]))
+    fastest = scale + math.hypot(frame[0], frame[1])
+    agent[FASTEST] = (1.0 + 1e-9) * fastest
+    agent[ASKED_X], agent[ASKED_Y] = frame[0], frame[1]
+    # Under parity candidates are rounded to single precision.
+    agent[ASKED_RADIUS] = scale + (1e-9 if agent[PARITY] == 0.0 else 1e-6) * fastest
     return scale
 
 

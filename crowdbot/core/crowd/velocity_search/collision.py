@@ -35,6 +35,9 @@ DISCS, SEGMENTS, TOUCHED = range(3)
 # segment has both ends in columns 0 to 3. Then the time before which nothing can happen.
 _EARLIEST = 5
 _SAFE = 1.0 - 1e-12
+#: Discs that are sorted by that time; all others come later. To sort hundreds would take longer
+#: than to pass them over.
+_SORTED = 12
 #: Discs in lower bounds: those after them seldom are the first.
 _FEW = 3
 
@@ -57,8 +60,37 @@ def list_obstacles(
     Args:
         fastest: the largest speed that `first_collision` is going to be asked for, m/s.
     """
+    return list_approaching(
+        agent, near, near_count, walls, wall_count, params, work, 0.0, 0.0, fastest, math.inf
+    )
+
+
+@array_kernel
+def list_approaching(
+    agent: Pointer,
+    near: Pointer,
+    near_count: int,
+    walls: Pointer,
+    wall_count: int,
+    params: Pointer,
+    work: Pointer,
+    ux: float,
+    uy: float,
+    spread: float,
+    horizon: float,
+) -> int:
+    """As `list_obstacles`, without the discs that cannot be touched until ``horizon``, s.
+
+    Most of those in a range of 100 m walk away or are too far. Under parity all are written,
+    since `first_contact` looks at them.
+
+    Args:
+        ux, uy, spread: all velocities that `first_collision` is going to be asked for lie in this
+            disc, m/s.
+    """
     near, walls, work = near_table(near), wall_table(walls), work_table(work)
     surface, touched, discs = params[FROM_SURFACE], 0, 0
+    most = horizon if agent[PARITY] == 0.0 else math.inf
     for j in range(near_count):
         d2, reach = near[j, D2], near[j, REACH]
         limit = params[RANGE] + surface * reach
@@ -70,18 +102,24 @@ def list_obstacles(
             continue
         vx, vy, distance = near[j, NVX], near[j, NVY], math.sqrt(d2)
         # The distance shrinks at most at this speed; the factor is for rounding.
-        closing = fastest - (vx * near[j, RX] + vy * near[j, RY]) / distance
+        closing = spread + ((ux - vx) * near[j, RX] + (uy - vy) * near[j, RY]) / distance
         earliest = _SAFE * (distance - reach) / closing if closing > 0.0 else math.inf
+        if earliest > most:
+            continue
         discs += 1
         row = discs
-        while row > 1 and work[row - 1, _EARLIEST] > earliest:
+        if row > _SORTED and work[_SORTED, _EARLIEST] > earliest:  # that one goes to the end
+            for column in range(6):
+                work[row, column] = work[_SORTED, column]
+            row = _SORTED
+        while 1 < row <= _SORTED and work[row - 1, _EARLIEST] > earliest:
             for column in range(6):
                 work[row, column] = work[row - 1, column]
             row -= 1
         work[row, 0], work[row, 1] = near[j, RX], near[j, RY]
         work[row, 2], work[row, 3], work[row, 4] = vx, vy, gap2
         work[row, _EARLIEST] = earliest
-    row = discs
+    row, fastest = discs, spread + math.hypot(ux, uy)
     limit = params[RANGE] + surface * agent[RADIUS]
     for s in range(wall_count):
         d2 = walls[s, WALL_D2]
@@ -112,7 +150,9 @@ def first_collision(ux: float, uy: float, until: float, agent: Pointer, work: Po
     first, discs = math.inf, int(work[0, DISCS])
     for j in range(1, discs + 1):
         if work[j, _EARLIEST] >= first:
-            break
+            if j <= _SORTED:
+                break
+            continue
         t = time_to_disc(work[j, 0], work[j, 1], ux - work[j, 2], uy - work[j, 3], work[j, 4])
         if t < first:
             first = t

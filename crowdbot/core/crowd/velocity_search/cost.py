@@ -67,13 +67,13 @@ LOWER_BOUND = types.int64(_I, _P, _P, _P, _P, _P, _P)
 # otherwise, without unit) that divides forces; 1 if the original's defects are wanted; state of
 # the agent's random numbers (see `crowdbot.core.crowd.velocity_search.minstd`), which functions
 # may advance; whether gradients are followed; whether some function returned NaN, which the search
-# notes there for itself.
+# notes there for itself; the disc of velocities that holds all that the search asks for.
 (
     PX, PY, VX, VY, RADIUS, PREFERRED, FASTEST, TIME_STEP,
     GX, GY, PVX, PVY, MAX_SPEED, MAX_ACCELERATION, RELAXATION, WEIGHT, PARITY, RANDOM,
-    DESCENDS, BROKEN,
-) = range(20)  # fmt: skip
-AGENT_SIZE = 20
+    DESCENDS, BROKEN, ASKED_X, ASKED_Y, ASKED_RADIUS,
+) = range(23)  # fmt: skip
+AGENT_SIZE = 23
 # Columns of ``near``, in no particular order: squared centre distance, relative position,
 # velocity, sum of radii; preferred velocity; 1 for a pillar (a disc that never moves).
 D2, RX, RY, NVX, NVY, REACH, NPX, NPY, STATIC = range(9)

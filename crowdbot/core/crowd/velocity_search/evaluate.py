@@ -12,6 +12,7 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
     prepare,
 )
 from crowdbot.core.crowd.velocity_search.cost import (
+    ASKED_RADIUS,
     AX,
     BY,
     D2,
@@ -159,7 +160,7 @@ def _evaluate(
             continue
         for s in range(velocities.shape[1]):
             speed = np.hypot(velocities[i, s, 0], velocities[i, s, 1])
-            agent[FASTEST] = max(agent[FASTEST], speed)
+            agent[FASTEST] = agent[ASKED_RADIUS] = max(agent[FASTEST], speed)
         terms = prepare(around, b, functions, weights, active)
         costs = AgentCosts(agent, functions, weights, active[:terms])
         for s in range(velocities.shape[1]):

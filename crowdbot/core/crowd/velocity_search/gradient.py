@@ -17,7 +17,15 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
     prepare,
 )
 from crowdbot.core.crowd.velocity_search.broken import check_numbers
-from crowdbot.core.crowd.velocity_search.cost import BROKEN, DESCENDS, FASTEST, RANDOM, VX, VY
+from crowdbot.core.crowd.velocity_search.cost import (
+    ASKED_RADIUS,
+    BROKEN,
+    DESCENDS,
+    FASTEST,
+    RANDOM,
+    VX,
+    VY,
+)
 from crowdbot.core.crowd.velocity_search.cost_calls import call_gradient
 from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
 from crowdbot.core.crowd.velocity_search.neighbours import Starts
@@ -84,6 +92,7 @@ def _descend(
             continue
         vx, vy, agent[DESCENDS] = agent[VX], agent[VY], 1.0
         agent[FASTEST] = (1.0 + 1e-9) * math.hypot(vx, vy) + 1.5 * STEP
+        agent[ASKED_RADIUS] = agent[FASTEST]
         terms = prepare(around, b, functions, weights, active)
         costs = AgentCosts(agent, functions, weights, active[:terms])
         gx = gy = 0.0

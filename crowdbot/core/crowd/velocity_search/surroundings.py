@@ -11,6 +11,9 @@ import math
 from typing import NamedTuple
 
 from crowdbot.core.crowd.velocity_search.cost import (
+    ASKED_RADIUS,
+    ASKED_X,
+    ASKED_Y,
     DESCENDS,
     FASTEST,
     GX,
@@ -106,4 +109,5 @@ def describe(around: Surroundings, b: int) -> int:
     agent[PARITY], agent[RANDOM] = settings[S_PARITY], around.random[i]
     agent[DESCENDS] = 0.0
     agent[FASTEST] = max(agent[MAX_SPEED], math.hypot(agent[VX], agent[VY]))
+    agent[ASKED_X], agent[ASKED_Y], agent[ASKED_RADIUS] = 0.0, 0.0, agent[FASTEST]
     return i

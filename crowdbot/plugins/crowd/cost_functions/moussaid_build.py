@@ -23,7 +23,7 @@ from crowdbot.core.interfaces import (
     CompiledCost,
     Pointer,
     first_contact,
-    list_obstacles,
+    list_approaching,
 )
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.moussaid import MoussaidSpec
@@ -53,8 +53,12 @@ def _prepare(
     params: Pointer,
     work: Pointer,
 ) -> int:
-    fastest = agent[PREFERRED]
-    list_obstacles(agent, near, near_count, walls, wall_count, params, work, fastest)
+    # All are asked for at the preferred speed; what comes after d_max costs nothing.
+    speed = agent[PREFERRED]
+    horizon = (1.0 + 1e-9) * params[_D_MAX] / speed if speed > 0.0 else math.inf
+    list_approaching(
+        agent, near, near_count, walls, wall_count, params, work, 0.0, 0.0, speed, horizon
+    )
     return 1
 
 

@@ -12,9 +12,11 @@ import numpy as np
 from numba import njit
 
 from crowdbot.core.interfaces import (
+    ASKED_RADIUS,
+    ASKED_X,
+    ASKED_Y,
     BASE,
     EXCESS,
-    FASTEST,
     GX,
     GY,
     PREPARE,
@@ -23,7 +25,7 @@ from crowdbot.core.interfaces import (
     CompiledCost,
     Pointer,
     first_collision,
-    list_obstacles,
+    list_approaching,
 )
 from crowdbot.plugins.crowd.cost_functions.pledestrians import PledestriansSpec
 
@@ -45,8 +47,10 @@ def _prepare(
     params: Pointer,
     work: Pointer,
 ) -> int:
-    fastest = agent[FASTEST]
-    list_obstacles(agent, near, near_count, walls, wall_count, params, work, fastest)
+    list_approaching(
+        agent, near, near_count, walls, wall_count, params, work,
+        agent[ASKED_X], agent[ASKED_Y], agent[ASKED_RADIUS], params[_T_MIN],
+    )  # fmt: skip
     return 1
 
 

@@ -8,6 +8,9 @@ import numpy as np
 from numba import njit
 
 from crowdbot.core.interfaces import (
+    ASKED_RADIUS,
+    ASKED_X,
+    ASKED_Y,
     BASE,
     EXCESS,
     FASTEST,
@@ -20,13 +23,15 @@ from crowdbot.core.interfaces import (
     CompiledCost,
     Pointer,
     first_collision,
-    list_obstacles,
+    list_approaching,
     soonest_disc,
 )
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 
 _W = 2  # entry of params
+#: Later than any collision but one that never comes, s.
+_EVER = 1e300
 _ROUNDING = 1.0 + 1e-6
 
 
@@ -56,8 +61,12 @@ def _prepare(
     params: Pointer,
     work: Pointer,
 ) -> int:
-    fastest = 2.0 * agent[FASTEST] + math.hypot(agent[VX], agent[VY])  # of 2u - v
-    items = list_obstacles(agent, near, near_count, walls, wall_count, params, work, fastest)
+    # Of 2u - v.
+    ux, uy = 2.0 * agent[ASKED_X] - agent[VX], 2.0 * agent[ASKED_Y] - agent[VY]
+    spread = 2.0 * agent[ASKED_RADIUS] + 1e-9 * (agent[FASTEST] + math.hypot(ux, uy))
+    items = list_approaching(
+        agent, near, near_count, walls, wall_count, params, work, ux, uy, spread, _EVER
+    )
     return max(items, 1) if agent[PARITY] != 0.0 else items
 
 

@@ -16,7 +16,7 @@ class ElbowRoomSpec(CostFunctionSpec):
 
     kind: Literal["my_costs.elbow_room"] = "my_costs.elbow_room"
     weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
-    range: PositiveLength = Field(default=3.0, description="Who is farther does not count, m.")
+    range: PositiveLength = Field(default=3.0, description="People farther away do not count, m.")
 
 
 class QuickElbowRoomSpec(ElbowRoomSpec):

@@ -1,0 +1,55 @@
+"""The crowd's dearest functions, compiled by a second process while a first run compiles the rest.
+
+A run calls them late: first it prepares robot, planner and cost functions. They are compiled by
+calling them for next to nobody, the dearest first, so that two processes seldom want the same one.
+"""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+
+import numpy as np
+
+from crowdbot.core.crowd.agents import Agents
+from crowdbot.core.crowd.engine import CrowdEngine
+from crowdbot.core.crowd.policy import CrowdView
+from crowdbot.core.crowd.state import TICK
+from crowdbot.core.crowd.velocity_search.candidates import Sampling
+from crowdbot.core.crowd.velocity_search.sampling import Sampler
+from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
+from crowdbot.core.crowd.world import CrowdWorld
+from crowdbot.core.support.compile_ahead import compiled_ahead
+from crowdbot.core.types.arrays import Array
+
+
+def crowd_compiled_ahead() -> AbstractContextManager[None]:
+    """Within this a second process compiles, if nothing is compiled yet."""
+    return compiled_ahead(__name__)
+
+
+class _Chooses:
+    """A policy that samples velocities, as most crowds do, without cost functions."""
+
+    def __init__(self, agents: Agents) -> None:
+        self._sampler = Sampler(Sampling(), WeightedCosts((), agents))
+
+    def accelerations(self, view: CrowdView) -> Array:
+        return self._sampler.choose(view)
+
+
+def compile_ahead() -> None:
+    """Ticks of a crowd without robots, then a decision, then what a robot adds.
+
+    Types alone matter: those of a run are the same, whoever walks in it.
+    """
+    nobody = CrowdEngine(Agents.of(x=[], y=[]), CrowdWorld(), _Chooses)
+    state = nobody.initial_state()
+    state[TICK] = 1.0  # no decision is due
+    nobody.advance_alone(state, 1)
+    box = np.array([[0.0, 1.0, 0.0, 1.0]])
+    person = CrowdEngine(Agents.of(x=0.0, y=0.0), CrowdWorld(entrance=box, out=box + 5.0), _Chooses)
+    far_away = np.array([[50.0, 50.0, 0.0, 0.0, 0.3, 0.3, 0.0, 0.0]])
+    person.advance(person.initial_state(), far_away)
+
+
+__all__ = ["compile_ahead", "crowd_compiled_ahead"]

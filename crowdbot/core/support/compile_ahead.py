@@ -1,0 +1,88 @@
+"""A second process that compiles what a first run needs late, while that compiles the rest.
+
+Both read and write one folder of compiled functions, and each function is compiled by one of them
+(`crowdbot.core.support.compile_parts`). Without the second process, whatever becomes of it, the
+first one compiles all by itself.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib import import_module
+
+from crowdbot.core.support.compile_cache import nothing_compiled
+from crowdbot.core.support.cores import available_cores
+
+_START = (
+    "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
+    "from crowdbot.core.support.compile_ahead import main; main(sys.argv[2])"
+)
+#: Time that the second process has to end by itself, s.
+_GRACE = 2.0
+
+
+@contextmanager
+def compiled_ahead(module: str) -> Iterator[None]:
+    """Within this, if nothing is compiled yet, a second process calls ``module.compile_ahead()``.
+
+    It ends with the block, or with this process. On a single core there is none: it would only
+    compile in another order.
+    """
+    process = _started(module) if _worth_it() else None
+    try:
+        yield
+    finally:
+        if process is not None:
+            _end(process)
+
+
+def _worth_it() -> bool:
+    compiles = os.environ.get("NUMBA_DISABLE_JIT", "0") == "0"
+    return compiles and available_cores() > 1 and nothing_compiled()
+
+
+def _started(module: str) -> subprocess.Popen[bytes] | None:
+    command = [sys.executable, "-c", _START, json.dumps(sys.path), module]
+    try:
+        return subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,  # its end tells the second process that this one has ended
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,  # Ctrl-C is for this one
+        )
+    except OSError:
+        return None
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    assert process.stdin is not None
+    process.stdin.close()
+    try:
+        process.wait(_GRACE)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+
+
+def main(module: str) -> None:
+    """The second process."""
+    threading.Thread(target=_end_with_caller, daemon=True).start()
+    import_module(module).compile_ahead()
+
+
+def _end_with_caller() -> None:
+    os.read(0, 1)
+    from crowdbot.core.support.compile_parts import SAVING
+
+    with SAVING:  # half a file would stay
+        os._exit(0)
+
+
+__all__ = ["compiled_ahead"]

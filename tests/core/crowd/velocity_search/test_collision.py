@@ -1,0 +1,157 @@
+"""The first collision is the same whatever was left out of the list, and however it is sorted."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from numba import njit
+
+from crowdbot.core.crowd.velocity_search.collision import (
+    DISCS,
+    first_collision,
+    list_approaching,
+    list_obstacles,
+)
+from crowdbot.core.crowd.velocity_search.cost import (
+    AGENT_SIZE,
+    D2,
+    EXCESS,
+    NEAR_COLUMNS,
+    NVX,
+    NVY,
+    PREPARE,
+    RADIUS,
+    REACH,
+    RX,
+    RY,
+    WALL_COLUMNS,
+    WORK_COLUMNS,
+    Pointer,
+)
+from crowdbot.core.crowd.velocity_search.cost_calls import address_of, call_excess, call_prepare
+from crowdbot.core.types.arrays import Array
+
+_FAR = 100.0  # m
+_RADIUS = 0.3  # m
+
+
+@njit(PREPARE, cache=True, error_model="numpy")
+def _some(
+    agent: Pointer,
+    near: Pointer,
+    near_count: int,
+    walls: Pointer,
+    wall_count: int,
+    params: Pointer,
+    work: Pointer,
+) -> int:
+    return list_approaching(
+        agent, near, near_count, walls, wall_count, params, work,
+        params[2], params[3], params[4], params[5],
+    )  # fmt: skip
+
+
+@njit(PREPARE, cache=True, error_model="numpy")
+def _all(
+    agent: Pointer,
+    near: Pointer,
+    near_count: int,
+    walls: Pointer,
+    wall_count: int,
+    params: Pointer,
+    work: Pointer,
+) -> int:
+    fastest = params[4] + math.hypot(params[2], params[3])
+    return list_obstacles(agent, near, near_count, walls, wall_count, params, work, fastest)
+
+
+@njit(EXCESS, cache=True, error_model="numpy")
+def _time(
+    ux: float, uy: float, _budget: float, agent: Pointer, work: Pointer, _params: Pointer
+) -> float:
+    return float(first_collision(ux, uy, 0.0, agent, work))
+
+
+@njit(cache=True)
+def _ask(
+    functions: Array,
+    scene: tuple[Array, Array, Array],
+    params: Array,
+    work: Array,
+    asked: Array,
+    times: Array,
+) -> None:
+    agent, near, walls = scene
+    a, p, w = agent.ctypes.data, params.ctypes.data, work.ctypes.data
+    call_prepare(functions[0], a, near.ctypes.data, len(near), walls.ctypes.data, 0, p, w)
+    for k in range(len(asked)):
+        times[k] = call_excess(functions[1], asked[k, 0], asked[k, 1], 0.0, a, w, p)
+
+
+def first_collisions(
+    prepare: object, near: Array, params: Array, asked: Array
+) -> tuple[Array, int]:
+    """Times of the first collision at velocities (K, 2), s; and how many discs were listed."""
+    agent, work = np.zeros(AGENT_SIZE), np.zeros((len(near) + 1, WORK_COLUMNS))
+    agent[RADIUS] = _RADIUS
+    times, walls = np.zeros(len(asked)), np.zeros((1, WALL_COLUMNS))
+    functions = np.array([address_of(prepare, PREPARE), address_of(_time, EXCESS)])
+    _ask(functions, (agent, near, walls), params, work, asked, times)
+    return times, int(work[0, DISCS])
+
+
+def neighbours(rng: np.random.Generator, count: int) -> Array:
+    """Discs at most 30 m away that touch nobody yet."""
+    near = np.zeros((count, NEAR_COLUMNS))
+    distance, angle = rng.uniform(1.0, 30.0, count), rng.uniform(0.0, 2.0 * math.pi, count)
+    near[:, RX], near[:, RY] = distance * np.cos(angle), distance * np.sin(angle)
+    near[:, [NVX, NVY]] = rng.normal(0.0, 1.0, (count, 2))
+    near[:, D2] = near[:, RX] ** 2 + near[:, RY] ** 2
+    near[:, REACH] = 2.0 * _RADIUS
+    return near
+
+
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    count=st.integers(1, 150),
+    spread=st.sampled_from([0.0, 0.2, 1.0, 3.0]),
+    horizon=st.sampled_from([0.5, 5.0, 1e300]),
+)
+def test_what_is_left_out_is_not_met_before_the_horizon(
+    seed: int, count: int, spread: float, horizon: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    near, (ux, uy) = neighbours(rng, count), rng.normal(0.0, 1.0, 2)
+    angle, length = rng.uniform(0.0, 2.0 * math.pi, 40), spread * rng.uniform(0.0, 1.0, 40)
+    asked = np.column_stack([ux + length * np.cos(angle), uy + length * np.sin(angle)])
+    params = np.array([_FAR, 0.0, ux, uy, spread * (1.0 + 1e-9) + 1e-12, horizon])
+    whole, listed = first_collisions(_all, near, params, asked)
+    assert listed == count
+    found, fewer = first_collisions(_some, near, params, asked)
+    assert fewer <= count
+    before = whole < horizon
+    np.testing.assert_array_equal(found[before], whole[before])
+    assert (found[~before] >= horizon).all()
+
+
+def test_the_order_of_neighbours_changes_no_time() -> None:
+    rng = np.random.default_rng(7)
+    near, asked = neighbours(rng, 120), rng.normal(0.0, 1.0, (200, 2))
+    params = np.array([_FAR, 0.0, 0.0, 0.0, 10.0, math.inf])
+    times, _ = first_collisions(_all, near, params, asked)
+    alone = [first_collisions(_all, one[None], params, asked)[0] for one in near]
+    np.testing.assert_array_equal(times, np.min(alone, axis=0))
+    for _ in range(5):
+        again, _ = first_collisions(_all, rng.permutation(near), params, asked)
+        np.testing.assert_array_equal(again, times)
+
+
+def test_a_narrow_disc_of_velocities_leaves_most_out() -> None:
+    near = neighbours(np.random.default_rng(3), 150)
+    near[:, [NVX, NVY]] = (1.3, 0.0)  # all walk as the agent does
+    params = np.array([_FAR, 0.0, 1.3, 0.0, 0.01, 100.0])
+    _, listed = first_collisions(_some, near, params, np.array([[1.3, 0.0]]))
+    assert 0 < listed < 15
