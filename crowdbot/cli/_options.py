@@ -18,6 +18,7 @@ __all__ = [
     "NoPlugins",
     "PlannerMemory",
     "Plugins",
+    "check_ending",
     "installed",
     "planner_place",
 ]
@@ -49,6 +50,23 @@ PlannerMemory = Annotated[
 _LEAST_GIB = 0.5
 #: Default of `PlannerMemory`, GiB.
 MEMORY_GIB = 4.0
+
+
+def check_ending(out: Path | None, *endings: str) -> None:
+    """Refuse a file for ``--out`` whose name says that something else is in it.
+
+    Args:
+        out: as it was given; None where it was not.
+        endings: those that there are, such as ``.html``.
+
+    Raises:
+        UsageError: the name ends otherwise.
+    """
+    from crowdbot.errors import UsageError
+
+    if out is not None and out.suffix.lower() not in endings:
+        known = " or ".join(filter(None, [", ".join(endings[:-1]), endings[-1]]))
+        raise UsageError(f"--out {out}: the name must end in {known}")
 
 
 def planner_place(in_process: bool | None, memory: float, *, lenient: bool = False) -> PlannerPlace:

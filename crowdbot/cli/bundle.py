@@ -24,7 +24,7 @@ def bundle(
         str, typer.Option(metavar="LABEL", help="The planner: name of its folders.")
     ] = "dwa",
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Default: SUITE-PLANNER.cbz.")
+        Path | None, typer.Option(metavar="FILE", help="File to write; default: SUITE-PLANNER.cbz.")
     ] = None,
     team: Annotated[
         str, typer.Option(metavar="NAME", help="Name of the team, for the leaderboard.")

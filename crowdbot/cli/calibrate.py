@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.cli._options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.cli._plugin_table import table
 from crowdbot.core.support.atomic_write import atomic_write
-from crowdbot.errors import InputError, UsageError
+from crowdbot.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -53,7 +53,8 @@ def calibrate(
     ] = 1,
     jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
     out: Annotated[
-        Path, typer.Option(metavar="FILE.yaml", help="The part to write; its log is beside it.")
+        Path,
+        typer.Option(metavar="FILE", help="File to write, .yaml; its log is beside it."),
     ] = Path("fitted.yaml"),
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
@@ -69,8 +70,7 @@ def calibrate(
     from crowdbot.core.realism.parameters import parameters_of
     from crowdbot.core.scenarios.named_crowds import open_crowd
 
-    if out.suffix not in (".yaml", ".yml"):
-        raise UsageError(f"--out {out}: the name must end in .yaml")
+    check_ending(out, ".yaml", ".yml")
     registry = installed(plugin, no_plugins)
     task = FitTask(
         crowd=str(Path(crowd).resolve()) if Path(crowd).is_file() else crowd,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.cli._options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.errors import UnknownNameError, UsageError
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ _Incomplete = Annotated[
     ),
 ]
 _Out = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Write all scores to FILE.csv or FILE.json.")
+    Path | None, typer.Option(metavar="FILE", help="File to write, .csv or .json: all scores.")
 ]
 _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 
@@ -166,8 +166,7 @@ def _check_usage(
         raise UsageError("--user-topic is a topic of a recording; name one")
     if count > 1 and any(files):
         raise UsageError("--commands and --questionnaires belong to one run; name only one")
-    if out is not None and out.suffix.lower() not in (".csv", ".json"):
-        raise UsageError(f"--out {out}: the name must end with .csv or .json")
+    check_ending(out, ".csv", ".json")
 
 
 def _chosen(registry: Registry, metrics: str, variant: str, experimental: bool) -> tuple[str, ...]:

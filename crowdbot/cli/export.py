@@ -45,7 +45,8 @@ def export(
     ],
     to: Annotated[ExportFormat, typer.Option("--to", help="The format.")],
     out: Annotated[
-        Path | None, typer.Option(metavar="PATH", help="File or folder to write.")
+        Path | None,
+        typer.Option(metavar="PATH", help="File or folder to write; default: beside it."),
     ] = None,
     offset: Annotated[
         int, typer.Option(min=0, metavar="SECONDS", help="Bags: add this to all times.")

@@ -24,7 +24,7 @@ def export_map(
         str | None, typer.Argument(metavar="[ID]", help="Id, unique beginning, or pattern.")
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Folder; default: ID.map, here.")
+        Path | None, typer.Option(metavar="DIR", help="Folder to write; default: ID.map, here.")
     ] = None,
     resolution: Annotated[
         float, typer.Option(metavar="METRES", help="Side of a cell of the grid.")
@@ -58,7 +58,6 @@ def export_map(
         found, parts.walls[parts.stops_robot], inside, resolution, _height(chosen, registry)
     )
     folder = out or Path(f"{chosen.id.replace('/', '_')}.map")
-    folder.mkdir(parents=True, exist_ok=True)
     files = {
         "map.pgm": grid.to_pgm(),
         "map.yaml": grid.to_yaml("map.pgm").encode(),

@@ -8,14 +8,16 @@ from typing import Annotated
 
 import typer
 
-from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.cli._options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.plural import plural
 from crowdbot.errors import printable
 
 
 def leaderboard(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder with bundles (*.cbz).")],
-    out: Annotated[Path, typer.Option(metavar="FILE", help="The page.")] = Path("leaderboard.html"),
+    out: Annotated[Path, typer.Option(metavar="FILE", help="File to write, .html: the page.")] = (
+        Path("leaderboard.html")
+    ),
     by: Annotated[
         str, typer.Option(metavar="METRIC", help="Which metric decides the order.")
     ] = "safe_efficiency",
@@ -48,6 +50,7 @@ def leaderboard(
     from crowdbot.core.statistics.audit import AUDIT, read_audit
     from crowdbot.errors import UnknownNameError
 
+    check_ending(out, ".html")
     registry = installed(plugin, no_plugins)
     if by not in registry.components("metric"):
         raise UnknownNameError("metric", by, registry.components("metric"), registry.why_absent(by))

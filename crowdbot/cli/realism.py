@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.cli._options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.cli._plugin_table import table
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError, UsageError
@@ -46,7 +46,8 @@ def realism(
         typer.Option("--set", metavar="KEY=VALUE", help="Change the crowd; repeatable."),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE.html", help="Write a page with the curves.")
+        Path | None,
+        typer.Option(metavar="FILE", help="File to write, .html: page with the curves."),
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
@@ -59,8 +60,7 @@ def realism(
     from crowdbot.cli._campaign_run import read_seeds
     from crowdbot.core.realism.page import render
 
-    if out is not None and out.suffix.lower() != ".html":
-        raise UsageError(f"--out {out}: the name must end in .html")
+    check_ending(out, ".html")
     registry = installed(plugin, no_plugins)
     beside = _reference(reference)
     path = Path(crowd)

@@ -17,9 +17,9 @@ from urllib.parse import quote
 
 import typer
 
-from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.cli._options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.plural import plural
-from crowdbot.errors import InputError, UnknownNameError, UsageError
+from crowdbot.errors import InputError, UnknownNameError
 
 if TYPE_CHECKING:
     from crowdbot.core.report import Contents
@@ -48,7 +48,8 @@ def report(
         typer.Option(metavar="ROOT", help="Results of others, shown as reference scores."),
     ] = None,
     out: Annotated[
-        Path, typer.Option(metavar="FILE", help="The page; FILE.csv and FILE.md lie beside it.")
+        Path,
+        typer.Option(metavar="FILE", help="File to write, .html; .csv and .md lie beside it."),
     ] = Path("report.html"),
     accept: Annotated[
         list[str] | None,
@@ -78,8 +79,7 @@ def report(
     from crowdbot.core.results.confounds import check_comparable, confounds
     from crowdbot.core.results.store import load
 
-    if out.suffix.lower() not in (".html", ".htm"):
-        raise UsageError(f"--out {out}: the name must end in .html")
+    check_ending(out, ".html")
     results = _chosen(load(root), suite, planner or [], root)
     links = {} if no_replay_links else _replays(results, root, out)
     results, known = _with_reference(results, load(reference) if reference else None)

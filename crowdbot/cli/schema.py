@@ -41,7 +41,7 @@ def schema(
         ),
     ] = False,
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write there instead of stdout.")
+        Path | None, typer.Option(metavar="FILE", help="File to write; default: standard output.")
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli._options import NoPlugins, Plugins, installed
+from crowdbot.cli._options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError, UsageError
 
@@ -36,7 +36,7 @@ def view(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="FILE.html, .svg or .png; default: ID.html, of several runs compare.html, here.",
+            help="File to write: .html, .svg, .png; default: ID.html; of runs compare.html.",
         ),
     ] = None,
     open_: Annotated[bool, typer.Option("--open", help="Show it in the browser.")] = False,
@@ -113,8 +113,7 @@ def _replay(
             raise UsageError(f"{folder} is not a run directory, and {folders[0]} is one")
     if len(folders) == 1 and out is None:
         return _own_page(folders[0])
-    if out is not None and out.suffix.lower() != ".html":
-        raise UsageError(f"--out {out}: the name of a replay page must end in .html")
+    check_ending(out, ".html")
     from crowdbot.core.replay import write_replay
     from crowdbot.core.runs.replayed import replayed_runs
 
@@ -147,8 +146,7 @@ def _render_map(
     from crowdbot.core.view.render import render
     from crowdbot.dsl.canonical import content_hash
 
-    if out is not None and out.suffix.lower() not in _FORMATS:
-        raise UsageError(f"--out {out}: the name must end in {', '.join(_FORMATS)}")
+    check_ending(out, *_FORMATS)
     expansion = open_spec(spec, registry, overrides)
     chosen = pick(expansion, pattern)
     people = population(chosen, registry)

@@ -25,7 +25,7 @@ def test_out_writes_a_file(tmp_path: Path, capsys: Captured) -> None:
     assert capsys.readouterr().out == ""
     assert json.loads(file.read_text())["$id"] == "urn:crowdbot:scenario:canonical:v1"
     assert list(tmp_path.iterdir()) == [file]
-    assert main(["schema", "suite", "--out", str(tmp_path / "no" / "s.json")]) == 1
+    assert main(["schema", "suite", "--out", "/dev/null/s.json"]) == 1
     assert "cannot be written" in capsys.readouterr().err
 
 

@@ -174,8 +174,8 @@ def test_json_and_set(tmp_path: Path, capsys: Captured) -> None:
 @pytest.mark.parametrize(
     ("argv", "code", "words"),
     [
-        ([*ONE, "--out", "x.jpg"], 2, "must end in .html, .svg, .png"),
-        ([*ONE, "--out", "no/x.svg"], 1, "cannot be written"),
+        ([*ONE, "--out", "x.jpg"], 2, "must end in .html, .svg or .png"),
+        ([*ONE, "--out", "/dev/null/x.svg"], 1, "cannot be written"),
         (["view", "challenge-2020"], 1, "no id was given"),
         (["view", "challenge-2020", "in"], 1, "fits more than one"),
         (["view", "run"], 1, "no run.json"),

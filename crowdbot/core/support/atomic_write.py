@@ -14,11 +14,16 @@ from crowdbot.errors import InputError
 def atomic_path(path: Path) -> Iterator[Path]:
     """A path beside ``path`` to write to, renamed to it at the end; gone when the body fails.
 
+    Folders above that are missing are made.
+
     Raises:
         InputError: the path cannot be written.
     """
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
+        if not path.parent.exists():
+            path.parent.mkdir(parents=True, exist_ok=True)
+        part.touch()  # what cannot be written is told before the work, and by its own name
         yield part
         part.replace(path)
     except OSError as error:

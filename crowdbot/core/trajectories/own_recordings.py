@@ -59,9 +59,9 @@ def columns_of(
     Raises:
         InputError: a table does not fit the others, or there is no table.
     """
-    for what, table, columns in (("robot", robot, ROBOT[:3]), ("agents", agents, AGENT[:4])):
-        if table is not None:
-            table.require(what, *columns)
+    for what, given, columns in (("robot", robot, ROBOT[:3]), ("agents", agents, AGENT[:4])):
+        if given is not None:
+            given.require(what, *columns)
     stamps = [t.stamps() for t in (robot, agents) if t is not None]
     if not stamps:
         raise InputError("trajectories: neither a robot nor agents")

@@ -173,6 +173,7 @@ def test_equal_planners_are_seldom_told_apart() -> None:
 
 
 def test_a_reason_that_leads_share_is_said_once() -> None:
+    values: dict[str, list[float | None]]
     values = {"mine": [1.0, 0.0], "blind": [0.0, 0.0], "still": [0.0, 0.0], "slow": [0.0, 1.0]}
     shared = check("mine", results(values, draws=["d", "d"])).text
     assert shared.count("(") == 1
