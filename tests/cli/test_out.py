@@ -1,4 +1,4 @@
-"""``--out`` means the same in every command: folders are made, and the same words say why not."""
+"""``--out`` means the same in every command: folders are made, and the same text say why not."""
 
 from __future__ import annotations
 
