@@ -58,7 +58,7 @@ def load(
     Raises:
         SpecError: the document, or a change to it, is wrong.
         UnknownNameError: no such suite or scenario.
-        InputError: an argument is of another kind.
+        InputError: an argument has the wrong type.
     """
     expect("path_or_name", path_or_name, str, Path)
     if scenario is not None:

@@ -111,7 +111,7 @@ def test_a_file_is_written_whole(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert main([*CHALLENGE, "--id", "in-d0125-slow-c01-r02", "--out", str(target)]) == 0
     assert URDF.from_xml_string(target.read_bytes()).name == "robot"
     assert [p.name for p in tmp_path.iterdir()] == ["robot.urdf"]
-    assert main([*CHALLENGE, "--out", str(tmp_path / "no" / "robot.urdf")]) == 1
+    assert main([*CHALLENGE, "--out", str(target / "robot.urdf")]) == 1  # a file, no folder
     assert str(tmp_path / "no" / "robot.urdf") in capsys.readouterr().err
 
 

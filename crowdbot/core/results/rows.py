@@ -172,12 +172,12 @@ class DamagedRun:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Results:
-    """Everything at one moment.
+    """All runs, scores and failures, as they were when the folder was read.
 
     Runs are sorted by suite, scenario in the suite's order, planner and seed; scores by run,
     metric and variant. ``scales`` are those of the metrics that are installed, from
     `crowdbot.core.scoring.score_scale.score_scales`: intervals do not leave bounds that are known.
-    ``damaged`` runs are not among the others.
+    ``damaged`` runs are listed apart from the others.
     """
 
     runs: tuple[RunRow, ...] = ()
@@ -199,10 +199,10 @@ class Results:
         return cast(Results, _beside("load")(path_of("root", root)))
 
     def to_pandas(self, table: Table = "scores") -> pd.DataFrame:
-        """A row a score, with suite, scenario, planner, seed and the axes of its run.
+        """One row per score, with suite, scenario, planner, seed and the axes of its run.
 
         Args:
-            table: ``scores``, or ``runs`` for a row a run.
+            table: ``scores``, or ``runs`` for one row per run.
 
         Raises:
             InputError: pandas is not installed, or there is no such table.
@@ -210,7 +210,7 @@ class Results:
         return to_pandas(*self._lines(table))
 
     def to_arrow(self, table: Table = "scores") -> pa.Table:
-        """The same as a table of Arrow.
+        """The same as an Arrow table.
 
         Args:
             table: ``scores`` or ``runs``.

@@ -36,9 +36,9 @@ class Run:
     Attributes:
         directory: where its files are.
         record: ``run.json``.
-        reused: it had been there already.
-        replaced: in what the run that was there before was recorded otherwise; empty where none
-            was, or the same one.
+        reused: whether the run had been made before.
+        replaced: how an earlier run in the same folder, which this one has replaced, was
+            recorded differently; empty if there was none, or it was recorded in the same way.
     """
 
     directory: Path
@@ -49,13 +49,13 @@ class Run:
 
     @classmethod
     def open(cls, directory: str | Path) -> Run:
-        """A run that was made before.
+        """Open a run that was made before.
 
         Args:
             directory: with its ``run.json``.
 
         Raises:
-            InputError: there is no complete run.
+            InputError: the folder holds no complete run.
         """
         path = path_of("directory", directory)
         record = files.read_record(path)

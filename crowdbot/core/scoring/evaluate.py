@@ -52,7 +52,7 @@ _COLUMNS = (
 
 @dataclass(frozen=True, slots=True)
 class Scores(Sequence[Score]):
-    """The scores of one run, ordered by metric; unchangeable.
+    """The scores of one run, ordered by metric; read-only.
 
     Attributes:
         items: the scores.
@@ -86,7 +86,7 @@ class Scores(Sequence[Score]):
 
         Raises:
             UnknownNameError: there is none.
-            InputError: a name is not a text.
+            InputError: a name is not a string.
         """
         expect("metric", metric, str)
         expect("variant", variant, str)
@@ -98,9 +98,9 @@ class Scores(Sequence[Score]):
         return of_metric[variant]
 
     def to_pandas(self) -> pd.DataFrame:
-        """A row a score: scenario, planner, seed, metric, variant, value, and so on.
+        """One row per score: scenario, planner, seed, metric, variant, value, and so on.
 
-        Values that are not there are NaN; ``status`` and ``reason`` say why.
+        Missing values are NaN; ``status`` and ``reason`` say why.
 
         Raises:
             InputError: pandas is not installed.
@@ -108,7 +108,7 @@ class Scores(Sequence[Score]):
         return to_pandas(self._rows(), _COLUMNS)
 
     def to_arrow(self) -> pa.Table:
-        """The same as a table of Arrow; values that are not there are null.
+        """The same as an Arrow table; missing values are null.
 
         Raises:
             InputError: pyarrow is not installed.

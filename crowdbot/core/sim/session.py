@@ -34,12 +34,12 @@ from crowdbot.dsl.scenario import Scenario
 from crowdbot.dsl.seeds import stream_seed
 from crowdbot.errors import InputError, kind_of
 
-#: What a session takes as a command: v, w and for a robot that goes sideways vy; m/s, rad/s.
+#: What a session takes as a command: v, w, and vy for a robot that can move sideways; m/s, rad/s.
 CommandLike = Command | tuple[float, ...] | Sequence[float]
 
 
 class Session:
-    """One robot among people, stepped by a loop of one's own.
+    """One robot among people, stepped from your own loop.
 
     ::
 
@@ -55,7 +55,7 @@ class Session:
     Args:
         scenario: with exactly one robot, from `crowdbot.load`.
         seed: of the run: noise of the sensors.
-        sensors: names or categories of the sensors to see, as a planner's ``needs``; None: all
+        sensors: names or categories of the sensors to read, as in a planner's ``needs``; None: all
             that a robot may have. Only these are simulated.
         privileged: whether observations hold the truth (``obs.truth``).
         recording: file for the recording (MCAP); complete when the run has ended or was closed.
@@ -68,8 +68,8 @@ class Session:
         planner_seed: what a planner would get in this run for its own random numbers.
 
     Raises:
-        InputError: the scenario has not exactly one robot, the robot lacks a sensor, or another
-            argument is wrong.
+        InputError: the scenario does not have exactly one robot, the robot lacks a sensor, or
+            another argument is wrong.
     """
 
     def __init__(
@@ -103,13 +103,13 @@ class Session:
         self._describe(self._built)
 
     def reset(self, seed: int | None = None) -> Observation:
-        """Begin the run, again if it has begun already.
+        """Begin the run; a run that has begun already begins again.
 
         Args:
-            seed: another one from now on; None keeps it.
+            seed: a new seed from now on; None keeps the present one.
 
         Returns:
-            What is seen at t = 0.
+            The observation at t = 0.
 
         Raises:
             InputError: the robot would start in a wall or a person, or the recording cannot be
@@ -139,10 +139,10 @@ class Session:
         return self._take()
 
     def step(self, command: CommandLike) -> Observation:
-        """Give a command, which holds for one period of the planner.
+        """Give a command, which is applied for one period of the planner.
 
         Args:
-            command: v, w and for a robot that goes sideways vy; m/s, rad/s.
+            command: v, w, and vy for a robot that can move sideways; m/s, rad/s.
 
         Returns:
             What is seen when the next command is due. When the run has ended, ``done`` is true
@@ -159,7 +159,7 @@ class Session:
         return self._take()
 
     def observe(self) -> Observation:
-        """What is seen now; the same again until the next step.
+        """The current observation; it stays the same until the next step.
 
         Raises:
             InputError: `reset` was not called.
@@ -169,7 +169,7 @@ class Session:
         return self._observation
 
     def close(self) -> None:
-        """End the run, if one is going on. The session can be reset again."""
+        """End the run if one is in progress. The session can be reset again."""
         exchange, self._exchange = self._exchange, None
         if exchange is None or self._thread is None:
             return
@@ -212,7 +212,7 @@ class Session:
         """The run itself, for `crowdbot.score`.
 
         Raises:
-            InputError: it was not recorded, or has not ended.
+            InputError: the run was not recorded, or has not ended.
         """
         if self._recording is None:
             raise InputError("the session was not recorded; give it recording='run.mcap'")
