@@ -10,7 +10,13 @@ from collections.abc import Callable
 
 from pydrake.common.value import Value
 from pydrake.multibody.plant import ContactResults
-from pydrake.systems.framework import Context, DiagramBuilder, EventStatus, LeafSystem
+from pydrake.systems.framework import (
+    Context,
+    DiagramBuilder,
+    DiscreteValues,
+    EventStatus,
+    LeafSystem,
+)
 
 from crowdbot.core.geometry.polygon import distance_to, entry_fraction, inside
 from crowdbot.core.planning.planner import Task
@@ -83,6 +89,8 @@ class MetricLogger(LeafSystem):
             self.DeclareAbstractInputPort(ports.FORCES, Value(ContactResults())) if felt else None
         )
         self.DeclarePeriodicPublishEvent(TICK, 0.0, self._publish)
+        if felt:
+            self.DeclarePeriodicDiscreteUpdateEvent(TICK, 0.0, self._feel)
 
     def _publish(self, context: Context) -> EventStatus | None:
         tick = round(context.get_time() * TICKS_PER_SECOND)
@@ -102,7 +110,7 @@ class MetricLogger(LeafSystem):
             self._log.record_events(crowd)
         arrived = False
         if not self._clearance.is_clear(now.item(0), now.item(1)):
-            arrived = self._look(context, t, RobotState(*now.tolist()), before)
+            arrived = self._look(t, RobotState(*now.tolist()), before)
         if sampled:
             self._log.sample(t, RobotState(*now.tolist()), crowd)
         if arrived:
@@ -113,6 +121,15 @@ class MetricLogger(LeafSystem):
             return self._end(context, t, *self.fate_without_arrival())
         return None
 
+    def _feel(self, context: Context, _values: DiscreteValues | None = None) -> None:
+        """Ask for the forces of walls while the plant takes its step, which needs them as well.
+
+        Asked for in ``_publish``, they would be computed once more: the people's update in between
+        makes Drake forget them.
+        """
+        if self._forces is not None and self.walls.near:
+            self.walls.feel(wall_force(self._forces.Eval(context)))
+
     def fate_without_arrival(self) -> tuple[str, str]:
         """Status of a robot that has not arrived, and why, if no planner is to blame."""
         if self.toppled_time is not None:
@@ -121,6 +138,7 @@ class MetricLogger(LeafSystem):
 
     def _end(self, context: Context, t: float, status: str, reason: str) -> EventStatus | None:
         """The robot has ended, and with it the run, but for that of a fleet."""
+        self._feel(context)  # there is no further step
         if self._fate is None:
             return EventStatus.ReachedTermination(self, reason)
         self._fate.end(status, reason, t, self.goal_time, self.toppled_time)
@@ -142,13 +160,13 @@ class MetricLogger(LeafSystem):
         crowd: Array = self._crowd.Eval(context)
         return crowd
 
-    def _look(self, context: Context, t: float, robot: RobotState, before: Array | None) -> bool:
+    def _look(self, t: float, robot: RobotState, before: Array | None) -> bool:
         """Watch walls and goal, one of which may be near; returns whether the robot is there."""
         was = robot if before is None else RobotState(*before.tolist())
-        forces = self._forces
-        felt = None if forces is None else lambda: wall_force(forces.Eval(context))
         speed = 0.0 if before is None else math.hypot(was.vx, was.vy)
-        free = self.walls.watch(t, robot, speed, felt)
+        free = self.walls.watch(t, robot, speed)
+        if self._forces is None:
+            self.walls.feel(None)
         zone = self._task.goal_zone
         distance = distance_to(zone, robot.x, robot.y)
         self._clearance.reset(robot.x, robot.y, min(free, distance - _ROUNDING))

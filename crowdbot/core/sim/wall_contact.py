@@ -8,8 +8,8 @@ horizontal contact force over the ticks, its speed that of the robot one tick be
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from pydrake.multibody.plant import ContactResults
@@ -43,6 +43,15 @@ class _Contact:
     peak: float = 0.0
 
 
+class _Near(NamedTuple):
+    """A tick at which the robot was near a wall: when, its state, speed before and gap (m)."""
+
+    t: float
+    robot: RobotState
+    speed: float
+    gap: float
+
+
 class WallContacts:
     """Watches one robot; to be told its state at every tick at which it may be near."""
 
@@ -52,31 +61,47 @@ class WallContacts:
         # A disc has the same gap whatever its heading; corners swing.
         self._swing = 2.0 * float(np.max(np.hypot(*self._body.corners.T), initial=0.0))
         self._contact: _Contact | None = None
+        self._near: _Near | None = None
 
-    def watch(
-        self, t: float, robot: RobotState, speed: float, force: Callable[[], float] | None
-    ) -> float:
-        """One tick.
+    def watch(self, t: float, robot: RobotState, speed: float) -> float:
+        """One tick; where something is ``near`` afterwards, `feel` has to be called, too.
 
         Args:
             speed: of the robot one tick ago, m/s.
-            force: the horizontal force of walls on the robot now (N); None where there is none.
 
         Returns:
             how far the robot may go before this has to be called again, m; maybe negative.
         """
         at = (self._walls, self._pillars, self._body.corners, robot.x, robot.y, robot.yaw)
         gap = outline_gap(*at) - self._body.radius
-        if gap < _NEAR and self._touches(gap, pushed := None if force is None else force()):
-            if self._contact is None:
-                x, y = touched_at(*at)
-                self._contact = _Contact(t, t, speed, math.atan2(y, x))
-            self._contact.end = t
-            self._contact.impulse += (pushed or 0.0) * TICK
-            self._contact.peak = max(self._contact.peak, pushed or 0.0)
-        elif gap > RELEASE_GAP:
+        self._near = _Near(t, robot, speed, gap) if gap < _NEAR else None
+        if gap > RELEASE_GAP:
             self.finish()
         return gap - RELEASE_GAP - self._swing
+
+    @property
+    def near(self) -> bool:
+        """Whether the last tick waits for `feel`."""
+        return self._near is not None
+
+    def feel(self, force: float | None) -> None:
+        """What walls do to the robot at the tick that was watched last.
+
+        Args:
+            force: their horizontal force on the robot, N; None where it feels none.
+        """
+        near, self._near = self._near, None
+        if near is None or not self._touches(near.gap, force):
+            return
+        if self._contact is None:
+            _, robot, speed, _ = near
+            x, y = touched_at(
+                self._walls, self._pillars, self._body.corners, robot.x, robot.y, robot.yaw
+            )
+            self._contact = _Contact(near.t, near.t, speed, math.atan2(y, x))
+        self._contact.end = near.t
+        self._contact.impulse += (force or 0.0) * TICK
+        self._contact.peak = max(self._contact.peak, force or 0.0)
 
     @staticmethod
     def _touches(gap: float, force: float | None) -> bool:

@@ -111,6 +111,25 @@ def test_pushing_at_a_wall_neither_tips_nor_tunnels(mode: str, yaw: float) -> No
     )
 
 
+@pytest.mark.parametrize("mode", MODES)
+def test_a_contact_goes_on_until_the_last_tick(mode: str) -> None:
+    """Forces are read while the plant takes its step, which the last tick does not have."""
+    limit = "robots.robot.task.time_limit=2"
+    yaw = 0.5 * math.pi
+    world = rig(
+        alone(BEFORE_WALL.format(yaw), f"robots.robot.control={mode}", limit), constant(0.65)
+    )
+    world.advance(2.0)
+    world.blocks.logger.walls.finish()
+    (contact,) = world.memory.contacts
+    assert contact["t1"] == 2.0
+    ticks = round((contact["t1"] - contact["t0"]) / TICK) + 1
+    if mode == "kinematic":
+        assert contact["impulse"] == contact["peak_force"] == 0.0
+    else:
+        assert 0.0 < contact["impulse"] <= contact["peak_force"] * ticks * TICK
+
+
 def test_wheels_slip_on_a_slippery_floor() -> None:
     """Friction of 0.1: no more than 0.1 g of thrust.
 

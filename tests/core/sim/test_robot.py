@@ -116,7 +116,7 @@ def test_all_periods_are_dyadic(monkeypatch: pytest.MonkeyPatch) -> None:
         if name.startswith("DeclarePeriodic"):
             watched(name)
     world = rig(scenario(), constant(0.0), sensors=("odometry", "front_lidar", "rear_lidar"))
-    assert len(declared) == 5  # crowd, sensors, planner, logger, recorder
+    assert len(declared) == 6  # crowd, sensors, planner, logger (twice), recorder
     declared.append((world.plant.plant.time_step(), 0.0))
     for period, offset in declared:
         mantissa, exponent = math.frexp(period)
