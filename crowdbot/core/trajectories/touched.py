@@ -80,7 +80,8 @@ def _near(
     for low, high in boxes:
         near &= low[step] <= high[step, who][:, None]
         near &= high[step] >= low[step, who][:, None]
-    return np.nonzero(near)
+    found = np.nonzero(near)
+    return found[0], found[1]
 
 
 def _by_walls(run: Trajectories, walls: Array, step: Indices, who: Indices) -> Mask:

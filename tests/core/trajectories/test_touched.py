@@ -66,7 +66,9 @@ def test_a_crowd_is_compared_pair_by_pair() -> None:
     random = np.random.default_rng(7)
     t = grid(2.0, 1 / 8)
     speeds = random.normal(0.0, 6.0, (12, 2)) * (np.arange(12) % 4 > 0)[:, None]
-    run = scene(t, line(t, (0, 90), (0, 0)), [line(t, random.uniform(-2, 2, 2), v) for v in speeds])
+    starts = random.uniform(-2, 2, (12, 2))
+    each = [line(t, (p[0], p[1]), (v[0], v[1])) for p, v in zip(starts, speeds, strict=True)]
+    run = scene(t, line(t, (0, 90), (0, 0)), each)
     assert run.agents is not None
     x, y, r = run.agents.x.copy(), run.agents.y.copy(), run.agents.radius
     x[5:8, 3] = np.nan
