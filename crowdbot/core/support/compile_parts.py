@@ -36,6 +36,7 @@ from numba.core.errors import ForceLiteralArg
 from numba.core.registry import CPUDispatcher
 from numba.core.sigutils import normalize_signature
 from numba.core.types import Omitted
+from numba.np import linalg
 
 from crowdbot.core.support.seldom_collected import seldom_collected
 
@@ -219,7 +220,6 @@ class KernelDispatcher(CPUDispatcher):
                 arguments = tuple(normalize_signature(sig)[0])
                 known: Any = self.overloads.get(arguments)
                 if known is None or (_is_part(known) and not self._called_by_compiled):
-                    _leave_scipy()
                     known = self._loaded(sig) or self._compiled_once(sig, arguments)
                 return known.entry_point
 
@@ -287,22 +287,6 @@ class KernelDispatcher(CPUDispatcher):
                 result.library.codegen.set_env(environment.env_name, environment)
 
 
-@cache
-def _leave_scipy() -> None:
-    """Have numba take for granted that there is a BLAS.
-
-    It imports scipy.linalg to find out, which takes 0.2 s. Where a function multiplies matrices
-    it looks again.
-    """
-    from numba.np import linalg  # a hundred modules, which only a first call needs
-
-    look, linalg.ensure_blas = linalg.ensure_blas, lambda: None
-    try:
-        importlib.import_module("numba.np.arraymath")
-    finally:
-        linalg.ensure_blas = look
-
-
 def _is_part(result: Any) -> bool:
     return isinstance(result.library, _PartLibrary)
 
@@ -312,5 +296,20 @@ def _let_others_call(result: Any) -> None:
     context, library = result.target_context, result.library
     context.insert_user_function(result.entry_point, result.fndesc, [library])
 
+
+def _leave_scipy() -> None:
+    """Have numba take for granted that there is a BLAS, also where plugins compile by themselves.
+
+    It imports scipy.linalg to find out, which takes 0.2 s. Where a function multiplies matrices
+    it looks again.
+    """
+    look, linalg.ensure_blas = linalg.ensure_blas, lambda: None
+    try:
+        importlib.import_module("numba.np.arraymath")
+    finally:
+        linalg.ensure_blas = look
+
+
+_leave_scipy()
 
 __all__ = ["SAVING", "KernelDispatcher"]

@@ -42,6 +42,11 @@ def _half(value: float) -> float:
     return value / 2.0
 
 
+@njit(types.float64(types.float64[::1], types.int64))
+def _twice_at_once(values: Array, i: int) -> float:
+    return _twice(values, i)
+
+
 @array_kernel
 def _times(values: Array) -> Array:
     return values @ values
@@ -169,8 +174,8 @@ def test_two_processes_do_not_compile_the_same_function(tmp_path: Path) -> None:
 def test_a_call_does_not_import_scipy_unless_matrices_are_multiplied() -> None:
     code = f"""
 import sys
-from {__name__} import VALUES, _times, _twice
-_twice(VALUES, 3)
+from {__name__} import VALUES, _times, _twice_at_once
+_twice_at_once(VALUES, 3)
 print('scipy.linalg' in sys.modules)
 print(_times(VALUES.reshape(2, 2)).tolist(), 'scipy.linalg' in sys.modules)
 """
