@@ -28,6 +28,7 @@ from crowdbot.plugins.planners.dwa_points_build import (
     apparent_velocity,
     choose_direction,
     nearest_per_sector,
+    walkers,
 )
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.heading_by_walls_build import HeadingByWalls, compile_heading
@@ -78,7 +79,7 @@ class Dwa:
     def _forget(self) -> None:
         self._scans: deque[tuple[float, Array, Array]] = deque(maxlen=64)
         self._map: Array = np.empty((0, 2))
-        self._around = (np.empty((0, 2)), np.empty((0, 2)))
+        self._around = (np.empty((0, 2)), np.empty((0, 2)), np.empty((0, 2)))
         self._stands, self._walkers = np.empty((0, 2)), np.empty((0, 4))
         self._walking, self._flow = False, 0.0
         self._heading_by_walls = HeadingByWalls()
@@ -196,7 +197,7 @@ class Dwa:
         radius = self._spec.person_radius
         people, rest = people_in(seen, _REACH if radius else 0.0)
         points = nearest_per_sector(with_discs(rest, people, radius), _SECTORS, _REACH)
-        self._around = rest, people
+        self._around = rest, people, np.zeros_like(people)
         self._stands, self._walkers = seen, np.empty((0, 4))
         c, s = math.cos(obs.pose.yaw), math.sin(obs.pose.yaw)
         to_world = np.array([[c, s], [-s, c]])  # for row vectors
@@ -226,14 +227,12 @@ class Dwa:
 
         Legs that are paired now one way, now another, seem to move: one step proves nothing.
         """
-        speed = np.hypot(going[:, 0], going[:, 1])
-        near = np.hypot(people[:, 0], people[:, 1]) < _NEARBY
-        share = float(np.mean(speed[near] > _WALKS)) if near.any() else self._flow
+        near, walk = walkers(people, going, _NEARBY, _WALKS)
+        share = walk / near if near else self._flow
         self._flow += min(1.0, float(self._p[rollout.PERIOD]) / _SETTLES) * (share - self._flow)
         self._walking = self._flow > _MOST
         if self._walking:
-            walk = speed > 0.0
-            self._around = rest[apart(rest, people[walk], _LEGS)], people[~walk]
+            self._around = rest, people, going
 
     def _choose(
         self,
@@ -321,7 +320,10 @@ class Dwa:
             c, s = math.cos(yaw), math.sin(yaw)
             # Of one who stands sideways one leg is seen, and the disc is too near: no way would
             # be left in a map that remembers discs at their full size.
-            discs = with_discs(*self._around, _MAPPED * self._spec.person_radius)
+            rest, people, going = self._around
+            walk = np.hypot(going[:, 0], going[:, 1]) > 0.0
+            rest = rest[apart(rest, people[walk], _LEGS)]
+            discs = with_discs(rest, people[~walk], _MAPPED * self._spec.person_radius)
             points = nearest_per_sector(discs, _SECTORS, _REACH)
             seen = points @ np.array([[c, s], [-s, c]]) + (x, y)
             self._map = remembered(self._map, seen, x, y, _REACH)
