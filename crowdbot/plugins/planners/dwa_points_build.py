@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, Mask
+from crowdbot.core.interfaces import Array, Mask, kernel
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.support.stable_order import stable_order
 
@@ -14,7 +14,7 @@ from crowdbot.core.support.stable_order import stable_order
 _HALF = 24
 
 
-@array_kernel
+@kernel
 def wrapped(angle: float) -> float:
     """The same angle in [-pi, pi], rad."""
     return angle - 2.0 * math.pi * round(angle / (2.0 * math.pi))
@@ -126,7 +126,7 @@ def apparent_velocity(
     return out
 
 
-@array_kernel
+@kernel
 def _first_from(points: Array, least: float, guess: int) -> int:
     """The first place among points in the order of x whose x is not below ``least``."""
     while guess < points.shape[0] and points[guess, 0] < least:
@@ -160,7 +160,7 @@ def apart(points: Array, others: Array, distance: float) -> Mask:
     return out
 
 
-@array_kernel
+@kernel
 def walkers(people: Array, velocities: Array, near: float, speed: float) -> tuple[int, int]:
     """How many people (K, 2) are nearer than that (m), and of those faster than that (m/s)."""
     count = walk = 0
@@ -197,21 +197,6 @@ def free_time(
 
 
 @array_kernel
-def _met(
-    points: Array, velocities: Array, speed: float, radius: float, limit: float
-) -> tuple[Array, Array]:
-    """Points that may come within a radius (m) of whoever goes at a speed (m/s) for a time (s)."""
-    near, moving, count = np.empty(points.shape), np.empty(points.shape), 0
-    for i in range(points.shape[0]):
-        x, y, vx, vy = points[i, 0], points[i, 1], velocities[i, 0], velocities[i, 1]
-        far = (radius + (speed + abs(vx) + abs(vy)) * limit) * (1.0 + 1e-6)
-        if not x * x + y * y > far * far:
-            near[count, 0], near[count, 1], moving[count, 0], moving[count, 1] = x, y, vx, vy
-            count += 1
-    return near[:count], moving[:count]
-
-
-@array_kernel
 def choose_direction(
     points: Array,
     velocities: Array,
@@ -242,7 +227,6 @@ def choose_direction(
         bearing (rad, not wrapped) and the time for which it is free (s).
     """
     best, angle, time = math.inf, goal, 0.0
-    points, velocities = _met(points, velocities, speed, radius, limit)
     # One that is likely: no other need be looked at that costs more even if it is free.
     likely = round(_HALF * max(-1.0, min(1.0, wrapped(previous - goal) / swerve)))
     enough = math.inf

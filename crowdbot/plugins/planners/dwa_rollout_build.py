@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Array
+from crowdbot.core.interfaces import Array, kernel
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.planners.dwa_points_build import minimum, unsigned
 from crowdbot.plugins.planners.robot_outline_build import nearest_to_core
@@ -29,7 +28,7 @@ _SLACK = 1e-3
 _ROUNDING = 1e-9
 
 
-@array_kernel
+@kernel
 def _slewed(value: float, target: float, change: float) -> float:
     return min(max(target, value - change), value + change)
 
@@ -83,14 +82,17 @@ def _nearest(
 
 
 @array_kernel
-def reachable(points: Array, velocities: Array, p: Array) -> NDArray[np.bool_]:
-    """(K,) which points can come near the robot within the horizon."""
-    out = np.empty(points.shape[0], dtype=np.bool_)
+def reachable(points: Array, velocities: Array, p: Array) -> tuple[Array, Array]:
+    """Points and velocities (K', 2) of those that can come near the robot within the horizon."""
+    near, moving, count = np.empty(points.shape), np.empty(points.shape), 0
     for i in range(points.shape[0]):
-        speed = p[V_MAX] + math.hypot(velocities[i, 0], velocities[i, 1]) + p[GROWTH]
-        near = p[REACH] + max(p[COMFORT], p[MARGIN]) + speed * p[HORIZON]
-        out[i] = math.hypot(points[i, 0], points[i, 1]) < near
-    return out
+        x, y, vx, vy = points[i, 0], points[i, 1], velocities[i, 0], velocities[i, 1]
+        speed = p[V_MAX] + math.hypot(vx, vy) + p[GROWTH]
+        reach = p[REACH] + max(p[COMFORT], p[MARGIN]) + speed * p[HORIZON]
+        if math.hypot(x, y) < reach:
+            near[count, 0], near[count, 1], moving[count, 0], moving[count, 1] = x, y, vx, vy
+            count += 1
+    return near[:count], moving[:count]
 
 
 @array_kernel
@@ -105,31 +107,30 @@ def rollouts(ahead: Array) -> tuple[Array, Array, Array]:
     return known, np.zeros((24, ahead.shape[0], 3)), np.empty(ahead.shape[2])
 
 
-@array_kernel
-def _turn_of(turns: Array, w: float, target: float, p: Array) -> Array:
-    """How a robot turns whose yaw rate (rad/s) goes to a target; many candidates turn alike.
+@kernel
+def _turn_of(turns: Array, w: float, target: float, p: Array) -> int:
+    """Among turns (N, S + 1, 3), that of a robot whose yaw rate (rad/s) goes to a target.
 
-    Returns:
-        (S + 1, 3): for each step the angle after it (rad), cosine and sine of that in its middle;
-        first the two rates, and 1 to say that the others are there.
+    Of each: for every step the angle after it (rad), cosine and sine of that in its middle; first
+    the two rates, and 1 to say that the others are there. Many candidates turn alike.
     """
-    turn = turns[0]
-    for k in range(turns.shape[0]):  # where there is no place left, the last is taken
-        turn = turns[k]
-        if not turn[0, 2]:
+    at = 0
+    for at in range(turns.shape[0]):  # where there is no place left, the last is taken
+        if turns[at, 0, 2] == 0.0:
             break
-        if turn[0, 0] == w and turn[0, 1] == target:
-            return turn
-    turn[0, 0], turn[0, 1], turn[0, 2] = w, target, 1.0
+        if turns[at, 0, 0] == w and turns[at, 0, 1] == target:
+            return at
+    turns[at, 0, 0], turns[at, 0, 1], turns[at, 0, 2] = w, target, 1.0
     angle = 0.0
-    for k in range(1, turn.shape[0]):
+    for k in range(1, turns.shape[1]):
         goal = target if k * STEP <= p[TURN_TIME] else 0.0
         w_next = _slewed(w, goal, p[ALPHA_MAX] * STEP)
         middle = angle + (w + w_next) / 4.0 * STEP
         angle += (w + w_next) / 2.0 * STEP
-        turn[k, 0], turn[k, 1], turn[k, 2] = angle, math.cos(middle), math.sin(middle)
+        turns[at, k, 0] = angle
+        turns[at, k, 1], turns[at, k, 2] = math.cos(middle), math.sin(middle)
         w = w_next
-    return turn
+    return at
 
 
 @array_kernel
@@ -163,7 +164,7 @@ def roll(
     if known[0, 3] == -math.inf:  # all begin at the same pose
         known[0, 3] = _nearest(ahead[0], core, 0.0, 0.0, 0.0, spin, scratch)
     need = min(p[MARGIN], known[0, 3] - p[RADIUS] - _SLACK)
-    turn = _turn_of(turns, now[1], target[1], p)
+    turn = turns[_turn_of(turns, now[1], target[1], p)]
     v, _, vy = now
     x = y = angle = close = 0.0
     for k in range(1, ahead.shape[0]):
