@@ -27,7 +27,7 @@ BYTE_CODE := $(BIN)/python -m compileall -qq -j 0 -x '/tests?/'
 JS := scripts/js
 JS_READY := $(JS)/node_modules/.package-lock.json
 
-.PHONY: demo check test test-all durations lint types style kernels coverage docs pictures changelog check-js js-where-node-is setup lock clean
+.PHONY: demo check test tests tests-as-they-go test-all durations lint types style kernels coverage docs pictures changelog check-js js-where-node-is setup lock clean
 
 demo: setup
 	$(BIN)/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
@@ -37,10 +37,18 @@ check: setup
 	$(BIN)/pytest -n auto --dist worksteal -q -m "not slow and not jupedsim"
 
 test: setup
-	@$(MAKE) --no-print-directory -j2 --output-sync kernels types style js-where-node-is
+	@$(MAKE) --no-print-directory -j2 --output-sync kernels style js-where-node-is
+	@$(MAKE) --no-print-directory -j2 --output-sync types tests || { $(BIN)/mypy; false; }
+
+# With the types checked meanwhile, since many tests wait. Nothing that a person watches is held
+# back until its end.
+tests: setup
+	@+$(MAKE) --no-print-directory --output-sync=none tests-as-they-go
+
+tests-as-they-go:
 	$(BIN)/pytest -n $(WORKERS) --dist worksteal
 
-# What numba compiles, while mypy has the other core: or else each test process would compile it.
+# What numba compiles, before tests begin: or else each test process would compile it.
 kernels: setup
 	@out=$$(mktemp -d) && $(BIN)/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 \
 		--planner dwa --set robots.robot.task.time_limit=1 --out $$out > $$out/printed 2>&1 \

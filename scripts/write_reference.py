@@ -258,6 +258,8 @@ def _default(info: FieldInfo) -> str:
         return "`null`"
     if isinstance(value, str):
         return f"`{value}`" if value else "empty"
+    if isinstance(value, bool):
+        return str(value).lower()
     if isinstance(value, list | tuple | dict):
         return f"`[{', '.join(map(str, value))}]`" if value else "empty"
     return f"{value:.6g}"

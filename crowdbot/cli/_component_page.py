@@ -40,7 +40,7 @@ def as_dict(component: Component[Any], registry: Registry) -> dict[str, Any]:
 
 def as_text(component: Component[Any], registry: Registry) -> str:
     """A component as a page."""
-    from crowdbot.dsl.canonical import to_yaml
+    from crowdbot.dsl.plain_yaml import to_yaml
 
     about = as_dict(component, registry)
     marks = ", experimental" * component.experimental

@@ -100,7 +100,7 @@ def _show(step: Generation) -> None:
 
 def _part(crowd: str, registry: Registry, overrides: Sequence[str], found: Fit) -> str:
     from crowdbot.core.scenarios.named_crowds import open_crowd
-    from crowdbot.dsl.canonical import to_yaml
+    from crowdbot.dsl.plain_yaml import to_yaml
 
     changes = [f"{key}={float(f'{value:.4g}')!r}" for key, value in found.values.items()]
     fitted = open_crowd(crowd, registry, [*overrides, *changes])

@@ -6,17 +6,15 @@ Changing this file changes every hash; golden hashes in the tests guard it.
 from __future__ import annotations
 
 import hashlib
-import io
 import json
-import re
 from collections.abc import Mapping
 from typing import Any
 
 from crowdbot.dsl.scenario import OUTSIDE_HASH, Scenario
+from crowdbot.dsl.yaml_in_parts import to_yaml_in_parts
 
 PREFIX = "cb1-sha256:"
 
-_PLAIN = re.compile(r"[A-Za-z_]([A-Za-z0-9_ ./+-]*[A-Za-z0-9_])?")
 _HEADER = """\
 # A resolved crowdbot scenario: every default is written out, units are SI.
 """
@@ -58,28 +56,7 @@ def dump_scenario_yaml(scenario: Scenario, kinds: Mapping[str, int] | None = Non
     document["scenario"] = content
     if references:
         document["references"] = references
-    return _HEADER + to_yaml(document)
-
-
-def to_yaml(document: Any) -> str:
-    """Plain data as YAML, in the given order, innermost lists and maps on one line."""
-    from ruamel.yaml import YAML  # slow to import, and few commands write documents
-
-    yaml = YAML(typ="safe", pure=True)
-    yaml.default_flow_style = None
-    yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]
-    yaml.width = 100
-    yaml.representer.ignore_aliases = lambda _data: True
-    yaml.representer.add_representer(str, _represent_text)
-    stream = io.StringIO()
-    yaml.dump(document, stream)
-    return stream.getvalue()
-
-
-def _represent_text(representer: Any, text: str) -> Any:
-    """Words stay bare unless they mean something else; what readers may disagree on is quoted."""
-    style = None if _PLAIN.fullmatch(text) else '"'
-    return representer.represent_scalar("tag:yaml.org,2002:str", text, style=style)
+    return _HEADER + to_yaml_in_parts(document)
 
 
 def difference(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:

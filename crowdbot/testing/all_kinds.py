@@ -17,8 +17,8 @@ from ruamel.yaml import YAML
 
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.registry.registry import Registry
-from crowdbot.dsl.canonical import to_yaml
 from crowdbot.dsl.component import Component
+from crowdbot.dsl.plain_yaml import to_yaml
 from crowdbot.dsl.quantities import UNITS, Quantity
 from crowdbot.dsl.spec import ComponentSpec
 from crowdbot.dsl.validation import nested_model

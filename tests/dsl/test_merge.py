@@ -6,11 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crowdbot.dsl.canonical import difference, to_yaml
+from crowdbot.dsl.canonical import difference
 from crowdbot.dsl.diagnostics import Diagnostic, Source
 from crowdbot.dsl.matrix import combinations, read_axes
 from crowdbot.dsl.merge import merge, undot
 from crowdbot.dsl.nodes import Node, parse, to_data
+from crowdbot.dsl.plain_yaml import to_yaml
 
 names = st.sampled_from("abc")
 maps = st.dictionaries(

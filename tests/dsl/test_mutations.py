@@ -22,10 +22,11 @@ from ruamel.yaml import YAML
 
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import installed
-from crowdbot.dsl.canonical import content_hash, to_yaml
+from crowdbot.dsl.canonical import content_hash
 from crowdbot.dsl.diagnostics import CODES, Diagnostic, Source, render
 from crowdbot.dsl.expand import Expansion, expand_document, load_document
 from crowdbot.dsl.nodes import parse, to_data
+from crowdbot.dsl.plain_yaml import to_yaml
 from crowdbot.dsl.quantities import UNITS
 from crowdbot.errors import SpecError
 from tests.examples import THOROUGH

@@ -10,9 +10,9 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from crowdbot.dsl.bounded_files import MAX_BYTES, read_text
-from crowdbot.dsl.canonical import to_yaml
 from crowdbot.dsl.diagnostics import Diagnostic, Source
 from crowdbot.dsl.nodes import Node, parse, to_data
+from crowdbot.dsl.plain_yaml import to_yaml
 from crowdbot.errors import SpecError
 
 

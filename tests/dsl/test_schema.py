@@ -20,7 +20,8 @@ from ruamel.yaml.error import YAMLError
 from crowdbot.cli.schema import build
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
-from crowdbot.dsl.canonical import canonical_bytes, dump_scenario_yaml, to_yaml
+from crowdbot.dsl.canonical import canonical_bytes, dump_scenario_yaml
+from crowdbot.dsl.plain_yaml import to_yaml
 from crowdbot.errors import SpecError
 from tests.paths import ROOT
 

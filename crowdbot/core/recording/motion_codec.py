@@ -237,7 +237,7 @@ def _code(
     past = _Past(last, speeds, oldest)
     for k in range(values.shape[0]):
         for i in range(values.shape[2]):
-            ax, ay, follows = 0.0, 0.0, False
+            px, py, follows = 0.0, 0.0, False
             count = candidates.choices[i]
             if packs:
                 c = chosen_candidate(
@@ -249,16 +249,16 @@ def _code(
                 choice[i] = (choice[i] + taken[k, i] - _CHOICE) % count
                 ex, ey = ahead(candidates, i, last[0], goals[k])
                 ax, ay = acceleration(candidates, i, choice[i], ex, ey, last[0])
-                follows = _follow(samples, last, k, i, steps[k], ax, ay)
+                px, vx = accelerated(last[0, 0, i], last[0, _VX, i], ax, steps[k])
+                py, vy = accelerated(last[0, 1, i], last[0, _VY, i], ay, steps[k])
+                follows = _follow(samples, k, i, vx, vy)
             else:
                 _extrapolate(samples, past, k, i, steps[k], gain)
             for c in range(2):
-                before, now = last[0, c + 2, i], values[k, c + 2, i]
-                scratch[0] = known(moved(last[0, c, i], before, now, steps[k]))
-                if follows:
-                    scratch[0], _ = accelerated(
-                        last[0, c, i], before, ax if c == 0 else ay, steps[k]
-                    )
+                scratch[0] = px if c == 0 else py
+                if not follows:
+                    before, now = last[0, c + 2, i], values[k, c + 2, i]
+                    scratch[0] = known(moved(last[0, c, i], before, now, steps[k]))
                 _transfer(samples, k, c, i)
             for c in range(4):
                 last[1, c, i] = last[0, c, i]
@@ -266,13 +266,11 @@ def _code(
 
 
 @inline_kernel
-def _follow(
-    samples: _Samples, last: Array, k: int, i: int, ticks: int, ax: float, ay: float
-) -> bool:
+def _follow(samples: _Samples, k: int, i: int, vx: float, vy: float) -> bool:
     """Velocities from an acceleration; returns whether that is how they really are."""
-    _, samples.scratch[0] = accelerated(0.0, last[0, _VX, i], ax, ticks)
+    samples.scratch[0] = vx
     _transfer(samples, k, _VX, i)
-    _, samples.scratch[0] = accelerated(0.0, last[0, _VY, i], ay, ticks)
+    samples.scratch[0] = vy
     _transfer(samples, k, _VY, i)
     difference = samples.difference
     return bool(difference[_VX, k, i] == 0 and difference[_VY, k, i] == 0)

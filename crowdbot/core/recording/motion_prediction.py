@@ -21,6 +21,8 @@ SPEEDS = 3
 _MOST = 2**63 - 1
 #: Whoever accelerates so much otherwise than towards a candidate is pushed, m^2/s^4.
 _NEAR = 1e-12
+#: More than its square root, m/s^2.
+_BESIDE = 1e-5
 
 
 @kernel
@@ -116,6 +118,8 @@ def chosen_candidate(
     best, least = -1, _NEAR
     for c in range(-1, count):
         candidate = last if c < 0 else c
+        if c >= 0 and _points_elsewhere(table, i, c, ex, ey, before, ax, ay):
+            continue
         bx, by = acceleration(table, i, candidate, ex, ey, before)
         off = (bx - ax) * (bx - ax) + (by - ay) * (by - ay)
         if off < least:
@@ -123,6 +127,21 @@ def chosen_candidate(
                 return last
             best, least = c, off
     return best
+
+
+@kernel
+def _points_elsewhere(
+    table: CandidateTable, i: int, c: int, ex: float, ey: float, before: Array, ax: float, ay: float
+) -> bool:
+    """Whether the acceleration towards a candidate surely has not the direction of (ax, ay).
+
+    Said without a division, of most candidates: of two accelerations at most sqrt(_NEAR) apart,
+    the one is at most so far beside the line along the other.
+    """
+    k = table.first[i] + c
+    cx, cy = table.unit[k, 0], table.unit[k, 1]
+    ux, uy = cx * ex - cy * ey - before[2, i], cx * ey + cy * ex - before[3, i]
+    return bool(abs(ux * ay - uy * ax) > _BESIDE * (abs(ux) + abs(uy)))
 
 
 @kernel

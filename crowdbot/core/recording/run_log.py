@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd import state as s
 from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.watcher import Watcher
+from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotState
@@ -63,11 +64,10 @@ class RunLog:
         agents = jump = goals = None
         if crowd is not None and self._keeps_people:
             _, people = s.view(crowd)
-            agents = people[:, s.X : s.VY + 1].T.copy()
-            agents[:, people[:, s.WAITING] != s.PRESENT] = np.nan
-            jump = people[:, s.JUMPS] != self._jumps
-            self._jumps = people[:, s.JUMPS].copy()
-            goals = people[:, self._aim : self._aim + 2].T.copy()
+            count = len(people)
+            agents, goals = np.empty((4, count)), np.empty((2, count))
+            jump = np.empty(count, np.bool_)
+            _take_sample(people, self._aim, self._jumps, agents, goals, jump)
         row = None if robot is None else self._row(robot)
         self.writer.state(t, row, agents, jump, goals=goals)
         for watcher in self._watchers:
@@ -123,7 +123,7 @@ class RunLog:
         forward = robot.vx * math.cos(robot.yaw) + robot.vy * math.sin(robot.yaw)
         row = (robot.x, robot.y, robot.yaw, forward, robot.w)
         velocity = (robot.vx, robot.vy) if self._sideways else ()
-        return tuple(float(number) for number in (*row, *velocity))
+        return *row, *velocity
 
     def _record_trips(self, people: Array) -> None:
         """At most one arrival per agent lies between two ticks."""
@@ -143,3 +143,24 @@ class RunLog:
             relative_speed=float(row[s.TOUCH_SPEED]),
             bearing=float(row[s.TOUCH_SIDE]),
         )
+
+
+@kernel
+def _take_sample(
+    people: Array, aim: int, jumps: Array, agents: Array, goals: Array, jump: NDArray[np.bool_]
+) -> None:
+    """Write the columns of a sample, in one pass over the crowd.
+
+    Args:
+        people: (M, C) rows of the crowd's state.
+        aim: column where the point begins to which people walk.
+        jumps: (M,) counted until the latest sample, and then until this one.
+        agents, goals, jump: (4, M), (2, M), (M,) results, as `RecordingWriter.state` takes them.
+    """
+    for i in range(people.shape[0]):
+        present = people[i, s.WAITING] == s.PRESENT
+        for c in range(4):
+            agents[c, i] = people[i, s.X + c] if present else math.nan
+        goals[0, i], goals[1, i] = people[i, aim], people[i, aim + 1]
+        jump[i] = people[i, s.JUMPS] != jumps[i]
+        jumps[i] = people[i, s.JUMPS]

@@ -160,13 +160,9 @@ class RecordingWriter:
     def reading(self, sensor: str, reading: Reading) -> None:
         """One reading of a sensor that the header lists and that is not a camera."""
         thinning = self._thinning.get(sensor)
-        if self._whole:
-            values = reading.values.copy()
-        elif thinning is not None and thinning.keeps(ros.nanoseconds(reading.stamp)):
-            values = whole_centimetres(reading.values)
-        else:
-            return
-        self._waiting.append(partial(self._measured, sensor, reading.stamp, values))
+        if self._whole or (thinning is not None and thinning.keeps(ros.nanoseconds(reading.stamp))):
+            kept = reading.values.copy()
+            self._waiting.append(partial(self._measured, sensor, reading.stamp, kept))
 
     def wants_frame(self, camera: str, stamp: float) -> bool:
         """Whether `frame` would keep an image of this time (s)."""
@@ -286,6 +282,8 @@ class RecordingWriter:
 
     def _measured(self, sensor: str, stamp: float, values: Array) -> None:
         topic, ns = self._sensors[sensor], ros.nanoseconds(stamp)
+        if not self._whole:
+            values = whole_centimetres(values)
         data = topic.message(ns, values)
         self._file.put_bytes(topic.name, ns, topic.msgtype, data)
         if self._tools is not None and self._whole:

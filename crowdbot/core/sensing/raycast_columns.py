@@ -25,6 +25,8 @@ NEAR, FAR, FACING, LOW, HIGH, WHO = range(6)
 WORK_COLUMNS = 6
 _TURN = 2.0 * math.pi
 _MARGIN = 1e-9  # rad; columns at the very edge are left to the exact test
+_WIDE_MARGIN = 3e-5  # rad; more than `rough_angle` and `rough_half` are off
+_BAND = 1e-9  # of a squared distance; nearer to a limit than that, the exact distance decides
 #: Ends of a wall are longer by this fraction, so that no ray slips through a corner.
 OVERLAP = 1e-9
 
@@ -114,9 +116,48 @@ class _Columns(NamedTuple):
 
 
 @kernel
+def rough_angle(x: float, y: float) -> float:
+    """Direction of a vector, which is not zero, within 2e-5 rad; much quicker than ``atan2``.
+
+    Abramowitz and Stegun, Handbook of Mathematical Functions (1964), 4.4.49.
+    """
+    ax, ay = abs(x), abs(y)
+    share = min(ax, ay) / max(ax, ay)
+    s = share * share
+    angle = 0.9998660 + s * (-0.3302995 + s * (0.1801410 + s * (-0.0851330 + s * 0.0208351)))
+    angle *= share
+    if ay > ax:
+        angle = 0.5 * math.pi - angle
+    if x < 0.0:
+        angle = math.pi - angle
+    return -angle if y < 0.0 else angle
+
+
+@kernel
+def rough_half(sine: float) -> float:
+    """At least the arc sine of a number from 0 to 1, rad, and hardly more."""
+    # (asin(s) - s) / s^3 rises with s, to 0.18880 at 0.5.
+    return sine + 0.1889 * sine * sine * sine if sine <= 0.5 else math.asin(sine)
+
+
+@kernel
+def _reached(px: float, py: float, r: float, reach: float) -> bool:
+    """Whether a disc is within reach of the origin, as ``hypot`` says, but quicker."""
+    square, most = px * px + py * py, (reach + r) * (reach + r)
+    if abs(square - most) <= _BAND * most:
+        return math.hypot(px, py) - r <= reach
+    return square < most
+
+
+@kernel
 def _first_from(azimuth: Array, value: float) -> int:
     """Index of the first column at or after an azimuth."""
     low, high = 0, azimuth.shape[0]
+    guess = (value - azimuth[0]) / (azimuth[high - 1] - azimuth[0]) * (high - 1)
+    if 0.0 < guess < high - 1:  # columns mostly lie evenly
+        k = int(guess)
+        if azimuth[k] < value <= azimuth[k + 1]:
+            return k + 1
     while low < high:
         middle = (low + high) // 2
         if azimuth[middle] < value:
@@ -176,12 +217,13 @@ def _add_disc(
 ) -> None:  # fmt: skip
     """Put an upright cylinder, its axis at (px, py) from the rays' origin, into its columns."""
     azimuth, cos, sin, runs = columns.azimuth, columns.cos, columns.sin, columns.runs
-    away = math.hypot(px, py)
     number = 1
-    if away <= r:
+    if _reached(px, py, r, 0.0):
         runs[0, 0], runs[0, 1] = 0, azimuth.shape[0]
     else:
-        bearing, half = math.atan2(py, px) - yaw, math.asin(r / away) + _MARGIN
+        away = math.sqrt(px * px + py * py)
+        bearing = rough_angle(px, py) - yaw
+        half = rough_half(min(1.0, r / away)) + _WIDE_MARGIN
         number = _cover(azimuth, bearing - half, bearing + half, runs)
     for run in range(number):
         for c in range(runs[run, 0], runs[run, 1]):
@@ -268,11 +310,11 @@ def fill_columns(
             _add_wall(x, y, yaw, walls[i], heights[i], -(2 + i), max_range, columns)
     for i in range(discs.shape[0]):
         px, py, r = discs[i, X] - x, discs[i, Y] - y, discs[i, RADIUS]
-        far = max_range + r  # most are: sorted out here, before anything is called
-        if not (abs(px) <= far and abs(py) <= far and math.hypot(px, py) - r <= max_range):
-            continue
         bottom, top = discs[i, BOTTOM], discs[i, TOP]
-        if bottom <= highest and top >= lowest:
+        if not (bottom <= highest and top >= lowest):
+            continue
+        far = max_range + r  # most are: sorted out here, before anything is called
+        if abs(px) <= far and abs(py) <= far and _reached(px, py, r, max_range):
             _add_disc(px, py, r, bottom, top, yaw, obstacles.owner[i], columns)
 
 

@@ -31,12 +31,13 @@ class RobotStateSystem(LeafSystem):
 
     def __init__(self, rig: RobotPlant) -> None:
         super().__init__()
-        plant, self._rise = rig.plant, rig.rise
+        plant = rig.plant
         size = plant.num_positions(rig.model) + plant.num_velocities(rig.model)
-        self._quaternion = rig.root.floating_positions_start()
-        self._angular = rig.root.floating_velocities_start_in_v() + plant.num_positions(rig.model)
+        quaternion = rig.root.floating_positions_start()
+        angular = rig.root.floating_velocities_start_in_v() + plant.num_positions(rig.model)
         wheels: list[int] = [j.position_start() for j in rig.wheels]
-        self._left, self._right = wheels if wheels else (-1, -1)
+        left, right = wheels if wheels else (-1, -1)
+        self._where = quaternion, angular, left, right, rig.rise
         self._port = self.DeclareVectorInputPort("plant_state", size)
         self.DeclareVectorOutputPort(
             ports.ROBOT_STATE,
@@ -50,16 +51,13 @@ class RobotStateSystem(LeafSystem):
         return set()
 
     def _calc(self, context: Context, output: BasicVector) -> None:
-        self._convert(self._port.Eval(context), output.get_mutable_value())
+        _convert(self._port.Eval(context), *self._where, output.get_mutable_value())
 
     def convert(self, state: Array) -> RobotState:
         """Plant state (quaternion w, x, y, z; position; …) as a `RobotState`."""
         found = np.zeros(ports.ROBOT_STATE_SIZE)
-        self._convert(state, found)
+        _convert(state, *self._where, found)
         return RobotState(*found.tolist())
-
-    def _convert(self, state: Array, out: Array) -> None:
-        _convert(state, self._quaternion, self._angular, self._left, self._right, self._rise, out)
 
 
 @kernel

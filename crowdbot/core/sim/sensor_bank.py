@@ -16,7 +16,6 @@ import numpy as np
 from pydrake.systems.framework import (
     Context,
     DiagramBuilder,
-    DiscreteStateIndex,
     LeafSystem,
     State,
 )
@@ -174,7 +173,7 @@ class SensorBank(LeafSystem):
         )
         index = self.DeclareDiscreteState(initial)
         self.DeclareStateOutputPort(ports.READINGS, index)
-        self._index = DiscreteStateIndex(index)
+        self._index = int(index)
         rates = {n: x.info.rate for n, x in self.slots.items()}
         self._step = ticks_between(rates.values())
         self._due = Timetable(rates)

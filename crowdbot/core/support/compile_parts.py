@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import fcntl
 import hashlib
+import importlib
 import os
 import threading
 from collections.abc import Callable, Iterator
@@ -218,6 +219,7 @@ class KernelDispatcher(CPUDispatcher):
                 arguments = tuple(normalize_signature(sig)[0])
                 known: Any = self.overloads.get(arguments)
                 if known is None or (_is_part(known) and not self._called_by_compiled):
+                    _leave_scipy()
                     known = self._loaded(sig) or self._compiled_once(sig, arguments)
                 return known.entry_point
 
@@ -283,6 +285,22 @@ class KernelDispatcher(CPUDispatcher):
             self.add_overload(result)
             for environment in result._find_referenced_environments():
                 result.library.codegen.set_env(environment.env_name, environment)
+
+
+@cache
+def _leave_scipy() -> None:
+    """Have numba take for granted that there is a BLAS.
+
+    It imports scipy.linalg to find out, which takes 0.2 s. Where a function multiplies matrices
+    it looks again.
+    """
+    from numba.np import linalg  # a hundred modules, which only a first call needs
+
+    look, linalg.ensure_blas = linalg.ensure_blas, lambda: None
+    try:
+        importlib.import_module("numba.np.arraymath")
+    finally:
+        linalg.ensure_blas = look
 
 
 def _is_part(result: Any) -> bool:

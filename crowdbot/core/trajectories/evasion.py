@@ -25,6 +25,8 @@ SAME_TIME = 1e-6
 #: Slack of the rule who is near, m.
 DISTANCE_TOLERANCE = 1e-9
 
+_Both = tuple[Trajectories, Trajectories]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Evasion:
@@ -109,12 +111,19 @@ def own_legs(run: Trajectories, reach: float, jump_speed: float) -> Mask:
     return run.cached(key, lambda: near & ~touched(run, near, jump_speed))
 
 
-def ghost_run(run: Trajectories, alone: Trajectories) -> tuple[Trajectories, Trajectories] | None:
+def ghost_run(run: Trajectories, alone: Trajectories) -> _Both | None:
     """The run, and its robot as a ghost among the people who never met one.
 
     What such a ghost is blamed for happens without a robot. Both have the length of the shorter
     record; None where the two were not sampled at the same times after the start.
     """
+    done: dict[int, tuple[Trajectories, _Both | None]] = run.cached("ghosts", dict)
+    if id(alone) not in done:  # the run that is kept beside the ghost keeps its id
+        done[id(alone)] = alone, _ghost_run(run, alone)
+    return done[id(alone)][1]
+
+
+def _ghost_run(run: Trajectories, alone: Trajectories) -> _Both | None:
     run, alone = truncate_to_shorter(run, alone)
     since, other = run.t - run.t[0], alone.t - alone.t[0]
     if len(since) != len(other) or np.any(np.abs(since - other) > SAME_TIME):

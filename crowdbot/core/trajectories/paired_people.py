@@ -30,6 +30,8 @@ WINDOW = 48
 SAME_PACE = 0.1
 #: Places this near are one, m²: who waits is where he was.
 _SAME = 1e-18
+#: Slack where segments are left out unseen, m: rounding must not leave out the nearest.
+_NEAR = 1e-6
 #: Slack of the rules who is near and who is where he would be, m and s.
 _TOLERANCE = 1e-9
 
@@ -251,12 +253,20 @@ def follow(one: Array, other: Array, window: int, beside: Array, late: Array) ->
     """
     x, y, t = one[0], one[1], one[2]
     wx, wy, wt = other[0], other[1], other[2]
+    longest = 0.0
+    for s in range(wx.shape[0] - 1):
+        longest = max(longest, math.hypot(wx[s + 1] - wx[s], wy[s + 1] - wy[s]))
     at = 0
     for k in range(x.shape[0]):
         best, near, behind = math.inf, at, 0.0
+        # The last place is at hand: what is farther off than that cannot be nearest.
+        dx, dy = x[k] - wx[at], y[k] - wy[at]
+        far = (math.sqrt(dx * dx + dy * dy) + 3.0 * longest + _NEAR) ** 2
         for s in range(max(0, at - window), min(wx.shape[0] - 1, at + window + 1)):
-            ex, ey = wx[s + 1] - wx[s], wy[s + 1] - wy[s]
             px, py = x[k] - wx[s], y[k] - wy[s]
+            if px * px + py * py > far:
+                continue
+            ex, ey = wx[s + 1] - wx[s], wy[s + 1] - wy[s]
             square = ex * ex + ey * ey
             u = (px * ex + py * ey) / square if square > 0.0 else 0.0
             u = max(u, -1.0 if s == 0 else 0.0)

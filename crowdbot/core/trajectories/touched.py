@@ -5,6 +5,8 @@ N samples, M people; world frame, SI units. Steps, not samples, are asked about.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from crowdbot.core.trajectories.encounters import encounter, people
@@ -31,9 +33,7 @@ def touched(run: Trajectories, asked: Mask, jump_speed: float) -> Mask:
     """
     found = np.zeros(asked.shape, dtype=bool)
     step, who = np.nonzero(asked)
-    for begin in range(0, len(step), _CHUNK):
-        some = slice(begin, begin + _CHUNK)
-        found[step[some], who[some]] = _by_people(run, step[some], who[some])
+    found[step, who] = _by_people(run, step, who)
     gap = encounter(run, jump_speed).gap
     found |= (np.fmin(gap[:-1], gap[1:]) < SLACK) | _in_table(run)
     if run.walls is not None and len(run.walls):
@@ -45,15 +45,43 @@ def _by_people(run: Trajectories, step: Indices, who: Indices) -> Mask:
     """Whether anybody else comes within the slack on the step; (K,)."""
     every = people(run)
     x, y = inf_to_nan(every.x), inf_to_nan(every.y)
-    px, py = (p[step] - p[step, who][:, None] for p in (x, y))
-    dx, dy = (q[step + 1] - q[step + 1, who][:, None] - p for q, p in ((x, px), (y, py)))
-    square = dx**2 + dy**2
-    nearest = np.divide(-(px * dx + py * dy), square, out=np.zeros(px.shape), where=square > 0)
-    nearest = np.clip(nearest, 0.0, 1.0)
-    gap = np.hypot(px + nearest * dx, py + nearest * dy)
-    gap -= every.radius[who][:, None] + every.radius
-    gap[np.arange(len(who)), who] = np.inf
-    return np.asarray((gap < SLACK).any(axis=1))
+    boxes = [_boxes(p, every.radius) for p in (x, y)]
+    found = np.zeros(len(step), dtype=bool)
+    for begin in range(0, len(step), _CHUNK):
+        some = slice(begin, begin + _CHUNK)
+        row, other = _near(boxes, step[some], who[some])
+        at, one = step[some][row], who[some][row]
+        px, py = (p[at, other] - p[at, one] for p in (x, y))
+        dx, dy = (q[at + 1, other] - q[at + 1, one] - p for q, p in ((x, px), (y, py)))
+        square = dx**2 + dy**2
+        nearest = np.divide(-(px * dx + py * dy), square, out=np.zeros(px.shape), where=square > 0)
+        nearest = np.clip(nearest, 0.0, 1.0)
+        gap = np.hypot(px + nearest * dx, py + nearest * dy)
+        gap -= every.radius[one] + every.radius[other]
+        found[begin + row[gap < SLACK]] = True
+    return found
+
+
+def _boxes(p: Array, radius: Array) -> tuple[Array, Array]:
+    """Ends of what each body covers on each step, along one axis; (N-1, M), m.
+
+    With the slack at both, so twice: rounding must leave nobody out.
+    """
+    least, most = np.minimum(p[:-1], p[1:]), np.maximum(p[:-1], p[1:])
+    return least - (radius + SLACK), most + (radius + SLACK)
+
+
+def _near(
+    boxes: Sequence[tuple[Array, Array]], step: Indices, who: Indices
+) -> tuple[Indices, Indices]:
+    """Who may come near on the steps, because the boxes overlap: indices of steps and people."""
+    near = np.ones((len(step), boxes[0][0].shape[1]), dtype=bool)
+    near[np.arange(len(who)), who] = False
+    for low, high in boxes:
+        near &= low[step] <= high[step, who][:, None]
+        near &= high[step] >= low[step, who][:, None]
+    found = np.nonzero(near)
+    return found[0], found[1]
 
 
 def _by_walls(run: Trajectories, walls: Array, step: Indices, who: Indices) -> Mask:

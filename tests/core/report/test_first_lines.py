@@ -10,6 +10,7 @@ from crowdbot.core.report.markdown import markdown
 from crowdbot.core.report.page import render
 from crowdbot.core.results.rows import Results
 from crowdbot.core.statistics.audit import Audit, audit
+from crowdbot.core.statistics.crowds import CrowdOrder, CrowdRanks
 from tests.core.report.report_cases import AXES, DRAWN, campaign, contents
 from tests.core.report.test_page import EVIL, METRICS, Page
 
@@ -92,3 +93,16 @@ def test_another_version_of_the_suite_has_to_be_audited_again(useless: Audit) ->
     changed = tuple(replace(r, spec_hash=f"new-{r.spec_hash}") for r in results.runs)
     report = contents(replace(results, runs=changed), audit=useless)
     assert "audit it again" in report.suspicion
+
+
+def test_how_alike_the_orders_of_crowds_are_is_a_table_with_a_cell_for_each_two() -> None:
+    found = campaign({"dwa": 0.0, "other": 0.5}, axes=CROWDS, metrics=METRICS, failures=0)
+    names = ("a", "b", "c")
+    ranks = CrowdRanks(
+        metric="success",
+        orders=tuple(CrowdOrder(crowd=n, realism=None, means={}, pairs=3) for n in names),
+        taus={("a", "b"): 0.25, ("a", "c"): -1.0, ("b", "c"): 0.5},
+        verdicts=(),
+    )
+    page = Page(render(replace(contents(found), ranks=ranks)))
+    assert "reversedcrowdbca+0.25-1.00b+0.50" in "".join(page.words.split())

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crowdbot.core.sensing.raycast_columns import DEEPEST, RayGrid
+from crowdbot.core.sensing.raycast_columns import DEEPEST, RayGrid, rough_angle, rough_half
 from tests.core.sensing.sensing_worlds import scene_of, world
 from tests.examples import costly
 
@@ -79,3 +79,15 @@ def test_a_full_turn_has_no_seam() -> None:
                 to_x = (3.0 * np.sign(np.cos(heading)) - 0.3) / np.cos(heading)
                 to_y = (3.0 * np.sign(np.sin(heading)) + 0.2) / np.sin(heading)
             np.testing.assert_allclose(distance[0], np.minimum(to_x, to_y), rtol=1e-9)
+
+
+def test_rough_angles_leave_no_column_out() -> None:
+    """Together they are off by less than what discs are made wider by."""
+    angles = np.linspace(-math.pi, math.pi, 4001)
+    for angle in angles:
+        x, y = 3.0 * math.cos(angle), 3.0 * math.sin(angle)
+        assert rough_angle(x, y) == pytest.approx(math.atan2(y, x), abs=2e-5)
+    for x, y in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)):
+        assert rough_angle(x, y) == pytest.approx(math.atan2(y, x), abs=2e-5)
+    for sine in np.linspace(0.0, 1.0, 1001):
+        assert math.asin(sine) <= rough_half(sine) <= math.asin(sine) + 1e-3

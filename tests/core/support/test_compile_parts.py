@@ -42,6 +42,11 @@ def _half(value: float) -> float:
     return value / 2.0
 
 
+@array_kernel
+def _times(values: Array) -> Array:
+    return values @ values
+
+
 VALUES = np.arange(4.0)
 
 
@@ -159,3 +164,15 @@ def test_two_processes_do_not_compile_the_same_function(tmp_path: Path) -> None:
     compiled: list[Any] = [_ended(process) for process in both]
     assert sorted(names for names, _ in compiled) == [[], ["outer", "inner"]]
     assert [values for _, values in compiled] == [[4.0], [4.0]]
+
+
+def test_a_call_does_not_import_scipy_unless_matrices_are_multiplied() -> None:
+    code = f"""
+import sys
+from {__name__} import VALUES, _times, _twice
+_twice(VALUES, 3)
+print('scipy.linalg' in sys.modules)
+print(_times(VALUES.reshape(2, 2)).tolist(), 'scipy.linalg' in sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines() == ["False", "[[2.0, 3.0], [6.0, 11.0]] True"]

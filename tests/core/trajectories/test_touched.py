@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 
-from crowdbot.core.trajectories.touched import touched
+from crowdbot.core.trajectories.touched import SLACK, touched
 from crowdbot.core.trajectories.trajectories import Trajectories
 from tests.plugins.metrics.scenes import AGENT_RADIUS, REACH, grid, line, scene
 
@@ -59,3 +59,27 @@ def test_only_what_is_asked_about() -> None:
     asked = np.zeros((16, 1), dtype=bool)
     asked[3] = True
     assert list(np.flatnonzero(touched(run, asked, 10.0)[:, 0])) == [3]
+
+
+def test_a_crowd_is_compared_pair_by_pair() -> None:
+    """People who rush about, stand still, vanish and come back."""
+    random = np.random.default_rng(7)
+    t = grid(2.0, 1 / 8)
+    speeds = random.normal(0.0, 6.0, (12, 2)) * (np.arange(12) % 4 > 0)[:, None]
+    starts = random.uniform(-2, 2, (12, 2))
+    each = [line(t, (p[0], p[1]), (v[0], v[1])) for p, v in zip(starts, speeds, strict=True)]
+    run = scene(t, line(t, (0, 90), (0, 0)), each)
+    assert run.agents is not None
+    x, y, r = run.agents.x.copy(), run.agents.y.copy(), run.agents.radius
+    x[5:8, 3] = np.nan
+    run = dataclasses.replace(run, agents=dataclasses.replace(run.agents, x=x))
+    expected = np.zeros((len(t) - 1, 12), dtype=bool)
+    for k, one, two in np.ndindex(len(t) - 1, 12, 12):
+        px, py = x[k, two] - x[k, one], y[k, two] - y[k, one]
+        dx, dy = x[k + 1, two] - x[k + 1, one] - px, y[k + 1, two] - y[k + 1, one] - py
+        square = dx * dx + dy * dy
+        u = np.clip(-(px * dx + py * dy) / square, 0.0, 1.0) if square > 0.0 else 0.0
+        if one != two and np.hypot(px + u * dx, py + u * dy) - r[one] - r[two] < SLACK:
+            expected[k, one] = True
+    assert 0 < expected.sum() < expected.size / 2
+    np.testing.assert_array_equal(touched(run, np.ones_like(expected), 50.0), expected)

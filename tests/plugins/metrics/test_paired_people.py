@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from crowdbot.core.trajectories.paired_people import WINDOW, follow
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
 from tests.plugins.metrics.scenes import Array, scores_of, value_of, why
@@ -188,3 +189,40 @@ def test_every_wait_is_recovered(wait: float, who: int) -> None:
 def test_every_bow_is_recovered(bow: float, who: int) -> None:
     found = scores("displacement", crowd(NOBODY, one(bow, who)))
     assert value_of(found) * 40 == pytest.approx(abs(bow), abs=0.02)
+
+
+def _followed(one: Array, other: Array) -> tuple[list[float], list[float]]:
+    """As `follow`, but every segment of the window is looked at."""
+    at, beside, late = 0, [], []
+    for x, y, t in one.T:
+        best, near, behind = np.inf, at, 0.0
+        for s in range(max(0, at - WINDOW), min(other.shape[1] - 1, at + WINDOW + 1)):
+            (wx, wy, wt), (ex, ey, et) = other[:, s], other[:, s + 1] - other[:, s]
+            px, py, square = x - wx, y - wy, ex * ex + ey * ey
+            u = (px * ex + py * ey) / square if square > 0.0 else 0.0
+            u = min(max(u, -1.0 if s == 0 else 0.0), 2.0 if s == other.shape[1] - 2 else 1.0)
+            apart = (px - u * ex) ** 2 + (py - u * ey) ** 2
+            lag = t - wt - u * et
+            if apart < best - 1e-18 or (apart <= best + 1e-18 and abs(lag) < abs(behind)):
+                best, near, behind = min(apart, best), s, lag
+        at = near
+        beside.append(np.sqrt(best))
+        late.append(behind)
+    return beside, late
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_segments_that_are_far_away_may_be_left_out(seed: int) -> None:
+    """Ways that wind, wait, cross themselves, and lie apart."""
+    random = np.random.default_rng(seed)
+    ways = []
+    for count in (150, 180):
+        moves = random.choice([0.0, 0.05, 0.1, 0.3], count) * (seed != 5 or count == 150)
+        turns = np.cumsum(random.normal(0.0, 0.3, count))
+        x, y = np.cumsum(moves * np.cos(turns)), np.cumsum(moves * np.sin(turns))
+        ways.append(np.stack([np.round(x, 2), np.round(y, 2), np.arange(count) / 16.0]))
+    beside, late = np.empty(150), np.empty(150)
+    follow(ways[0], ways[1], WINDOW, beside, late)
+    expected = _followed(*ways)
+    np.testing.assert_allclose(beside, expected[0], rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(late, expected[1], rtol=1e-12, atol=1e-12)

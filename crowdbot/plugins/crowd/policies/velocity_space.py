@@ -51,7 +51,8 @@ class VelocitySpaceSpec(CrowdPolicySpec):
         default=100, description="Number of random candidates."
     )
     include_base: bool = Field(
-        default=True, description="Whether the first speed of a regular fan is the tip itself."
+        default=True,
+        description="Whether the tip is a candidate of a regular fan; else the slowest is one step away from it.",
     )
     contact_stiffness: NonNegativeSteeringStiffness = Field(
         default=62.5, description="Push between overlapping people and walls, 1/s^2."
