@@ -9,8 +9,8 @@ from __future__ import annotations
 import contextlib
 import inspect
 import math
-from collections.abc import Iterator, Mapping
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from numbers import Real
 from typing import Any
 
@@ -65,7 +65,7 @@ class GuardedPlanner:
         Raises:
             PlannerError: the planner raised.
         """
-        with self._guarded(self._reset_call, "reset"):
+        with self._around, self._reset_call("reset"):
             self._planner.reset(task, limits, sensors, seed)
 
     def step(self, obs: Observation) -> Command:
@@ -75,7 +75,7 @@ class GuardedPlanner:
             PlannerError: the planner raised, or returned something that is not a command.
             NoValidCommand: it knows none.
         """
-        with self._guarded(self._step_call, "step"):
+        with self._around, self._step_call("step"):
             return self._checked(self._planner.step(obs))
 
     def fail(self, what: str) -> None:
@@ -85,11 +85,6 @@ class GuardedPlanner:
             PlannerError: always.
         """
         self._step_call.fail(what)
-
-    @contextmanager
-    def _guarded(self, call: PluginCall, method: str) -> Iterator[None]:
-        with self._around, call(method):
-            yield
 
     def _sources(self) -> frozenset[str]:
         """Files in which the planner's class and its bases are written."""

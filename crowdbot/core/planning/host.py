@@ -5,11 +5,10 @@ from __future__ import annotations
 import contextlib
 import math
 import time
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple, NoReturn, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,8 +86,11 @@ class PlannerHost:
         task = replace(task, goal_zone=_read_only(task.goal_zone))
         sensors = MappingProxyType({n: _constant(i) for n, i in sensors.items()})
         patience = self._watchdog.patience(RESET_LIMIT, compiled) if self._watchdog else None
-        with patience or contextlib.nullcontext(), self._named("reset"):
-            self._guarded.reset(task, replace(self._limits), sensors, seed)
+        with patience or contextlib.nullcontext():
+            try:
+                self._guarded.reset(task, replace(self._limits), sensors, seed)
+            except PlannerHungError:
+                self._hung("reset")
 
     def step(self, obs: Observation) -> HostedCommand:
         """Ask for the next command.
@@ -104,11 +106,12 @@ class PlannerHost:
         seen = _protected(obs) if self._copies else obs
         begin = time.perf_counter()
         try:
-            with self._named("step"):
-                wanted = self._guarded.step(seen)
+            wanted = self._guarded.step(seen)
         except NoValidCommand:
             wanted = STOP
             self.stops += 1
+        except PlannerHungError:
+            self._hung("step")
         seconds = time.perf_counter() - begin
         self.steps += 1
         if self._budget is not None and seconds > self._budget:
@@ -117,16 +120,12 @@ class PlannerHost:
         self.clamped += clamped
         return HostedCommand(command, clamped, seconds)
 
-    @contextmanager
-    def _named(self, method: str) -> Iterator[None]:
-        """Who it was that the watchdog ended."""
-        try:
-            yield
-        except PlannerHungError:
-            limit = self._watchdog.limit if self._watchdog else math.nan
-            raise PlannerHungError(
-                f"{self._who} did not return from {method} within {limit:g} s"
-            ) from None
+    def _hung(self, method: str) -> NoReturn:
+        """Say who it was that the watchdog ended."""
+        limit = self._watchdog.limit if self._watchdog else math.nan
+        raise PlannerHungError(
+            f"{self._who} did not return from {method} within {limit:g} s"
+        ) from None
 
     def _clamp(self, command: Command) -> tuple[Command, bool]:
         """Into the limits; that of vy is 0 for a robot without sideways drive."""

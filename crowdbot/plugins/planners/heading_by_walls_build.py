@@ -116,6 +116,7 @@ class HeadingByWalls:
     def __init__(self) -> None:
         self._memory, self._seen = np.zeros(BINS), np.zeros(BINS)
         self._filled = np.zeros(BINS, np.int64)
+        self._knows = False
         self._odometry: Pose | None = None
         self._pose = Pose(0.0, 0.0, 0.0)
 
@@ -130,7 +131,7 @@ class HeadingByWalls:
         count = directions(points, self._seen)
         yaw = moved.yaw
         if count >= _FEW:
-            knows = self._memory.any()
+            knows, self._knows = self._knows, True
             fitting = turned(self._memory, self._seen, yaw, self._filled) if knows else yaw
             learn(self._memory, self._seen, fitting, _LEARN if knows else 1.0)
             yaw = fitting if abs(fitting - yaw) > _NOISE else yaw

@@ -53,6 +53,8 @@ def _hidden(points: Array, edge: int, beside: int) -> bool:
     if beside < 0 or beside >= points.shape[0]:
         return False
     x, y, p, q = points[edge, 0], points[edge, 1], points[beside, 0], points[beside, 1]
+    if p * p + q * q >= x * x + y * y:
+        return False  # most of them
     turn = abs(x * q - y * p) / max(math.hypot(x, y) * math.hypot(p, q), 1e-9)
     return turn < 0.05 and math.hypot(p, q) < math.hypot(x, y) - _IN_FRONT
 
@@ -96,7 +98,10 @@ def _middles(legs: Array) -> Array:
             continue
         best, other = _STEP, -1
         for j in range(i + 1, legs.shape[0]):
-            apart = math.hypot(legs[i, 0] - legs[j, 0], legs[i, 1] - legs[j, 1])
+            dx, dy = legs[i, 0] - legs[j, 0], legs[i, 1] - legs[j, 1]
+            if abs(dx) >= best or abs(dy) >= best:
+                continue  # most of them
+            apart = math.hypot(dx, dy)
             if not used[j] and legs[i, 2] + legs[j, 2] == 0.0 and apart < best:
                 best, other = apart, j
         out[count, 0], out[count, 1] = legs[i, 0], legs[i, 1]

@@ -133,9 +133,9 @@ def roll(
     cloud: Array, speeds: Array, p: Array, v: float, w: float, vt: float, wt: float
 ) -> tuple[float, float, float, float, float]:
     ahead = rollout.foreseen(cloud, speeds, p)
-    known, scratch = rollout.rollouts(ahead)
+    known = rollout.rollouts(ahead)
     rolled: tuple[float, float, float, float, float] = rollout.roll(
-        ahead, p, NOTHING, (v, w, 0.0), (vt, wt, 0.0), known, scratch
+        ahead, p, NOTHING, (v, w, 0.0), (vt, wt, 0.0), *known
     )
     return rolled
 
@@ -193,9 +193,9 @@ def test_what_rollouts_know_of_each_other_changes_none(count: int, seed: int) ->
     cloud, speeds = rng.uniform(-2.0, 2.0, (count, 2)), rng.uniform(-1.0, 1.0, (count, 2))
     p = parameters(GROWTH=0.05)
     ahead = rollout.foreseen(cloud, speeds, p)
-    known, scratch = rollout.rollouts(ahead)
+    known = rollout.rollouts(ahead)
     for vt, wt in rng.uniform(-1.0, 1.0, (30, 2)):
-        shared = rollout.roll(ahead, p, NOTHING, (0.3, 0.1, 0.0), (vt, wt, 0.0), known, scratch)
+        shared = rollout.roll(ahead, p, NOTHING, (0.3, 0.1, 0.0), (vt, wt, 0.0), *known)
         assert shared == roll(cloud, speeds, p, 0.3, 0.1, vt, wt)
 
 
@@ -235,7 +235,9 @@ def test_no_candidate_is_admissible_before_a_wall() -> None:
 def test_reachable_drops_only_what_cannot_matter() -> None:
     cloud = points((0.5, 0.0), (4.0, 0.0), (4.0, 0.0))
     speed = points((0.0, 0.0), (0.0, 0.0), (-1.5, 0.0))
-    assert rollout.reachable(cloud, speed, parameters()).tolist() == [True, False, True]
+    near, going = rollout.reachable(cloud, speed, parameters())
+    np.testing.assert_array_equal(near, cloud[[0, 2]])
+    np.testing.assert_array_equal(going, speed[[0, 2]])
 
 
 # ------------------------------------------------------------------------------- map

@@ -88,10 +88,10 @@ def test_what_rollouts_of_a_box_know_of_each_other_changes_none(count: int, seed
     cloud, speeds = rng.uniform(-2.5, 2.5, (count, 2)), rng.uniform(-1.0, 1.0, (count, 2))
     p, now = parameters(), (0.3, 0.2, 0.1)
     ahead = rollout.foreseen(cloud, speeds, p)
-    known, scratch = rollout.rollouts(ahead)
+    known = rollout.rollouts(ahead)
     for target in rng.uniform(-1.0, 1.0, (30, 3)):
         given_ = tuple(target.tolist())
-        shared = rollout.roll(ahead, p, BOX, now, given_, known, scratch)
+        shared = rollout.roll(ahead, p, BOX, now, given_, *known)
         assert shared == rollout.roll(ahead, p, BOX, now, given_, *rollout.rollouts(ahead))
 
 
