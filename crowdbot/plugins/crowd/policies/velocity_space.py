@@ -52,7 +52,7 @@ class VelocitySpaceSpec(CrowdPolicySpec):
     )
     include_base: bool = Field(
         default=True,
-        description="Whether the tip is a candidate of a regular fan; else the slowest is a step off.",
+        description="Whether the tip of a regular fan is a candidate, too.",
     )
     contact_stiffness: NonNegativeSteeringStiffness = Field(
         default=62.5, description="Push between overlapping people and walls, 1/s^2."
