@@ -154,7 +154,7 @@ def _first_from(azimuth: Array, value: float) -> int:
     """Index of the first column at or after an azimuth."""
     low, high = 0, azimuth.shape[0]
     guess = (value - azimuth[0]) / (azimuth[high - 1] - azimuth[0]) * (high - 1)
-    if 0.0 < guess < high - 1:  # columns mostly lie evenly
+    if 0.0 < guess < high - 1:  # columns mostly lie evenly; NaN where there is but one
         k = int(guess)
         if azimuth[k] < value <= azimuth[k + 1]:
             return k + 1
