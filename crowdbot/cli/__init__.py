@@ -70,8 +70,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(argv: Sequence[str] | None) -> int:
     words = sys.argv[1:] if argv is None else list(argv)
-    if argv is None and not _READING.isdisjoint(words[:1]):
+    if argv is None and not _LOADING.isdisjoint(words[:1]):
         collect_seldom()
+    if argv is None and not _READING.isdisjoint(words[:1]):
         # What watches models of services, pydantic would look for in every distribution.
         os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
@@ -97,6 +98,8 @@ def _with_options(words: list[str]) -> Callable[[], int | None]:
 
 #: Commands that read documents, tell about them, and are over: a process of theirs is short.
 _READING = frozenset(("expand", "plugins", "validate"))
+#: Commands whose time goes to loading libraries and documents, before any run begins.
+_LOADING = _READING | {"campaign", "simulate"}
 
 #: Commands whose output only tells what they did; with ``-q`` they say only what went wrong.
 _TELLING = frozenset(

@@ -6,6 +6,8 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from crowdbot.core.support.seldom_collected import collected_as_ever
+
 
 @contextmanager
 def gc_frozen() -> Iterator[None]:
@@ -21,7 +23,8 @@ def gc_frozen() -> Iterator[None]:
         return
     gc.freeze()
     try:
-        yield
+        with collected_as_ever():
+            yield
     finally:
         gc.collect()
         gc.unfreeze()

@@ -8,10 +8,12 @@ from contextlib import contextmanager
 
 #: New objects before the collector looks at them, instead of 700: about 50 MB of small ones.
 _MANY = 500_000
+#: As this process began.
+_BEFORE = gc.get_threshold()
 
 
 def collect_seldom() -> None:
-    """Collect cycles seldom from now on, in a process that reads, tells and ends.
+    """Collect cycles seldom from now on, in a process of ours: what it loads it keeps.
 
     A threshold that is larger already, or 0 (off), stays.
     """
@@ -28,6 +30,18 @@ def seldom_collected() -> Iterator[None]:
     """
     before = gc.get_threshold()
     collect_seldom()
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
+
+
+@contextmanager
+def collected_as_ever() -> Iterator[None]:
+    """Undoes `collect_seldom` for a while: what planners leave may be large."""
+    before = gc.get_threshold()
+    if before[0] == _MANY:
+        gc.set_threshold(*_BEFORE)
     try:
         yield
     finally:

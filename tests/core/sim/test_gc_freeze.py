@@ -8,6 +8,7 @@ import weakref
 import pytest
 
 from crowdbot.core.sim.gc_freeze import gc_frozen
+from crowdbot.core.support.seldom_collected import seldom_collected
 
 
 class _Knot:
@@ -29,6 +30,14 @@ def test_cycles_made_within_are_collected() -> None:
         knot = weakref.ref(_Knot())
         gc.collect()
         assert knot() is None
+
+
+def test_cycles_are_collected_as_ever_also_in_a_process_that_collects_seldom() -> None:
+    with seldom_collected():
+        seldom = gc.get_threshold()
+        with gc_frozen():
+            assert 0 < gc.get_threshold()[0] < seldom[0]
+        assert gc.get_threshold() == seldom
 
 
 def test_an_error_ends_it() -> None:

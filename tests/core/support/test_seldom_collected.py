@@ -6,7 +6,11 @@ import gc
 
 import pytest
 
-from crowdbot.core.support.seldom_collected import collect_seldom, seldom_collected
+from crowdbot.core.support.seldom_collected import (
+    collect_seldom,
+    collected_as_ever,
+    seldom_collected,
+)
 
 
 @pytest.fixture(autouse=True)
@@ -57,3 +61,19 @@ def test_errors_leave_it_as_it_was() -> None:
     with pytest.raises(KeyError), seldom_collected():
         raise KeyError
     assert gc.get_threshold() == (700, 10, 10)
+
+
+def test_for_a_while_as_ever() -> None:
+    gc.set_threshold(700, 10, 10)
+    collect_seldom()
+    with pytest.raises(KeyError), collected_as_ever():
+        assert _collections() > 0
+        raise KeyError
+    assert _collections() == 0
+
+
+def test_what_was_never_made_seldom_stays() -> None:
+    gc.set_threshold(3000, 5, 7)
+    with collected_as_ever():
+        assert gc.get_threshold() == (3000, 5, 7)
+    assert gc.get_threshold() == (3000, 5, 7)
