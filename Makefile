@@ -21,7 +21,8 @@ WORKERS = $(shell $(PYTHON) -c "import os; print(1 + (os.cpu_count() or 1))")
 READY := .venv/ready-$(shell cat requirements.lock pyproject.toml | cksum | cut -d' ' -f1)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # pip would use one core for this, for half of the set-up; a third are tests of packages. It fails
-# where a package has templates, which are not Python.
+# where a package has templates, which are not Python. Ours too: where the environment forbids
+# Python to write byte code, each process would translate all of it.
 BYTE_CODE := $(BIN)/python -m compileall -qq -j 0 -x '/tests?/'
 
 JS := scripts/js
@@ -106,7 +107,7 @@ $(READY): requirements.lock pyproject.toml
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	@$(PIP) install --no-compile --require-hashes -r requirements.lock
 	@$(PIP) install --no-compile --no-deps --no-build-isolation -e .
-	@$(BYTE_CODE) .venv/lib || true
+	@$(BYTE_CODE) .venv/lib crowdbot || true
 	@rm -f .venv/ready-* && touch $@
 
 lock:
