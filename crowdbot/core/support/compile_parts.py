@@ -25,10 +25,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from llvmlite import binding as llvm  # type: ignore[import-untyped]
 from numba.core import event
-from numba.core.caching import CompileResultCacheImpl, FunctionCache
-from numba.core.codegen import JITCodeLibrary
+from numba.core.caching import FunctionCache
 from numba.core.compiler import Compiler
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import _FunctionCompiler
@@ -38,91 +36,18 @@ from numba.core.sigutils import normalize_signature
 from numba.core.types import Omitted
 from numba.np import linalg
 
+from crowdbot.core.support.compile_files import PART, CacheFiles, PartLibrary, is_part
 from crowdbot.core.support.seldom_collected import seldom_collected
 
-_PART, _WHOLE = "part", "whole"
+_WHOLE = "whole, with its symbols"
 #: Held while a function is written to the cache.
 SAVING = threading.Lock()
-
-
-class _NoEngine:
-    """A part has no machine code, and so no global variables to be set in it."""
-
-    def __init__(self, codegen: Any) -> None:
-        self._codegen = codegen
-
-    def set_env(self, name: str, environment: object) -> None:
-        del name, environment
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._codegen, name)
-
-
-class _PartLibrary(JITCodeLibrary):
-    """One function as intermediate code, which never becomes machine code by itself."""
-
-    @property
-    def codegen(self) -> Any:
-        return _NoEngine(self._codegen)
-
-    def _finalize_final_module(self) -> None:
-        self._finalize_dynamic_globals()
-        self._verify_declare_only_symbols()
-        self._finalized = True
-
-    def get_pointer_to_function(self, name: str) -> int:
-        del name
-        return 0
-
-    def serialize_using_object_code(self) -> tuple[str, str, bytes]:
-        return self.name, _PART, self._get_module_for_linking().as_bitcode()
-
-
-class _PartContext:
-    """What numba reads a part from the cache with, in place of its own context."""
-
-    def __init__(self, context: Any) -> None:
-        self._context = context
-
-    def codegen(self) -> Any:
-        return self
-
-    def unserialize_library(self, serialized: tuple[str, str, bytes]) -> _PartLibrary:
-        name, _, bitcode = serialized
-        library = _PartLibrary(self._context.codegen(), name)
-        library._final_module = llvm.parse_bitcode(bitcode)
-        library._finalize_final_module()
-        return library
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._context, name)
-
-
-class _CacheFiles(CompileResultCacheImpl):
-    """Keeps, with a function that is whole, all constants that it looks up.
-
-    A part and what was made of it share one environment. Who has read that of the part, be it with
-    one of its callers, lacks the constants that are needed to hand Python an array.
-    """
-
-    def reduce(self, result: Any) -> Any:
-        payload = super().reduce(result)
-        return payload if _is_part(result) else (*payload, tuple(result.environment.consts))
-
-    def rebuild(self, target_context: Any, payload: Any) -> Any:
-        if payload[0][1] == _PART:
-            part: Any = super().rebuild(_PartContext(target_context), payload)
-            return part._replace(target_context=target_context)
-        *rest, constants = payload
-        known = rest[2].consts
-        known.extend(constants[len(known) :])
-        return super().rebuild(target_context, rest)
 
 
 class _Cache(FunctionCache):
     """Keeps a function whole and as a part, whichever was compiled."""
 
-    _impl_class = _CacheFiles
+    _impl_class = CacheFiles
     _as_part = False
 
     def load(self, sig: Any, context: Any, as_part: bool) -> Any:
@@ -156,7 +81,7 @@ class _Cache(FunctionCache):
 
     def _index_key(self, sig: Any, codegen: Any) -> Any:
         key = super()._index_key(sig, codegen)
-        return (*key, _PART if self._as_part else _WHOLE)
+        return (*key, PART if self._as_part else _WHOLE)
 
 
 @cache
@@ -168,7 +93,7 @@ def _lock_file(path: Path) -> int:
 class _PartPipeline(Compiler):
     def compile_extra(self, func: Any) -> Any:
         if self.state.flags.no_cpython_wrapper:
-            library = _PartLibrary(self.state.targetctx.codegen(), func.__qualname__)
+            library = PartLibrary(self.state.targetctx.codegen(), func.__qualname__)
             library.enable_object_caching()
             self.state.library = library
         return super().compile_extra(func)
@@ -219,7 +144,7 @@ class KernelDispatcher(CPUDispatcher):
             with self._compiling_counter:
                 arguments = tuple(normalize_signature(sig)[0])
                 known: Any = self.overloads.get(arguments)
-                if known is None or (_is_part(known) and not self._called_by_compiled):
+                if known is None or (is_part(known) and not self._called_by_compiled):
                     known = self._loaded(sig) or self._compiled_once(sig, arguments)
                 return known.entry_point
 
@@ -279,16 +204,12 @@ class KernelDispatcher(CPUDispatcher):
     def _keep(self, result: Any) -> None:
         """For callers; a part is nothing that Python could call."""
         arguments = tuple(result.signature.args)
-        if _is_part(result):
+        if is_part(result):
             self._parts[arguments] = self.overloads[arguments] = result
         else:
             self.add_overload(result)
             for environment in result._find_referenced_environments():
                 result.library.codegen.set_env(environment.env_name, environment)
-
-
-def _is_part(result: Any) -> bool:
-    return isinstance(result.library, _PartLibrary)
 
 
 def _let_others_call(result: Any) -> None:
