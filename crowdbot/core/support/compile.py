@@ -41,6 +41,22 @@ def inline_kernel(function: F) -> F:
     return cast(F, _compiled(function, {"inline": "always", **_OPTIONS, "_nrt": False}))
 
 
+def declared_kernel(signature: Any) -> Callable[[F], F]:
+    """Compile a function at once, for one signature: one that is called by address.
+
+    As ``@njit(signature, cache=True, error_model="numpy")``, by which plugins compile theirs.
+    """
+
+    def decorate(function: F) -> F:
+        made = _compiled(function, _OPTIONS)
+        if made is not function:
+            made.compile(signature)
+            made.disable_compile()
+        return cast(F, made)
+
+    return decorate
+
+
 def _compiled(function: Callable[..., Any], options: dict[str, Any]) -> Any:
     if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
         return function
@@ -48,4 +64,4 @@ def _compiled(function: Callable[..., Any], options: dict[str, Any]) -> Any:
     return KernelDispatcher(function, targetoptions=whole)
 
 
-__all__ = ["array_kernel", "inline_kernel", "kernel"]
+__all__ = ["array_kernel", "declared_kernel", "inline_kernel", "kernel"]

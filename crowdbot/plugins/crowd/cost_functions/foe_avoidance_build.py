@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.interfaces import (
     AX,
@@ -33,7 +32,7 @@ from crowdbot.core.interfaces import (
     wall_table,
     work_table,
 )
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compile import array_kernel, declared_kernel
 from crowdbot.plugins.crowd.cost_functions.foe_avoidance import FoeAvoidanceSpec
 from crowdbot.plugins.crowd.cost_functions.force_build import no_base
 
@@ -44,7 +43,7 @@ _SHARPEST_TURN = 0.1  # rad
 _SINGLE = 1e-7  # what single precision takes for equal
 
 
-@njit(PREPARE, cache=True, error_model="numpy")
+@declared_kernel(PREPARE)
 def _prepare(
     agent: Pointer,
     near: Pointer,
@@ -106,7 +105,7 @@ def _terms(row: int, ux: float, uy: float, agent: Pointer, work: Pointer) -> tup
     return focus, bearing, spread, importance * math.exp(-abs(bearing - focus) / spread), closing
 
 
-@njit(EXCESS, cache=True, error_model="numpy")
+@declared_kernel(EXCESS)
 def _excess(
     ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
 ) -> float:
@@ -120,7 +119,7 @@ def _excess(
     return cost
 
 
-@njit(GRADIENT, cache=True, error_model="numpy")
+@declared_kernel(GRADIENT)
 def _gradient(
     ux: float, uy: float, agent: Pointer, work: Pointer, params: Pointer, out: Pointer
 ) -> int:

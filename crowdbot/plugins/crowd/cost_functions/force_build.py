@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from crowdbot.core.interfaces import (
     BASE,
     EXCESS,
@@ -22,7 +20,7 @@ from crowdbot.core.interfaces import (
     WEIGHT,
     Pointer,
 )
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compile import array_kernel, declared_kernel
 
 #: No force is larger, m/s^2: a target has to stay finite when squared.
 _LARGEST = 1e9
@@ -39,13 +37,13 @@ def aim(fx: float, fy: float, agent: Pointer, work: Pointer) -> int:
     return 1
 
 
-@njit(BASE, cache=True, error_model="numpy")
+@declared_kernel(BASE)
 def no_base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     """Nothing depends on the candidate alone."""
     return 0.0
 
 
-@njit(EXCESS, cache=True, error_model="numpy")
+@declared_kernel(EXCESS)
 def from_target(
     ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
 ) -> float:
@@ -53,7 +51,7 @@ def from_target(
     return float(0.5 * ((ux - work[0]) ** 2 + (uy - work[1]) ** 2) / agent[TIME_STEP])
 
 
-@njit(GRADIENT, cache=True, error_model="numpy")
+@declared_kernel(GRADIENT)
 def to_target(
     ux: float, uy: float, agent: Pointer, work: Pointer, params: Pointer, out: Pointer
 ) -> int:
@@ -62,7 +60,7 @@ def to_target(
     return 1
 
 
-@njit(OPTIMUM, cache=True, error_model="numpy")
+@declared_kernel(OPTIMUM)
 def target(agent: Pointer, work: Pointer, params: Pointer, out: Pointer) -> int:
     """The velocity of least cost."""
     out[0], out[1] = work[0], work[1]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.interfaces import (
     PREPARE,
@@ -16,6 +15,7 @@ from crowdbot.core.interfaces import (
     CompiledCost,
     Pointer,
 )
+from crowdbot.core.support.compile import declared_kernel
 from crowdbot.plugins.crowd.cost_functions.force_build import (
     aim,
     from_target,
@@ -26,7 +26,7 @@ from crowdbot.plugins.crowd.cost_functions.force_build import (
 from crowdbot.plugins.crowd.cost_functions.goal_reaching_force import GoalReachingForceSpec
 
 
-@njit(PREPARE, cache=True, error_model="numpy")
+@declared_kernel(PREPARE)
 def _prepare(
     agent: Pointer,
     near: Pointer,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import float32, njit
+from numba import float32
 
 from crowdbot.core.crowd.contact.geometry import single_angle
 from crowdbot.core.interfaces import (
@@ -26,7 +26,7 @@ from crowdbot.core.interfaces import (
     list_obstacles,
     work_table,
 )
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compile import array_kernel, declared_kernel
 from crowdbot.plugins.crowd.cost_functions.karamouzas import KaramouzasSpec
 
 _ALPHA, _BETA, _GAMMA, _DELTA, _T_MAX = range(2, 7)  # entries of params
@@ -37,7 +37,7 @@ _SLACK = 0.05  # rad and m/s
 _TOLERANCE = 1e-9
 
 
-@njit(BASE, cache=True, error_model="numpy")
+@declared_kernel(BASE)
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     speed = math.hypot(ux, uy)
     ahead = ux / speed if speed > 0.0 else 0.0
@@ -64,7 +64,7 @@ def _allowed(t: float, preferred: float, max_speed: float, parity: bool) -> tupl
     return turn, preferred - spread, preferred + spread
 
 
-@njit(PREPARE, cache=True, error_model="numpy")
+@declared_kernel(PREPARE)
 def _prepare(
     agent: Pointer,
     near: Pointer,
@@ -87,7 +87,7 @@ def _prepare(
     return 1
 
 
-@njit(EXCESS, cache=True, error_model="numpy")
+@declared_kernel(EXCESS)
 def _excess(
     ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
 ) -> float:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.interfaces import (
     BASE,
@@ -25,7 +24,7 @@ from crowdbot.core.interfaces import (
     first_contact,
     list_approaching,
 )
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compile import array_kernel, declared_kernel
 from crowdbot.plugins.crowd.cost_functions.moussaid import MoussaidSpec
 
 _D_MAX = 2  # entry of params
@@ -37,13 +36,13 @@ def _least_course(ahead: float, d_max: float) -> float:
     return 1.0 + d_max * d_max * (1.0 - ahead * ahead)
 
 
-@njit(BASE, cache=True, error_model="numpy")
+@declared_kernel(BASE)
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     speed = math.hypot(ux, uy)
     return float(_least_course(ux / speed if speed > 0.0 else 0.0, params[_D_MAX]))
 
 
-@njit(PREPARE, cache=True, error_model="numpy")
+@declared_kernel(PREPARE)
 def _prepare(
     agent: Pointer,
     near: Pointer,
@@ -62,7 +61,7 @@ def _prepare(
     return 1
 
 
-@njit(EXCESS, cache=True, error_model="numpy")
+@declared_kernel(EXCESS)
 def _excess(
     ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
 ) -> float:

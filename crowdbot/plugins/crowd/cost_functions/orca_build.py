@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.interfaces import (
     BASE,
@@ -36,7 +35,7 @@ from crowdbot.core.interfaces import (
     near_table,
     wall_table,
 )
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compile import array_kernel, declared_kernel
 from crowdbot.plugins.crowd.cost_functions.half_planes_build import best_velocity, put, violation
 from crowdbot.plugins.crowd.cost_functions.orca import OrcaSpec
 
@@ -44,7 +43,7 @@ _HORIZON, _LIMIT = 2, 3  # entries of params
 _BRAKING = 0.5  # s in which the gap to a wall may be used up
 
 
-@njit(BASE, cache=True, error_model="numpy")
+@declared_kernel(BASE)
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     return min(math.hypot(ux - preferred, uy), 2.0 * max_speed)
 
@@ -107,7 +106,7 @@ def _put_walls(
     return count
 
 
-@njit(PREPARE, cache=True, error_model="numpy")
+@declared_kernel(PREPARE)
 def _prepare(
     agent: Pointer,
     near: Pointer,
@@ -140,7 +139,7 @@ def _prepare(
     return max(count, 1)  # base alone may be less than the cost of a candidate that is too fast
 
 
-@njit(EXCESS, cache=True, error_model="numpy")
+@declared_kernel(EXCESS)
 def _excess(
     ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
 ) -> float:
@@ -154,7 +153,7 @@ def _excess(
     return float(most + worst - base if worst > 0.0 else wanted - base)
 
 
-@njit(OPTIMUM, cache=True, error_model="numpy")
+@declared_kernel(OPTIMUM)
 def _optimum(agent: Pointer, work: Pointer, params: Pointer, out: Pointer) -> int:
     fastest = agent[MAX_SPEED]
     if params[_LIMIT] != 0.0:

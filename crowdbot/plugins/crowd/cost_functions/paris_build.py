@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import float32, njit
+from numba import float32
 
 from crowdbot.core.interfaces import (
     AX,
@@ -43,7 +43,7 @@ from crowdbot.core.interfaces import (
     wall_table,
     work_table,
 )
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compile import array_kernel, declared_kernel
 from crowdbot.plugins.crowd.cost_functions.paris import ParisSpec
 
 _W_A, _W_B, _T_MAX = range(2, 5)  # entries of params
@@ -55,7 +55,7 @@ _OFFSET = 1e-3  # keeps the excess positive under parity
 _PARALLEL = 1e-5  # m/s; lines whose cross product is below this do not cross
 
 
-@njit(BASE, cache=True, error_model="numpy")
+@declared_kernel(BASE)
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     speed = math.hypot(ux, uy)
     ahead = ux / speed if speed > 0.0 else 0.0
@@ -63,7 +63,7 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Poin
     return float(course + 0.001 * math.hypot(ux - preferred, uy))
 
 
-@njit(PREPARE, cache=True, error_model="numpy")
+@declared_kernel(PREPARE)
 def _prepare(
     agent: Pointer,
     near: Pointer,
@@ -178,7 +178,7 @@ def _rounding(ux: float, uy: float, agent: Pointer) -> float:
     return float(float(single) - (1.0 - exact))
 
 
-@njit(EXCESS, cache=True, error_model="numpy")
+@declared_kernel(EXCESS)
 def _excess(
     ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
 ) -> float:

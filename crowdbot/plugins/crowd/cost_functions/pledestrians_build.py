@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.interfaces import (
     ASKED_RADIUS,
@@ -27,17 +26,18 @@ from crowdbot.core.interfaces import (
     first_collision,
     list_approaching,
 )
+from crowdbot.core.support.compile import declared_kernel
 from crowdbot.plugins.crowd.cost_functions.pledestrians import PledestriansSpec
 
 _W_A, _W_B, _T_MIN, _T_MAX, _COST_OF_WAY = range(2, 7)  # entries of params
 
 
-@njit(BASE, cache=True, error_model="numpy")
+@declared_kernel(BASE)
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     return float(params[_T_MAX] * (params[_W_A] + params[_W_B] * (ux * ux + uy * uy)))
 
 
-@njit(PREPARE, cache=True, error_model="numpy")
+@declared_kernel(PREPARE)
 def _prepare(
     agent: Pointer,
     near: Pointer,
@@ -54,7 +54,7 @@ def _prepare(
     return 1
 
 
-@njit(EXCESS, cache=True, error_model="numpy")
+@declared_kernel(EXCESS)
 def _excess(
     ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
 ) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.interfaces import (
     D2,
@@ -27,7 +26,7 @@ from crowdbot.core.interfaces import (
     near_table,
     wall_table,
 )
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compile import array_kernel, declared_kernel
 from crowdbot.plugins.crowd.cost_functions.force_build import (
     aim,
     from_target,
@@ -63,7 +62,7 @@ def _repulsion(
     return fx, fy
 
 
-@njit(PREPARE, cache=True, error_model="numpy")
+@declared_kernel(PREPARE)
 def _prepare(
     agent: Pointer,
     near: Pointer,

@@ -6,19 +6,19 @@ The original draws between -1 and 1; adding 1 to every candidate changes no choi
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.crowd.velocity_search.minstd import draw
 from crowdbot.core.interfaces import BASE, EXCESS, GRADIENT, PREPARE, CompiledCost, Pointer
+from crowdbot.core.support.compile import declared_kernel
 from crowdbot.plugins.crowd.cost_functions.random_function import RandomFunctionSpec
 
 
-@njit(BASE, cache=True, error_model="numpy")
+@declared_kernel(BASE)
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     return 0.0
 
 
-@njit(PREPARE, cache=True, error_model="numpy")
+@declared_kernel(PREPARE)
 def _prepare(
     agent: Pointer,
     near: Pointer,
@@ -31,14 +31,14 @@ def _prepare(
     return 1
 
 
-@njit(EXCESS, cache=True, error_model="numpy")
+@declared_kernel(EXCESS)
 def _excess(
     ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
 ) -> float:
     return float(draw(agent, -1.0, 1.0) + 1.0)
 
 
-@njit(GRADIENT, cache=True, error_model="numpy")
+@declared_kernel(GRADIENT)
 def _gradient(
     ux: float, uy: float, agent: Pointer, work: Pointer, params: Pointer, out: Pointer
 ) -> int:

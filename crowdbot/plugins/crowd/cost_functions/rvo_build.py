@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.interfaces import (
     ASKED_RADIUS,
@@ -26,7 +25,7 @@ from crowdbot.core.interfaces import (
     list_approaching,
     soonest_disc,
 )
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compile import array_kernel, declared_kernel
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 
 _W = 2  # entry of params
@@ -43,7 +42,7 @@ def _too_fast(ux: float, uy: float, max_speed: float) -> bool:
     return bool(speed > np.float32(max_speed))
 
 
-@njit(BASE, cache=True, error_model="numpy")
+@declared_kernel(BASE)
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     if ux * ux + uy * uy > (max_speed * _ROUNDING) ** 2:
         return math.inf
@@ -51,7 +50,7 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Poin
     return math.sqrt(ahead * ahead + uy * uy)
 
 
-@njit(PREPARE, cache=True, error_model="numpy")
+@declared_kernel(PREPARE)
 def _prepare(
     agent: Pointer,
     near: Pointer,
@@ -70,7 +69,7 @@ def _prepare(
     return max(items, 1) if agent[PARITY] != 0.0 else items
 
 
-@njit(EXCESS, cache=True, error_model="numpy")
+@declared_kernel(EXCESS)
 def _excess(
     ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
 ) -> float:
@@ -81,7 +80,7 @@ def _excess(
     return float(params[_W] / first_collision(vx, vy, too_soon, agent, work))
 
 
-@njit(LOWER_BOUND, cache=True, error_model="numpy")
+@declared_kernel(LOWER_BOUND)
 def _lower_bound(
     count: int,
     ux: Pointer,

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.crowd.contact.geometry import opposite_taken_for_parallel
 from crowdbot.core.interfaces import (
@@ -39,7 +38,7 @@ from crowdbot.core.interfaces import (
     near_table,
     wall_table,
 )
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compile import array_kernel, declared_kernel
 from crowdbot.plugins.crowd.cost_functions.force_build import (
     aim,
     from_target,
@@ -114,7 +113,7 @@ def _faces(s: int, agent: Pointer, walls: Pointer, params: Pointer) -> bool:
     return bool(outside and not second and in_range(table[s, WALL_D2], agent[RADIUS], params))
 
 
-@njit(PREPARE, cache=True, error_model="numpy")
+@declared_kernel(PREPARE)
 def _prepare(
     agent: Pointer,
     near: Pointer,

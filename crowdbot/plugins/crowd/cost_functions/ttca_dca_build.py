@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.crowd.contact.geometry import opposite_taken_for_parallel
 from crowdbot.core.interfaces import (
@@ -43,7 +42,7 @@ from crowdbot.core.interfaces import (
     wall_table,
     work_table,
 )
-from crowdbot.core.support.compile import inline_kernel
+from crowdbot.core.support.compile import declared_kernel, inline_kernel
 from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
 from crowdbot.plugins.crowd.cost_functions.ttca_dca_gradient_build import gradient
 from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
@@ -62,7 +61,7 @@ _HEAVIEST = 2  # neighbours in lower bounds
 _TINY = 1e-300
 
 
-@njit(BASE, cache=True, error_model="numpy")
+@declared_kernel(BASE)
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     angle = abs(math.atan2(uy, ux)) if ux != 0.0 or uy != 0.0 else 0.0
     slower = (math.sqrt(ux * ux + uy * uy) - preferred) / params[SIGMA_SPEED]
@@ -110,7 +109,7 @@ def _add(
             work[row, WEIGHT] = weight
 
 
-@njit(PREPARE, cache=True, error_model="numpy")
+@declared_kernel(PREPARE)
 def _prepare(
     agent: Pointer,
     near: Pointer,
@@ -142,7 +141,7 @@ def _prepare(
     return int(work[0, 0])
 
 
-@njit(EXCESS, cache=True, error_model="numpy")
+@declared_kernel(EXCESS)
 def _excess(
     ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
 ) -> float:
@@ -165,7 +164,7 @@ def _excess(
     return float(cost / work[0, TOTAL])
 
 
-@njit(LOWER_BOUND, cache=True, error_model="numpy")
+@declared_kernel(LOWER_BOUND)
 def _lower_bound(
     count: int,
     ux: Pointer,

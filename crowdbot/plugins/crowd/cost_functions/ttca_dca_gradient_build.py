@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from crowdbot.core.interfaces import GRADIENT, PREFERRED, PVX, PVY, Pointer, work_table
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compile import array_kernel, declared_kernel
 from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
     INV_DCA2,
     INV_TTCA2,
@@ -62,7 +60,7 @@ def _by_neighbours(ux: float, uy: float, work: Pointer, params: Pointer) -> tupl
     return turning, speeding
 
 
-@njit(GRADIENT, cache=True, error_model="numpy")
+@declared_kernel(GRADIENT)
 def gradient(
     ux: float, uy: float, agent: Pointer, work: Pointer, params: Pointer, out: Pointer
 ) -> int:

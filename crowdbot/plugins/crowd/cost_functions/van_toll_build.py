@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from crowdbot.core.interfaces import (
     BASE,
@@ -23,12 +22,13 @@ from crowdbot.core.interfaces import (
     first_contact,
     list_obstacles,
 )
+from crowdbot.core.support.compile import declared_kernel
 from crowdbot.plugins.crowd.cost_functions.van_toll import VanTollSpec
 
 _MAX_DISTANCE = 2  # entry of params
 
 
-@njit(BASE, cache=True, error_model="numpy")
+@declared_kernel(BASE)
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     speed = math.hypot(ux, uy)
     if preferred <= 0.0:
@@ -37,7 +37,7 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Poin
     return turn + abs(speed - preferred) / preferred
 
 
-@njit(PREPARE, cache=True, error_model="numpy")
+@declared_kernel(PREPARE)
 def _prepare(
     agent: Pointer,
     near: Pointer,
@@ -52,7 +52,7 @@ def _prepare(
     return 1
 
 
-@njit(EXCESS, cache=True, error_model="numpy")
+@declared_kernel(EXCESS)
 def _excess(
     ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
 ) -> float:
