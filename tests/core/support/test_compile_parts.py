@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from numba import njit, types
 
-from crowdbot.core.support.compile import array_kernel, kernel
+from crowdbot.core.support.compile import array_kernel, declared_kernel, kernel
 from crowdbot.core.types.arrays import Array
 
 
@@ -47,6 +47,11 @@ def _twice_at_once(values: Array, i: int) -> float:
     return _twice(values, i)
 
 
+@declared_kernel(types.float64(types.float64))
+def _third(value: float) -> float:
+    return value / 3.0
+
+
 @array_kernel
 def _times(values: Array) -> Array:
     return values @ values
@@ -76,6 +81,14 @@ def test_c_has_an_address() -> None:
 
     assert _half(3.0) == 1.5
     assert address_of(_half, types.float64(types.float64)) > 0
+
+
+def test_a_declared_one_is_compiled_for_its_signature_alone() -> None:
+    declared: Any = _third
+    assert declared.nopython_signatures == [types.float64(types.float64)]
+    assert declared(6) == 2.0  # as C would, Python's numbers are made to fit
+    with pytest.raises(TypeError, match="No matching definition"):
+        declared(VALUES)
 
 
 def test_another_process_can_be_sent_one() -> None:
@@ -118,6 +131,9 @@ def outer(values):
 @kernel
 def other(values):
     return inner(values) - 1.0
+@kernel
+def around(values):
+    return outer(values) * 2.0
 @array_kernel
 def array(values):
     return np.full(1, values[2])
@@ -151,6 +167,33 @@ def test_each_is_kept_as_a_part_and_whole(tmp_path: Path) -> None:
     # Another function finds the part; Python wants more, which is added to the part.
     assert _ended(_started(tmp_path, "other", "inner")) == (["other", "inner"], [2.0, 3.0])
     assert _ended(_started(tmp_path, "outer", "other", "inner")) == ([], [4.0, 2.0, 3.0])
+
+
+@pytest.mark.slow
+def test_a_caller_is_compiled_of_what_was_read_whole(tmp_path: Path) -> None:
+    assert _ended(_started(tmp_path, "outer"))[1] == [4.0]
+    assert _ended(_started(tmp_path, "outer", "around")) == (["around"], [4.0, 8.0])
+
+
+LOADED = """
+import sys
+import crowdbot.core
+import numpy as np
+sys.path.insert(0, sys.argv[1])
+import loops
+loops.outer(np.arange(3.0))
+print(loops.outer.overloads[loops.outer.signatures[0]].library._shared_module)
+print("numba.typed.typeddict" in sys.modules)
+"""
+
+
+@pytest.mark.slow
+def test_reading_leaves_out_what_only_compiling_needs(tmp_path: Path) -> None:
+    assert _ended(_started(tmp_path, "outer"))[1] == [4.0]
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "kernels")}
+    command = [sys.executable, "-c", LOADED, str(tmp_path)]
+    said = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
+    assert said.stdout.split() == ["None", "False"]
 
 
 @pytest.mark.slow
