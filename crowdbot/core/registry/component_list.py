@@ -75,7 +75,7 @@ class ComponentsByKind(Mapping[str, Mapping[str, Component[Any]]]):
         if category not in self._found:
             if category not in self._categories:
                 raise KeyError(category)
-            found = {c.kind: c for plugin in self._plugins for c in _of(plugin, category)}
+            found = {c.kind: c for plugin in self._plugins for c in of_category(plugin, category)}
             self._found[category] = dict(sorted(found.items()))
         return self._found[category]
 
@@ -91,7 +91,8 @@ def known_components(listed: Sequence[Component[Any]]) -> Sequence[Component[Any
     return listed.known if isinstance(listed, ComponentList) else listed
 
 
-def _of(listed: Sequence[Component[Any]], category: str) -> Sequence[Component[Any]]:
+def of_category(listed: Sequence[Component[Any]], category: str) -> Sequence[Component[Any]]:
+    """Those of a plugin that belong to one category; no other is asked for."""
     if isinstance(listed, ComponentList):
         return listed.of(category)
     return [c for c in listed if c.category == category]

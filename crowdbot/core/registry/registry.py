@@ -18,7 +18,7 @@ from typing import Annotated, Any, TypeVar, Union
 from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
 from crowdbot.core.registry.build_reference import load_build
-from crowdbot.core.registry.component_list import ComponentsByKind, known_components
+from crowdbot.core.registry.component_list import ComponentsByKind, known_components, of_category
 from crowdbot.core.registry.entry_points import ALLOW, find_plugins
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
@@ -112,7 +112,12 @@ class Registry:
 
     def owner(self, component: Component[Any]) -> Plugin:
         """The plugin that provides a component."""
-        return next(p for p in self.plugins if any(c is component for c in p.components))
+        category = component.category
+        return next(
+            p
+            for p in self.plugins
+            if any(c is component for c in of_category(p.components, category))
+        )
 
     def plugin_call(
         self,

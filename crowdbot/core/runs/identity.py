@@ -121,7 +121,7 @@ def prepare(
 
     def trial(of: Scenario, people: Population) -> Trial:
         spec = content_hash(of, registry.spec_versions(of))
-        return Trial(scenario=of, people=people, spec=spec, realisation=people.agents.hash)
+        return Trial(scenario=of, people=people, spec=spec, realisation=people.hash)
 
     run = trial(scenario, populate(scenario, registry))
     if not references or scenario.crowd is None:  # without people a run is its own reference

@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cached_property
 from importlib import metadata
 from pathlib import Path
 from typing import Literal
@@ -35,12 +36,17 @@ from crowdbot.errors import InputError
 _NAME = re.compile(r"[A-Za-z0-9_.+-]+")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Population:
     """The agents of a scenario, and whether they were read from a lock."""
 
     agents: Realisation
     source: Literal["locked", "drawn", "none"]
+
+    @cached_property
+    def hash(self) -> str:
+        """Content hash of the agents, which scenarios and runs share; nobody changes them."""
+        return self.agents.hash
 
 
 def _check_draw(files: LockFiles, scenario: Scenario, origin: Scenario, name: str | None) -> None:

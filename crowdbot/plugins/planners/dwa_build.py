@@ -119,7 +119,7 @@ class Dwa:
 
     def _warm_up(self, task: Task, sensors: Mapping[str, SensorInfo]) -> None:
         """Two steps in a made-up world, so that no step of the run waits for a compiler."""
-        way_out(np.ones((1, 2)), 0.0, 0.0, 9.0, 0.0, self._half_width)
+        way_out(np.ones((1, 2)), 0.0, 0.0, 9.0, 0.0, 99.0)  # no way at all is soon found
         apart(np.ones((1, 2)), np.ones((1, 2)), _LEGS)
         compile_heading()
         for t in (0.0, self._spec.look_back):
