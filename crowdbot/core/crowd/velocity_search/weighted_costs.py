@@ -33,6 +33,7 @@ from crowdbot.core.crowd.velocity_search.cost import (
     WORK_COLUMNS,
     CompiledCost,
     NumpyCost,
+    work_rows,
 )
 from crowdbot.core.crowd.velocity_search.cost_calls import address_of
 from crowdbot.core.crowd.velocity_search.minstd import seeds
@@ -104,7 +105,7 @@ class WeightedCosts:
             [agents.preferred_speed, agents.max_speed, agents.max_acceleration, ones]
         )
         self.random = seeds(agents.id)
-        self._make_work(1)
+        self._make_work(work_rows(0))
         self._discs = self._table = np.zeros((0, DISC_COLUMNS))
 
     def _make_work(self, rows: int) -> None:
@@ -134,8 +135,8 @@ class WeightedCosts:
             view.agents.preferred_speed, view.present, view.robot, view.pillars, box,
             view.diagonal, reach, self._discs,
         )  # fmt: skip
-        if self.work.shape[1] < 1 + count + len(view.walls):
-            self._make_work(1 + room + len(view.walls))
+        if self.work.shape[1] < work_rows(count + len(view.walls)):
+            self._make_work(work_rows(room + len(view.walls)))
         height = strip_height(self._discs, count, reach)
         low, starts = sort_discs(self._discs, count, height, self._table)
         return Surroundings(
