@@ -119,7 +119,7 @@ def list_approaching(
         work[row, 0], work[row, 1] = near[j, RX], near[j, RY]
         work[row, 2], work[row, 3], work[row, 4] = vx, vy, gap2
         work[row, _EARLIEST] = earliest
-    row, fastest = discs, spread + math.hypot(ux, uy)
+    row = discs
     limit = params[RANGE] + surface * agent[RADIUS]
     for s in range(wall_count):
         d2 = walls[s, WALL_D2]
@@ -131,7 +131,7 @@ def list_approaching(
         row += 1
         work[row, 0], work[row, 1] = walls[s, AX], walls[s, AY]
         work[row, 2], work[row, 3] = walls[s, BX], walls[s, BY]
-        gap = math.sqrt(d2) - agent[RADIUS]
+        gap, fastest = math.sqrt(d2) - agent[RADIUS], spread + math.hypot(ux, uy)
         work[row, _EARLIEST] = _SAFE * gap / fastest if fastest > 0.0 else math.inf
     work[0, DISCS], work[0, SEGMENTS], work[0, TOUCHED] = discs, row - discs, touched
     return row

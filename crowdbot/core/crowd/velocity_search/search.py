@@ -25,15 +25,27 @@ from crowdbot.core.types.arrays import Array, Indices
 
 #: What rounding may make of a cost, as a fraction of it.
 _ROUNDING = 1e-9
+#: Processors compute so many candidates at once, and fewer than that one by one.
+_STEP = 8
+
+
+@inline_kernel
+def turned(frame: Array, x: float, y: float) -> tuple[float, float]:
+    """A velocity of the unit fan in the world frame (or in that of the given frame), m/s."""
+    return frame[0] + x * frame[2] - y * frame[3], frame[1] + x * frame[3] + y * frame[2]
 
 
 @inline_kernel
 def in_world(frame: Array, candidates: Array, c: int) -> tuple[float, float]:
-    """A candidate of the unit fan in the world frame (or in that of the given frame), m/s."""
-    return (
-        frame[0] + candidates[c, 0] * frame[2] - candidates[c, 1] * frame[3],
-        frame[1] + candidates[c, 0] * frame[3] + candidates[c, 1] * frame[2],
-    )
+    """Candidate number c of the unit fan, as `turned`."""
+    return turned(frame, candidates[c, 0], candidates[c, 1])
+
+
+@kernel
+def arrange(candidates: Array, index: Indices, x: Array, y: Array) -> None:
+    """Write candidates (S, 2) to ``x`` and ``y`` (S,), in the order of their numbers."""
+    for c in range(index.shape[0]):
+        x[c], y[c] = candidates[index[c], 0], candidates[index[c], 1]
 
 
 @kernel
@@ -65,7 +77,8 @@ def set_bounds(
 @kernel
 def search(
     frame: Array,
-    candidates: Array,
+    x: Array,
+    y: Array,
     bound: Array,
     index: Indices,
     is_sorted: bool,
@@ -73,37 +86,61 @@ def search(
     costs: AgentCosts,
     tried: Array,
 ) -> tuple[float, int]:
-    """Least cost, and the place of its candidate among the bounds; the first one of equals.
+    """Least cost, and the place of its candidate; the first one of equals.
 
     Args:
-        frame, candidates: (4,), (S, 2) see `in_world`.
-        bound, index: (S,) what each candidate costs at least, and its number.
+        frame: (4,) see `turned`.
+        x, y, bound, index: (S,) candidates of the unit fan, what each costs at least, and its
+            number.
         is_sorted: whether bounds rise.
         start: place of the candidate that is tried first.
         tried: (5, S) scratch.
     """
-    x, y = in_world(frame, candidates, index[start])
-    best = cost_within(x, y, bound[start], math.inf, costs)
+    ux, uy = turned(frame, x[start], y[start])
+    best = cost_within(ux, uy, bound[start], math.inf, costs)
     best_index, best_place = index[start], start
-    count = candidates.shape[0]
-    if is_sorted:
-        count = np.searchsorted(bound, best, side="right")
-    ux, uy, least, place = tried[0], tried[1], tried[2], tried[4]
-    left = 0
-    for c in range(count):
-        if bound[c] <= best and c != start:
-            ux[left], uy[left] = in_world(frame, candidates, index[c])
-            least[left], place[left] = bound[c], c
-            left += 1
+    left = _possible(frame, x, y, bound, is_sorted, best, tried)
     raise_bounds(left, tried, costs)
+    least, place = tried[2], tried[4]
     for at in range(left):
         c = int(place[at])
-        if bound[c] > best or least[at] > best + _ROUNDING * abs(best):
+        if bound[c] > best or least[at] > best + _ROUNDING * abs(best) or c == start:
             continue
-        cost = cost_within(ux[at], uy[at], bound[c], best, costs)
+        cost = cost_within(tried[0, at], tried[1, at], bound[c], best, costs)
         if cost < best or (cost == best and index[c] < best_index):
             best, best_index, best_place = cost, index[c], c
     return best, best_place
+
+
+@kernel
+def _possible(
+    frame: Array, x: Array, y: Array, bound: Array, is_sorted: bool, best: float, tried: Array
+) -> int:
+    """Write who may be as good as ``best`` to ``tried``; return how many.
+
+    Rows 0, 1, 2 and 4: velocity in the world frame, bound, place.
+    """
+    ux, uy, least, place = tried[0], tried[1], tried[2], tried[4]
+    if is_sorted:
+        left = int(np.searchsorted(bound, best, side="right"))
+        left = min((left + _STEP - 1) // _STEP * _STEP, bound.shape[0])
+        bx, by, fx, fy = frame[0], frame[1], frame[2], frame[3]
+        for c in range(left):  # one row at a time, so that it runs on several numbers at once
+            ux[c] = bx + x[c] * fx - y[c] * fy
+        for c in range(left):
+            uy[c] = by + x[c] * fy + y[c] * fx
+        for c in range(left):
+            least[c] = bound[c]
+        for c in range(left):
+            place[c] = c
+        return left
+    left = 0
+    for c in range(x.shape[0]):
+        if bound[c] <= best:
+            ux[left], uy[left] = turned(frame, x[c], y[c])
+            least[left], place[left] = bound[c], c
+            left += 1
+    return left
 
 
 @kernel

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from crowdbot.core.crowd.contact.geometry import is_clearly_shorter
 from crowdbot.core.crowd.velocity_search.cost import (
     ASKED_RADIUS,
     ASKED_X,
@@ -108,6 +109,8 @@ def describe(around: Surroundings, b: int) -> int:
     agent[MAX_ACCELERATION] = traits[i, T_MAX_ACCELERATION]
     agent[PARITY], agent[RANDOM] = settings[S_PARITY], around.random[i]
     agent[DESCENDS] = 0.0
-    agent[FASTEST] = max(agent[MAX_SPEED], math.hypot(agent[VX], agent[VY]))
+    agent[FASTEST] = agent[MAX_SPEED]
+    if not is_clearly_shorter(agent[VX], agent[VY], agent[MAX_SPEED]):
+        agent[FASTEST] = max(agent[MAX_SPEED], math.hypot(agent[VX], agent[VY]))
     agent[ASKED_X], agent[ASKED_Y], agent[ASKED_RADIUS] = 0.0, 0.0, agent[FASTEST]
     return i
