@@ -96,7 +96,7 @@ class Sampler:
             return self._choose_slowly(view)
         around = costs.surroundings(view)
         self._tabulate(around.settings[S_DT], view)
-        chosen = np.zeros_like(view.position)
+        chosen = np.zeros((len(view.position), 2))
         _choose(
             *around, costs.functions, costs.weights, *self._options, costs.ordered,
             self._candidates, self._polar, self._tabulated, self._ranked, self._index, self._first,
