@@ -74,7 +74,7 @@ def set_bounds(
     return least
 
 
-@kernel
+@inline_kernel
 def search(
     frame: Array,
     x: Array,
@@ -112,7 +112,7 @@ def search(
     return best, best_place
 
 
-@kernel
+@inline_kernel
 def _possible(
     frame: Array, x: Array, y: Array, bound: Array, is_sorted: bool, best: float, tried: Array
 ) -> int:
@@ -143,7 +143,7 @@ def _possible(
     return left
 
 
-@kernel
+@inline_kernel
 def cost_within(ux: float, uy: float, base: float, best: float, costs: AgentCosts) -> float:
     """Cost of a candidate in the world frame, or anything above ``best`` if it exceeds it."""
     # A function that stops just above its budget must not be rounded to a tie with the best.
@@ -161,7 +161,7 @@ def cost_within(ux: float, uy: float, base: float, best: float, costs: AgentCost
     return cost
 
 
-@kernel
+@inline_kernel
 def raise_bounds(count: int, tried: Array, costs: AgentCosts) -> None:
     """Add to row 2 of ``tried`` what the functions know about the candidates in rows 0 and 1."""
     ux, uy, least, out = tried[0], tried[1], tried[2], tried[3]

@@ -49,7 +49,7 @@ from crowdbot.core.crowd.velocity_search.neighbours import (
 )
 from crowdbot.core.crowd.velocity_search.neighbours import VX as DISC_VX
 from crowdbot.core.crowd.velocity_search.neighbours import VY as DISC_VY
-from crowdbot.core.support.compile import array_kernel, kernel
+from crowdbot.core.support.compile import array_kernel, inline_kernel
 from crowdbot.core.types.arrays import Array, Mask
 
 # Columns of `Surroundings.traits`; entries of `Surroundings.settings`.
@@ -115,7 +115,7 @@ def sort_surroundings(
     return count, height, low, starts
 
 
-@kernel
+@inline_kernel
 def describe(around: Surroundings, b: int) -> int:
     """Write the ``agent`` vector of whoever is in row b of the table; return the agent's number.
 
