@@ -89,11 +89,11 @@ def list_approaching(
             disc, m/s.
     """
     near, walls, work = near_table(near), wall_table(walls), work_table(work)
-    surface, touched, discs = params[FROM_SURFACE], 0, 0
+    range_, surface, touched, discs = params[RANGE], params[FROM_SURFACE], 0, 0
     most = horizon if agent[PARITY] == 0.0 else math.inf
     for j in range(near_count):
         d2, reach = near[j, D2], near[j, REACH]
-        limit = params[RANGE] + surface * reach
+        limit = range_ + surface * reach
         if d2 >= limit * limit:
             continue
         gap2 = d2 - reach * reach
@@ -120,7 +120,7 @@ def list_approaching(
         work[row, 2], work[row, 3], work[row, 4] = vx, vy, gap2
         work[row, _EARLIEST] = earliest
     row = discs
-    limit = params[RANGE] + surface * agent[RADIUS]
+    limit = range_ + surface * agent[RADIUS]
     for s in range(wall_count):
         d2 = walls[s, WALL_D2]
         if d2 > limit * limit:

@@ -47,9 +47,9 @@ from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
     WEIGHT,
 )
 
-# Columns after the table: distance, gap, how fast it closes at most, weight, and row in ``near`` or
-# after these in ``walls``; then the weights of those who change a sum, and where they are listed.
-_DISTANCE, _GAP, _CLOSING, _WEIGHT, _ROW, _KEPT, _LISTED = range(7)
+# Columns after the table: distance, later what makes q of d; gap; how fast it closes at most, later
+# whether that changes a sum; row in ``near``, or after these in ``walls``; weight.
+_DISTANCE, _GAP, _CLOSING, _ROW, _WEIGHT = range(5)
 #: Columns are computed in steps of so many entries: no processor has wider registers.
 _STEP = 8
 
@@ -60,13 +60,12 @@ def _whole_steps(count: int) -> int:
 
 
 @array_kernel
-def _columns(room: int) -> tuple[int, int, int, int, int, int, int]:
+def _columns(room: int) -> tuple[int, int, int, int, int]:
     """Where the columns begin in ``work``."""
     first, length = WORK_COLUMNS * (1 + room), _whole_steps(room)
     return (
         first + _DISTANCE * length, first + _GAP * length, first + _CLOSING * length,
-        first + _WEIGHT * length, first + _ROW * length, first + _KEPT * length,
-        first + _LISTED * length,
+        first + _ROW * length, first + _WEIGHT * length,
     )  # fmt: skip
 
 
@@ -93,7 +92,7 @@ def _list(
     often be guessed wrong.
     """
     near, walls = near_table(near), wall_table(walls)
-    distance, gap, closing, _, row, _, _ = _columns(near_count + wall_count)
+    distance, gap, closing, row, _ = _columns(near_count + wall_count)
     vx, vy, parity = agent[VX], agent[VY], agent[PARITY] != 0.0
     reach, surface, count = params[RANGE], params[FROM_SURFACE], 0
     for j in range(near_count):
@@ -115,10 +114,12 @@ def _list(
 
 
 @array_kernel
-def _weigh(count: int, room: int, fastest: float, work: Pointer) -> None:
-    """Distances, gaps, weights, and how fast gaps close at most, of all who are listed."""
-    distance, gap, closing, weight, _, _, _ = _columns(room)
-    whole = _whole_steps(count)
+def _weigh(
+    count: int, room: int, fastest: float, everybody: bool, params: Pointer, work: Pointer
+) -> None:
+    """All that columns say of those who are listed."""
+    distance, gap, closing, _, weight = _columns(room)
+    a, b, whole = params[INV_TTCA2], params[INV_DCA2], _whole_steps(count)
     for i in range(whole):
         work[distance + i] = max(math.sqrt(work[distance + i]), CLOSEST)
     for i in range(whole):
@@ -127,30 +128,35 @@ def _weigh(count: int, room: int, fastest: float, work: Pointer) -> None:
         work[weight + i] = 1.0 / max(work[gap + i] * work[gap + i], CLOSEST * CLOSEST)
     for i in range(whole):
         work[closing + i] = fastest + max(0.0, -work[closing + i] / work[distance + i])
+    for i in range(whole):
+        g, v = work[gap + i], work[closing + i]
+        # The exponent is at least this for every candidate.
+        nothing = (g > 0.0) & (g * g * a * b >= NEGLIGIBLE * (a + b * v * v))
+        work[closing + i] = 1.0 if everybody | (not nothing) else 0.0
+    for i in range(whole):
+        work[distance + i] = work[gap + i] / work[distance + i]
 
 
 @array_kernel
-def _select(count: int, room: int, everybody: bool, params: Pointer, work: Pointer) -> int:
-    """Note in row 0 what all weigh together, and who changes a sum; return how many do."""
-    _, gap, closing, weight, _, key, listed = _columns(room)
-    a, b, total, kept = params[INV_TTCA2], params[INV_DCA2], 0.0, 0
+def _select(count: int, room: int, work: Pointer) -> int:
+    """Note in row 0 what all weigh together; leave out who changes no sum; return how many stay."""
+    shrink, _, counts, row, weight = _columns(room)
+    total, kept = 0.0, 0
     for i in range(count):
-        g, v = work[gap + i], work[closing + i]
         total += work[weight + i]
-        work[key + kept], work[listed + kept] = work[weight + i], i
-        # The exponent is at least this for every candidate.
-        nothing = (g > 0.0) & (g * g * a * b >= NEGLIGIBLE * (a + b * v * v))
-        kept += int(everybody | (not nothing))
+        work[weight + kept] = work[weight + i]
+        work[shrink + kept], work[row + kept] = work[shrink + i], work[row + i]
+        kept += int(work[counts + i])
     work[0], work[TOTAL] = kept, total
     return kept
 
 
 @array_kernel
-def _place(i: int, kept: int, key: int, work: Pointer) -> int:
+def _place(i: int, kept: int, weight: int, work: Pointer) -> int:
     """How many of those kept are heavier than number i, or as heavy and before it."""
-    weight, place = work[key + i], 0
+    own, place = work[weight + i], 0
     for j in range(_whole_steps(kept)):
-        place += int((work[key + j] > weight) | ((work[key + j] == weight) & (j < i)))
+        place += int((work[weight + j] > own) | ((work[weight + j] == own) & (j < i)))
     return place
 
 
@@ -159,21 +165,20 @@ def _write(
     kept: int, sort: bool, near: Pointer, near_count: int, walls: Pointer, room: int, work: Pointer
 ) -> None:
     """Write the table."""
-    distance, gap, _, _, row, key, listed = _columns(room)
+    shrink, _, _, row, weight = _columns(room)
     near, walls, table = near_table(near), wall_table(walls), work_table(work)
-    for i in range(kept, _whole_steps(kept)):
-        work[key + i] = -1.0  # heavier than nobody
+    for i in range(_STEP):
+        work[weight + kept + i] = -1.0  # heavier than nobody
     for i in range(kept):
-        number = int(work[listed + i])
-        j, shrink = int(work[row + number]), work[gap + number] / work[distance + number]
+        j = int(work[row + i])
         if j < near_count:
             rx, ry, vx, vy = near[j, RX], near[j, RY], near[j, NVX], near[j, NVY]
         else:
             rx, ry, vx, vy = walls[j - near_count, NX], walls[j - near_count, NY], 0.0, 0.0
-        k = 1 + (_place(i, kept, key, work) if sort else i)
+        k = 1 + (_place(i, kept, weight, work) if sort else i)
         table[k, 0], table[k, 1] = rx, ry
-        table[k, 2], table[k, 3] = rx * shrink, ry * shrink
-        table[k, 4], table[k, 5], table[k, WEIGHT] = vx, vy, work[key + i]
+        table[k, 2], table[k, 3] = rx * work[shrink + i], ry * work[shrink + i]
+        table[k, 4], table[k, 5], table[k, WEIGHT] = vx, vy, work[weight + i]
 
 
 @njit(PREPARE, cache=True, error_model="numpy")
@@ -189,8 +194,8 @@ def prepare(
     """Row 0: number of neighbours, sum(k). Then d, q, v_j, k, heaviest first."""
     room, descends = near_count + wall_count, agent[DESCENDS] != 0.0
     count = _list(agent, near, near_count, walls, wall_count, params, work)
-    _weigh(count, room, agent[FASTEST], work)
-    kept = _select(count, room, descends, params, work)
+    _weigh(count, room, agent[FASTEST], descends, params, work)
+    kept = _select(count, room, work)
     _write(kept, not descends, near, near_count, walls, room, work)
     return kept
 
