@@ -25,7 +25,7 @@ from crowdbot.core.types.arrays import Array, Indices
 
 #: What rounding may make of a cost, as a fraction of it.
 _ROUNDING = 1e-9
-#: Processors compute so many candidates at once, and fewer than that one by one.
+#: Processors compute up to so many candidates at once, and what is left over one by one.
 _STEP = 8
 
 
@@ -100,7 +100,7 @@ def search(
     best = cost_within(ux, uy, bound[start], math.inf, costs)
     best_index, best_place = index[start], start
     left = _possible(frame, x, y, bound, is_sorted, best, tried)
-    raise_bounds(left, tried, costs)
+    left = _rule_out(left, best, tried, costs)
     least, place = tried[2], tried[4]
     for at in range(left):
         c = int(place[at])
@@ -110,6 +110,12 @@ def search(
         if cost < best or (cost == best and index[c] < best_index):
             best, best_index, best_place = cost, index[c], c
     return best, best_place
+
+
+@kernel
+def _whole_steps(count: int, most: int) -> int:
+    """As many candidates, rounded up to what is computed at once; the last ones are any."""
+    return min((count + _STEP - 1) // _STEP * _STEP, most)
 
 
 @inline_kernel
@@ -123,15 +129,15 @@ def _possible(
     ux, uy, least, place = tried[0], tried[1], tried[2], tried[4]
     if is_sorted:
         left = int(np.searchsorted(bound, best, side="right"))
-        left = min((left + _STEP - 1) // _STEP * _STEP, bound.shape[0])
+        whole = _whole_steps(left, bound.shape[0])
         bx, by, fx, fy = frame[0], frame[1], frame[2], frame[3]
-        for c in range(left):  # one row at a time, so that it runs on several numbers at once
+        for c in range(whole):  # one row at a time, so that it runs on several numbers at once
             ux[c] = bx + x[c] * fx - y[c] * fy
-        for c in range(left):
+        for c in range(whole):
             uy[c] = by + x[c] * fy + y[c] * fx
-        for c in range(left):
+        for c in range(whole):
             least[c] = bound[c]
-        for c in range(left):
+        for c in range(whole):
             place[c] = c
         return left
     left = 0
@@ -162,20 +168,29 @@ def cost_within(ux: float, uy: float, base: float, best: float, costs: AgentCost
 
 
 @inline_kernel
-def raise_bounds(count: int, tried: Array, costs: AgentCosts) -> None:
-    """Add to row 2 of ``tried`` what the functions know about the candidates in rows 0 and 1."""
-    ux, uy, least, out = tried[0], tried[1], tried[2], tried[3]
-    functions = costs.functions
-    for term in range(costs.active.shape[0]):
+def _rule_out(count: int, best: float, tried: Array, costs: AgentCosts) -> int:
+    """Leave out who is above ``best`` by what the functions know; return how many stay.
+
+    The widest function is asked first: it has most neighbours, and rules out most.
+    """
+    ux, uy, least, out, place = tried[0], tried[1], tried[2], tried[3], tried[4]
+    functions, most = costs.functions, best + _ROUNDING * abs(best)
+    for term in range(costs.active.shape[0] - 1, -1, -1):
         k = costs.active[term]
-        if functions[k, LOWER_BOUNDS] != 0:
-            call_lower_bound(
-                functions[k, LOWER_BOUNDS], count, ux.ctypes.data, uy.ctypes.data,
-                costs.agent.ctypes.data, functions[k, WORK], functions[k, PARAMS],
-                out.ctypes.data,
-            )  # fmt: skip
-            for c in range(count):
-                least[c] += costs.weights[k] * out[c]
+        if functions[k, LOWER_BOUNDS] == 0:
+            continue
+        call_lower_bound(
+            functions[k, LOWER_BOUNDS], _whole_steps(count, ux.shape[0]), ux.ctypes.data,
+            uy.ctypes.data, costs.agent.ctypes.data, functions[k, WORK], functions[k, PARAMS],
+            out.ctypes.data,
+        )  # fmt: skip
+        stay = 0
+        for c in range(count):  # whoever goes is overwritten by the next
+            bound = least[c] + costs.weights[k] * out[c]
+            ux[stay], uy[stay], least[stay], place[stay] = ux[c], uy[c], bound, place[c]
+            stay += int(not bound > most)
+        count = stay
+    return count
 
 
 @kernel
