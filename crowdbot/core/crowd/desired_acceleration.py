@@ -49,12 +49,14 @@ def desired_acceleration(policy: CrowdPolicy, view: CrowdView) -> Array:
         PluginError: the policy raised, its answer has a wrong shape, or is not finite for one who
             decides.
     """
-    call = _call(policy)
+    call, accelerates = _call(policy), True
     with call("decision", view.t):
-        ask = getattr(policy, "accelerations", None)
-        answer = plain_numbers(policy.velocities(view, view.dt) if ask is None else ask(view))
+        if hasattr(policy, "accelerations"):
+            answer = plain_numbers(policy.accelerations(view))
+        else:
+            answer, accelerates = plain_numbers(policy.velocities(view, view.dt)), False
     _check(answer, view, call)
-    if ask is not None:
+    if accelerates:
         return answer
     acceleration = (answer - view.velocity) / view.dt
     norm = np.hypot(acceleration[:, 0], acceleration[:, 1])

@@ -71,7 +71,8 @@ class Surroundings(NamedTuple):
         traits: (N, 4) preferred speed, largest speed and acceleration, weight; see ``T_...``.
         settings: (3,) time between decisions and relaxation time (s), 1 for parity; ``S_...``.
         random: (N,) states of the agents' random numbers, changed in place.
-        near, found: (>= B, `NEAR_COLUMNS`), (>= S, `WALL_COLUMNS`) scratch for one agent's neighbours.
+        near, found: (>= B, `NEAR_COLUMNS`), (>= S, `WALL_COLUMNS`) scratch for one agent's
+            neighbours.
         agent: (`AGENT_SIZE`,) scratch: the agent that is decided for.
     """
 
