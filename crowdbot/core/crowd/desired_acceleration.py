@@ -49,11 +49,15 @@ def desired_acceleration(policy: CrowdPolicy, view: CrowdView) -> Array:
         PluginError: the policy raised, its answer has a wrong shape, or is not finite for one who
             decides.
     """
-    call = _call(policy)
+    call, accelerates = _call(policy), True
     with call("decision", view.t):
         if hasattr(policy, "accelerations"):
-            return _checked(policy.accelerations(view), view, call)
-        answer = _checked(policy.velocities(view, view.dt), view, call)
+            answer = plain_numbers(policy.accelerations(view))
+        else:
+            answer, accelerates = plain_numbers(policy.velocities(view, view.dt)), False
+    _check(answer, view, call)
+    if accelerates:
+        return answer
     acceleration = (answer - view.velocity) / view.dt
     norm = np.hypot(acceleration[:, 0], acceleration[:, 1])
     limit = view.agents.max_acceleration
@@ -97,19 +101,15 @@ def _call(policy: CrowdPolicy) -> PluginCall:
 _MOST = 1e9
 
 
-def _checked(asked: object, view: CrowdView, call: PluginCall) -> Array:
-    with call("decision", view.t):
-        answer = plain_numbers(asked)
+def _check(answer: Array, view: CrowdView, call: PluginCall) -> None:
     if answer.shape != view.position.shape:
         call.fail(f"returned shape {answer.shape} instead of {view.position.shape}")
-    finite = np.abs(answer) < _MOST  # not of NaN
-    if finite.all():
-        return answer
-    finite = np.all(finite, axis=1)
+    if np.vdot(answer, answer) < _MOST**2:  # neither if one is NaN
+        return
+    finite = np.all(np.abs(answer) < _MOST, axis=1)
     decides = view.present if view.decides is None else view.decides
     if not np.all(finite[decides]):
         row = int(np.flatnonzero(decides & ~finite)[0])
         call.fail(
             f"returned {answer[row].tolist()} for agent {view.agents.id[row]} at t = {view.t:g} s"
         )
-    return answer

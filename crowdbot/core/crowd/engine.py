@@ -35,6 +35,7 @@ from crowdbot.core.types.arrays import Array
 PolicyFactory = Callable[[Agents], CrowdPolicy]
 
 NOBODY, DISCS = np.zeros((0, 8)), np.zeros((0, 0, 2))
+_NOT_SHOWN = np.zeros((0, 5))
 NO_BOOKS, NO_STIFFNESSES = np.zeros((0, 0)), np.zeros(0)
 _SEEN = np.array([0, 1, 2, 3, 5])  # columns of a robot that policies know
 _MOTION = np.isin(np.arange(8), [RVX, RVY, R_W])  # those that say how it moves
@@ -42,17 +43,16 @@ _MOTION = np.isin(np.arange(8), [RVX, RVY, R_W])  # those that say how it moves
 
 @dataclass(frozen=True, slots=True)
 class _Group:
-    """Agents who follow one policy and see the same."""
+    """Agents who follow one policy and see the same.
+
+    Attributes:
+        foreign: whether the policy is not crowdbot's own, which writes to nothing that it is given.
+    """
 
     policy: CrowdPolicy
     members: NDArray[np.bool_]
     sees_robot: bool
-
-    @property
-    def foreign(self) -> bool:
-        """Whether the policy is not crowdbot's own, which writes to nothing that it is given."""
-        policy = getattr(self.policy, "_policy", self.policy)  # without its checks
-        return not type(policy).__module__.startswith("crowdbot.")
+    foreign: bool
 
 
 class CrowdEngine:
@@ -257,21 +257,20 @@ class CrowdEngine:
         _, rows = s.view(flat)
         if not self.world.robot_visible:
             robots = np.where(_MOTION, 0.0, robots)
-        seen = robots[:, _SEEN]
-        nobody = seen[:0]
         if self._router is not None:
             number = int(flat[s.TICK]) // self._ticks_per_decision
             self._router.find(rows, self._ticks_per_decision * TICK, number)
         for group in self._groups if len(robots) else self._groups_alone:
-            view = self._view(flat, rows, group.members, seen if group.sees_robot else nobody)
-            decides = np.asarray(view.decides)[:, np.newaxis]
+            shown = robots[:, _SEEN] if group.sees_robot and len(robots) else _NOT_SHOWN
+            view = self._view(flat, rows, group.members, shown)
+            decides: Any = view.decides
             if group.foreign:
                 view = immutable_fields(replace(view, **self._kept))
             wanted = desired_acceleration(group.policy, view)
             if self._steering:
                 relaxation = relaxation_time_of(group.policy)
                 wanted = steer(self._steering, view, relaxation, wanted)
-            np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides)
+            np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides[:, np.newaxis])
         if self._router is not None:
             squeeze(rows, self.agents.max_acceleration)
         if self._cohesion is not None and len(self._members):
@@ -297,9 +296,9 @@ class CrowdEngine:
         present = rows[:, s.WAITING] == s.PRESENT
         return CrowdView(
             agents=self.agents,
-            position=np.ascontiguousarray(rows[:, s.X : s.Y + 1]),
-            velocity=np.ascontiguousarray(rows[:, s.VX : s.VY + 1]),
-            goal=np.ascontiguousarray(rows[:, self.aim : self.aim + 2]),
+            position=rows[:, s.X : s.Y + 1].copy(),
+            velocity=rows[:, s.VX : s.VY + 1].copy(),
+            goal=rows[:, self.aim : self.aim + 2].copy(),
             present=present,
             robot=robots,
             walls=self.world.walls,
@@ -347,5 +346,10 @@ def _groups(
         for sees in (True, False):
             members = (agents.policy == number) & (sees_robot == sees)
             if np.any(members):
-                found.append(_Group(policy, members, sees))
+                found.append(_Group(policy, members, sees, _is_foreign(policy)))
     return found
+
+
+def _is_foreign(policy: CrowdPolicy) -> bool:
+    without_checks = getattr(policy, "_policy", policy)
+    return not type(without_checks).__module__.startswith("crowdbot.")

@@ -17,7 +17,7 @@ from crowdbot.core.crowd.compile_ahead import compile_ahead
 from numba.core.registry import CPUDispatcher
 
 DEAR = {"step.ticks_without_robots", "step.tick", "velocity_search.sampling._choose",
-        "velocity_search.neighbour_discs.write_discs", "velocity_search.neighbours.sort_discs",
+        "velocity_search.surroundings.sort_surroundings",
         "response.evasion.evade_robots"}
 
 def compiled():

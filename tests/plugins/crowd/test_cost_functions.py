@@ -97,7 +97,7 @@ class Probe:
         )
         self.scene = (_agent(s, seed), _near(s), _walls(s))
         self.counts = np.array([len(s.others), len(s.walls)])
-        rows = 1 + len(s.others) + len(s.walls)
+        rows = c.work_rows(len(s.others) + len(s.walls))
         self.work = np.full((rows + 1, c.WORK_COLUMNS), np.nan)  # nothing may rely on zeros
 
     def __call__(self, u: complex, budget: float = math.inf) -> float:

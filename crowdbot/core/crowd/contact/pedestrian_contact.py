@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.state import PUSH_X, PUSH_Y, WAITING, X, Y
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array
 
 # Columns of `push_apart`'s scratch: those present in a row along x, close together in memory.
@@ -117,7 +117,7 @@ def _push_pair(placed: Array, a: int, b: int, reach: float) -> None:
     placed[b, _PY] -= placed[b, _STIFFNESS] * py
 
 
-@kernel
+@inline_kernel
 def _push_by_walls(placed: Array, a: int, walls: Array) -> None:
     x, y, radius = placed[a, _X], placed[a, _Y], placed[a, _RADIUS]
     clear = radius + _CLEAR

@@ -12,7 +12,7 @@ from crowdbot.core.crowd.velocity_search.cost import MAX_SPEED, PREFERRED, PVX, 
 from crowdbot.core.crowd.velocity_search.cost_calls import call_base, call_excess, call_prepare
 from crowdbot.core.crowd.velocity_search.neighbours import gather, gather_walls
 from crowdbot.core.crowd.velocity_search.surroundings import Surroundings
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: Table (K, 8) of addresses: a row for each cost function, columns as below.
@@ -39,7 +39,7 @@ class AgentCosts(NamedTuple):
     active: Indices
 
 
-@kernel
+@inline_kernel
 def prepare(
     around: Surroundings, b: int, functions: Functions, weights: Array, active: Indices
 ) -> int:

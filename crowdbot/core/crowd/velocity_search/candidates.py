@@ -146,7 +146,7 @@ def frame_of(agent: Array, options: FanOptions, frame: Array) -> float:
     ex, ey = direction_of(agent, options.direction)
     frame[0], frame[1] = (agent[VX], agent[VY]) if options.base == CURRENT else (0.0, 0.0)
     frame[2], frame[3] = scale * ex, scale * ey
-    fastest = scale + math.hypot(frame[0], frame[1])
+    fastest = scale if options.base == ZERO else scale + math.hypot(frame[0], frame[1])
     agent[FASTEST] = (1.0 + 1e-9) * fastest
     agent[ASKED_X], agent[ASKED_Y] = frame[0], frame[1]
     # Under parity candidates are rounded to single precision.

@@ -89,11 +89,11 @@ def list_approaching(
             disc, m/s.
     """
     near, walls, work = near_table(near), wall_table(walls), work_table(work)
-    surface, touched, discs = params[FROM_SURFACE], 0, 0
+    range_, surface, touched, discs = params[RANGE], params[FROM_SURFACE], 0, 0
     most = horizon if agent[PARITY] == 0.0 else math.inf
     for j in range(near_count):
         d2, reach = near[j, D2], near[j, REACH]
-        limit = params[RANGE] + surface * reach
+        limit = range_ + surface * reach
         if d2 >= limit * limit:
             continue
         gap2 = d2 - reach * reach
@@ -119,8 +119,8 @@ def list_approaching(
         work[row, 0], work[row, 1] = near[j, RX], near[j, RY]
         work[row, 2], work[row, 3], work[row, 4] = vx, vy, gap2
         work[row, _EARLIEST] = earliest
-    row, fastest = discs, spread + math.hypot(ux, uy)
-    limit = params[RANGE] + surface * agent[RADIUS]
+    row = discs
+    limit = range_ + surface * agent[RADIUS]
     for s in range(wall_count):
         d2 = walls[s, WALL_D2]
         if d2 > limit * limit:
@@ -131,7 +131,7 @@ def list_approaching(
         row += 1
         work[row, 0], work[row, 1] = walls[s, AX], walls[s, AY]
         work[row, 2], work[row, 3] = walls[s, BX], walls[s, BY]
-        gap = math.sqrt(d2) - agent[RADIUS]
+        gap, fastest = math.sqrt(d2) - agent[RADIUS], spread + math.hypot(ux, uy)
         work[row, _EARLIEST] = _SAFE * gap / fastest if fastest > 0.0 else math.inf
     work[0, DISCS], work[0, SEGMENTS], work[0, TOUCHED] = discs, row - discs, touched
     return row

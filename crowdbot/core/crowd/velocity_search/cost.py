@@ -84,8 +84,13 @@ AX, AY, BX, BY, NX, NY, WALL_D2 = range(7)
 WALL_COLUMNS = 7
 # First two entries of every ``params`` vector.
 RANGE, FROM_SURFACE = range(2)
-#: Columns of ``work``; it has one row for each neighbour and wall, and the header.
+#: Columns of ``work``.
 WORK_COLUMNS = 8
+
+
+def work_rows(others: int) -> int:
+    """Rows of ``work`` for so many neighbours and walls: the header, two for each, 8 to spare."""
+    return 1 + 2 * others + 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -25,7 +25,7 @@ from crowdbot.core.crowd.velocity_search.cost import (
     STATIC,
     WALL_D2,
 )
-from crowdbot.core.support.compile import array_kernel, kernel
+from crowdbot.core.support.compile import array_kernel, inline_kernel, kernel
 from crowdbot.core.support.stable_order import stable_order
 from crowdbot.core.types.arrays import Array
 
@@ -90,7 +90,7 @@ def sort_discs(discs: Array, count: int, height: float, table: Array) -> tuple[f
     return low, starts
 
 
-@kernel
+@inline_kernel
 def gather(
     table: Array, starts: Starts, low: float, height: float, me: int, distance: float, near: Array
 ) -> int:
@@ -131,7 +131,7 @@ def gather(
     return count
 
 
-@kernel
+@inline_kernel
 def gather_walls(walls: Array, px: float, py: float, distance: float, found: Array) -> int:
     """Write the segments not farther than ``distance`` to ``found``; return how many.
 

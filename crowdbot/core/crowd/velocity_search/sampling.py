@@ -43,6 +43,7 @@ from crowdbot.core.crowd.velocity_search.cost import (
 from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
 from crowdbot.core.crowd.velocity_search.neighbours import Starts
 from crowdbot.core.crowd.velocity_search.search import (
+    arrange,
     in_world,
     least_forbidden,
     search,
@@ -76,8 +77,9 @@ class Sampler:
         # Whether bounds are the same at each decision.
         self._tabulated = not s.random and s.base == ZERO and s.direction == ALONG_PREFERRED
         self._table_dt = math.nan
-        # Bounds and their candidates: a row for each agent, or one that each fills anew.
-        self._bound = np.zeros((1, len(self._candidates)))
+        # For each agent, or for one that is filled anew for each: bounds, and x and y of their
+        # candidates; the numbers of these.
+        self._ranked = np.zeros((1, 3, len(self._candidates)))
         self._index = np.arange(len(self._candidates))[np.newaxis]
         # Where each search begins: the previous choice is a good bound, and changes no choice.
         self._first = np.zeros(len(costs.agents), np.int64)
@@ -94,10 +96,10 @@ class Sampler:
             return self._choose_slowly(view)
         around = costs.surroundings(view)
         self._tabulate(around.settings[S_DT], view)
-        chosen = np.zeros_like(view.position)
+        chosen = np.zeros((len(view.position), 2))
         _choose(
             *around, costs.functions, costs.weights, *self._options, costs.ordered,
-            self._candidates, self._polar, self._tabulated, self._bound, self._index, self._first,
+            self._candidates, self._polar, self._tabulated, self._ranked, self._index, self._first,
             self._frame, self._world, costs.active, self._tried, chosen,
         )  # fmt: skip
         check_numbers(costs, view, around)
@@ -137,7 +139,8 @@ class Sampler:
         if np.any(np.isnan(total)):
             report_broken(costs, view, "a base")
         self._index = np.argsort(total, axis=1, kind="stable")
-        self._bound = np.take_along_axis(total, self._index, axis=1)
+        bound, (x, y) = np.take_along_axis(total, self._index, axis=1), self._candidates.T
+        self._ranked = np.stack([bound, x[self._index], y[self._index]], axis=1)
         self._table_dt = dt
 
 
@@ -175,7 +178,7 @@ def _choose(
     agent: Array,
     functions: Functions, weights: Array,
     base: int, direction: int, radius: int, half: float, drawn: bool,
-    ordered: bool, candidates: Array, regular: Array, tabulated: bool, bounds: Array,
+    ordered: bool, candidates: Array, regular: Array, tabulated: bool, ranked: Array,
     indices: Indices, first: Indices, frame: Array, world: Array, active: Indices, tried: Array,
     chosen: Array,
 ) -> None:  # fmt: skip
@@ -187,8 +190,9 @@ def _choose(
         base to drawn: fields of `FanOptions`.
         ordered: whether each function is called for all candidates, in their order.
         candidates, regular: (S, 2) of the unit fan; in single precision, see `single`.
-        tabulated: whether ``bounds`` are sorted, a row for each agent; else they are scratch.
-        bounds, indices: (N or 1, S) what candidates cost at least, and their numbers.
+        tabulated: whether ``ranked`` holds all agents' sorted candidates; else it is scratch.
+        ranked: (N or 1, 3, S) what candidates cost at least, and their x and y.
+        indices: (N or 1, S) numbers of these candidates.
         first: (N,) place in ``indices`` where each agent's search begins.
         frame, world, active, tried: (4,), (S, 2), (K,), (5, S) scratch.
         chosen: (N, 2) result, m/s.
@@ -213,13 +217,17 @@ def _choose(
             unit, to_draw = world, False
         if ordered:
             best, place = try_in_order(frame, unit, to_draw, half, scale, costs)
-        elif tabulated:
-            best, place = search(frame, unit, bounds[i], indices[i], True, first[i], costs, tried)
         else:
+            row = i if tabulated else 0
+            bound, x, y, index = ranked[row, 0], ranked[row, 1], ranked[row, 2], indices[row]
             if to_draw:
                 draw_candidates(agent, half, scale, unit)
-            start = set_bounds(frame, unit, agent, functions, weights, bounds[0])
-            best, place = search(frame, unit, bounds[0], indices[0], False, start, costs, tried)
+            if not tabulated or settings[S_PARITY] != 0.0:
+                arrange(unit, index, x, y)
+            start = first[i]
+            if not tabulated:
+                start = set_bounds(frame, unit, agent, functions, weights, bound)
+            best, place = search(frame, x, y, bound, index, tabulated, start, costs, tried)
         random[i] = agent[RANDOM]
         if best == math.inf:
             if agent[PARITY] == 0.0:

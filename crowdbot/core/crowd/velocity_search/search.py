@@ -25,15 +25,27 @@ from crowdbot.core.types.arrays import Array, Indices
 
 #: What rounding may make of a cost, as a fraction of it.
 _ROUNDING = 1e-9
+#: Processors compute up to so many candidates at once, and what is left over one by one.
+_STEP = 8
+
+
+@inline_kernel
+def turned(frame: Array, x: float, y: float) -> tuple[float, float]:
+    """A velocity of the unit fan in the world frame (or in that of the given frame), m/s."""
+    return frame[0] + x * frame[2] - y * frame[3], frame[1] + x * frame[3] + y * frame[2]
 
 
 @inline_kernel
 def in_world(frame: Array, candidates: Array, c: int) -> tuple[float, float]:
-    """A candidate of the unit fan in the world frame (or in that of the given frame), m/s."""
-    return (
-        frame[0] + candidates[c, 0] * frame[2] - candidates[c, 1] * frame[3],
-        frame[1] + candidates[c, 0] * frame[3] + candidates[c, 1] * frame[2],
-    )
+    """Candidate number c of the unit fan, as `turned`."""
+    return turned(frame, candidates[c, 0], candidates[c, 1])
+
+
+@kernel
+def arrange(candidates: Array, index: Indices, x: Array, y: Array) -> None:
+    """Write candidates (S, 2) to ``x`` and ``y`` (S,), in the order of their numbers."""
+    for c in range(index.shape[0]):
+        x[c], y[c] = candidates[index[c], 0], candidates[index[c], 1]
 
 
 @kernel
@@ -62,10 +74,11 @@ def set_bounds(
     return least
 
 
-@kernel
+@inline_kernel
 def search(
     frame: Array,
-    candidates: Array,
+    x: Array,
+    y: Array,
     bound: Array,
     index: Indices,
     is_sorted: bool,
@@ -73,40 +86,70 @@ def search(
     costs: AgentCosts,
     tried: Array,
 ) -> tuple[float, int]:
-    """Least cost, and the place of its candidate among the bounds; the first one of equals.
+    """Least cost, and the place of its candidate; the first one of equals.
 
     Args:
-        frame, candidates: (4,), (S, 2) see `in_world`.
-        bound, index: (S,) what each candidate costs at least, and its number.
+        frame: (4,) see `turned`.
+        x, y, bound, index: (S,) candidates of the unit fan, what each costs at least, and its
+            number.
         is_sorted: whether bounds rise.
         start: place of the candidate that is tried first.
         tried: (5, S) scratch.
     """
-    x, y = in_world(frame, candidates, index[start])
-    best = cost_within(x, y, bound[start], math.inf, costs)
+    ux, uy = turned(frame, x[start], y[start])
+    best = cost_within(ux, uy, bound[start], math.inf, costs)
     best_index, best_place = index[start], start
-    count = candidates.shape[0]
-    if is_sorted:
-        count = np.searchsorted(bound, best, side="right")
-    ux, uy, least, place = tried[0], tried[1], tried[2], tried[4]
-    left = 0
-    for c in range(count):
-        if bound[c] <= best and c != start:
-            ux[left], uy[left] = in_world(frame, candidates, index[c])
-            least[left], place[left] = bound[c], c
-            left += 1
-    raise_bounds(left, tried, costs)
+    left = _possible(frame, x, y, bound, is_sorted, best, tried)
+    left = _rule_out(left, best, tried, costs)
+    least, place = tried[2], tried[4]
     for at in range(left):
         c = int(place[at])
-        if bound[c] > best or least[at] > best + _ROUNDING * abs(best):
+        if bound[c] > best or least[at] > best + _ROUNDING * abs(best) or c == start:
             continue
-        cost = cost_within(ux[at], uy[at], bound[c], best, costs)
+        cost = cost_within(tried[0, at], tried[1, at], bound[c], best, costs)
         if cost < best or (cost == best and index[c] < best_index):
             best, best_index, best_place = cost, index[c], c
     return best, best_place
 
 
 @kernel
+def _whole_steps(count: int, most: int) -> int:
+    """As many candidates, rounded up to what is computed at once; the last ones are any."""
+    return min((count + _STEP - 1) // _STEP * _STEP, most)
+
+
+@inline_kernel
+def _possible(
+    frame: Array, x: Array, y: Array, bound: Array, is_sorted: bool, best: float, tried: Array
+) -> int:
+    """Write who may be as good as ``best`` to ``tried``; return how many.
+
+    Rows 0, 1, 2 and 4: velocity in the world frame, bound, place.
+    """
+    ux, uy, least, place = tried[0], tried[1], tried[2], tried[4]
+    if is_sorted:
+        left = int(np.searchsorted(bound, best, side="right"))
+        whole = _whole_steps(left, bound.shape[0])
+        bx, by, fx, fy = frame[0], frame[1], frame[2], frame[3]
+        for c in range(whole):  # one row at a time, so that it runs on several numbers at once
+            ux[c] = bx + x[c] * fx - y[c] * fy
+        for c in range(whole):
+            uy[c] = by + x[c] * fy + y[c] * fx
+        for c in range(whole):
+            least[c] = bound[c]
+        for c in range(whole):
+            place[c] = c
+        return left
+    left = 0
+    for c in range(x.shape[0]):
+        if bound[c] <= best:
+            ux[left], uy[left] = turned(frame, x[c], y[c])
+            least[left], place[left] = bound[c], c
+            left += 1
+    return left
+
+
+@inline_kernel
 def cost_within(ux: float, uy: float, base: float, best: float, costs: AgentCosts) -> float:
     """Cost of a candidate in the world frame, or anything above ``best`` if it exceeds it."""
     # A function that stops just above its budget must not be rounded to a tie with the best.
@@ -124,21 +167,30 @@ def cost_within(ux: float, uy: float, base: float, best: float, costs: AgentCost
     return cost
 
 
-@kernel
-def raise_bounds(count: int, tried: Array, costs: AgentCosts) -> None:
-    """Add to row 2 of ``tried`` what the functions know about the candidates in rows 0 and 1."""
-    ux, uy, least, out = tried[0], tried[1], tried[2], tried[3]
-    functions = costs.functions
-    for term in range(costs.active.shape[0]):
+@inline_kernel
+def _rule_out(count: int, best: float, tried: Array, costs: AgentCosts) -> int:
+    """Leave out who is above ``best`` by what the functions know; return how many stay.
+
+    The widest function is asked first: it has most neighbours, and rules out most.
+    """
+    ux, uy, least, out, place = tried[0], tried[1], tried[2], tried[3], tried[4]
+    functions, most = costs.functions, best + _ROUNDING * abs(best)
+    for term in range(costs.active.shape[0] - 1, -1, -1):
         k = costs.active[term]
-        if functions[k, LOWER_BOUNDS] != 0:
-            call_lower_bound(
-                functions[k, LOWER_BOUNDS], count, ux.ctypes.data, uy.ctypes.data,
-                costs.agent.ctypes.data, functions[k, WORK], functions[k, PARAMS],
-                out.ctypes.data,
-            )  # fmt: skip
-            for c in range(count):
-                least[c] += costs.weights[k] * out[c]
+        if functions[k, LOWER_BOUNDS] == 0:
+            continue
+        call_lower_bound(
+            functions[k, LOWER_BOUNDS], _whole_steps(count, ux.shape[0]), ux.ctypes.data,
+            uy.ctypes.data, costs.agent.ctypes.data, functions[k, WORK], functions[k, PARAMS],
+            out.ctypes.data,
+        )  # fmt: skip
+        stay = 0
+        for c in range(count):  # whoever goes is overwritten by the next
+            bound = least[c] + costs.weights[k] * out[c]
+            ux[stay], uy[stay], least[stay], place[stay] = ux[c], uy[c], bound, place[c]
+            stay += int(not bound > most)
+        count = stay
+    return count
 
 
 @kernel

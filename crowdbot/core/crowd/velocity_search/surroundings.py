@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from crowdbot.core.crowd.contact.geometry import is_clearly_shorter
 from crowdbot.core.crowd.velocity_search.cost import (
     ASKED_RADIUS,
     ASKED_X,
@@ -34,6 +35,7 @@ from crowdbot.core.crowd.velocity_search.cost import (
     VY,
     WEIGHT,
 )
+from crowdbot.core.crowd.velocity_search.neighbour_discs import write_discs
 from crowdbot.core.crowd.velocity_search.neighbours import (
     DISC_RADIUS,
     INDEX,
@@ -42,10 +44,12 @@ from crowdbot.core.crowd.velocity_search.neighbours import (
     Starts,
     X,
     Y,
+    sort_discs,
+    strip_height,
 )
 from crowdbot.core.crowd.velocity_search.neighbours import VX as DISC_VX
 from crowdbot.core.crowd.velocity_search.neighbours import VY as DISC_VY
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compile import array_kernel, inline_kernel
 from crowdbot.core.types.arrays import Array, Mask
 
 # Columns of `Surroundings.traits`; entries of `Surroundings.settings`.
@@ -67,7 +71,8 @@ class Surroundings(NamedTuple):
         traits: (N, 4) preferred speed, largest speed and acceleration, weight; see ``T_...``.
         settings: (3,) time between decisions and relaxation time (s), 1 for parity; ``S_...``.
         random: (N,) states of the agents' random numbers, changed in place.
-        near, found: (B, `NEAR_COLUMNS`), (S, `WALL_COLUMNS`) scratch for one agent's neighbours.
+        near, found: (>= B, `NEAR_COLUMNS`), (>= S, `WALL_COLUMNS`) scratch for one agent's
+            neighbours.
         agent: (`AGENT_SIZE`,) scratch: the agent that is decided for.
     """
 
@@ -87,7 +92,31 @@ class Surroundings(NamedTuple):
     agent: Array
 
 
-@kernel
+@array_kernel
+def sort_surroundings(
+    position: Array, velocity: Array, goal: Array, radius: Array, preferred: Array, present: Mask,
+    robots: Array, pillars: Array, box: Array, diagonal: bool, reach: float,
+    discs: Array, table: Array,
+) -> tuple[int, float, float, Starts]:  # fmt: skip
+    """Write all discs to ``table``, sorted into strips.
+
+    Args:
+        position to discs: as of `neighbour_discs.write_discs`.
+        table: as ``discs``.
+
+    Returns:
+        how many discs there are, the strips' height, and what `neighbours.sort_discs` returns.
+    """
+    count = write_discs(
+        position, velocity, goal, radius, preferred, present, robots, pillars, box, diagonal, reach,
+        discs,
+    )  # fmt: skip
+    height = strip_height(discs, count, reach)
+    low, starts = sort_discs(discs, count, height, table)
+    return count, height, low, starts
+
+
+@inline_kernel
 def describe(around: Surroundings, b: int) -> int:
     """Write the ``agent`` vector of whoever is in row b of the table; return the agent's number.
 
@@ -108,6 +137,8 @@ def describe(around: Surroundings, b: int) -> int:
     agent[MAX_ACCELERATION] = traits[i, T_MAX_ACCELERATION]
     agent[PARITY], agent[RANDOM] = settings[S_PARITY], around.random[i]
     agent[DESCENDS] = 0.0
-    agent[FASTEST] = max(agent[MAX_SPEED], math.hypot(agent[VX], agent[VY]))
+    agent[FASTEST] = agent[MAX_SPEED]
+    if not is_clearly_shorter(agent[VX], agent[VY], agent[MAX_SPEED]):
+        agent[FASTEST] = max(agent[MAX_SPEED], math.hypot(agent[VX], agent[VY]))
     agent[ASKED_X], agent[ASKED_Y], agent[ASKED_RADIUS] = 0.0, 0.0, agent[FASTEST]
     return i

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -23,6 +24,7 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
 from crowdbot.core.crowd.velocity_search.cost import (
     AGENT_SIZE,
     BASE,
+    BROKEN,
     EXCESS,
     GRADIENT,
     LOWER_BOUND,
@@ -33,20 +35,20 @@ from crowdbot.core.crowd.velocity_search.cost import (
     WORK_COLUMNS,
     CompiledCost,
     NumpyCost,
+    work_rows,
 )
 from crowdbot.core.crowd.velocity_search.cost_calls import address_of
 from crowdbot.core.crowd.velocity_search.minstd import seeds
-from crowdbot.core.crowd.velocity_search.neighbour_discs import most_discs, write_discs
-from crowdbot.core.crowd.velocity_search.neighbours import (
-    DISC_COLUMNS,
-    sort_discs,
-    strip_height,
+from crowdbot.core.crowd.velocity_search.neighbour_discs import DISC_COLUMNS, most_discs
+from crowdbot.core.crowd.velocity_search.surroundings import (
+    S_DT,
+    Surroundings,
+    sort_surroundings,
 )
-from crowdbot.core.crowd.velocity_search.surroundings import Surroundings
 from crowdbot.core.types.arrays import Array
 
 _Addresses = NDArray[np.intp]
-
+_NO_BOX = np.zeros(4)
 
 # Columns of the table of addresses: part of a cost function and its signature.
 _PARTS = (
@@ -104,12 +106,11 @@ class WeightedCosts:
             [agents.preferred_speed, agents.max_speed, agents.max_acceleration, ones]
         )
         self.random = seeds(agents.id)
-        self._make_work(1)
-        self._discs = self._table = np.zeros((0, DISC_COLUMNS))
-
-    def _make_work(self, rows: int) -> None:
-        self.work = np.zeros((len(self.compiled), rows, WORK_COLUMNS))
-        self.functions[:, WORK] = _layers(self.work)
+        self._settings = np.array([0.0, relaxation_time, float(parity)])
+        self._agent = np.zeros(AGENT_SIZE)
+        self._largest_seen, self._reach = math.nan, 0.0
+        self._discs, self._found = np.zeros((0, DISC_COLUMNS)), np.zeros((0, WALL_COLUMNS))
+        self._make_room(1, 0)
 
     def reach(self, view: CrowdView) -> float:
         """Centre distance beyond which nobody matters to anybody, m."""
@@ -117,35 +118,45 @@ class WeightedCosts:
         for discs in (view.robot, view.pillars):
             if len(discs):
                 largest = max(largest, float(discs[:, -1].max()))
-        return max((c.reach(self.largest, largest) for c in self._all), default=0.0)
+        if largest != self._largest_seen:
+            self._largest_seen = largest
+            self._reach = max((c.reach(self.largest, largest) for c in self._all), default=0.0)
+        return self._reach
 
     def surroundings(self, view: CrowdView) -> Surroundings:
-        """Sort all discs of a view, and hand out what compiled loops take."""
-        reach, boundary = self.reach(view), view.periodic_boundary
-        room = most_discs(
-            len(view.position), len(view.robot) + len(view.pillars), boundary is not None
+        """Sort all discs of a view, and hand out what compiled loops take.
+
+        Tables and scratch are those of the call before, if there is room in them.
+        """
+        reach, boundary, walls = self.reach(view), view.periodic_boundary, len(view.walls)
+        self._make_room(
+            most_discs(
+                len(view.position), len(view.robot) + len(view.pillars), boundary is not None
+            ),
+            walls,
         )
-        if len(self._discs) < room:
-            self._discs = np.zeros((room, DISC_COLUMNS))
-            self._table = np.zeros((room, DISC_COLUMNS))
-        box = np.array(boundary if boundary is not None else (0.0, 0.0, 0.0, 0.0))
-        count = write_discs(
+        count, height, low, starts = sort_surroundings(
             view.position, view.velocity, view.goal, view.agents.avoided_radius,
-            view.agents.preferred_speed, view.present, view.robot, view.pillars, box,
-            view.diagonal, reach, self._discs,
+            view.agents.preferred_speed, view.present, view.robot, view.pillars,
+            _NO_BOX if boundary is None else np.array(boundary), view.diagonal, reach,
+            self._discs, self._table,
         )  # fmt: skip
-        if self.work.shape[1] < 1 + count + len(view.walls):
-            self._make_work(1 + room + len(view.walls))
-        height = strip_height(self._discs, count, reach)
-        low, starts = sort_discs(self._discs, count, height, self._table)
+        self._settings[S_DT], self._agent[BROKEN] = view.dt, 0.0
         return Surroundings(
-            table=self._table[:count], starts=starts, low=low, height=height,
-            who=view.present if view.decides is None else view.present & view.decides,
-            goal=view.goal, walls=view.walls, reach=reach, traits=self.traits,
-            settings=np.array([view.dt, self.relaxation_time, float(self.parity)]),
-            random=self.random, near=np.empty((count, NEAR_COLUMNS)),
-            found=np.empty((len(view.walls), WALL_COLUMNS)), agent=np.zeros(AGENT_SIZE),
+            self._table[:count], starts, low, height,
+            view.present if view.decides is None else view.present & view.decides,
+            view.goal, view.walls, reach, self.traits, self._settings, self.random, self._near,
+            self._found, self._agent,
         )  # fmt: skip
+
+    def _make_room(self, discs: int, walls: int) -> None:
+        if len(self._discs) < discs or len(self._found) < walls:
+            self._discs = np.zeros((discs, DISC_COLUMNS))
+            self._table = np.zeros((discs, DISC_COLUMNS))
+            self._near = np.zeros((discs, NEAR_COLUMNS))
+            self._found = np.zeros((walls, WALL_COLUMNS))
+            self.work = np.zeros((len(self.compiled), work_rows(discs + walls), WORK_COLUMNS))
+            self.functions[:, WORK] = _layers(self.work)
 
 
 def _addresses(functions: Sequence[object], signature: object) -> _Addresses:

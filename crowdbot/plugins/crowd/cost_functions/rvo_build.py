@@ -62,7 +62,8 @@ def _prepare(
 ) -> int:
     # Of 2u - v.
     ux, uy = 2.0 * agent[ASKED_X] - agent[VX], 2.0 * agent[ASKED_Y] - agent[VY]
-    spread = 2.0 * agent[ASKED_RADIUS] + 1e-9 * (agent[FASTEST] + math.hypot(ux, uy))
+    # The second term is for rounding, where the sum of two sides does as well as the length.
+    spread = 2.0 * agent[ASKED_RADIUS] + 1e-9 * (agent[FASTEST] + abs(ux) + abs(uy))
     items = list_approaching(
         agent, near, near_count, walls, wall_count, params, work, ux, uy, spread, _EVER
     )

@@ -13,47 +13,25 @@ import math
 
 import numpy as np
 
-from crowdbot.core.crowd.contact.geometry import opposite_taken_for_parallel
 from crowdbot.core.interfaces import (
     BASE,
-    D2,
-    DESCENDS,
     EXCESS,
-    FASTEST,
-    FROM_SURFACE,
     LOWER_BOUND,
-    NVX,
-    NVY,
-    NX,
-    NY,
-    PARITY,
-    PREPARE,
-    RADIUS,
-    RANGE,
-    REACH,
-    RX,
-    RY,
-    VX,
-    VY,
-    WALL_D2,
     CompiledCost,
     Pointer,
-    near_table,
-    wall_table,
     work_table,
 )
-from crowdbot.core.support.compile import declared_kernel, inline_kernel
+from crowdbot.core.support.compile import declared_kernel
 from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
 from crowdbot.plugins.crowd.cost_functions.ttca_dca_gradient_build import gradient
+from crowdbot.plugins.crowd.cost_functions.ttca_dca_neighbours_build import prepare
 from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
-    CLOSEST,
     INV_DCA2,
     INV_TTCA2,
     NEGLIGIBLE,
     SIGMA_ANGLE,
     SIGMA_SPEED,
     TOTAL,
-    WALLS,
     WEIGHT,
 )
 
@@ -67,78 +45,6 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Poin
     slower = (math.sqrt(ux * ux + uy * uy) - preferred) / params[SIGMA_SPEED]
     ahead = math.exp(-0.5 * (angle / params[SIGMA_ANGLE]) ** 2)
     return 1.0 - 0.5 * (ahead + math.exp(-0.5 * slower * slower))
-
-
-@inline_kernel
-def _add(
-    rx: float,
-    ry: float,
-    vx: float,
-    vy: float,
-    d2: float,
-    reach: float,
-    agent: Pointer,
-    params: Pointer,
-    work: Pointer,
-) -> None:
-    """Add a neighbour to the table, unless it is behind or changes no sum."""
-    ahead = rx * agent[VX] + ry * agent[VY] >= 0.0
-    if not ahead and agent[PARITY] != 0.0:
-        ahead = opposite_taken_for_parallel(rx, ry, agent[VX], agent[VY])
-    if ahead:
-        distance = max(math.sqrt(d2), CLOSEST)
-        gap = distance - reach
-        weight = 1.0 / max(gap * gap, CLOSEST * CLOSEST)
-        work[0, TOTAL] += weight
-        # The exponent is at least this for every candidate: the gap closes at most at `closing`.
-        closing = agent[FASTEST] + max(0.0, -(vx * rx + vy * ry) / distance)
-        a, b = params[INV_TTCA2], params[INV_DCA2]
-        nothing = gap > 0.0 and gap * gap * a * b >= NEGLIGIBLE * (a + b * closing * closing)
-        if agent[DESCENDS] != 0.0 or not nothing:
-            row = int(work[0, 0]) + 1
-            work[0, 0] = row
-            if agent[DESCENDS] == 0.0:
-                while row > 1 and work[row - 1, WEIGHT] < weight:
-                    for c in range(7):
-                        work[row, c] = work[row - 1, c]
-                    row -= 1
-            shrink = gap / distance
-            work[row, 0], work[row, 1] = rx, ry
-            work[row, 2], work[row, 3] = rx * shrink, ry * shrink
-            work[row, 4], work[row, 5] = vx, vy
-            work[row, WEIGHT] = weight
-
-
-@declared_kernel(PREPARE)
-def _prepare(
-    agent: Pointer,
-    near: Pointer,
-    near_count: int,
-    walls: Pointer,
-    wall_count: int,
-    params: Pointer,
-    work: Pointer,
-) -> int:
-    """Row 0: number of neighbours, sum(k). Then d, q, v_j, k, heaviest first."""
-    near, walls, work = near_table(near), wall_table(walls), work_table(work)
-    work[0, 0], work[0, TOTAL] = 0.0, 0.0
-    for j in range(near_count):
-        reach = near[j, REACH]
-        limit = params[RANGE] + params[FROM_SURFACE] * reach
-        if near[j, D2] < limit * limit:
-            _add(
-                near[j, RX], near[j, RY], near[j, NVX], near[j, NVY], near[j, D2], reach,
-                agent, params, work,
-            )  # fmt: skip
-    if params[WALLS] != 0.0:
-        limit = params[RANGE] + params[FROM_SURFACE] * agent[RADIUS]
-        for s in range(wall_count):
-            if walls[s, WALL_D2] < limit * limit:
-                _add(
-                    walls[s, NX], walls[s, NY], 0.0, 0.0, walls[s, WALL_D2], agent[RADIUS],
-                    agent, params, work,
-                )  # fmt: skip
-    return int(work[0, 0])
 
 
 @declared_kernel(EXCESS)
@@ -213,7 +119,7 @@ def build(spec: TtcaDcaSpec) -> CompiledCost:
     ]
     return CompiledCost(
         base=_base,
-        prepare=_prepare,
+        prepare=prepare,
         excess=_excess,
         gradient=gradient,
         lower_bound=_lower_bound,

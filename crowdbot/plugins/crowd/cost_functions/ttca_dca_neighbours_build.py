@@ -1,0 +1,201 @@
+"""The neighbours of TtcaDca: who changes the cost of some candidate, heaviest first.
+
+They are found in passes over columns: square roots and divisions are those of several neighbours
+at once, and no pass has to wait for one of them to know what comes next.
+"""
+
+from __future__ import annotations
+
+import math
+
+from crowdbot.core.crowd.contact.geometry import opposite_taken_for_parallel
+from crowdbot.core.interfaces import (
+    D2,
+    DESCENDS,
+    FASTEST,
+    FROM_SURFACE,
+    NVX,
+    NVY,
+    NX,
+    NY,
+    PARITY,
+    PREPARE,
+    RADIUS,
+    RANGE,
+    REACH,
+    RX,
+    RY,
+    VX,
+    VY,
+    WALL_D2,
+    WORK_COLUMNS,
+    Pointer,
+    near_table,
+    wall_table,
+    work_table,
+)
+from crowdbot.core.support.compile import array_kernel, declared_kernel
+from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
+    CLOSEST,
+    INV_DCA2,
+    INV_TTCA2,
+    NEGLIGIBLE,
+    TOTAL,
+    WALLS,
+    WEIGHT,
+)
+
+# Columns after the table: distance, later what makes q of d; gap; how fast it closes at most, later
+# whether that changes a sum; row in ``near``, or after these in ``walls``; weight.
+_DISTANCE, _GAP, _CLOSING, _ROW, _WEIGHT = range(5)
+#: Columns are computed in steps of so many entries: no processor has wider registers.
+_STEP = 8
+
+
+@array_kernel
+def _whole_steps(count: int) -> int:
+    return (count + _STEP - 1) // _STEP * _STEP
+
+
+@array_kernel
+def _columns(room: int) -> tuple[int, int, int, int, int]:
+    """Where the columns begin in ``work``."""
+    first, length = WORK_COLUMNS * (1 + room), _whole_steps(room)
+    return (
+        first + _DISTANCE * length, first + _GAP * length, first + _CLOSING * length,
+        first + _ROW * length, first + _WEIGHT * length,
+    )  # fmt: skip
+
+
+@array_kernel
+def _is_ahead(rx: float, ry: float, vx: float, vy: float, parity: bool) -> bool:
+    if parity and opposite_taken_for_parallel(rx, ry, vx, vy):
+        return True
+    return rx * vx + ry * vy >= 0.0
+
+
+@array_kernel
+def _list(
+    agent: Pointer,
+    near: Pointer,
+    near_count: int,
+    walls: Pointer,
+    wall_count: int,
+    params: Pointer,
+    work: Pointer,
+) -> int:
+    """Write who is within range and not behind; return how many.
+
+    Everybody is written, and overwritten by the next who is not one of these: a branch would
+    often be guessed wrong.
+    """
+    near, walls = near_table(near), wall_table(walls)
+    distance, gap, closing, row, _ = _columns(near_count + wall_count)
+    vx, vy, parity = agent[VX], agent[VY], agent[PARITY] != 0.0
+    reach, surface, count = params[RANGE], params[FROM_SURFACE], 0
+    for j in range(near_count):
+        rx, ry, d2, radii = near[j, RX], near[j, RY], near[j, D2], near[j, REACH]
+        work[distance + count], work[gap + count] = d2, radii
+        work[closing + count] = near[j, NVX] * rx + near[j, NVY] * ry
+        work[row + count] = j
+        limit = reach + surface * radii
+        count += int(_is_ahead(rx, ry, vx, vy, parity) & (d2 < limit * limit))
+    if params[WALLS] != 0.0:
+        limit, radius = reach + surface * agent[RADIUS], agent[RADIUS]
+        for s in range(wall_count):
+            d2 = walls[s, WALL_D2]
+            if d2 < limit * limit and _is_ahead(walls[s, NX], walls[s, NY], vx, vy, parity):
+                work[distance + count], work[gap + count] = d2, radius
+                work[closing + count], work[row + count] = 0.0, near_count + s
+                count += 1
+    return count
+
+
+@array_kernel
+def _weigh(
+    count: int, room: int, fastest: float, everybody: bool, params: Pointer, work: Pointer
+) -> None:
+    """All that columns say of those who are listed."""
+    distance, gap, closing, _, weight = _columns(room)
+    a, b, whole = params[INV_TTCA2], params[INV_DCA2], _whole_steps(count)
+    for i in range(whole):
+        work[distance + i] = max(math.sqrt(work[distance + i]), CLOSEST)
+    for i in range(whole):
+        work[gap + i] = work[distance + i] - work[gap + i]
+    for i in range(whole):
+        work[weight + i] = 1.0 / max(work[gap + i] * work[gap + i], CLOSEST * CLOSEST)
+    for i in range(whole):
+        work[closing + i] = fastest + max(0.0, -work[closing + i] / work[distance + i])
+    for i in range(whole):
+        g, v = work[gap + i], work[closing + i]
+        # The exponent is at least this for every candidate.
+        nothing = (g > 0.0) & (g * g * a * b >= NEGLIGIBLE * (a + b * v * v))
+        work[closing + i] = 1.0 if everybody | (not nothing) else 0.0
+    for i in range(whole):
+        work[distance + i] = work[gap + i] / work[distance + i]
+
+
+@array_kernel
+def _select(count: int, room: int, work: Pointer) -> int:
+    """Note in row 0 what all weigh together; leave out who changes no sum; return how many stay."""
+    shrink, _, counts, row, weight = _columns(room)
+    total, kept = 0.0, 0
+    for i in range(count):
+        total += work[weight + i]
+        work[weight + kept] = work[weight + i]
+        work[shrink + kept], work[row + kept] = work[shrink + i], work[row + i]
+        kept += int(work[counts + i])
+    work[0], work[TOTAL] = kept, total
+    return kept
+
+
+@array_kernel
+def _place(i: int, kept: int, weight: int, work: Pointer) -> int:
+    """How many of those kept are heavier than number i, or as heavy and before it."""
+    own, place = work[weight + i], 0
+    for j in range(_whole_steps(kept)):
+        place += int((work[weight + j] > own) | ((work[weight + j] == own) & (j < i)))
+    return place
+
+
+@array_kernel
+def _write(
+    kept: int, sort: bool, near: Pointer, near_count: int, walls: Pointer, room: int, work: Pointer
+) -> None:
+    """Write the table."""
+    shrink, _, _, row, weight = _columns(room)
+    near, walls, table = near_table(near), wall_table(walls), work_table(work)
+    for i in range(_STEP):
+        work[weight + kept + i] = -1.0  # heavier than nobody
+    for i in range(kept):
+        j = int(work[row + i])
+        if j < near_count:
+            rx, ry, vx, vy = near[j, RX], near[j, RY], near[j, NVX], near[j, NVY]
+        else:
+            rx, ry, vx, vy = walls[j - near_count, NX], walls[j - near_count, NY], 0.0, 0.0
+        k = 1 + (_place(i, kept, weight, work) if sort else i)
+        table[k, 0], table[k, 1] = rx, ry
+        table[k, 2], table[k, 3] = rx * work[shrink + i], ry * work[shrink + i]
+        table[k, 4], table[k, 5], table[k, WEIGHT] = vx, vy, work[weight + i]
+
+
+@declared_kernel(PREPARE)
+def prepare(
+    agent: Pointer,
+    near: Pointer,
+    near_count: int,
+    walls: Pointer,
+    wall_count: int,
+    params: Pointer,
+    work: Pointer,
+) -> int:
+    """Row 0: number of neighbours, sum(k). Then d, q, v_j, k, heaviest first."""
+    room, descends = near_count + wall_count, agent[DESCENDS] != 0.0
+    count = _list(agent, near, near_count, walls, wall_count, params, work)
+    _weigh(count, room, agent[FASTEST], descends, params, work)
+    kept = _select(count, room, work)
+    _write(kept, not descends, near, near_count, walls, room, work)
+    return kept
+
+
+__all__ = ["prepare"]
