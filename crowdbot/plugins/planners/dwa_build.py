@@ -22,6 +22,7 @@ from crowdbot.core.interfaces import (
 )
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
 from crowdbot.plugins.planners.dwa import DwaSpec
+from crowdbot.plugins.planners.dwa_evaluate_build import evaluate
 from crowdbot.plugins.planners.dwa_map_build import AIM, remembered, way_out
 from crowdbot.plugins.planners.dwa_points_build import (
     apart,
@@ -177,7 +178,7 @@ class Dwa:
         else:
             candidates, facing = self._window(obs.twist, direction, top, escaping), direction
         now = (*obs.twist, obs.vy)
-        index, _ = rollout.evaluate(
+        index, _ = evaluate(
             near,
             moving,
             self._p,

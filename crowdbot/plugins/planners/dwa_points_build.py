@@ -20,13 +20,13 @@ def wrapped(angle: float) -> float:
     return angle - 2.0 * math.pi * round(angle / (2.0 * math.pi))
 
 
-@array_kernel
+@kernel
 def unsigned(angle: float) -> float:
     """The size of an angle, in [0, pi] rad."""
     return abs(wrapped(angle))
 
 
-@array_kernel
+@kernel
 def minimum(values: Array) -> float:
     """The least of (N,) numbers, none of them NaN; inf for none. Overwrites them.
 
@@ -171,7 +171,7 @@ def walkers(people: Array, velocities: Array, near: float, speed: float) -> tupl
     return count, walk
 
 
-@array_kernel
+@kernel
 def free_time(
     points: Array, velocities: Array, vx: float, vy: float, radius: float, limit: float
 ) -> float:
@@ -196,7 +196,7 @@ def free_time(
     return best
 
 
-@array_kernel
+@kernel
 def choose_direction(
     points: Array,
     velocities: Array,

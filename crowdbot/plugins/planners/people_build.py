@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Array
+from crowdbot.core.interfaces import Array, kernel
 from crowdbot.core.support.compile import array_kernel
 
 #: Points farther apart than this, and a share of their distance, belong to two bodies, m.
@@ -32,7 +32,7 @@ _NEAR = 0.8
 _ARC = 15
 
 
-@array_kernel
+@kernel
 def _runs(points: Array, first: NDArray[np.int64]) -> int:
     """Write where each run of neighbouring points begins; return how many there are."""
     count = 0
@@ -47,7 +47,7 @@ def _runs(points: Array, first: NDArray[np.int64]) -> int:
     return count
 
 
-@array_kernel
+@kernel
 def _hidden(points: Array, edge: int, beside: int) -> bool:
     """Whether the end of a run is where something nearer begins to cover it."""
     if beside < 0 or beside >= points.shape[0]:
@@ -160,7 +160,7 @@ def with_discs(points: Array, people: Array, radius: float) -> Array:
     return out[:count]
 
 
-@array_kernel
+@kernel
 def carry(points: Array, velocities: Array, people: Array, going: Array, radius: float) -> None:
     """Give the points on people's discs, in place, the velocities (K, 2) of the people."""
     for i in range(points.shape[0]):
