@@ -6,12 +6,15 @@ import math
 
 import numpy as np
 
+from crowdbot.core.geometry.rough_angle import rough_angle
 from crowdbot.core.interfaces import Array, Mask, kernel
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.support.stable_order import stable_order
 
 #: Directions that are tried on either side of the goal's.
 _HALF = 24
+#: More than a rough angle is off, turns.
+_DOUBT = 5e-6
 
 
 @kernel
@@ -43,6 +46,16 @@ def minimum(values: Array) -> float:
     return float(values[0]) if count else math.inf
 
 
+@kernel
+def _sector(x: float, y: float, sectors: int) -> int:
+    """In which of the equal sectors of the full turn a point lies."""
+    at = (rough_angle(x, y) / (2.0 * math.pi) + 0.5) * sectors
+    within = at - math.floor(at)
+    if _DOUBT * sectors < within < 1.0 - _DOUBT * sectors:
+        return int(at)
+    return int((math.atan2(y, x) / (2.0 * math.pi) + 0.5) * sectors) % sectors
+
+
 @array_kernel
 def nearest_per_sector(points: Array, sectors: int, reach: float) -> Array:
     """Thin points out to the nearest one of each sector around the origin.
@@ -64,7 +77,7 @@ def nearest_per_sector(points: Array, sectors: int, reach: float) -> Array:
         square = x * x + y * y
         if square >= reach * reach:
             continue
-        at = int((math.atan2(y, x) / (2.0 * math.pi) + 0.5) * sectors) % sectors
+        at = _sector(x, y, sectors)
         if square < best[at]:
             best[at], index[at] = square, i
     out = np.empty((sectors, 2))

@@ -18,6 +18,8 @@ from crowdbot.core.support.compile import array_kernel
 
 #: Points farther apart than this, and a share of their distance, belong to two bodies, m.
 _GAP, _GAP_SHARE = 0.1, 0.015
+#: The square of a distance that is less than that, however near they are, m^2.
+_CLEARLY = 0.99 * _GAP**2
 #: Widest run of points that may be one leg, and two legs side by side, m.
 _LEG, _LEGS = 0.22, 0.55
 #: Legs of one person are no farther apart than this, m.
@@ -40,7 +42,10 @@ def _runs(points: Array, first: NDArray[np.int64]) -> int:
         x, y, apart = points[i, 0], points[i, 1], math.inf
         if i:
             dx, dy = x - points[i - 1, 0], y - points[i - 1, 1]
-            apart = math.sqrt(dx * dx + dy * dy)
+            square = dx * dx + dy * dy
+            if square < _CLEARLY:
+                continue  # most of them
+            apart = math.sqrt(square)
         if apart > _GAP + _GAP_SHARE * math.sqrt(x * x + y * y):  # hypot is five times as slow
             first[count] = i
             count += 1
@@ -99,7 +104,7 @@ def _middles(legs: Array) -> Array:
         best, other = _STEP, -1
         for j in range(i + 1, legs.shape[0]):
             dx, dy = legs[i, 0] - legs[j, 0], legs[i, 1] - legs[j, 1]
-            if abs(dx) >= best or abs(dy) >= best:
+            if max(abs(dx), abs(dy)) >= best:
                 continue  # most of them
             apart = math.hypot(dx, dy)
             if not used[j] and legs[i, 2] + legs[j, 2] == 0.0 and apart < best:
@@ -128,8 +133,14 @@ def people_in(points: Array, reach: float) -> tuple[Array, Array]:
     kept = np.ones(points.shape[0], dtype=np.bool_)
     for k in range(legs.shape[0]):
         if math.hypot(legs[k, 0], legs[k, 1]) > _NEAR:
-            kept[int(legs[k, 3]) : int(legs[k, 4])] = False
-    return _middles(legs), points[kept]
+            for i in range(int(legs[k, 3]), int(legs[k, 4])):
+                kept[i] = False
+    rest, count = np.empty(points.shape), 0
+    for i in range(points.shape[0]):
+        if kept[i]:
+            rest[count, 0], rest[count, 1] = points[i, 0], points[i, 1]
+            count += 1
+    return _middles(legs), rest[:count]
 
 
 @array_kernel
@@ -167,7 +178,7 @@ def carry(points: Array, velocities: Array, people: Array, going: Array, radius:
         best = radius + 0.05
         for k in range(people.shape[0]):
             dx, dy = points[i, 0] - people[k, 0], points[i, 1] - people[k, 1]
-            if abs(dx) >= best or abs(dy) >= best:
+            if max(abs(dx), abs(dy)) >= best:
                 continue  # most of them
             gap = math.hypot(dx, dy)
             if gap < best:

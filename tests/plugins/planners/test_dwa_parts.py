@@ -33,6 +33,9 @@ def points(*where: tuple[float, float]) -> Array:
 def test_thinning_keeps_the_nearest_of_each_sector(seed: int) -> None:
     rng = np.random.default_rng(seed)
     cloud = rng.uniform(-8, 8, (int(rng.integers(0, 200)), 2))
+    edge = np.deg2rad(10.0) * rng.integers(-18, 18, 30) + rng.uniform(-2e-5, 2e-5, 30)
+    at_edges = rng.uniform(1, 7, 30)[:, None] * np.column_stack([np.cos(edge), np.sin(edge)])
+    cloud = np.concatenate([cloud, at_edges])
     thin = nearest_per_sector(cloud, 36, 6.0)
     sector = ((np.arctan2(cloud[:, 1], cloud[:, 0]) / (2 * np.pi) + 0.5) * 36).astype(int) % 36
     gap = np.hypot(*cloud.T)
