@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
 from crowdbot.core.geometry.rough_angle import rough_angle
+from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices
 
