@@ -28,6 +28,7 @@ from crowdbot.plugins.planners.dwa_rollout_build import (
     V_MAX,
     W_MAX,
     foreseen,
+    reachable,
     roll,
     rollouts,
     slewed_planar,
@@ -68,7 +69,7 @@ def evaluate(
         its index, -1 if none is admissible; its cost.
     """
     best, index = math.inf, -1
-    ahead = foreseen(points, velocities, p)
+    ahead = foreseen(*reachable(points, velocities, p), p)
     known, turns, scratch = rollouts(ahead)
     toward = math.cos(direction), math.sin(direction)
     going, outlined = math.hypot(now[0], now[2]), core.shape[0] > 0

@@ -139,6 +139,23 @@ def apparent_velocity(
     return out
 
 
+@array_kernel
+def apparent_velocities(
+    now: Array,
+    before: Array,
+    people: Array,
+    others: Array,
+    dt: float,
+    slowest: float,
+    fastest: float,
+) -> tuple[Array, Array]:
+    """`apparent_velocity` of points, and of people among those before."""
+    return (
+        apparent_velocity(now, before, dt, slowest, fastest),
+        apparent_velocity(people, others, dt, slowest, fastest),
+    )
+
+
 @kernel
 def _first_from(points: Array, least: float, guess: int) -> int:
     """The first place among points in the order of x whose x is not below ``least``."""

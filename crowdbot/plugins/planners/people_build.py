@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.interfaces import Array, kernel
 from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugins.planners.dwa_points_build import nearest_per_sector
 
 #: Points farther apart than this, and a share of their distance, belong to two bodies, m.
 _GAP, _GAP_SHARE = 0.1, 0.015
@@ -184,3 +185,21 @@ def carry(points: Array, velocities: Array, people: Array, going: Array, radius:
             if gap < best:
                 best = gap
                 velocities[i, 0], velocities[i, 1] = going[k, 0], going[k, 1]
+
+
+@array_kernel
+def people_and_points(
+    seen: Array, reach: float, radius: float, sectors: int
+) -> tuple[Array, Array, Array]:
+    """What the robot has to do with: `people_in`, and the nearest points of all there is.
+
+    Args:
+        seen, reach: as for `people_in`, but that nobody is looked for where the radius is 0.
+        radius: of the discs of people, m.
+        sectors: as for `nearest_per_sector`, with the same reach.
+
+    Returns:
+        as `people_in`; (S, 2) as `nearest_per_sector`.
+    """
+    people, rest = people_in(seen, reach if radius > 0.0 else 0.0)
+    return people, rest, nearest_per_sector(with_discs(rest, people, radius), sectors, reach)
