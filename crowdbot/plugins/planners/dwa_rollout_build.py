@@ -85,9 +85,9 @@ def reachable(points: Array, velocities: Array, p: Array) -> tuple[Array, Array]
     near, moving, count = np.empty(points.shape), np.empty(points.shape), 0
     for i in range(points.shape[0]):
         x, y, vx, vy = points[i, 0], points[i, 1], velocities[i, 0], velocities[i, 1]
-        speed = p[V_MAX] + math.hypot(vx, vy) + p[GROWTH]
+        speed = p[V_MAX] + math.sqrt(vx * vx + vy * vy) + p[GROWTH] + ROUNDING
         reach = p[REACH] + max(p[COMFORT], p[MARGIN]) + speed * p[HORIZON]
-        if math.hypot(x, y) < reach:
+        if math.sqrt(x * x + y * y) < reach:
             near[count, 0], near[count, 1], moving[count, 0], moving[count, 1] = x, y, vx, vy
             count += 1
     return near[:count], moving[:count]
