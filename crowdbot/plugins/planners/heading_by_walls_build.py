@@ -47,11 +47,8 @@ def directions(points: Array, out: Array) -> float:
             continue
         bent = 0.0
         for k in range(i + 1, i + _RUN - 1):
-            aside = abs(dx * (points[k, 1] - y) - dy * (points[k, 0] - x)) / long
-            bent = max(bent, aside)
-            if bent > _BEND:
-                break
-        if bent > _BEND:
+            bent = max(bent, abs(dx * (points[k, 1] - y) - dy * (points[k, 0] - x)))
+        if bent / long > _BEND:
             continue
         at = math.atan2(dy, dx) / math.pi * BINS
         below = math.floor(at)
