@@ -100,12 +100,11 @@ class CheckedSensor:
         if values.shape != self._shape:
             self._call.fail(f"read returned shape {values.shape}; info() says {self._shape}")
         # A sum of squares is NaN, or not finite, if a number is: by far the quickest look at all.
-        flat = values if values.ndim == 1 else values.ravel()
-        if math.isnan(flat.dot(flat)):
+        if math.isnan(np.vdot(values, values)):
             self._call.fail("read returned NaN; nothing in reach is inf")
         if self._remembers:
             memory = given[-1]
-            if not math.isfinite(memory.dot(memory)) and not np.isfinite(memory).all():
+            if not math.isfinite(np.vdot(memory, memory)) and not np.isfinite(memory).all():
                 self._call.fail("read left a memory that is not finite")
         return values
 

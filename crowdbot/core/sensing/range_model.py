@@ -114,7 +114,7 @@ def _errors(
         shapes = f"{found.shape} for {distance.shape}"
         raise ValueError(f"{_who(generator)}: errors returned shape {shapes}")
     # The sum of squares is no less than that of the largest, and quicker.
-    if not found.dot(found) < largest * largest:  # or NaN
+    if not np.vdot(found, found) < largest * largest:  # or NaN
         _check_hits(found[distance < np.inf], largest, _who(generator))
     return found
 
