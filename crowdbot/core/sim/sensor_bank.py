@@ -63,13 +63,11 @@ class Slot:
 
 
 class _Way(NamedTuple):
-    """How a reading is taken: what takes it, whose random numbers it draws, where it goes."""
+    """How a reading is taken: where it goes, what takes it, whose random numbers it draws."""
 
+    slot: Slot
     read: Callable[..., Array]
     stream: SensorStream | None
-    stamp: int
-    values: slice
-    memory: slice | None
 
 
 def lay_out(
@@ -152,13 +150,7 @@ class SensorBank(LeafSystem):
             {n: x.info() for n, x in sensors.items()}, people, len(scene.others)
         )
         self._ways = {
-            n: _Way(
-                sensors[n].read,
-                SensorStream(seed, robot, n) if x.info.random else None,
-                x.stamp,
-                x.values,
-                x.memory if x.info.memory else None,
-            )
+            n: _Way(x, sensors[n].read, SensorStream(seed, robot, n) if x.info.random else None)
             for n, x in self.slots.items()
         }
         self._images = {
@@ -264,14 +256,14 @@ class SensorBank(LeafSystem):
         self._scene.show_robots(self._poses)
 
     def _read(self, name: str, bank: Array, pose: Pose, t: float, tick: int) -> None:
-        read, stream, stamp, place, memory = self._ways[name]
+        slot, read, stream = self._ways[name]
         rng = self._idle if stream is None else stream.at(tick)
-        if memory is None:
-            values = read(self._scene, pose, t, rng)
+        if slot.info.memory:
+            values = read(self._scene, pose, t, rng, bank[slot.memory])
         else:
-            values = read(self._scene, pose, t, rng, bank[memory])
-        bank[stamp] = t
-        bank[place] = values if values.ndim == 1 else values.ravel()
+            values = read(self._scene, pose, t, rng)
+        bank[slot.stamp] = t
+        bank[slot.values] = values if values.ndim == 1 else values.ravel()
         self._on_reading(name, Reading(t, values))
 
 

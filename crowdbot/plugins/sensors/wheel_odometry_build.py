@@ -43,7 +43,6 @@ class WheelOdometry:
             self._gyro, float(spec.ticks_per_turn), metre, track, spec.noise, spec.gyro_noise,
         )  # fmt: skip
         self._sideways = isinstance(spec, HolonomicOdometrySpec)
-        self._reading = slice(READING, READING + (6 if self._sideways else 5))
         self._info = SensorInfo(
             category="odometry",
             frame="odom",
@@ -73,16 +72,17 @@ class WheelOdometry:
         Raises:
             SimulationError: the scene has no robot.
         """
-        robot, draws = scene.robot, _NO_DRAWS
-        if robot is None:
+        if scene.robot is None:
             raise SimulationError("wheel odometry needs a robot in the scene")
-        if self._info.random and memory[STARTED] != 0.0 and t > memory[TIME]:
-            draws = rng.standard_normal(4 if self._sideways else 3)
-        _roll(
-            memory, t, pose.x, pose.y, pose.yaw,
-            robot.left_angle, robot.right_angle, robot.side_angle, *self._numbers, draws,
-        )  # fmt: skip
-        return memory[self._reading].copy()
+        if memory[STARTED] == 0.0 or t > memory[TIME]:
+            robot, draws = scene.robot, _NO_DRAWS
+            if self._info.random and memory[STARTED] != 0.0:
+                draws = rng.standard_normal(4 if self._sideways else 3)
+            _roll(
+                memory, t, pose.x, pose.y, pose.yaw,
+                robot.left_angle, robot.right_angle, robot.side_angle, *self._numbers, draws,
+            )  # fmt: skip
+        return memory[READING : READING + self._info.shape[0]].copy()
 
 
 @kernel
@@ -92,15 +92,13 @@ def _roll(
     gyro: bool, ticks: float, metre: float, track: float, noise: float, gyro_noise: float,
     draws: Array,
 ) -> None:  # fmt: skip
-    """Bring the memory to time t, unless it is there.
+    """Bring the memory to time t.
 
     Args:
         ticks, metre: of an encoder in one turn; way of its wheel in one tick, m.
         draws: normal numbers for the errors of the left and the right wheel, of the turn and, of
             a holonomic robot, of the third wheel; none: no noise.
     """
-    if memory[STARTED] != 0.0 and t <= memory[TIME]:
-        return
     dt, turned = t - memory[TIME], 0.0
     if memory[STARTED] != 0.0:
         turned = _wrapped(yaw - memory[YAW])
