@@ -129,11 +129,15 @@ class PlannerHost:
 
     def _clamp(self, command: Command) -> tuple[Command, bool]:
         """Into the limits; that of vy is 0 for a robot without sideways drive."""
-        limits = self._limits
-        v = min(max(command.v, limits.v_min), limits.v_max)
-        w = min(max(command.w, -limits.w_max), limits.w_max)
-        inside = Command(v, w, min(max(command.vy, -limits.vy_max), limits.vy_max))
-        excess = max(abs(a - b) for a, b in zip(command, inside, strict=True))
+        limits, (v, w, vy) = self._limits, command
+        inside = Command(
+            min(max(v, limits.v_min), limits.v_max),
+            min(max(w, -limits.w_max), limits.w_max),
+            min(max(vy, -limits.vy_max), limits.vy_max),
+        )
+        if inside == command:
+            return inside, False
+        excess = max(abs(v - inside.v), abs(w - inside.w), abs(vy - inside.vy))
         return inside, excess > _ROUNDING
 
 

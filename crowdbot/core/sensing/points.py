@@ -8,6 +8,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from crowdbot.core.geometry.rotation import rotation
+from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.immutable import immutable
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import Reading, SensorInfo
 
@@ -23,16 +25,21 @@ class LidarPoints:
     """
 
     def __init__(self, sensors: Mapping[str, SensorInfo]) -> None:
-        self._beams: dict[str, tuple[Array, Array]] = {}
-        self._longest: dict[str, Array] = {}
+        self._beams: dict[str, tuple[float, float, Array, Array]] = {}
         for name, info in sensors.items():
             if info.category == "lidar" and info.angles is not None and info.angles.ndim == 1:
+                x, y, _, yaw = map(float, info.mount)
                 if any(info.tilt):
-                    rays, self._longest[name] = _tilted(info)
+                    rays, longest = _tilted(info)
                 else:
-                    angle = info.angles + info.mount[3]
+                    angle = info.angles + yaw
                     rays = np.column_stack([np.cos(angle), np.sin(angle)])
-                self._beams[name] = (np.array(info.mount[:2]), rays)
+                    longest = np.full(len(rays), math.inf)
+                self._beams[name] = x, y, np.ascontiguousarray(rays), longest
+        self._most = sum(len(longest) for _, _, _, longest in self._beams.values())
+        # Compiles what is not compiled yet, for what a planner is given: read-only readings.
+        nothing = {n: Reading(0.0, immutable(b[3])) for n, b in self._beams.items()}
+        self(nothing, 0.0, (0.0, 0.0))
 
     def __len__(self) -> int:
         """Number of lidars."""
@@ -54,19 +61,33 @@ class LidarPoints:
         Returns:
             (P, 2) x forward, y left of base_link, m; new.
         """
-        parts = []
-        for name, (mount, rays) in self._beams.items():
+        out, count = np.empty((self._most, 2)), 0
+        for name, (x, y, rays, longest) in self._beams.items():
             if name in readings:
-                ranges = readings[name].values
-                hit = np.isfinite(ranges)
-                if name in self._longest:
-                    hit &= ranges < self._longest[name]
-                (at,) = hit.nonzero()  # faster than the mask: half the time
-                points = rays.take(at, axis=0)
-                points *= ranges.take(at)[:, None]
-                points += mount
-                parts.append(_moved(points, t - readings[name].stamp, twist, vy))
-        return np.concatenate(parts) if parts else np.empty((0, 2))
+                stamp, ranges, _ = readings[name]
+                if ranges.shape != longest.shape:
+                    raise ValueError(f"{name} has {len(longest)} beams, not {ranges.shape}")
+                first, count = count, _add_points(ranges, longest, rays, x, y, out, count)
+                if t > stamp:
+                    out[first:count] = _moved(out[first:count], t - stamp, twist, vy)
+        return out[:count]
+
+
+@kernel
+def _add_points(
+    ranges: Array, longest: Array, rays: Array, x: float, y: float, out: Array, count: int
+) -> int:
+    """Add where the beams of a lidar at (x, y) hit something to ``count`` points in ``out``.
+
+    Returns:
+        how many points there are now.
+    """
+    for k in range(ranges.shape[0]):
+        if -math.inf < ranges[k] < longest[k]:
+            out[count, 0] = rays[k, 0] * ranges[k] + x
+            out[count, 1] = rays[k, 1] * ranges[k] + y
+            count += 1
+    return count
 
 
 def _tilted(info: SensorInfo) -> tuple[Array, Array]:
@@ -88,7 +109,7 @@ def _tilted(info: SensorInfo) -> tuple[Array, Array]:
 def _moved(points: Array, age: float, twist: tuple[float, float], vy: float) -> Array:
     """Points seen ``age`` seconds ago, in the frame of a robot that has moved on since."""
     v, w = twist
-    if age <= 0.0 or (v == 0.0 and w == 0.0 and vy == 0.0):
+    if v == 0.0 and w == 0.0 and vy == 0.0:
         return points
     turn = w * age
     half, full = (math.cos(turn / 2.0), math.sin(turn / 2.0)), (math.cos(turn), math.sin(turn))

@@ -56,8 +56,8 @@ class Slot:
     memory: slice
 
     def reading(self, state: Array) -> Reading:
-        """The latest reading, copied and read-only."""
-        values = state[self.values].reshape(self.info.shape).copy()
+        """The latest reading, as a part of the state that is read-only."""
+        values = state[self.values].reshape(self.info.shape)
         values.setflags(write=False)
         return Reading(float(state[self.stamp]), values)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compile import array_kernel, kernel
 from crowdbot.core.types.arrays import Array
 
 Order = NDArray[np.int64]
@@ -41,12 +41,12 @@ def stable_order(values: Array) -> Order:
     return order
 
 
-@array_kernel
+@kernel
 def _before(a: float, b: float) -> bool:
     return bool(a < b or (b != b and a == a))
 
 
-@array_kernel
+@kernel
 def _sort_short(values: Array, order: Order, first: int, end: int) -> None:
     """Write the order of values [first, end) there, by insertion."""
     for i in range(first, end):
@@ -57,7 +57,7 @@ def _sort_short(values: Array, order: Order, first: int, end: int) -> None:
         order[place] = i
 
 
-@array_kernel
+@kernel
 def _merge(values: Array, order: Order, merged: Order, first: int, middle: int, end: int) -> None:
     """Merge the sorted parts [first, middle) and [middle, end) of an order."""
     i, j = first, middle

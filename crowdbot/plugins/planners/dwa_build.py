@@ -20,12 +20,14 @@ from crowdbot.core.interfaces import (
     SensorInfo,
     Task,
 )
+from crowdbot.core.support.immutable import immutable
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
 from crowdbot.plugins.planners.dwa import DwaSpec
+from crowdbot.plugins.planners.dwa_evaluate_build import evaluate
 from crowdbot.plugins.planners.dwa_map_build import AIM, remembered, way_out
 from crowdbot.plugins.planners.dwa_points_build import (
     apart,
-    apparent_velocity,
+    apparent_velocities,
     choose_direction,
     nearest_per_sector,
     walkers,
@@ -34,7 +36,7 @@ from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.heading_by_walls_build import HeadingByWalls, compile_heading
 from crowdbot.plugins.planners.lidar_views_build import LidarViews
 from crowdbot.plugins.planners.manoeuvring_build import Manoeuvring
-from crowdbot.plugins.planners.people_build import carry, people_in, with_discs
+from crowdbot.plugins.planners.people_build import carry, people_and_points, with_discs
 from crowdbot.plugins.planners.robot_outline_build import core_of, disc_radius, swept_half_width
 
 _SECTORS = 240
@@ -121,9 +123,12 @@ class Dwa:
         """Two steps in a made-up world, so that no step of the run waits for a compiler."""
         way_out(np.ones((1, 2)), 0.0, 0.0, 9.0, 0.0, 99.0)  # no way at all is soon found
         apart(np.ones((1, 2)), np.ones((1, 2)), _LEGS)
+        nearest_per_sector(with_discs(np.ones((1, 2)), np.ones((1, 2)), 0.1), _SECTORS, _REACH)
         compile_heading()
         for t in (0.0, self._spec.look_back):
-            readings = {n: Reading(t, np.full(s.shape, 1.0 + t)) for n, s in sensors.items()}
+            readings = {
+                n: Reading(t, immutable(np.full(s.shape, 1.0 + t))) for n, s in sensors.items()
+            }
             self.step(
                 Observation(
                     t=t,
@@ -168,7 +173,6 @@ class Dwa:
             if self._manoeuvring is not None:
                 self._manoeuvring.forget()
         direction, free = self._choose(pose, goal, room, points, velocities, escaping)
-        near, moving = rollout.reachable(points, velocities, self._p)
         top = min(
             self._spec.speed * self._limits.v_max, braking_speed(distance, self._limits.a_max)
         )
@@ -177,9 +181,9 @@ class Dwa:
         else:
             candidates, facing = self._window(obs.twist, direction, top, escaping), direction
         now = (*obs.twist, obs.vy)
-        index, _ = rollout.evaluate(
-            near,
-            moving,
+        index, _ = evaluate(
+            points,
+            velocities,
             self._p,
             self._core,
             now,
@@ -197,14 +201,13 @@ class Dwa:
     def _see(self, t: float, pose: Pose, seen: Array) -> tuple[Array, Array]:
         """Thinned points and their velocities (K, 2), base frame."""
         radius = self._spec.person_radius
-        people, rest = people_in(seen, _REACH if radius else 0.0)
-        points = nearest_per_sector(with_discs(rest, people, radius), _SECTORS, _REACH)
+        people, rest, points = people_and_points(seen, _REACH, radius, _SECTORS)
         velocities, going = np.zeros(points.shape), np.zeros(people.shape)
         self._around = rest, people, going
         self._stands, self._walkers = seen, np.empty((0, 4))
         c, s = math.cos(pose.yaw), math.sin(pose.yaw)
         to_world, here = np.array([[c, s], [-s, c]]), np.array([pose.x, pose.y])  # of row vectors
-        now, middles = points @ to_world, people @ to_world
+        now, middles = points.dot(to_world), people.dot(to_world)
         now += here
         middles += here
         while len(self._scans) > 1 and self._scans[1][0] <= t - self._spec.look_back:
@@ -213,8 +216,8 @@ class Dwa:
             then, before, others = self._scans[0]
             dt, fastest = t - then, self._spec.max_obstacle_speed
             if dt >= 0.5 * self._spec.look_back:
-                velocities = apparent_velocity(now, before, dt, _STILL, fastest) @ to_world.T
-                going = apparent_velocity(middles, others, dt, _STILL, fastest) @ to_world.T
+                moves = apparent_velocities(now, before, middles, others, dt, _STILL, fastest)
+                velocities, going = (m.dot(to_world.T) for m in moves)
                 carry(points, velocities, people, going, radius)
                 self._stand_apart(rest, people, going)
                 if self._manoeuvring is not None:

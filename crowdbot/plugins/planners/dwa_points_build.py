@@ -6,12 +6,15 @@ import math
 
 import numpy as np
 
+from crowdbot.core.geometry.rough_angle import rough_angle
 from crowdbot.core.interfaces import Array, Mask, kernel
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.support.stable_order import stable_order
 
 #: Directions that are tried on either side of the goal's.
 _HALF = 24
+#: More than a rough angle is off, turns.
+_DOUBT = 5e-6
 
 
 @kernel
@@ -20,13 +23,13 @@ def wrapped(angle: float) -> float:
     return angle - 2.0 * math.pi * round(angle / (2.0 * math.pi))
 
 
-@array_kernel
+@kernel
 def unsigned(angle: float) -> float:
     """The size of an angle, in [0, pi] rad."""
     return abs(wrapped(angle))
 
 
-@array_kernel
+@kernel
 def minimum(values: Array) -> float:
     """The least of (N,) numbers, none of them NaN; inf for none. Overwrites them.
 
@@ -41,6 +44,16 @@ def minimum(values: Array) -> float:
             values[i] = b if b < a else a
         count = half
     return float(values[0]) if count else math.inf
+
+
+@kernel
+def _sector(x: float, y: float, sectors: int) -> int:
+    """In which of the equal sectors of the full turn a point lies."""
+    at = (rough_angle(x, y) / (2.0 * math.pi) + 0.5) * sectors
+    within = at - math.floor(at)
+    if _DOUBT * sectors < within < 1.0 - _DOUBT * sectors:
+        return int(at)
+    return int((math.atan2(y, x) / (2.0 * math.pi) + 0.5) * sectors) % sectors
 
 
 @array_kernel
@@ -64,7 +77,7 @@ def nearest_per_sector(points: Array, sectors: int, reach: float) -> Array:
         square = x * x + y * y
         if square >= reach * reach:
             continue
-        at = int((math.atan2(y, x) / (2.0 * math.pi) + 0.5) * sectors) % sectors
+        at = _sector(x, y, sectors)
         if square < best[at]:
             best[at], index[at] = square, i
     out = np.empty((sectors, 2))
@@ -126,6 +139,23 @@ def apparent_velocity(
     return out
 
 
+@array_kernel
+def apparent_velocities(
+    now: Array,
+    before: Array,
+    people: Array,
+    others: Array,
+    dt: float,
+    slowest: float,
+    fastest: float,
+) -> tuple[Array, Array]:
+    """`apparent_velocity` of points, and of people among those before."""
+    return (
+        apparent_velocity(now, before, dt, slowest, fastest),
+        apparent_velocity(people, others, dt, slowest, fastest),
+    )
+
+
 @kernel
 def _first_from(points: Array, least: float, guess: int) -> int:
     """The first place among points in the order of x whose x is not below ``least``."""
@@ -171,7 +201,7 @@ def walkers(people: Array, velocities: Array, near: float, speed: float) -> tupl
     return count, walk
 
 
-@array_kernel
+@kernel
 def free_time(
     points: Array, velocities: Array, vx: float, vy: float, radius: float, limit: float
 ) -> float:
@@ -196,7 +226,7 @@ def free_time(
     return best
 
 
-@array_kernel
+@kernel
 def choose_direction(
     points: Array,
     velocities: Array,

@@ -1,4 +1,4 @@
-"""Rollouts of the dynamic window: candidates × time × points; compiled."""
+"""Rollouts of the dynamic window: time × points; and the candidates; compiled."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from crowdbot.core.interfaces import Array, kernel
 from crowdbot.core.support.compile import array_kernel
-from crowdbot.plugins.planners.dwa_points_build import minimum, unsigned
+from crowdbot.plugins.planners.dwa_points_build import minimum
 from crowdbot.plugins.planners.robot_outline_build import nearest_to_core
 
 #: Steps of a rollout, s.
@@ -25,7 +25,7 @@ _ASIDE = tuple(math.radians(a) for a in (0.0, 20.0, -20.0, 45.0, -45.0, 90.0, -9
 #: A rollout may come this much closer to a point that is within the margin already, m.
 _SLACK = 1e-3
 #: More than what distances may be off by rounding, m.
-_ROUNDING = 1e-9
+ROUNDING = 1e-9
 
 
 @kernel
@@ -33,10 +33,8 @@ def _slewed(value: float, target: float, change: float) -> float:
     return min(max(target, value - change), value + change)
 
 
-@array_kernel
-def _slewed_planar(
-    v: float, vy: float, vt: float, vyt: float, change: float
-) -> tuple[float, float]:
+@kernel
+def slewed_planar(v: float, vy: float, vt: float, vyt: float, change: float) -> tuple[float, float]:
     """A velocity whose change is limited as a vector, as the robot's is."""
     if vy == vyt:
         return _slewed(v, vt, change), vy
@@ -58,7 +56,7 @@ def foreseen(points: Array, velocities: Array, p: Array) -> Array:
     return out
 
 
-@array_kernel
+@kernel
 def _nearest(
     points: Array, core: Array, x: float, y: float, angle: float, spin: float, square: Array
 ) -> float:
@@ -87,9 +85,9 @@ def reachable(points: Array, velocities: Array, p: Array) -> tuple[Array, Array]
     near, moving, count = np.empty(points.shape), np.empty(points.shape), 0
     for i in range(points.shape[0]):
         x, y, vx, vy = points[i, 0], points[i, 1], velocities[i, 0], velocities[i, 1]
-        speed = p[V_MAX] + math.hypot(vx, vy) + p[GROWTH]
+        speed = p[V_MAX] + math.sqrt(vx * vx + vy * vy) + p[GROWTH] + ROUNDING
         reach = p[REACH] + max(p[COMFORT], p[MARGIN]) + speed * p[HORIZON]
-        if math.hypot(x, y) < reach:
+        if math.sqrt(x * x + y * y) < reach:
             near[count, 0], near[count, 1], moving[count, 0], moving[count, 1] = x, y, vx, vy
             count += 1
     return near[:count], moving[:count]
@@ -100,7 +98,7 @@ def rollouts(ahead: Array) -> tuple[Array, Array, Array]:
     """What rollouts among points as `foreseen` may share: known distances, turns, and scratch.
 
     Known is, for each step, a pose x, y (m), angle (rad) and its distance to the nearest point, m.
-    Turns are as `_turn_of`; candidates have seldom more than 24.
+    Turns are as `turn_of`; candidates have seldom more than 24.
     """
     known = np.zeros((ahead.shape[0], 4))
     known[:, 3] = -math.inf
@@ -108,7 +106,7 @@ def rollouts(ahead: Array) -> tuple[Array, Array, Array]:
 
 
 @kernel
-def _turn_of(turns: Array, w: float, target: float, p: Array) -> int:
+def turn_of(turns: Array, w: float, target: float, p: Array) -> int:
     """Among turns (N, S + 1, 3), that of a robot whose yaw rate (rad/s) goes to a target.
 
     Of each: for every step the angle after it (rad), cosine and sine of that in its middle; first
@@ -121,19 +119,20 @@ def _turn_of(turns: Array, w: float, target: float, p: Array) -> int:
         if turns[at, 0, 0] == w and turns[at, 0, 1] == target:
             return at
     turns[at, 0, 0], turns[at, 0, 1], turns[at, 0, 2] = w, target, 1.0
-    angle = 0.0
+    angle, c, s, before = 0.0, 1.0, 0.0, 0.0
     for k in range(1, turns.shape[1]):
         goal = target if k * STEP <= p[TURN_TIME] else 0.0
         w_next = _slewed(w, goal, p[ALPHA_MAX] * STEP)
         middle = angle + (w + w_next) / 4.0 * STEP
         angle += (w + w_next) / 2.0 * STEP
-        turns[at, k, 0] = angle
-        turns[at, k, 1], turns[at, k, 2] = math.cos(middle), math.sin(middle)
+        if middle != before:  # after the turn it stays as it is
+            c, s, before = math.cos(middle), math.sin(middle), middle
+        turns[at, k, 0], turns[at, k, 1], turns[at, k, 2] = angle, c, s
         w = w_next
     return at
 
 
-@array_kernel
+@kernel
 def roll(
     ahead: Array,
     p: Array,
@@ -164,18 +163,18 @@ def roll(
     if known[0, 3] == -math.inf:  # all begin at the same pose
         known[0, 3] = _nearest(ahead[0], core, 0.0, 0.0, 0.0, spin, scratch)
     need = min(p[MARGIN], known[0, 3] - p[RADIUS] - _SLACK)
-    turn = turns[_turn_of(turns, now[1], target[1], p)]
+    turn = turns[turn_of(turns, now[1], target[1], p)]
     v, _, vy = now
     x = y = angle = close = 0.0
     for k in range(1, ahead.shape[0]):
         t = k * STEP
-        v_next, vy_next = _slewed_planar(v, vy, target[0], target[2], p[A_MAX] * STEP)
+        v_next, vy_next = slewed_planar(v, vy, target[0], target[2], p[A_MAX] * STEP)
         angle, c, s = turn[k, 0], turn[k, 1], turn[k, 2]
         x += (v + v_next) / 2.0 * STEP * c - (vy + vy_next) / 2.0 * STEP * s
         y += (v + v_next) / 2.0 * STEP * s + (vy + vy_next) / 2.0 * STEP * c
         v, vy = v_next, vy_next
         dx, dy = x - known[k, 0], y - known[k, 1]
-        least = known[k, 3] - math.sqrt(dx * dx + dy * dy) - _ROUNDING - p[RADIUS]
+        least = known[k, 3] - math.sqrt(dx * dx + dy * dy) - ROUNDING - p[RADIUS]
         least -= spin * abs(angle - known[k, 2])
         if least >= need and _closeness(least, t, p) <= close:
             continue
@@ -188,14 +187,14 @@ def roll(
     return x, y, angle, p[HORIZON], close
 
 
-@array_kernel
+@kernel
 def _closeness(gap: float, t: float, p: Array) -> float:
     """How much a gap (m) at a time (s) counts; falls as the gap grows."""
     doubt = 1.0 - (gap - p[GROWTH] * t) / p[COMFORT]
     return float(min(1.0, doubt) * (1.0 - 0.5 * t / p[HORIZON]))
 
 
-@array_kernel
+@kernel
 def _evenly(first: float, last: float, values: Array) -> None:
     """Fill (N,) with even steps from the first to the last, N > 1."""
     steps = values.shape[0] - 1
@@ -259,70 +258,8 @@ def candidates_aside(
         for j in range(len(_ASIDE) if k > 0 else 1):
             speed, angle = top * k / (speeds - 1), direction + _ASIDE[j]
             v, vy = speed * math.cos(angle), speed * math.sin(angle)
-            v, vy = _slewed_planar(now[0], now[1], v, vy, change)
+            v, vy = slewed_planar(now[0], now[1], v, vy, change)
             for i in range(rates.shape[0]):
                 out[count, 0], out[count, 1], out[count, 2] = v, rates[i], vy
                 count += 1
     return out
-
-
-@array_kernel
-def evaluate(
-    points: Array,
-    velocities: Array,
-    p: Array,
-    core: Array,
-    now: tuple[float, float, float],
-    candidates: Array,
-    direction: float,
-    facing: float,
-    last: tuple[float, float, float],
-) -> tuple[int, float]:
-    """The best admissible candidate.
-
-    A candidate is admissible if the robot, after following it, can still stop before the first
-    predicted hit. Standing still is always a candidate's right, and turning on the spot is that
-    of a round robot, which moves no point by it.
-
-    Args:
-        points: (K, 2) base frame, m.
-        velocities: (K, 2) base frame, m/s.
-        p: (17,) parameters, in the order of the constants above.
-        core: of the robot's outline, as `robot_outline_build.core_of`.
-        now: present v, w, vy: m/s forward, rad/s, m/s to the left.
-        candidates: (C, 3) targets v, w, vy; or (C, 2), which go straight ahead.
-        direction: bearing in which progress counts, rad.
-        facing: bearing to which the robot should turn, rad.
-        last: last command, v, w, vy.
-
-    Returns:
-        its index, -1 if none is admissible; its cost.
-    """
-    best, index = math.inf, -1
-    ahead = foreseen(points, velocities, p)
-    known, turns, scratch = rollouts(ahead)
-    ux, uy = math.cos(direction), math.sin(direction)
-    going, outlined = math.hypot(now[0], now[2]), core.shape[0] > 0
-    for k in range(candidates.shape[0]):
-        vt, wt = candidates[k, 0], candidates[k, 1]
-        vyt = candidates[k, 2] if candidates.shape[1] > 2 else 0.0
-        x, y, angle, hit, close = roll(ahead, p, core, now, (vt, wt, vyt), known, turns, scratch)
-        stop = max(going, math.hypot(vt, vyt)) / p[A_MAX]
-        if outlined:
-            stop = max(stop, max(abs(now[1]), abs(wt)) / p[ALPHA_MAX])
-        moves = vt != 0.0 or vyt != 0.0 or (outlined and wt != 0.0)
-        if moves and hit < stop + 2.0 * p[PERIOD]:
-            continue
-        made = (x * ux + y * uy) / (p[V_MAX] * p[HORIZON])
-        off = unsigned(angle - facing) / math.pi
-        change = abs(vt - last[0]) / p[V_MAX] + abs(wt - last[1]) / p[W_MAX]
-        cost = (
-            p[PROGRESS] * (1.0 - made)
-            + p[HEADING] * off
-            + p[CLEARANCE] * close
-            + p[IMPACT] * (1.0 - hit / p[HORIZON])
-            + p[SMOOTHNESS] * (change + abs(vyt - last[2]) / p[V_MAX])
-        )
-        if cost < best:
-            best, index = cost, k
-    return index, best

@@ -47,9 +47,8 @@ def directions(points: Array, out: Array) -> float:
             continue
         bent = 0.0
         for k in range(i + 1, i + _RUN - 1):
-            aside = abs(dx * (points[k, 1] - y) - dy * (points[k, 0] - x)) / long
-            bent = max(bent, aside)
-        if bent > _BEND:
+            bent = max(bent, abs(dx * (points[k, 1] - y) - dy * (points[k, 0] - x)))
+        if bent / long > _BEND:
             continue
         at = math.atan2(dy, dx) / math.pi * BINS
         below = math.floor(at)
@@ -110,6 +109,26 @@ def learn(memory: Array, seen: Array, yaw: float, share: float) -> None:
                 memory[(k + shift + b) % BINS] += share * weight * seen[k]
 
 
+@kernel
+def heading(
+    points: Array, guess: float, knows: bool, memory: Array, seen: Array, filled: Indices
+) -> float:
+    """The yaw at which what is seen fits the memory, rad, which takes it in; NaN without walls.
+
+    Args:
+        points: as for `directions`.
+        guess: rad.
+        knows: whether the memory holds anything.
+        memory: (BINS,) changed in place.
+        seen, filled: (BINS,) scratch.
+    """
+    if directions(points, seen) < _FEW:
+        return math.nan
+    fitting = turned(memory, seen, guess, filled) if knows else guess
+    learn(memory, seen, fitting, _LEARN if knows else 1.0)
+    return fitting
+
+
 class HeadingByWalls:
     """Follows odometry, but turns as the walls say."""
 
@@ -128,12 +147,10 @@ class HeadingByWalls:
             points: (P, 2) what the lidars show now, base frame, m.
         """
         moved = odometry if self._odometry is None else self._after(self._odometry, odometry)
-        count = directions(points, self._seen)
         yaw = moved.yaw
-        if count >= _FEW:
-            knows, self._knows = self._knows, True
-            fitting = turned(self._memory, self._seen, yaw, self._filled) if knows else yaw
-            learn(self._memory, self._seen, fitting, _LEARN if knows else 1.0)
+        fitting = heading(points, yaw, self._knows, self._memory, self._seen, self._filled)
+        if not math.isnan(fitting):
+            self._knows = True
             yaw = fitting if abs(fitting - yaw) > _NOISE else yaw
         self._odometry, self._pose = odometry, Pose(moved.x, moved.y, yaw)
         return self._pose

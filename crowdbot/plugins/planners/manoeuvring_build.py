@@ -9,6 +9,7 @@ import numpy as np
 
 from crowdbot.core.interfaces import Array, Observation, Pose, Reading, RobotLimits
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
+from crowdbot.plugins.planners.dwa_evaluate_build import evaluate
 from crowdbot.plugins.planners.dwa_map_build import islands
 from crowdbot.plugins.planners.dwa_points_build import nearest_per_sector
 from crowdbot.plugins.planners.legs_build import Legs
@@ -127,7 +128,7 @@ class Manoeuvring:
         tight[rollout.MARGIN] = _TIGHTEST
         self._held += float(self._p[rollout.PERIOD])
         for k, (v, w) in enumerate(wishes):
-            index, _ = rollout.evaluate(
+            index, _ = evaluate(
                 points, velocities, tight, self._core, now, np.array([[v, w]]), 0.0, 0.0, now
             )
             if index == 0:

@@ -13,11 +13,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Array
+from crowdbot.core.interfaces import Array, kernel
 from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugins.planners.dwa_points_build import nearest_per_sector
 
 #: Points farther apart than this, and a share of their distance, belong to two bodies, m.
 _GAP, _GAP_SHARE = 0.1, 0.015
+#: The square of a distance that is less than that, however near they are, m^2.
+_CLEARLY = 0.99 * _GAP**2
 #: Widest run of points that may be one leg, and two legs side by side, m.
 _LEG, _LEGS = 0.22, 0.55
 #: Legs of one person are no farther apart than this, m.
@@ -32,7 +35,7 @@ _NEAR = 0.8
 _ARC = 15
 
 
-@array_kernel
+@kernel
 def _runs(points: Array, first: NDArray[np.int64]) -> int:
     """Write where each run of neighbouring points begins; return how many there are."""
     count = 0
@@ -40,14 +43,17 @@ def _runs(points: Array, first: NDArray[np.int64]) -> int:
         x, y, apart = points[i, 0], points[i, 1], math.inf
         if i:
             dx, dy = x - points[i - 1, 0], y - points[i - 1, 1]
-            apart = math.sqrt(dx * dx + dy * dy)
+            square = dx * dx + dy * dy
+            if square < _CLEARLY:
+                continue  # most of them
+            apart = math.sqrt(square)
         if apart > _GAP + _GAP_SHARE * math.sqrt(x * x + y * y):  # hypot is five times as slow
             first[count] = i
             count += 1
     return count
 
 
-@array_kernel
+@kernel
 def _hidden(points: Array, edge: int, beside: int) -> bool:
     """Whether the end of a run is where something nearer begins to cover it."""
     if beside < 0 or beside >= points.shape[0]:
@@ -99,7 +105,7 @@ def _middles(legs: Array) -> Array:
         best, other = _STEP, -1
         for j in range(i + 1, legs.shape[0]):
             dx, dy = legs[i, 0] - legs[j, 0], legs[i, 1] - legs[j, 1]
-            if abs(dx) >= best or abs(dy) >= best:
+            if max(abs(dx), abs(dy)) >= best:
                 continue  # most of them
             apart = math.hypot(dx, dy)
             if not used[j] and legs[i, 2] + legs[j, 2] == 0.0 and apart < best:
@@ -128,8 +134,14 @@ def people_in(points: Array, reach: float) -> tuple[Array, Array]:
     kept = np.ones(points.shape[0], dtype=np.bool_)
     for k in range(legs.shape[0]):
         if math.hypot(legs[k, 0], legs[k, 1]) > _NEAR:
-            kept[int(legs[k, 3]) : int(legs[k, 4])] = False
-    return _middles(legs), points[kept]
+            for i in range(int(legs[k, 3]), int(legs[k, 4])):
+                kept[i] = False
+    rest, count = np.empty(points.shape), 0
+    for i in range(points.shape[0]):
+        if kept[i]:
+            rest[count, 0], rest[count, 1] = points[i, 0], points[i, 1]
+            count += 1
+    return _middles(legs), rest[:count]
 
 
 @array_kernel
@@ -160,16 +172,34 @@ def with_discs(points: Array, people: Array, radius: float) -> Array:
     return out[:count]
 
 
-@array_kernel
+@kernel
 def carry(points: Array, velocities: Array, people: Array, going: Array, radius: float) -> None:
     """Give the points on people's discs, in place, the velocities (K, 2) of the people."""
     for i in range(points.shape[0]):
         best = radius + 0.05
         for k in range(people.shape[0]):
             dx, dy = points[i, 0] - people[k, 0], points[i, 1] - people[k, 1]
-            if abs(dx) >= best or abs(dy) >= best:
+            if max(abs(dx), abs(dy)) >= best:
                 continue  # most of them
             gap = math.hypot(dx, dy)
             if gap < best:
                 best = gap
                 velocities[i, 0], velocities[i, 1] = going[k, 0], going[k, 1]
+
+
+@array_kernel
+def people_and_points(
+    seen: Array, reach: float, radius: float, sectors: int
+) -> tuple[Array, Array, Array]:
+    """What the robot has to do with: `people_in`, and the nearest points of all there is.
+
+    Args:
+        seen, reach: as for `people_in`, but that nobody is looked for where the radius is 0.
+        radius: of the discs of people, m.
+        sectors: as for `nearest_per_sector`, with the same reach.
+
+    Returns:
+        as `people_in`; (S, 2) as `nearest_per_sector`.
+    """
+    people, rest = people_in(seen, reach if radius > 0.0 else 0.0)
+    return people, rest, nearest_per_sector(with_discs(rest, people, radius), sectors, reach)

@@ -55,3 +55,9 @@ def test_old_scans_turn_with_the_robot() -> None:
     points = LidarPoints({"rear": REAR})
     got = points({"rear": Reading(0.0, np.array([2.8]))}, 0.5, (0.0, 1.0))
     assert got[0] == pytest.approx([-3.0 * math.cos(0.5), 3.0 * math.sin(0.5)], abs=1e-12)
+
+
+def test_a_scan_of_another_lidar_is_refused() -> None:
+    points = LidarPoints({"front": FRONT})
+    with pytest.raises(ValueError, match="front has 3 beams"):
+        points({"front": Reading(0.0, np.ones(4))}, 0.0, (0.0, 0.0))

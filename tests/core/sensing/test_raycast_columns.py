@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crowdbot.core.sensing.raycast_columns import DEEPEST, RayGrid, rough_angle, rough_half
+from crowdbot.core.geometry.rough_angle import rough_angle
+from crowdbot.core.sensing.raycast_columns import DEEPEST, RayGrid, rough_half
 from tests.core.sensing.sensing_worlds import scene_of, world
 from tests.examples import costly
 

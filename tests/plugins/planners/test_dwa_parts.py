@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
+from crowdbot.plugins.planners.dwa_evaluate_build import evaluate
 from crowdbot.plugins.planners.dwa_map_build import remembered, way_out
 from crowdbot.plugins.planners.dwa_points_build import (
     apart,
@@ -32,6 +33,9 @@ def points(*where: tuple[float, float]) -> Array:
 def test_thinning_keeps_the_nearest_of_each_sector(seed: int) -> None:
     rng = np.random.default_rng(seed)
     cloud = rng.uniform(-8, 8, (int(rng.integers(0, 200)), 2))
+    edge = np.deg2rad(10.0) * rng.integers(-18, 18, 30) + rng.uniform(-2e-5, 2e-5, 30)
+    at_edges = rng.uniform(1, 7, 30)[:, None] * np.column_stack([np.cos(edge), np.sin(edge)])
+    cloud = np.concatenate([cloud, at_edges])
     thin = nearest_per_sector(cloud, 36, 6.0)
     sector = ((np.arctan2(cloud[:, 1], cloud[:, 0]) / (2 * np.pi) + 0.5) * 36).astype(int) % 36
     gap = np.hypot(*cloud.T)
@@ -209,7 +213,7 @@ def test_what_is_chosen_can_stop_before_anything_still(v: float, gap: float, see
     speeds, rates = np.meshgrid(np.linspace(max(0.0, v - 0.5), v, 6), np.linspace(-1, 1, 9))
     candidates = np.column_stack([speeds.ravel(), rates.ravel()])
     p = parameters()
-    index, cost = rollout.evaluate(
+    index, cost = evaluate(
         still, np.zeros_like(still), p, NOTHING, (v, 0.0, 0.0), candidates, 0.0, 0.0, (v, 0.0, 0.0)
     )
     if index < 0:
@@ -221,15 +225,37 @@ def test_what_is_chosen_can_stop_before_anything_still(v: float, gap: float, see
     assert np.hypot(*still.T).min() - way > 0.2
 
 
+@settings(max_examples=60)
+@given(st.integers(0, 40), st.floats(0.3, 3.0), st.integers(0, 2**32 - 1))
+def test_whoever_is_passed_over_would_not_have_won(count: int, horizon: float, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    cloud, speeds = rng.uniform(-2.0, 2.0, (count, 2)), rng.uniform(-1.0, 1.0, (count, 2))
+    names = "PROGRESS", "HEADING", "CLEARANCE", "IMPACT"
+    weights = dict(zip(names, rng.uniform(0.0, 2.0, 4) * rng.integers(0, 2, 4), strict=True))
+    p = parameters(HORIZON=horizon, TURN_TIME=9.0, GROWTH=0.05, SMOOTHNESS=0.1, **weights)
+    wishes = np.round(rng.uniform(-1.0, 1.0, (20, 2 + seed % 2)), 1)
+    wishes[::2, 1] *= 3.0  # in circles: not all who are stopped would have come farther
+    state = (0.3, 0.1, 0.0), (0.2, 0.0, 0.0)
+
+    def chosen(which: Array) -> tuple[int, float]:
+        now, last = state
+        found: tuple[int, float] = evaluate(cloud, speeds, p, NOTHING, now, which, 0.4, -0.3, last)
+        return found
+
+    costs = [chosen(wishes[k : k + 1])[1] for k in range(len(wishes))]
+    best = min(costs)
+    assert chosen(wishes) == (costs.index(best) if best < math.inf else -1, best)
+
+
 def test_no_candidate_is_admissible_before_a_wall() -> None:
     wall = points((0.35, -0.1), (0.35, 0.0), (0.35, 0.1))
     moving = np.array([[1.0, 0.0], [0.8, 0.0]])
     rest = np.zeros_like(wall)
     p = parameters()
     zero, fast = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)
-    assert rollout.evaluate(wall, rest, p, NOTHING, fast, moving, 0.0, 0.0, zero)[0] == -1
+    assert evaluate(wall, rest, p, NOTHING, fast, moving, 0.0, 0.0, zero)[0] == -1
     spot = np.array([[0.0, 1.0]])
-    assert rollout.evaluate(wall, rest, p, NOTHING, zero, spot, 0.0, 0.0, zero)[0] == 0
+    assert evaluate(wall, rest, p, NOTHING, zero, spot, 0.0, 0.0, zero)[0] == 0
 
 
 def test_reachable_drops_only_what_cannot_matter() -> None:

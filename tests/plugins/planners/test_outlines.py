@@ -19,6 +19,7 @@ from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
+from crowdbot.plugins.planners.dwa_evaluate_build import evaluate
 from crowdbot.plugins.planners.dwa_map_build import islands
 from crowdbot.plugins.planners.legs_build import Legs
 from crowdbot.plugins.planners.manoeuvre_build import manoeuvre
@@ -100,7 +101,7 @@ def test_a_long_robot_does_not_turn_into_what_stands_beside_it() -> None:
     p, zero = parameters(), (0.0, 0.0, 0.0)
     for turn, index in ((-1.0, 0), (1.0, -1)):  # its front swings away from it, or into it
         wish = np.array([[0.0, turn]])
-        found = rollout.evaluate(beside, 0.0 * beside, p, BOX, zero, wish, 0.0, 0.0, zero)
+        found = evaluate(beside, 0.0 * beside, p, BOX, zero, wish, 0.0, 0.0, zero)
         assert found[0] == index
 
 
