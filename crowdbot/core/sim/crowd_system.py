@@ -2,7 +2,7 @@
 
 The event is unrestricted, so it runs before the plant's discrete update: the force on the robot
 and the reaction on people come from one computation on one state, and balance exactly
-(docs/decisions/0004).
+(docs/decisions/0004). Trips and contacts that end go to the recording from here.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from pydrake.systems.framework import (
     Context,
     DiagramBuilder,
     DiscreteStateIndex,
-    LeafSystem,
     OutputPort,
     State,
 )
@@ -21,7 +20,9 @@ from pydrake.systems.framework import (
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.geometry.footprint import footprint_of_model
+from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.bodies import SEEN, rows_of
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
@@ -45,13 +46,9 @@ class CrowdOutputs(Protocol):
     def state(self) -> OutputPort:
         """Their flat state."""
 
-    @property
-    def events(self) -> OutputPort:
-        """How many of their trips, and of their contacts with the robot, have ended."""
 
-
-class CrowdSystem(LeafSystem):
-    """Input: robot state. Outputs: crowd state, events, force on the robot.
+class CrowdSystem(Block):
+    """Input: robot state. Outputs: crowd state, force on the robot.
 
     Attributes:
         engine: the people.
@@ -65,11 +62,17 @@ class CrowdSystem(LeafSystem):
         push: Push,
         robot: RobotModel,
         margin: float,
+        log: RunLog,
         tick: float = TICK,
     ) -> None:
-        """``margin``: how much larger than its body people take the robot for, m."""
+        """Take the people.
+
+        Args:
+            margin: how much larger than its body people take the robot for, m.
+            log: gets trips and contacts that end.
+        """
         super().__init__()
-        self._tick = tick
+        self._tick, self._log = tick, log
         self.engine, self._push = engine, push
         self._outline = footprint_of_model(robot).corners
         self._robot = rows_of([robot], margin)
@@ -77,12 +80,9 @@ class CrowdSystem(LeafSystem):
         self._port = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         crowd = self.DeclareDiscreteState(engine.initial_state())
         force = self.DeclareDiscreteState(push.size)
-        events = self.DeclareDiscreteState(1)
         self.DeclareStateOutputPort(ports.CROWD_STATE, crowd)
-        self.DeclareStateOutputPort(ports.EVENTS, events)
         self.DeclareStateOutputPort(ports.ROBOT_FORCE, force)
         self._crowd, self._force = DiscreteStateIndex(crowd), DiscreteStateIndex(force)
-        self._events = DiscreteStateIndex(events)
         self.DeclarePeriodicUnrestrictedUpdateEvent(tick, 0.0, self._update)
 
     def _update(self, context: Context, state: State) -> None:
@@ -96,12 +96,8 @@ class CrowdSystem(LeafSystem):
             return
         fx, fy, contacts, trips, torque = news
         self._push.write(values.get_mutable_value(self._force), fx, fy, torque)
-        values.get_mutable_value(self._events)[0] = contacts + trips
-
-    @property
-    def events(self) -> OutputPort:
-        """How many trips and contacts have ended."""
-        return self.GetOutputPort(ports.EVENTS)
+        if contacts + trips != self._log.events:
+            self._log.record_events(crowd)
 
     @property
     def state(self) -> OutputPort:
@@ -114,6 +110,7 @@ def add_crowd(
     built: BuiltRun,
     robot: ControlledRobot,
     engine: CrowdEngine | None,
+    log: RunLog,
     tick: float,
 ) -> CrowdSystem | None:
     """Add the people, if there are any, to a diagram; they and the robot push each other."""
@@ -121,7 +118,7 @@ def add_crowd(
         return None
     spec = built.scenario.crowd
     margin = spec.robot_response.margin if spec else 0.0
-    crowd = CrowdSystem(engine, robot.push, built.model, margin, tick)
+    crowd = CrowdSystem(engine, robot.push, built.model, margin, log, tick)
     builder.AddNamedSystem("crowd", crowd)
     builder.Connect(robot.port, crowd.GetInputPort(ports.ROBOT_STATE))
     if robot.push_port is not None:

@@ -5,15 +5,16 @@ The blocks hand their rows to the writer themselves, at the tick to which they b
 
 from __future__ import annotations
 
-from pydrake.systems.framework import Context, DiagramBuilder, LeafSystem
+from pydrake.systems.framework import Context, DiagramBuilder
 
 from crowdbot.core.recording import RecordingWriter
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 
 _PERIOD = 1.0  # s
 
 
-class Recorder(LeafSystem):
+class Recorder(Block):
     """No ports. Chunks end by simulated time, so that equal runs give equal files."""
 
     __slots__ = NO_ATTRIBUTES

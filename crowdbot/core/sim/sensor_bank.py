@@ -16,7 +16,6 @@ import numpy as np
 from pydrake.systems.framework import (
     Context,
     DiagramBuilder,
-    LeafSystem,
     State,
 )
 
@@ -29,6 +28,7 @@ from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sensing.sensor import Sensor, SensorWithMemory
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.companion import Companion, Company
 from crowdbot.core.sim.control import ControlledRobot
@@ -114,7 +114,7 @@ class Timetable:
         return tuple(n for n, rate in self._rates.items() if is_due(tick, rate))
 
 
-class SensorBank(LeafSystem):
+class SensorBank(Block):
     """Inputs: robot and crowd state. Output: latest readings of all sensors.
 
     Entry 0 of the output is the next tick at which a sensor may be due.

@@ -121,3 +121,18 @@ def test_a_parked_robot_is_not_touched() -> None:
     assert not np.any(people[:, s.TOUCHING])
     robot = world.robot()
     assert math.hypot(robot.x - x, robot.y - y) < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("y", "walker", "trips", "contacts"), [(0.35, 11.5, 0, 1), (3.0, 1.0, 1, 0)]
+)
+def test_what_ends_is_recorded_at_its_tick(
+    y: float, walker: float, trips: int, contacts: int
+) -> None:
+    """A person brushes past a robot that stands; another one arrives."""
+    world = rig(scenario(f"robots.robot.task.start=[10, {y}, 0]"), constant(0.0), person(walker))
+    for tick in range(1, 3 * 128):
+        world.advance(tick * TICK)
+        header, _ = s.view(world.crowd())
+        assert (world.log.trips, world.log.contacts) == (header[s.TRIPS], header[s.CONTACTS])
+    assert (len(world.memory.trips), len(world.memory.contacts)) == (trips, contacts)

@@ -76,9 +76,10 @@ def build_fleet(
         with _named(builder, built.name):
             robots.append(add_robot(builder, built.parts, built.model, built.robot.control))
 
-    crowd = add_fleet_crowd(builder, engine, builts, robots, fates)
+    logs = [r.log for r in fleet]
+    crowd = add_fleet_crowd(builder, engine, builts, robots, fates, log, logs)
     models = [built.model for built in builts]
-    contacts = add_fleet_contacts(builder, models, robots, fates, [r.log for r in fleet])
+    contacts = add_fleet_contacts(builder, models, robots, fates, logs)
 
     loggers = []
     for k, one in enumerate(fleet):

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pydrake.systems.framework import Context, DiagramBuilder, EventStatus, LeafSystem
+from pydrake.systems.framework import Context, DiagramBuilder, EventStatus
 
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.crowd_system import CrowdOutputs
 from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 
 
-class PeopleLogger(LeafSystem):
+class PeopleLogger(Block):
     """Input: crowd state. Samples it; ends the run when all robots have ended.
 
     To be added after what watches the robots: blocks publish in the order in which they came.
@@ -26,10 +27,9 @@ class PeopleLogger(LeafSystem):
         super().__init__()
         self._log, self._fates = log, tuple(fates)
         self._ticks_per_sample, self._last_tick = ticks(rate), -1
-        self._crowd = self._events = None
-        if crowd_size:
-            self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size)
-            self._events = self.DeclareVectorInputPort(ports.EVENTS, 1)
+        self._crowd = (
+            self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size) if crowd_size else None
+        )
         self.DeclarePeriodicPublishEvent(TICK, 0.0, self._publish)
 
     def _publish(self, context: Context) -> EventStatus | None:
@@ -37,19 +37,12 @@ class PeopleLogger(LeafSystem):
         if tick == self._last_tick:  # Initialize and the first step may both publish t = 0
             return None
         self._last_tick = tick
-        self._record_events(context)
         if tick % self._ticks_per_sample == 0:
             crowd = None if self._crowd is None else self._crowd.Eval(context)
             self._log.sample(tick * TICK, None, crowd)
         if all(fate.ended for fate in self._fates):
             return EventStatus.ReachedTermination(self, "all robots have ended")
         return None
-
-    def _record_events(self, context: Context) -> None:
-        if self._crowd is None or self._events is None:
-            return
-        if int(self._events.Eval(context)[0]) != self._log.events:
-            self._log.record_events(self._crowd.Eval(context))
 
     def finish(self, context: Context, t: float) -> None:
         """Record what is still going on; ``context`` is this system's own."""
@@ -68,5 +61,4 @@ def add_people_logger(
     builder.AddNamedSystem("people_logger", logger)
     if crowd is not None:
         builder.Connect(crowd.state, logger.GetInputPort(ports.CROWD_STATE))
-        builder.Connect(crowd.events, logger.GetInputPort(ports.EVENTS))
     return logger

@@ -12,10 +12,12 @@ from mcap.reader import make_reader
 from crowdbot.cli import main
 from crowdbot.core.realism.recordings import read_runs
 from crowdbot.core.recording import read_fleet, read_trajectories
+from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.runs.provenance import trajectory_hash
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 from tests.core.sim.fleet.fleets import PEOPLE, robot, run, scenario
 
@@ -169,3 +171,21 @@ def test_when_ended_is_outside_the_hash_while_it_is_as_usual(tmp_path: Path) -> 
     dumps = [str(one.model_dump(mode="json")) for one in (usual, leaves)]
     assert ["when_ended" in text for text in dumps] == [False, True]
     assert hashlib.sha256(dumps[0].encode()) != hashlib.sha256(dumps[1].encode())
+
+
+@pytest.mark.slow
+def test_what_ends_is_recorded_at_its_tick(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One after the other: the first robot brushes past somebody, and three people arrive."""
+    counts: dict[RunLog, list[tuple[int, int]]] = {}
+    record = RunLog.record_events
+
+    def recorded(log: RunLog, crowd: Array) -> None:
+        record(log, crowd)
+        seen = counts.setdefault(log, [])
+        if (now := (log.trips, log.contacts)) != (seen[-1] if seen else (0, 0)):
+            seen.append(now)
+
+    monkeypatch.setattr(RunLog, "record_events", recorded)
+    two = {n: robot(x, y, 180.0, "west", 8.0) for n, x, y in (("a", 2.0, 0.0), ("b", 4.0, 1.0))}
+    run(scenario(tmp_path, REGISTRY, two, PEOPLE), REGISTRY, tmp_path)
+    assert sorted(counts.values(), key=len) == [[], [(0, 1)], [(1, 0), (2, 0), (3, 0)]]
