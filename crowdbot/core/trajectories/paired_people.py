@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.trajectories.encounters import encounter, people
 from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_agent_steps
-from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.trajectories.trajectories import Trajectories, cached_beside
 from crowdbot.core.trajectories.trips import trip_samples
 from crowdbot.core.types.arrays import Array, Mask
 
@@ -76,13 +76,11 @@ class Pairing:
 
 @dataclass(frozen=True, slots=True)
 class _Way:
-    """One trip: its samples, positions and times since its beginning (K,); how long it took."""
+    """One trip: its samples; (3, K) x, y and time since its beginning; how long it took."""
 
-    rows: NDArray[np.intp]
+    rows: slice
     column: int
-    x: Array
-    y: Array
-    t: Array
+    path: Array
     seconds: float
     reached: bool
 
@@ -106,6 +104,21 @@ def whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> E
         alone: the same people without robot.
         pairing: who is compared.
     """
+    key = "whole_effects", pairing
+    return cached_beside(run, alone, key, lambda: _whole_effects(run, alone, pairing))
+
+
+def meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
+    """People who meet the robot, from the beginning of their first meeting to its end.
+
+    Only those count who until then walk as without the robot: the others were disturbed before,
+    by whom nobody knows. The run has to have a robot; otherwise as `whole_effects`.
+    """
+    key = "meeting_effects", pairing
+    return cached_beside(run, alone, key, lambda: _meeting_effects(run, alone, pairing))
+
+
+def _whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
     found: dict[int, list[tuple[float, float, float, float]]] = {}
     left_out = 0
     for pair in _pairs(run, alone, pairing.jump_speed):
@@ -123,12 +136,7 @@ def whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> E
     )
 
 
-def meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
-    """People who meet the robot, from the beginning of their first meeting to its end.
-
-    Only those count who until then walk as without the robot: the others were disturbed before,
-    by whom nobody knows. The run has to have a robot; otherwise as `whole_effects`.
-    """
+def _meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
     distance = encounter(run, pairing.jump_speed).distance
     rows, met, left_out = [], set[int](), 0
     for pair in _pairs(run, alone, pairing.jump_speed):
@@ -152,18 +160,18 @@ def meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) ->
 
 def _pairs(run: Trajectories, alone: Trajectories, jump_speed: float) -> list[_Pair]:
     """Trips that both runs have, by person and number; laid over one another once."""
-    done: dict[tuple[int, float], tuple[Trajectories, list[_Pair]]] = run.cached("pairs", dict)
-    key = id(alone), jump_speed
-    if key not in done:  # the run that is kept beside the pairs keeps its id
+
+    def lay() -> list[_Pair]:
         ways, others = _ways(run, jump_speed), _ways(alone, jump_speed)
         both = sorted(ways.keys() & others.keys())
-        pairs = [_Pair(k[0], ways[k], others[k], *_laid_over(ways[k], others[k])) for k in both]
-        done[key] = alone, pairs
-    return done[key][1]
+        return [_Pair(k[0], ways[k], others[k], *_laid_over(ways[k], others[k])) for k in both]
+
+    return cached_beside(run, alone, ("pairs", jump_speed), lay)
 
 
 def _starts_apart(pair: _Pair, pairing: Pairing) -> bool:
-    apart = math.hypot(pair.one.x[0] - pair.two.x[0], pair.one.y[0] - pair.two.y[0])
+    one, two = pair.one.path, pair.two.path
+    apart = math.hypot(one[0, 0] - two[0, 0], one[1, 0] - two[1, 0])
     return apart > pairing.same_start + _TOLERANCE
 
 
@@ -190,9 +198,8 @@ def _delay(pair: _Pair) -> float:
 
 def _laid_over(one: _Way, two: _Way) -> tuple[Array, Array]:
     """Distance from the other way (m), and how late there (s), at each sample (K,)."""
-    beside, late = np.empty(len(one.t)), np.empty(len(one.t))
-    first, other = (np.stack([way.x, way.y, way.t]) for way in (one, two))
-    follow(first, other, WINDOW, beside, late)
+    beside, late = np.empty((2, one.path.shape[1]))
+    follow(one.path, two.path, WINDOW, beside, late)
     return beside, late
 
 
@@ -202,41 +209,69 @@ def _ways(run: Trajectories, jump_speed: float) -> dict[tuple[int, int], _Way]:
     if trips is None or not agents.x.size:
         return {}
     x, y = inf_to_nan(agents.x), inf_to_nan(agents.y)
-    valid = valid_agent_steps(run.t, agents, jump_speed)
-    first, last, column = trip_samples(run)
+    parts = _continuous(run, jump_speed).tolist()
     found: dict[tuple[int, int], _Way] = {}
     count: dict[int, int] = {}
     for k in np.lexsort((trips.t0, trips.agent)).tolist():
-        who, c = int(trips.agent[k]), int(column[k])
+        who, (first, end, column) = int(trips.agent[k]), parts[k]
         count[who] = count.get(who, 0) + 1
-        rows = _continuous(valid[:, c], int(first[k]), int(last[k]))
-        if c >= 0 and len(rows) >= 2:
-            found[who, count[who]] = _Way(
-                rows=rows,
-                column=c,
-                x=x[rows, c],
-                y=y[rows, c],
-                t=run.t[rows] - trips.t0[k],
-                seconds=float(trips.t1[k] - trips.t0[k]),
-                reached=bool(trips.reached[k]),
-            )
+        if end - first < 2:
+            continue
+        rows, path = slice(first, end), np.empty((3, end - first))
+        path[0], path[1] = x[rows, column], y[rows, column]
+        np.subtract(run.t[rows], trips.t0[k], out=path[2])
+        found[who, count[who]] = _Way(
+            rows=rows,
+            column=column,
+            path=path,
+            seconds=float(trips.t1[k] - trips.t0[k]),
+            reached=bool(trips.reached[k]),
+        )
     return found
 
 
-def _continuous(valid: Mask, first: int, last: int) -> NDArray[np.intp]:
-    """Samples of the longest part of a trip without a teleport or absence."""
-    if last <= first:
-        return np.arange(0)
-    breaks = np.flatnonzero(~valid[first:last])
-    edges = np.concatenate([[-1], breaks, [last - first]])
-    longest = int(np.argmax(np.diff(edges)))
-    return first + np.arange(edges[longest] + 1, edges[longest + 1] + 1)
+def _continuous(run: Trajectories, jump_speed: float) -> NDArray[np.int64]:
+    """Of each trip (K, 3) the longest part without a teleport or absence.
+
+    Its first sample, the one behind its last, and the person's column; without a column no sample.
+    """
+    valid = valid_agent_steps(run.t, people(run), jump_speed)
+    first, last, column = trip_samples(run)
+    parts = np.zeros((len(column), 3), np.int64)
+    parts[:, 2] = column
+    longest_parts(valid, first, last, column, parts)
+    return parts
 
 
 def _walked(way: _Way) -> tuple[float, float]:
     """Length (m) and duration (s) of what was seen of a trip."""
-    length = np.hypot(np.diff(way.x), np.diff(way.y)).sum()
-    return float(length), float(way.t[-1] - way.t[0])
+    x, y, t = way.path
+    length = np.hypot(x[1:] - x[:-1], y[1:] - y[:-1]).sum()
+    return float(length), float(t[-1] - t[0])
+
+
+@kernel
+def longest_parts(
+    valid: Mask,
+    first: NDArray[np.int64],
+    last: NDArray[np.int64],
+    column: NDArray[np.int64],
+    parts: NDArray[np.int64],
+) -> None:
+    """Write where the longest part of each trip over valid steps begins and ends.
+
+    Args:
+        valid: (N-1, M) steps.
+        first, last, column: (K,) samples and person of each trip; -1: nobody.
+        parts: (K, 3) its first sample, and the one behind its last, are written.
+    """
+    for k in range(column.shape[0]):
+        begin, end = first[k], last[k] + 1 if column[k] >= 0 else first[k]
+        for sample in range(begin, end):
+            if sample - begin >= parts[k, 1] - parts[k, 0]:
+                parts[k, 0], parts[k, 1] = begin, sample + 1
+            if sample + 1 < end and not valid[sample, column[k]]:
+                begin = sample + 1
 
 
 @kernel

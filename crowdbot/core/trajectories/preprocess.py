@@ -78,6 +78,19 @@ def truncate_to_shorter(a: Trajectories, b: Trajectories) -> tuple[Trajectories,
     return truncate(a, float(a.t[0]) + shorter), truncate(b, float(b.t[0]) + shorter)
 
 
+def samples_of_shorter(a: Trajectories, b: Trajectories) -> tuple[Trajectories, Trajectories]:
+    """As `truncate_to_shorter`, for who asks for samples: the shorter run stays as it is.
+
+    Its trips and contacts may end after its last sample.
+    """
+    shorter = min(duration(a.t), duration(b.t))
+    first, second = (
+        run if duration(run.t) == shorter else truncate(run, float(run.t[0]) + shorter)
+        for run in (a, b)
+    )
+    return first, second
+
+
 def duration(t: Array) -> float:
     """From the first to the last sample, s."""
     return float(t[-1] - t[0])

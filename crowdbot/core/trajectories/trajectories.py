@@ -214,6 +214,16 @@ class Trajectories(FromRecordings):
         return run
 
 
+def cached_beside(
+    run: Trajectories, other: Trajectories, key: Hashable, compute: Callable[[], _Cached]
+) -> _Cached:
+    """As `Trajectories.cached`, what ``compute`` makes of a run and another one."""
+    done: dict[int, tuple[Trajectories, _Cached]] = run.cached(("beside", key), dict)
+    if id(other) not in done:  # the other run is kept as well, so that nothing else gets its id
+        done[id(other)] = other, _for_all(compute())
+    return done[id(other)][1]
+
+
 def _signals(signals: Mapping[str, ArrayLike]) -> dict[str, Array]:
     """Signals by name.
 
