@@ -155,15 +155,11 @@ class GoalsReader:
 
     def goals(self, first: int, count: int) -> Array:
         """(K, 2, M) of ``count`` samples; to be asked in their order."""
-        found = np.empty((count, *self._now.shape))
+        found = np.repeat(self._now[np.newaxis], count, axis=0)
         begin, end = np.searchsorted(self._sample, [first, first + count])
-        changes = self._sample[begin:end]
-        if not len(changes):
-            found[:] = self._now
-            return found
-        for k in range(count):
-            here = slice(*(begin + np.searchsorted(changes, [first + k, first + k + 1])))
-            self._now[0, self._person[here]] = self._x[here]
-            self._now[1, self._person[here]] = self._y[here]
-            found[k] = self._now
+        edges = begin + np.flatnonzero(np.diff(self._sample[begin:end], prepend=-1, append=-1))
+        for here in map(slice, edges[:-1], edges[1:]):  # what changes in one sample
+            since, who = self._sample[here.start] - first, self._person[here]
+            found[since:, 0, who], found[since:, 1, who] = self._x[here], self._y[here]
+            self._now = found[-1]
         return found

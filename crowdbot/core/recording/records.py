@@ -7,8 +7,10 @@ last whole chunk. What follows a broken chunk must be nothing: damage in the mid
 from __future__ import annotations
 
 import mmap
+import os
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from io import BytesIO
 from itertools import islice
 from pathlib import Path
@@ -31,7 +33,7 @@ from mcap.records import (
     Schema,
     Statistics,
 )
-from mcap.stream_reader import StreamReader
+from mcap.stream_reader import MAGIC_SIZE, read_magic
 
 from crowdbot.core.recording import messages as ros
 from crowdbot.errors import InputError
@@ -128,9 +130,8 @@ class Records:
                 yield from self._messages([record])
 
     def _top_level(self, data: mmap.mmap) -> Iterator[McapRecord]:
-        reader = StreamReader(data, emit_chunks=True, record_size_limit=MAX_RECORD)  # type: ignore[arg-type]
         try:
-            yield from reader.records
+            yield from _framed(data)
             self.finished = True
             rest = len(data) - data.tell()
         except InvalidMagic as error:
@@ -168,13 +169,13 @@ class Records:
 
     def _messages(self, records: list[McapRecord]) -> Iterator[Record]:
         for record in records:
-            if isinstance(record, Schema):
+            if isinstance(record, Message):
+                self._seen += 1
+                yield self._message(record)
+            elif isinstance(record, Schema):
                 self._schemas[record.id] = record
             elif isinstance(record, Channel):
                 self._channels[record.id] = record
-            elif isinstance(record, Message):
-                self._seen += 1
-                yield self._message(record)
 
     def _message(self, message: Message) -> Record:
         channel = self._channels.get(message.channel_id)
@@ -197,6 +198,25 @@ def _mapped(fileno: int) -> mmap.mmap:
         return mmap.mmap(-1, 1)
 
 
+def _framed(data: mmap.mmap) -> Iterator[McapRecord]:
+    """The records of a file that anybody looks at, from magic to magic; indices are stepped over.
+
+    Raises:
+        ValueError, McapError, struct.error: it ends before that, or is damaged.
+    """
+    read_magic(_stream(data.read(MAGIC_SIZE)))
+    opcode = -1
+    while opcode != Opcode.FOOTER:
+        opcode, length = _PREFIX.unpack(data.read(_PREFIX.size))
+        if length > MAX_RECORD:
+            raise ValueError("a record is longer than any may be")
+        begin = data.tell()
+        data.seek(length, os.SEEK_CUR)
+        if opcode in _READERS:
+            yield _READERS[opcode](data[begin : begin + length])
+    read_magic(_stream(data.read(MAGIC_SIZE)))
+
+
 def _split(plain: bytes) -> Iterator[McapRecord]:
     """The records of a chunk; most are messages, which are read without a stream.
 
@@ -210,18 +230,42 @@ def _split(plain: bytes) -> Iterator[McapRecord]:
         if at + length > end:
             raise ValueError("a record is longer than its chunk")
         if opcode == Opcode.MESSAGE:
-            channel, sequence, logged, published = _MESSAGE.unpack_from(plain, at)
-            data = plain[at + _MESSAGE.size : at + length]
-            yield Message(channel, logged, data, published, sequence)
-        elif opcode == Opcode.SCHEMA:
-            yield Schema.read(_stream(plain[at : at + length]))
-        elif opcode == Opcode.CHANNEL:
-            yield Channel.read(_stream(plain[at : at + length]))
+            yield _message(plain[at : at + length])
+        elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+            yield _READERS[opcode](plain[at : at + length])
         at += length
+
+
+def _message(data: bytes) -> Message:
+    channel, sequence, logged, published = _MESSAGE.unpack_from(data)
+    return Message(channel, logged, data[_MESSAGE.size :], published, sequence)
 
 
 def _stream(data: bytes) -> ReadDataStream:
     return ReadDataStream(BytesIO(data))
+
+
+def _read(kind: Any, data: bytes) -> McapRecord:
+    record: McapRecord = kind.read(_stream(data))
+    return record
+
+
+#: How the records are read that anybody looks at.
+_READERS: Mapping[int, Callable[[bytes], McapRecord]] = {
+    Opcode.MESSAGE: _message,
+    **{
+        opcode: partial(_read, kind)
+        for opcode, kind in (
+            (Opcode.ATTACHMENT, Attachment),
+            (Opcode.CHANNEL, Channel),
+            (Opcode.CHUNK, Chunk),
+            (Opcode.DATA_END, DataEnd),
+            (Opcode.FOOTER, Footer),
+            (Opcode.SCHEMA, Schema),
+            (Opcode.STATISTICS, Statistics),
+        )
+    },
+}
 
 
 def _decompress(chunk: Chunk) -> bytes:
