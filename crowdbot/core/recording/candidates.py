@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -152,14 +153,16 @@ class GoalsReader:
         self._x, self._y = joined[2], joined[3]
         if np.any(np.diff(self._sample) < 0) or np.any(self._person >= people):
             raise InputError("changes of goals are out of order, or of people who are not there")
+        edges = np.flatnonzero(np.diff(self._sample, prepend=-1, append=-1)).tolist()
+        self._changes = {int(self._sample[a]): slice(a, b) for a, b in pairwise(edges)}
 
     def goals(self, first: int, count: int) -> Array:
         """(K, 2, M) of ``count`` samples; to be asked in their order."""
         found = np.repeat(self._now[np.newaxis], count, axis=0)
-        begin, end = np.searchsorted(self._sample, [first, first + count])
-        edges = begin + np.flatnonzero(np.diff(self._sample[begin:end], prepend=-1, append=-1))
-        for here in map(slice, edges[:-1], edges[1:]):  # what changes in one sample
-            since, who = self._sample[here.start] - first, self._person[here]
-            found[since:, 0, who], found[since:, 1, who] = self._x[here], self._y[here]
-            self._now = found[-1]
+        for k in range(count):
+            here = self._changes.get(first + k)
+            if here is not None:
+                who = self._person[here]
+                found[k:, 0, who], found[k:, 1, who] = self._x[here], self._y[here]
+                self._now = found[-1]
         return found

@@ -183,7 +183,7 @@ class MotionCodec:
 
     def _steps(self, t: Array) -> NDArray[np.int64]:
         """(K,) ticks since the sample before; 1 where that is not a whole number."""
-        gaps = np.diff(np.concatenate([[self._last_t], t])) * TICKS_PER_SECOND
+        gaps = (t - np.concatenate([[self._last_t], t[:-1]])[: len(t)]) * TICKS_PER_SECOND
         self._last_t = float(t[-1]) if len(t) else self._last_t
         whole = (gaps >= 1.0) & (gaps <= _LONGEST) & (gaps == np.rint(gaps))
         return np.where(whole, gaps, 1.0).astype(np.int64)

@@ -91,6 +91,7 @@ class Records:
         self._total = 0
         self._left = MAX_RECORDS
         self._seen = 0
+        self._zstd = zstandard.ZstdDecompressor()
 
     def __iter__(self) -> Iterator[Record]:
         """Messages in the order they were written.
@@ -152,7 +153,7 @@ class Records:
         if chunk.compression not in ("", "zstd", "lz4"):
             raise InputError(f"{self._path}: compression '{chunk.compression}' is not supported")
         try:
-            plain = _decompress(chunk)
+            plain = self._decompress(chunk)
             if chunk.uncompressed_crc not in (0, crc32(plain)):
                 return None
             found = list(islice(_split(plain), self._left + 1))
@@ -160,6 +161,21 @@ class Records:
             return None
         self._count(len(found))
         return found
+
+    def _decompress(self, chunk: Chunk) -> bytes:
+        """Never more than the chunk admits to: the frame's own idea of its size may be a bomb."""
+        if chunk.compression == "":
+            return chunk.data
+        most = chunk.uncompressed_size + 1
+        data: bytes
+        if chunk.compression == "lz4":
+            data = lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=most)
+        else:
+            with self._zstd.stream_reader(chunk.data) as reader:
+                data = reader.read(most)
+        if len(data) != chunk.uncompressed_size:
+            raise ValueError("size differs from the one announced")
+        return data
 
     def _count(self, records: int) -> None:
         """A small file can hold more messages than anybody can look at."""
@@ -266,22 +282,6 @@ _READERS: Mapping[int, Callable[[bytes], McapRecord]] = {
         )
     },
 }
-
-
-def _decompress(chunk: Chunk) -> bytes:
-    """Never more than the chunk admits to: the frame's own idea of its size may be a bomb."""
-    if chunk.compression == "":
-        return chunk.data
-    most = chunk.uncompressed_size + 1
-    data: bytes
-    if chunk.compression == "lz4":
-        data = lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=most)
-    else:
-        with zstandard.ZstdDecompressor().stream_reader(chunk.data) as reader:
-            data = reader.read(most)
-    if len(data) != chunk.uncompressed_size:
-        raise ValueError("size differs from the one announced")
-    return data
 
 
 def decode(path: Path, record: Record) -> Any:
