@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,15 +86,18 @@ class _Way:
     reached: bool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class _Pair:
-    """One trip of a person with and without the robot; ``beside``, ``late`` as of `follow`."""
+    """One trip of a person with and without the robot."""
 
     who: int
     one: _Way
     two: _Way
-    beside: Array
-    late: Array
+
+    @cached_property
+    def laid(self) -> tuple[Array, Array]:
+        """As `_laid_over`, the one over the other; not asked of trips that are left out."""
+        return _laid_over(self.one, self.two)
 
 
 def whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
@@ -125,7 +129,7 @@ def _whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> 
         if _starts_apart(pair, pairing):
             left_out += 1
             continue
-        effect = float(pair.beside.max()), _delay(pair)
+        effect = float(pair.laid[0].max()), _delay(pair)
         found.setdefault(pair.who, []).append((*effect, *_walked(pair.two)))
     people = [np.array(trips) for trips in found.values()]
     return Effects(
@@ -140,15 +144,15 @@ def _meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -
     distance = encounter(run, pairing.jump_speed).distance
     rows, met, left_out = [], set[int](), 0
     for pair in _pairs(run, alone, pairing.jump_speed):
-        one, beside, late = pair.one, pair.beside, pair.late
+        one = pair.one
         first, last = _meeting(distance[one.rows, one.column], run.t[one.rows], pairing)
         if pair.who in met or first < 0:
             continue
         met.add(pair.who)
-        moved = beside[first] > pairing.same_start + _TOLERANCE
-        if _starts_apart(pair, pairing) or moved or abs(late[first]) > SAME_PACE + _TOLERANCE:
+        if _starts_apart(pair, pairing) or _walks_otherwise(pair, first, pairing):
             left_out += 1
             continue
+        beside, late = pair.laid
         length, seconds = _walked(pair.two)
         most = float(beside[first : last + 1].max() - beside[first])
         rows.append((most, float(late[last] - late[first]), length / seconds))
@@ -159,20 +163,27 @@ def _meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -
 
 
 def _pairs(run: Trajectories, alone: Trajectories, jump_speed: float) -> list[_Pair]:
-    """Trips that both runs have, by person and number; laid over one another once."""
+    """Trips that both runs have, by person and number."""
 
-    def lay() -> list[_Pair]:
+    def match() -> list[_Pair]:
         ways, others = _ways(run, jump_speed), _ways(alone, jump_speed)
         both = sorted(ways.keys() & others.keys())
-        return [_Pair(k[0], ways[k], others[k], *_laid_over(ways[k], others[k])) for k in both]
+        return [_Pair(k[0], ways[k], others[k]) for k in both]
 
-    return cached_beside(run, alone, ("pairs", jump_speed), lay)
+    return cached_beside(run, alone, ("pairs", jump_speed), match)
 
 
 def _starts_apart(pair: _Pair, pairing: Pairing) -> bool:
     one, two = pair.one.path, pair.two.path
     apart = math.hypot(one[0, 0] - two[0, 0], one[1, 0] - two[1, 0])
     return apart > pairing.same_start + _TOLERANCE
+
+
+def _walks_otherwise(pair: _Pair, sample: int, pairing: Pairing) -> bool:
+    """Whether somebody is elsewhere than without the robot, or later or earlier there."""
+    beside, late = pair.laid
+    moved = beside[sample] > pairing.same_start + _TOLERANCE
+    return bool(moved or abs(late[sample]) > SAME_PACE + _TOLERANCE)
 
 
 def _meeting(distance: Array, t: Array, pairing: Pairing) -> tuple[int, int]:
@@ -193,7 +204,7 @@ def _delay(pair: _Pair) -> float:
         return one.seconds - two.seconds
     if one.reached:  # only the other one was cut
         return -float(_laid_over(two, one)[1][-1])
-    return float(pair.late[-1])
+    return float(pair.laid[1][-1])
 
 
 def _laid_over(one: _Way, two: _Way) -> tuple[Array, Array]:
