@@ -119,9 +119,10 @@ class GoalChanges:
 
     def message(self, first: int, goals: Array) -> Any | None:
         """The changes within samples ``first`` and following, (K, 2, M); None without any."""
-        before = np.concatenate([self._last[np.newaxis], goals[:-1]])
+        with_last = np.concatenate([self._last[np.newaxis], goals]).view(np.int64)
         self._last = goals[-1].copy()
-        sample, person = np.nonzero(np.any(goals.view(np.int64) != before.view(np.int64), axis=1))
+        changed = with_last[1:] != with_last[:-1]
+        sample, person = np.nonzero(changed[:, 0] | changed[:, 1])
         if not len(sample):
             return None
         return ros.new(

@@ -254,14 +254,11 @@ def _completed(
 ) -> tuple[Array, Array]:
     """Recorded velocities, the secant where there is none, NaN where the body is absent."""
     known, here = present(*recorded), present(*position)
-    if np.array_equal(known & here, here):  # the usual case costs no derivation
-        secant = recorded
-    else:
-        secant = (_secant(t, position[0], valid), _secant(t, position[1], valid))
-    vx, vy = (
-        np.where(here, np.where(known, r, s), np.nan) for r, s in zip(recorded, secant, strict=True)
-    )
-    return vx, vy
+    vx, vy = recorded
+    if not np.array_equal(known & here, here):  # the usual case costs no derivation
+        vx = np.where(known, vx, _secant(t, position[0], valid))
+        vy = np.where(known, vy, _secant(t, position[1], valid))
+    return np.where(here, vx, np.nan), np.where(here, vy, np.nan)
 
 
 def _secant(t: Array, p: Array, valid: Mask) -> Array:
