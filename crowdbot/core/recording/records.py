@@ -88,6 +88,7 @@ class Records:
         self._path = path
         self._schemas: dict[int, Schema] = {}
         self._channels: dict[int, Channel] = {}
+        self._topics: dict[int, tuple[str, str, str]] = {}  # what both say of a channel
         self._total = 0
         self._left = MAX_RECORDS
         self._seen = 0
@@ -187,23 +188,23 @@ class Records:
         for record in records:
             if isinstance(record, Message):
                 self._seen += 1
-                yield self._message(record)
+                topic = self._topics.get(record.channel_id) or self._topic(record.channel_id)
+                yield Record(*topic, record.log_time, record.data)
             elif isinstance(record, Schema):
                 self._schemas[record.id] = record
+                self._topics.clear()
             elif isinstance(record, Channel):
                 self._channels[record.id] = record
+                self._topics.clear()
 
-    def _message(self, message: Message) -> Record:
-        channel = self._channels.get(message.channel_id)
+    def _topic(self, number: int) -> tuple[str, str, str]:
+        """Topic, type and encoding of the messages of a channel."""
+        channel = self._channels.get(number)
         if channel is None or (channel.schema_id and channel.schema_id not in self._schemas):
             raise InputError(f"{self._path}: damaged: a message belongs to no topic")
-        return Record(
-            topic=channel.topic,
-            msgtype=self._schemas[channel.schema_id].name if channel.schema_id else "",
-            encoding=channel.message_encoding,
-            ns=message.log_time,
-            data=message.data,
-        )
+        msgtype = self._schemas[channel.schema_id].name if channel.schema_id else ""
+        self._topics[number] = channel.topic, msgtype, channel.message_encoding
+        return self._topics[number]
 
 
 def _mapped(fileno: int) -> mmap.mmap:
@@ -246,15 +247,15 @@ def _split(plain: bytes) -> Iterator[McapRecord]:
         if at + length > end:
             raise ValueError("a record is longer than its chunk")
         if opcode == Opcode.MESSAGE:
-            yield _message(plain[at : at + length])
+            yield _message(plain, at, at + length)
         elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
             yield _READERS[opcode](plain[at : at + length])
         at += length
 
 
-def _message(data: bytes) -> Message:
-    channel, sequence, logged, published = _MESSAGE.unpack_from(data)
-    return Message(channel, logged, data[_MESSAGE.size :], published, sequence)
+def _message(data: bytes, begin: int = 0, end: int | None = None) -> Message:
+    channel, sequence, logged, published = _MESSAGE.unpack_from(data, begin)
+    return Message(channel, logged, data[begin + _MESSAGE.size : end], published, sequence)
 
 
 def _stream(data: bytes) -> ReadDataStream:

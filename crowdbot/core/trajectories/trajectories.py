@@ -25,10 +25,10 @@ def _read_only(values: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
     if np.iscomplexobj(values):
         raise InputError("trajectories: complex numbers where real ones are wanted")
     try:
-        array = np.array(values, dtype=dtype)
+        array = np.asarray(values, dtype=dtype)
     except (TypeError, ValueError) as error:
         raise InputError(f"trajectories: not an array of numbers: {error}") from error
-    return immutable(array)
+    return immutable(array if array.flags.forc else array.copy("K"))
 
 
 def _for_all(value: _Cached) -> _Cached:
