@@ -25,6 +25,7 @@ from crowdbot.core.recording.candidates import (
     Choosers,
     candidate_table,
 )
+from crowdbot.core.recording.motion_bytes import EXACT, carry, mark_exact
 from crowdbot.core.recording.motion_prediction import (
     SPEEDS,
     accelerate,
@@ -52,8 +53,6 @@ _POSITIVE = 2**63 - 1
 _VX, _VY = 2, 3
 #: Predictions from here on follow a candidate: how far it is from the one before, in their order.
 _CHOICE = SPEEDS + 1
-#: Added to the number of a prediction of which no difference is stored, since all four are 0.
-_EXACT = np.uint8(128)
 #: Of each gain, the share of a change of velocity that is left in the next step.
 _LEFT = np.array([(gain - 1.0) / gain for gain in GAINS])[:, np.newaxis, np.newaxis, np.newaxis]
 
@@ -136,8 +135,8 @@ class MotionCodec:
         values = np.ascontiguousarray(motion, np.float64)
         gain, taken, difference = self._best_gain(values), *self._space(len(t))
         self._code(t, values, goals, gain, taken, difference, packs=True)
-        data = np.empty(taken.size + 32 * _mark_exact(taken, difference), np.uint8)
-        _carry(True, taken, difference, data)
+        data = np.empty(taken.size + 32 * mark_exact(taken, difference), np.uint8)
+        carry(True, taken, difference, data)
         return Packed(gain, data.tobytes())
 
     def unpack(self, t: Array, packed: Packed, goals: Array | None = None) -> Array:
@@ -148,12 +147,12 @@ class MotionCodec:
         """
         values = np.zeros((len(t), 4, self._people))
         taken, difference = self._space(len(t))
-        data = np.frombuffer(packed.data, np.uint8).copy()  # as `_carry` is compiled
+        data = np.frombuffer(packed.data, np.uint8).copy()  # as `carry` is compiled
         told = data[: taken.size]
-        rest = np.count_nonzero((told & _EXACT) == 0)
+        rest = np.count_nonzero((told & EXACT) == 0)
         if len(told) != taken.size or data.size != taken.size + 32 * rest:
             raise ValueError(f"{data.size} bytes of {len(t)} samples of {self._people} people")
-        _carry(False, taken, difference, data)
+        carry(False, taken, difference, data)
         self._code(t, values, goals, packed.gain, taken, difference, packs=False)
         return values
 
@@ -196,49 +195,6 @@ class MotionCodec:
             off = np.abs(change[1:] - change[:-1] * _LEFT) + 1e-18
             cost = np.nansum(np.log2(off).reshape(len(GAINS), -1), axis=1)
         return GAINS[int(np.argmin(cost))]
-
-
-@kernel
-def _mark_exact(taken: NDArray[np.uint8], difference: NDArray[np.int64]) -> int:
-    """Mark in ``taken`` (K, M) whose four predictions are right to the bit; count the others."""
-    others = 0
-    for k in range(taken.shape[0]):
-        for i in range(taken.shape[1]):
-            off = difference[0, k, i] | difference[1, k, i]
-            off |= difference[2, k, i] | difference[3, k, i]
-            if off == 0:
-                taken[k, i] |= _EXACT
-            else:
-                others += 1
-    return others
-
-
-@kernel
-def _carry(
-    packs: bool,
-    taken: NDArray[np.uint8],
-    difference: NDArray[np.int64],
-    data: NDArray[np.uint8],
-) -> None:
-    """Fill ``data``, as `Packed` has them, or the other way round, without the marks."""
-    count, people = taken.size, taken.shape[1]
-    rest, at = (data.shape[0] - count) // 32, count
-    for place in range(count):
-        k, i = place // people, place % people
-        if packs:
-            data[place] = taken[k, i]
-        else:
-            taken[k, i] = data[place] & ~_EXACT
-        if data[place] & _EXACT:
-            continue
-        for c in range(4):
-            for byte in range(8):
-                where = at + (8 * c + byte) * rest
-                if packs:
-                    data[where] = (difference[c, k, i] >> (8 * byte)) & 255
-                else:
-                    difference[c, k, i] |= np.int64(data[where]) << (8 * byte)
-        at += 1
 
 
 @kernel
