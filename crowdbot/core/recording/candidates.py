@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -118,9 +119,10 @@ class GoalChanges:
 
     def message(self, first: int, goals: Array) -> Any | None:
         """The changes within samples ``first`` and following, (K, 2, M); None without any."""
-        before = np.concatenate([self._last[np.newaxis], goals[:-1]])
+        with_last = np.concatenate([self._last[np.newaxis], goals]).view(np.int64)
         self._last = goals[-1].copy()
-        sample, person = np.nonzero(np.any(goals.view(np.int64) != before.view(np.int64), axis=1))
+        changed = with_last[1:] != with_last[:-1]
+        sample, person = np.nonzero(changed[:, 0] | changed[:, 1])
         if not len(sample):
             return None
         return ros.new(
@@ -152,18 +154,16 @@ class GoalsReader:
         self._x, self._y = joined[2], joined[3]
         if np.any(np.diff(self._sample) < 0) or np.any(self._person >= people):
             raise InputError("changes of goals are out of order, or of people who are not there")
+        edges = np.flatnonzero(np.diff(self._sample, prepend=-1, append=-1)).tolist()
+        self._changes = {int(self._sample[a]): slice(a, b) for a, b in pairwise(edges)}
 
     def goals(self, first: int, count: int) -> Array:
         """(K, 2, M) of ``count`` samples; to be asked in their order."""
-        found = np.empty((count, *self._now.shape))
-        begin, end = np.searchsorted(self._sample, [first, first + count])
-        changes = self._sample[begin:end]
-        if not len(changes):
-            found[:] = self._now
-            return found
+        found = np.repeat(self._now[np.newaxis], count, axis=0)
         for k in range(count):
-            here = slice(*(begin + np.searchsorted(changes, [first + k, first + k + 1])))
-            self._now[0, self._person[here]] = self._x[here]
-            self._now[1, self._person[here]] = self._y[here]
-            found[k] = self._now
+            here = self._changes.get(first + k)
+            if here is not None:
+                who = self._person[here]
+                found[k:, 0, who], found[k:, 1, who] = self._x[here], self._y[here]
+                self._now = found[-1]
         return found

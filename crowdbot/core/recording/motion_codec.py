@@ -25,16 +25,17 @@ from crowdbot.core.recording.candidates import (
     Choosers,
     candidate_table,
 )
+from crowdbot.core.recording.motion_bytes import EXACT, carry, mark_exact
 from crowdbot.core.recording.motion_prediction import (
     SPEEDS,
-    accelerated,
+    accelerate,
     acceleration,
-    ahead,
     best_speed,
     chosen_candidate,
     known,
     moved,
     predicted,
+    prefer,
     towards,
     wanted,
 )
@@ -52,8 +53,8 @@ _POSITIVE = 2**63 - 1
 _VX, _VY = 2, 3
 #: Predictions from here on follow a candidate: how far it is from the one before, in their order.
 _CHOICE = SPEEDS + 1
-#: Added to the number of a prediction of which no difference is stored, since all four are 0.
-_EXACT = np.uint8(128)
+#: Of each gain, the share of a change of velocity that is left in the next step.
+_LEFT = np.array([(gain - 1.0) / gain for gain in GAINS])[:, np.newaxis, np.newaxis, np.newaxis]
 
 
 class Packed(NamedTuple):
@@ -116,6 +117,8 @@ class MotionCodec:
         self._people = people
         self._candidates = candidate_table(people, choosers)
         self._choice = np.zeros(people, np.int64)  # the candidate that was taken last
+        self._ahead, self._pull = np.zeros((2, people)), np.zeros((2, people))  # see `_code`
+        self._followed = np.zeros((4, people))
         self._last_t = math.nan
         self._last = np.full((2, 4, people), np.nan)  # the sample before, and the one before that
         self._speeds = np.zeros((people, SPEEDS))
@@ -129,12 +132,12 @@ class MotionCodec:
             motion: (K, 4, M) x, y, vx, vy; NaN where somebody is absent.
             goals: (K, 2, M) to which people went in the step before each sample; None: not known.
         """
-        values = np.array(motion, np.float64)
+        values = np.ascontiguousarray(motion, np.float64)
         gain, taken, difference = self._best_gain(values), *self._space(len(t))
         self._code(t, values, goals, gain, taken, difference, packs=True)
-        rest = np.ascontiguousarray(difference[:, ~_mark_exact(taken, difference)])
-        planes = rest.view(np.uint8).reshape(4, -1, 8).transpose(0, 2, 1)
-        return Packed(gain, taken.tobytes() + planes.tobytes())
+        data = np.empty(taken.size + 32 * mark_exact(taken, difference), np.uint8)
+        carry(True, taken, difference, data)
+        return Packed(gain, data.tobytes())
 
     def unpack(self, t: Array, packed: Packed, goals: Array | None = None) -> Array:
         """The samples (K, 4, M) again, bit by bit; ``goals`` as they were packed.
@@ -144,14 +147,12 @@ class MotionCodec:
         """
         values = np.zeros((len(t), 4, self._people))
         taken, difference = self._space(len(t))
-        data = np.frombuffer(packed.data, np.uint8)
+        data = np.frombuffer(packed.data, np.uint8).copy()  # as `carry` is compiled
         told = data[: taken.size]
-        rest = (told & _EXACT) == 0
-        if len(told) != taken.size or data.size != taken.size + 32 * np.count_nonzero(rest):
+        rest = np.count_nonzero((told & EXACT) == 0)
+        if len(told) != taken.size or data.size != taken.size + 32 * rest:
             raise ValueError(f"{data.size} bytes of {len(t)} samples of {self._people} people")
-        taken.reshape(-1)[:] = told & ~_EXACT
-        planes = np.ascontiguousarray(data[taken.size :].reshape(4, 8, -1).transpose(0, 2, 1))
-        difference.reshape(4, -1)[:, rest] = planes.view("<i8").reshape(4, -1)
+        carry(False, taken, difference, data)
         self._code(t, values, goals, packed.gain, taken, difference, packs=False)
         return values
 
@@ -170,8 +171,8 @@ class MotionCodec:
         given = np.full((len(t), 2, self._people), np.nan) if goals is None else goals
         _code(
             packs, values, values.view(np.int64), self._steps(t), gain, self._last, self._speeds,
-            self._oldest, self._candidates, given, self._choice, scratch, scratch.view(np.int64),
-            taken, difference,
+            self._oldest, self._candidates, given, self._choice, self._ahead, self._pull,
+            self._followed, scratch, scratch.view(np.int64), taken, difference,
         )  # fmt: skip
 
     def _space(self, samples: int) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
@@ -181,7 +182,7 @@ class MotionCodec:
 
     def _steps(self, t: Array) -> NDArray[np.int64]:
         """(K,) ticks since the sample before; 1 where that is not a whole number."""
-        gaps = np.diff(t, prepend=self._last_t) * TICKS_PER_SECOND
+        gaps = (t - np.concatenate([[self._last_t], t[:-1]])[: len(t)]) * TICKS_PER_SECOND
         self._last_t = float(t[-1]) if len(t) else self._last_t
         whole = (gaps >= 1.0) & (gaps <= _LONGEST) & (gaps == np.rint(gaps))
         return np.where(whole, gaps, 1.0).astype(np.int64)
@@ -191,18 +192,9 @@ class MotionCodec:
         before = np.concatenate([self._last[::-1, _VX:], values[:_SAMPLES_FOR_GAIN, _VX:]])
         with np.errstate(all="ignore"):
             change = np.diff(before, axis=0)
-            off = [
-                np.abs(change[1:] - change[:-1] * ((gain - 1.0) / gain)) + 1e-18 for gain in GAINS
-            ]
-            cost = [float(np.nansum(np.log2(one))) for one in off]
+            off = np.abs(change[1:] - change[:-1] * _LEFT) + 1e-18
+            cost = np.nansum(np.log2(off).reshape(len(GAINS), -1), axis=1)
         return GAINS[int(np.argmin(cost))]
-
-
-def _mark_exact(taken: NDArray[np.uint8], difference: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """(K, M) whose four predictions are right to the bit; marks them in ``taken``."""
-    exact: NDArray[np.bool_] = ~np.any(difference, axis=0)
-    taken[exact] |= _EXACT
-    return exact
 
 
 @kernel
@@ -218,6 +210,9 @@ def _code(
     candidates: CandidateTable,
     goals: Array,
     choice: NDArray[np.int64],
+    ahead: Array,
+    pull: Array,
+    followed: Array,
     scratch: Array,
     scratch_bits: NDArray[np.int64],
     taken: NDArray[np.uint8],
@@ -232,30 +227,25 @@ def _code(
         steps: (K,) ticks since the sample before.
         goals: (K, 2, M).
         choice: (M,) the candidate that was taken last, brought up to date.
+        ahead, pull, followed: (2, M), (2, M), (4, M) scratch: velocities that are preferred,
+            accelerations towards candidates, and where they lead.
     """
     samples = _Samples(packs, values, bits, scratch, scratch_bits, taken, difference)
     past = _Past(last, speeds, oldest)
+    chooses = candidates.unit.shape[0] > 0
     for k in range(values.shape[0]):
+        if chooses:  # of all people at once, which compilers make fast
+            prefer(candidates, last[0], goals[k], ahead)
+            _choose(samples, k, steps[k], last[0], candidates, ahead, choice, pull)
+            accelerate(last[0], pull, steps[k], followed)
         for i in range(values.shape[2]):
-            px, py, follows = 0.0, 0.0, False
-            count = candidates.choices[i]
-            if packs:
-                c = chosen_candidate(
-                    candidates, i, last[0], values[k], goals[k], steps[k], choice[i]
-                )
-                if c >= 0:
-                    taken[k, i] = _CHOICE + (c - choice[i]) % count
-            if taken[k, i] >= _CHOICE and count > 0:
-                choice[i] = (choice[i] + taken[k, i] - _CHOICE) % count
-                ex, ey = ahead(candidates, i, last[0], goals[k])
-                ax, ay = acceleration(candidates, i, choice[i], ex, ey, last[0])
-                px, vx = accelerated(last[0, 0, i], last[0, _VX, i], ax, steps[k])
-                py, vy = accelerated(last[0, 1, i], last[0, _VY, i], ay, steps[k])
-                follows = _follow(samples, k, i, vx, vy)
+            follows = False
+            if taken[k, i] >= _CHOICE and candidates.choices[i] > 0:
+                follows = _follow(samples, k, i, followed[_VX, i], followed[_VY, i])
             else:
                 _extrapolate(samples, past, k, i, steps[k], gain)
             for c in range(2):
-                scratch[0] = px if c == 0 else py
+                scratch[0] = followed[c, i]
                 if not follows:
                     before, now = last[0, c + 2, i], values[k, c + 2, i]
                     scratch[0] = known(moved(last[0, c, i], before, now, steps[k]))
@@ -263,6 +253,33 @@ def _code(
             for c in range(4):
                 last[1, c, i] = last[0, c, i]
                 last[0, c, i] = values[k, c, i]
+
+
+@inline_kernel
+def _choose(
+    samples: _Samples,
+    k: int,
+    ticks: int,
+    before: Array,
+    candidates: CandidateTable,
+    ahead: Array,
+    choice: NDArray[np.int64],
+    pull: Array,
+) -> None:
+    """Which candidates people take in sample k, if any, and the accelerations towards them."""
+    taken = samples.taken
+    for i in range(choice.shape[0]):
+        count = candidates.choices[i]
+        pull[0, i] = pull[1, i] = 0.0
+        if samples.packs:
+            c = chosen_candidate(candidates, i, before, samples.values[k], ahead, ticks, choice[i])
+            if c >= 0:
+                taken[k, i] = _CHOICE + (c - choice[i]) % count
+        if taken[k, i] >= _CHOICE and count > 0:
+            choice[i] = (choice[i] + taken[k, i] - _CHOICE) % count
+            pull[0, i], pull[1, i] = acceleration(
+                candidates, i, choice[i], ahead[0, i], ahead[1, i], before
+            )
 
 
 @inline_kernel

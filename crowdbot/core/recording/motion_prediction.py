@@ -99,13 +99,13 @@ def known(value: float) -> float:
 
 @kernel
 def chosen_candidate(
-    table: CandidateTable, i: int, before: Array, now: Array, goal: Array, ticks: int, last: int
+    table: CandidateTable, i: int, before: Array, now: Array, ahead: Array, ticks: int, last: int
 ) -> int:
     """Which candidate person i took between two samples, from 0; -1 if none.
 
     Args:
         before, now: (4, M) samples; x, y, vx, vy.
-        goal: (2, M) goals.
+        ahead: (2, M) from `prefer`.
         ticks: between the samples.
         last: the candidate of the step before, which is the likeliest.
     """
@@ -114,7 +114,7 @@ def chosen_candidate(
         return -1
     rate = 1.0 / (ticks * TICK)
     ax, ay = rate * (now[2, i] - before[2, i]), rate * (now[3, i] - before[3, i])
-    ex, ey = ahead(table, i, before, goal)
+    ex, ey = ahead[0, i], ahead[1, i]
     best, least = -1, _NEAR
     for c in range(-1, count):
         candidate = last if c < 0 else c
@@ -145,26 +145,27 @@ def _points_elsewhere(
 
 
 @kernel
-def ahead(table: CandidateTable, i: int, before: Array, goal: Array) -> tuple[float, float]:
-    """The velocity that person i prefers, m/s; arguments as `chosen_candidate`.
+def prefer(table: CandidateTable, before: Array, goal: Array, ahead: Array) -> None:
+    """Write the velocities that people prefer, (2, M) m/s; arguments as `chosen_candidate`.
 
     Its direction is that of the product of direction and speed, as the crowd computes it.
     """
-    gx, gy = goal[0, i] - before[0, i], goal[1, i] - before[1, i]
-    away = math.sqrt(gx * gx + gy * gy)
-    if not away > table.radius[i]:
-        return 0.0, 0.0
-    pace, speed = table.speed[i] / away, table.speed[i]
-    gx, gy = pace * gx, pace * gy
-    length = math.sqrt(gx * gx + gy * gy)
-    return (speed * (gx / length), speed * (gy / length)) if length > 0.0 else (0.0, 0.0)
+    for i in range(ahead.shape[1]):
+        gx, gy = goal[0, i] - before[0, i], goal[1, i] - before[1, i]
+        away = math.sqrt(gx * gx + gy * gy)
+        pace, speed = table.speed[i] / away, table.speed[i]
+        gx, gy = pace * gx, pace * gy
+        length = math.sqrt(gx * gx + gy * gy)
+        walks = (away > table.radius[i]) & (length > 0.0)
+        ahead[0, i] = speed * (gx / length) if walks else 0.0
+        ahead[1, i] = speed * (gy / length) if walks else 0.0
 
 
 @kernel
 def acceleration(
     table: CandidateTable, i: int, candidate: int, ex: float, ey: float, before: Array
 ) -> tuple[float, float]:
-    """Acceleration of person i towards a candidate, m/s^2; (ex, ey) is from `ahead`."""
+    """Acceleration of person i towards a candidate, m/s^2; (ex, ey) is from `prefer`."""
     c = table.first[i] + candidate
     cx, cy = table.unit[c, 0], table.unit[c, 1]
     relaxation, limit = table.relaxation[i], table.limit[i]
@@ -178,9 +179,23 @@ def acceleration(
 
 
 @kernel
-def accelerated(x: float, v: float, a: float, ticks: int) -> tuple[float, float]:
-    """Position and velocity after so many ticks of one acceleration, as the crowd adds them up."""
+def accelerate(before: Array, pull: Array, ticks: int, after: Array) -> None:
+    """Write x, y, vx, vy (4, M) after so many ticks, as the crowd adds them up.
+
+    Args:
+        before: (4, M).
+        pull: (2, M) acceleration of each person in all of these ticks, m/s^2.
+        ticks: how many.
+        after: (4, M) written.
+    """
+    for c in range(4):
+        for i in range(after.shape[1]):
+            after[c, i] = before[c, i]
     for _ in range(ticks):
-        v += a * TICK
-        x += v * TICK
-    return known(x), known(v)
+        for c in range(2):
+            for i in range(after.shape[1]):
+                after[c + 2, i] += pull[c, i] * TICK
+                after[c, i] += after[c + 2, i] * TICK
+    for c in range(4):
+        for i in range(after.shape[1]):
+            after[c, i] = known(after[c, i])

@@ -7,8 +7,10 @@ last whole chunk. What follows a broken chunk must be nothing: damage in the mid
 from __future__ import annotations
 
 import mmap
+import os
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from io import BytesIO
 from itertools import islice
 from pathlib import Path
@@ -31,7 +33,7 @@ from mcap.records import (
     Schema,
     Statistics,
 )
-from mcap.stream_reader import StreamReader
+from mcap.stream_reader import MAGIC_SIZE, read_magic
 
 from crowdbot.core.recording import messages as ros
 from crowdbot.errors import InputError
@@ -86,9 +88,11 @@ class Records:
         self._path = path
         self._schemas: dict[int, Schema] = {}
         self._channels: dict[int, Channel] = {}
+        self._topics: dict[int, tuple[str, str, str]] = {}  # what both say of a channel
         self._total = 0
         self._left = MAX_RECORDS
         self._seen = 0
+        self._zstd = zstandard.ZstdDecompressor()
 
     def __iter__(self) -> Iterator[Record]:
         """Messages in the order they were written.
@@ -128,9 +132,8 @@ class Records:
                 yield from self._messages([record])
 
     def _top_level(self, data: mmap.mmap) -> Iterator[McapRecord]:
-        reader = StreamReader(data, emit_chunks=True, record_size_limit=MAX_RECORD)  # type: ignore[arg-type]
         try:
-            yield from reader.records
+            yield from _framed(data)
             self.finished = True
             rest = len(data) - data.tell()
         except InvalidMagic as error:
@@ -151,7 +154,7 @@ class Records:
         if chunk.compression not in ("", "zstd", "lz4"):
             raise InputError(f"{self._path}: compression '{chunk.compression}' is not supported")
         try:
-            plain = _decompress(chunk)
+            plain = self._decompress(chunk)
             if chunk.uncompressed_crc not in (0, crc32(plain)):
                 return None
             found = list(islice(_split(plain), self._left + 1))
@@ -159,6 +162,21 @@ class Records:
             return None
         self._count(len(found))
         return found
+
+    def _decompress(self, chunk: Chunk) -> bytes:
+        """Never more than the chunk admits to: the frame's own idea of its size may be a bomb."""
+        if chunk.compression == "":
+            return chunk.data
+        most = chunk.uncompressed_size + 1
+        data: bytes
+        if chunk.compression == "lz4":
+            data = lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=most)
+        else:
+            with self._zstd.stream_reader(chunk.data) as reader:
+                data = reader.read(most)
+        if len(data) != chunk.uncompressed_size:
+            raise ValueError("size differs from the one announced")
+        return data
 
     def _count(self, records: int) -> None:
         """A small file can hold more messages than anybody can look at."""
@@ -168,25 +186,25 @@ class Records:
 
     def _messages(self, records: list[McapRecord]) -> Iterator[Record]:
         for record in records:
-            if isinstance(record, Schema):
+            if isinstance(record, Message):
+                self._seen += 1
+                topic = self._topics.get(record.channel_id) or self._topic(record.channel_id)
+                yield Record(*topic, record.log_time, record.data)
+            elif isinstance(record, Schema):
                 self._schemas[record.id] = record
+                self._topics.clear()
             elif isinstance(record, Channel):
                 self._channels[record.id] = record
-            elif isinstance(record, Message):
-                self._seen += 1
-                yield self._message(record)
+                self._topics.clear()
 
-    def _message(self, message: Message) -> Record:
-        channel = self._channels.get(message.channel_id)
+    def _topic(self, number: int) -> tuple[str, str, str]:
+        """Topic, type and encoding of the messages of a channel."""
+        channel = self._channels.get(number)
         if channel is None or (channel.schema_id and channel.schema_id not in self._schemas):
             raise InputError(f"{self._path}: damaged: a message belongs to no topic")
-        return Record(
-            topic=channel.topic,
-            msgtype=self._schemas[channel.schema_id].name if channel.schema_id else "",
-            encoding=channel.message_encoding,
-            ns=message.log_time,
-            data=message.data,
-        )
+        msgtype = self._schemas[channel.schema_id].name if channel.schema_id else ""
+        self._topics[number] = channel.topic, msgtype, channel.message_encoding
+        return self._topics[number]
 
 
 def _mapped(fileno: int) -> mmap.mmap:
@@ -195,6 +213,25 @@ def _mapped(fileno: int) -> mmap.mmap:
         return mmap.mmap(fileno, 0, access=mmap.ACCESS_READ)
     except ValueError:  # empty
         return mmap.mmap(-1, 1)
+
+
+def _framed(data: mmap.mmap) -> Iterator[McapRecord]:
+    """The records of a file that anybody looks at, from magic to magic; indices are stepped over.
+
+    Raises:
+        ValueError, McapError, struct.error: it ends before that, or is damaged.
+    """
+    read_magic(_stream(data.read(MAGIC_SIZE)))
+    opcode = -1
+    while opcode != Opcode.FOOTER:
+        opcode, length = _PREFIX.unpack(data.read(_PREFIX.size))
+        if length > MAX_RECORD:
+            raise ValueError("a record is longer than any may be")
+        begin = data.tell()
+        data.seek(length, os.SEEK_CUR)
+        if opcode in _READERS:
+            yield _READERS[opcode](data[begin : begin + length])
+    read_magic(_stream(data.read(MAGIC_SIZE)))
 
 
 def _split(plain: bytes) -> Iterator[McapRecord]:
@@ -210,34 +247,42 @@ def _split(plain: bytes) -> Iterator[McapRecord]:
         if at + length > end:
             raise ValueError("a record is longer than its chunk")
         if opcode == Opcode.MESSAGE:
-            channel, sequence, logged, published = _MESSAGE.unpack_from(plain, at)
-            data = plain[at + _MESSAGE.size : at + length]
-            yield Message(channel, logged, data, published, sequence)
-        elif opcode == Opcode.SCHEMA:
-            yield Schema.read(_stream(plain[at : at + length]))
-        elif opcode == Opcode.CHANNEL:
-            yield Channel.read(_stream(plain[at : at + length]))
+            yield _message(plain, at, at + length)
+        elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+            yield _READERS[opcode](plain[at : at + length])
         at += length
+
+
+def _message(data: bytes, begin: int = 0, end: int | None = None) -> Message:
+    channel, sequence, logged, published = _MESSAGE.unpack_from(data, begin)
+    return Message(channel, logged, data[begin + _MESSAGE.size : end], published, sequence)
 
 
 def _stream(data: bytes) -> ReadDataStream:
     return ReadDataStream(BytesIO(data))
 
 
-def _decompress(chunk: Chunk) -> bytes:
-    """Never more than the chunk admits to: the frame's own idea of its size may be a bomb."""
-    if chunk.compression == "":
-        return chunk.data
-    most = chunk.uncompressed_size + 1
-    data: bytes
-    if chunk.compression == "lz4":
-        data = lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=most)
-    else:
-        with zstandard.ZstdDecompressor().stream_reader(chunk.data) as reader:
-            data = reader.read(most)
-    if len(data) != chunk.uncompressed_size:
-        raise ValueError("size differs from the one announced")
-    return data
+def _read(kind: Any, data: bytes) -> McapRecord:
+    record: McapRecord = kind.read(_stream(data))
+    return record
+
+
+#: How the records are read that anybody looks at.
+_READERS: Mapping[int, Callable[[bytes], McapRecord]] = {
+    Opcode.MESSAGE: _message,
+    **{
+        opcode: partial(_read, kind)
+        for opcode, kind in (
+            (Opcode.ATTACHMENT, Attachment),
+            (Opcode.CHANNEL, Channel),
+            (Opcode.CHUNK, Chunk),
+            (Opcode.DATA_END, DataEnd),
+            (Opcode.FOOTER, Footer),
+            (Opcode.SCHEMA, Schema),
+            (Opcode.STATISTICS, Statistics),
+        )
+    },
+}
 
 
 def decode(path: Path, record: Record) -> Any:

@@ -114,12 +114,13 @@ class StatesReader:
         parts = [self._of_message(m) if hasattr(m, "first") else self._old(m) for m in messages]
         if len({part.robot.shape[1] for part in parts}) > 1:
             raise InputError("the samples of the robot do not have equally many numbers")
-        return States(
-            *(
-                np.concatenate([getattr(part, name) for part in parts])
-                for name in ("t", "robot", "agents", "told", "jump")
-            )
+        t, robot, told, jump = (
+            np.concatenate([getattr(part, name) for part in parts])
+            for name in ("t", "robot", "told", "jump")
         )
+        agents = np.empty((4, len(t), self._people)).transpose(1, 0, 2)  # each number is a table
+        np.concatenate([part.agents for part in parts], out=agents)
+        return States(t, robot, agents, told, jump)
 
     def _of_message(self, message: Any) -> States:
         from crowdbot.core.recording.motion_codec import Packed  # like `_codec`

@@ -25,6 +25,8 @@ ANY_TIME = 0x11223344 * 10**9 + 0x12345678
 _A, _B, _C, _D, _E, _F = 1.0625, 2.125, 3.1875, 4.25, 5.3125, 6.375
 
 one, two = _ONE.pack, _TWO.pack
+#: Person, begin, end (s) and whether the goal was reached, as a trip has them.
+whole_trip = Struct("<q2d?").pack
 
 
 def stamp(ns: int) -> bytes:
@@ -92,6 +94,12 @@ class Template:
 def clock() -> Template:
     """Place: stamp."""
     return Template(ros.clock(ANY_TIME), ANY_STAMP)
+
+
+def trip() -> Template:
+    """Place: `whole_trip`."""
+    message = ros.new("crowdbot_msgs/Trip", agent=1, t0=_A, t1=_B, reached=True)
+    return Template(message, whole_trip(1, _A, _B, True))
 
 
 def twist() -> Template:

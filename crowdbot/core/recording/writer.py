@@ -28,6 +28,7 @@ from crowdbot.core.recording.images import REPLAY_IMAGE_RATE, REPLAY_IMAGE_WIDTH
 from crowdbot.core.recording.namespace import NamespacedFile
 from crowdbot.core.recording.scans import REPLAY_RATE, Thinning, whole_centimetres
 from crowdbot.core.recording.states import SeriesRows, StateSample, StatesWriter
+from crowdbot.core.recording.template import trip, whole_trip
 from crowdbot.core.recording.tools import ToolTopics
 from crowdbot.core.recording.topics import (
     Topic,
@@ -110,7 +111,7 @@ class RecordingWriter:
         self._thinning = {n: Thinning(REPLAY_RATE) for n in (seen if record == "used" else ())}
         known = [group for group in choosers if group.fits]
         people = 0 if header.agents is None else len(header.agents.id)
-        self._states = StatesWriter(people, known)
+        self._states, self._trip = StatesWriter(people, known), trip()
         self._samples: list[StateSample] = []
         self._series = {topic: SeriesRows() for topic in (Topic.SIGNAL, Topic.PLANNER_TIME)}
         self._waiting: list[Callable[[], None]] = []
@@ -195,8 +196,8 @@ class RecordingWriter:
     @_later
     def trip(self, agent: int, t0: float, t1: float, reached: bool) -> None:
         """A journey that ended, or at the end of the run did not."""
-        trip = ros.new("crowdbot_msgs/Trip", agent=agent, t0=t0, t1=t1, reached=reached)
-        self._file.put(Topic.TRIP, ros.nanoseconds(t1), trip)
+        data = self._trip.fill(whole_trip(agent, t0, t1, reached))
+        self._file.put_bytes(Topic.TRIP, ros.nanoseconds(t1), self._trip.msgtype, data)
 
     @_later
     def contact(

@@ -59,7 +59,7 @@ def _feed(sha: Any, name: str, value: Any) -> None:
             _feed(sha, part.name, getattr(value, part.name))
     elif isinstance(value, np.ndarray):
         sha.update(repr((value.dtype.str, value.shape)).encode())
-        sha.update(np.ascontiguousarray(value).tobytes())
+        sha.update(np.ascontiguousarray(value).data)
     elif isinstance(value, Mapping):
         for key in sorted(value):
             _feed(sha, key, value[key])

@@ -206,7 +206,8 @@ def metric_specs(
     chosen: set[str] = set()
     for glob in texts_of("metrics", metrics):
         chosen.update(_matching(known, glob, registry.why_absent(glob)))
-    specs = {kind: _spec(known[kind], parameters.get(kind, {})) for kind in known}
+    asked = chosen.union(parameters)
+    specs = {kind: _spec(known[kind], parameters.get(kind, {})) for kind in known if kind in asked}
     return [specs[kind] for kind in known if kind in chosen]
 
 

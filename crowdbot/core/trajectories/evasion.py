@@ -6,8 +6,10 @@ N samples, M people; world frame, SI units. Steps, not samples, have an accelera
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core.trajectories.encounters import (
     encounter,
@@ -15,16 +17,17 @@ from crowdbot.core.trajectories.encounters import (
     people_velocities,
     robot_velocities,
 )
-from crowdbot.core.trajectories.preprocess import truncate_to_shorter
+from crowdbot.core.trajectories.preprocess import samples_of_shorter
 from crowdbot.core.trajectories.touched import touched
-from crowdbot.core.trajectories.trajectories import Trajectories
-from crowdbot.core.types.arrays import Array, Mask
+from crowdbot.core.trajectories.trajectories import Trajectories, cached_beside
+from crowdbot.core.types.arrays import Array, Indices, Mask
 
 #: Two times closer than this are the same, s.
 SAME_TIME = 1e-6
 #: Slack of the rule who is near, m.
 DISTANCE_TOLERANCE = 1e-9
 
+_T = TypeVar("_T", bound=np.generic)
 _Both = tuple[Trajectories, Trajectories]
 
 
@@ -83,21 +86,33 @@ def evasion(run: Trajectories, reach: float, jump_speed: float) -> Evasion:
 
 
 def _evasion(run: Trajectories, reach: float, jump_speed: float) -> Evasion:
+    """Few people are near at a time: of the others nothing is computed."""
     pair, dt = encounter(run, jump_speed), np.diff(run.t)
-    px, py = _middle(pair.px), _middle(pair.py)
+    limit = reach + DISTANCE_TOLERANCE
+    step, who = np.nonzero(pair.valid & (np.abs(_middle(pair.px)) <= limit))
+    px, py = (_at_middle(p, step, who) for p in (pair.px, pair.py))
     distance = np.hypot(px, py)
-    rx, ry = (_middle(v)[:, None] for v in robot_velocities(run, jump_speed))
-    ax, ay = (np.diff(v, axis=0) / dt[:, None] for v in people_velocities(run, jump_speed))
+    rx, ry = (_middle(v)[step] for v in robot_velocities(run, jump_speed))
+    ax, ay = (
+        (v[step + 1, who] - v[step, who]) / dt[step] for v in people_velocities(run, jump_speed)
+    )
     known = np.isfinite(ax) & np.isfinite(ay) & np.isfinite(rx) & np.isfinite(ry)
-    near = pair.valid & known & (distance <= reach + DISTANCE_TOLERANCE)
+    near = known & (distance <= limit)
     there = near & (distance > 0.0)
     nx, ny = (np.divide(p, distance, out=np.zeros(p.shape), where=there) for p in (px, py))
+
+    def spread(values: NDArray[_T]) -> NDArray[_T]:
+        """To all steps and people; 0 where nobody is near."""
+        whole = np.zeros(pair.valid.shape, values.dtype)
+        whole[step, who] = values
+        return whole
+
     return Evasion(
         dt=dt,
-        near=near,
-        size=np.where(near, np.hypot(ax, ay), 0.0),
-        away=np.where(there, np.maximum(ax * nx + ay * ny, 0.0), 0.0),
-        approach=np.where(there, np.maximum(rx * nx + ry * ny, 0.0), 0.0),
+        near=spread(near),
+        size=spread(np.where(near, np.hypot(ax, ay), 0.0)),
+        away=spread(np.where(there, np.maximum(ax * nx + ay * ny, 0.0), 0.0)),
+        approach=spread(np.where(there, np.maximum(rx * nx + ry * ny, 0.0), 0.0)),
     )
 
 
@@ -117,14 +132,11 @@ def ghost_run(run: Trajectories, alone: Trajectories) -> _Both | None:
     What such a ghost is blamed for happens without a robot. Both have the length of the shorter
     record; None where the two were not sampled at the same times after the start.
     """
-    done: dict[int, tuple[Trajectories, _Both | None]] = run.cached("ghosts", dict)
-    if id(alone) not in done:  # the run that is kept beside the ghost keeps its id
-        done[id(alone)] = alone, _ghost_run(run, alone)
-    return done[id(alone)][1]
+    return cached_beside(run, alone, "ghost", lambda: _ghost_run(run, alone))
 
 
 def _ghost_run(run: Trajectories, alone: Trajectories) -> _Both | None:
-    run, alone = truncate_to_shorter(run, alone)
+    run, alone = samples_of_shorter(run, alone)
     since, other = run.t - run.t[0], alone.t - alone.t[0]
     if len(since) != len(other) or np.any(np.abs(since - other) > SAME_TIME):
         return None
@@ -134,3 +146,8 @@ def _ghost_run(run: Trajectories, alone: Trajectories) -> _Both | None:
 def _middle(values: Array) -> Array:
     """Mean of both ends of each step."""
     return (values[1:] + values[:-1]) / 2.0
+
+
+def _at_middle(values: Array, step: Indices, who: Indices) -> Array:
+    """As `_middle` of some steps and people."""
+    return (values[step + 1, who] + values[step, who]) / 2.0

@@ -13,25 +13,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.support.compile import kernel
 from crowdbot.core.trajectories.encounters import encounter, people
+from crowdbot.core.trajectories.laid_over import follow, longest_parts
 from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_agent_steps
-from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.trajectories.trajectories import Trajectories, cached_beside
 from crowdbot.core.trajectories.trips import trip_samples
-from crowdbot.core.types.arrays import Array, Mask
+from crowdbot.core.types.arrays import Array
 
 #: A person is looked for this many samples before and after the place where he was found last.
 WINDOW = 48
 #: Who is later or earlier by more no longer walks as he does without the robot, s.
 SAME_PACE = 0.1
-#: Places this near are one, m²: who waits is where he was.
-_SAME = 1e-18
-#: Slack where segments are left out unseen, m: rounding must not leave out the nearest.
-_NEAR = 1e-6
 #: Slack of the rules who is near and who is where he would be, m and s.
 _TOLERANCE = 1e-9
 
@@ -76,26 +73,27 @@ class Pairing:
 
 @dataclass(frozen=True, slots=True)
 class _Way:
-    """One trip: its samples, positions and times since its beginning (K,); how long it took."""
+    """One trip: its samples; (3, K) x, y and time since its beginning; how long it took."""
 
-    rows: NDArray[np.intp]
+    rows: slice
     column: int
-    x: Array
-    y: Array
-    t: Array
+    path: Array
     seconds: float
     reached: bool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class _Pair:
-    """One trip of a person with and without the robot; ``beside``, ``late`` as of `follow`."""
+    """One trip of a person with and without the robot."""
 
     who: int
     one: _Way
     two: _Way
-    beside: Array
-    late: Array
+
+    @cached_property
+    def laid(self) -> tuple[Array, Array]:
+        """As `_laid_over`, the one over the other; not asked of trips that are left out."""
+        return _laid_over(self.one, self.two)
 
 
 def whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
@@ -106,13 +104,28 @@ def whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> E
         alone: the same people without robot.
         pairing: who is compared.
     """
+    key = "whole_effects", pairing
+    return cached_beside(run, alone, key, lambda: _whole_effects(run, alone, pairing))
+
+
+def meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
+    """People who meet the robot, from the beginning of their first meeting to its end.
+
+    Only those count who until then walk as without the robot: the others were disturbed before,
+    by whom nobody knows. The run has to have a robot; otherwise as `whole_effects`.
+    """
+    key = "meeting_effects", pairing
+    return cached_beside(run, alone, key, lambda: _meeting_effects(run, alone, pairing))
+
+
+def _whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
     found: dict[int, list[tuple[float, float, float, float]]] = {}
     left_out = 0
     for pair in _pairs(run, alone, pairing.jump_speed):
         if _starts_apart(pair, pairing):
             left_out += 1
             continue
-        effect = float(pair.beside.max()), _delay(pair)
+        effect = float(pair.laid[0].max()), _delay(pair)
         found.setdefault(pair.who, []).append((*effect, *_walked(pair.two)))
     people = [np.array(trips) for trips in found.values()]
     return Effects(
@@ -123,24 +136,19 @@ def whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> E
     )
 
 
-def meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
-    """People who meet the robot, from the beginning of their first meeting to its end.
-
-    Only those count who until then walk as without the robot: the others were disturbed before,
-    by whom nobody knows. The run has to have a robot; otherwise as `whole_effects`.
-    """
+def _meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
     distance = encounter(run, pairing.jump_speed).distance
     rows, met, left_out = [], set[int](), 0
     for pair in _pairs(run, alone, pairing.jump_speed):
-        one, beside, late = pair.one, pair.beside, pair.late
+        one = pair.one
         first, last = _meeting(distance[one.rows, one.column], run.t[one.rows], pairing)
         if pair.who in met or first < 0:
             continue
         met.add(pair.who)
-        moved = beside[first] > pairing.same_start + _TOLERANCE
-        if _starts_apart(pair, pairing) or moved or abs(late[first]) > SAME_PACE + _TOLERANCE:
+        if _starts_apart(pair, pairing) or _walks_otherwise(pair, first, pairing):
             left_out += 1
             continue
+        beside, late = pair.laid
         length, seconds = _walked(pair.two)
         most = float(beside[first : last + 1].max() - beside[first])
         rows.append((most, float(late[last] - late[first]), length / seconds))
@@ -151,20 +159,27 @@ def meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) ->
 
 
 def _pairs(run: Trajectories, alone: Trajectories, jump_speed: float) -> list[_Pair]:
-    """Trips that both runs have, by person and number; laid over one another once."""
-    done: dict[tuple[int, float], tuple[Trajectories, list[_Pair]]] = run.cached("pairs", dict)
-    key = id(alone), jump_speed
-    if key not in done:  # the run that is kept beside the pairs keeps its id
+    """Trips that both runs have, by person and number."""
+
+    def match() -> list[_Pair]:
         ways, others = _ways(run, jump_speed), _ways(alone, jump_speed)
         both = sorted(ways.keys() & others.keys())
-        pairs = [_Pair(k[0], ways[k], others[k], *_laid_over(ways[k], others[k])) for k in both]
-        done[key] = alone, pairs
-    return done[key][1]
+        return [_Pair(k[0], ways[k], others[k]) for k in both]
+
+    return cached_beside(run, alone, ("pairs", jump_speed), match)
 
 
 def _starts_apart(pair: _Pair, pairing: Pairing) -> bool:
-    apart = math.hypot(pair.one.x[0] - pair.two.x[0], pair.one.y[0] - pair.two.y[0])
+    one, two = pair.one.path, pair.two.path
+    apart = math.hypot(one[0, 0] - two[0, 0], one[1, 0] - two[1, 0])
     return apart > pairing.same_start + _TOLERANCE
+
+
+def _walks_otherwise(pair: _Pair, sample: int, pairing: Pairing) -> bool:
+    """Whether somebody is elsewhere than without the robot, or later or earlier there."""
+    beside, late = pair.laid
+    moved = beside[sample] > pairing.same_start + _TOLERANCE
+    return bool(moved or abs(late[sample]) > SAME_PACE + _TOLERANCE)
 
 
 def _meeting(distance: Array, t: Array, pairing: Pairing) -> tuple[int, int]:
@@ -185,14 +200,13 @@ def _delay(pair: _Pair) -> float:
         return one.seconds - two.seconds
     if one.reached:  # only the other one was cut
         return -float(_laid_over(two, one)[1][-1])
-    return float(pair.late[-1])
+    return float(pair.laid[1][-1])
 
 
 def _laid_over(one: _Way, two: _Way) -> tuple[Array, Array]:
     """Distance from the other way (m), and how late there (s), at each sample (K,)."""
-    beside, late = np.empty(len(one.t)), np.empty(len(one.t))
-    first, other = (np.stack([way.x, way.y, way.t]) for way in (one, two))
-    follow(first, other, WINDOW, beside, late)
+    beside, late = np.empty((2, one.path.shape[1]))
+    follow(one.path, two.path, WINDOW, beside, late)
     return beside, late
 
 
@@ -202,78 +216,42 @@ def _ways(run: Trajectories, jump_speed: float) -> dict[tuple[int, int], _Way]:
     if trips is None or not agents.x.size:
         return {}
     x, y = inf_to_nan(agents.x), inf_to_nan(agents.y)
-    valid = valid_agent_steps(run.t, agents, jump_speed)
-    first, last, column = trip_samples(run)
+    parts = _continuous(run, jump_speed).tolist()
     found: dict[tuple[int, int], _Way] = {}
     count: dict[int, int] = {}
     for k in np.lexsort((trips.t0, trips.agent)).tolist():
-        who, c = int(trips.agent[k]), int(column[k])
+        who, (first, end, column) = int(trips.agent[k]), parts[k]
         count[who] = count.get(who, 0) + 1
-        rows = _continuous(valid[:, c], int(first[k]), int(last[k]))
-        if c >= 0 and len(rows) >= 2:
-            found[who, count[who]] = _Way(
-                rows=rows,
-                column=c,
-                x=x[rows, c],
-                y=y[rows, c],
-                t=run.t[rows] - trips.t0[k],
-                seconds=float(trips.t1[k] - trips.t0[k]),
-                reached=bool(trips.reached[k]),
-            )
+        if end - first < 2:
+            continue
+        rows, path = slice(first, end), np.empty((3, end - first))
+        path[0], path[1] = x[rows, column], y[rows, column]
+        np.subtract(run.t[rows], trips.t0[k], out=path[2])
+        found[who, count[who]] = _Way(
+            rows=rows,
+            column=column,
+            path=path,
+            seconds=float(trips.t1[k] - trips.t0[k]),
+            reached=bool(trips.reached[k]),
+        )
     return found
 
 
-def _continuous(valid: Mask, first: int, last: int) -> NDArray[np.intp]:
-    """Samples of the longest part of a trip without a teleport or absence."""
-    if last <= first:
-        return np.arange(0)
-    breaks = np.flatnonzero(~valid[first:last])
-    edges = np.concatenate([[-1], breaks, [last - first]])
-    longest = int(np.argmax(np.diff(edges)))
-    return first + np.arange(edges[longest] + 1, edges[longest + 1] + 1)
+def _continuous(run: Trajectories, jump_speed: float) -> NDArray[np.int64]:
+    """Of each trip (K, 3) the longest part without a teleport or absence.
+
+    Its first sample, the one behind its last, and the person's column; without a column no sample.
+    """
+    valid = valid_agent_steps(run.t, people(run), jump_speed)
+    first, last, column = trip_samples(run)
+    parts = np.zeros((len(column), 3), np.int64)
+    parts[:, 2] = column
+    longest_parts(valid, first, last, column, parts)
+    return parts
 
 
 def _walked(way: _Way) -> tuple[float, float]:
     """Length (m) and duration (s) of what was seen of a trip."""
-    length = np.hypot(np.diff(way.x), np.diff(way.y)).sum()
-    return float(length), float(way.t[-1] - way.t[0])
-
-
-@kernel
-def follow(one: Array, other: Array, window: int, beside: Array, late: Array) -> None:
-    """Lay one way over another, from beginning to end.
-
-    The other way is prolonged by a step at both ends: samples do not fall on them.
-
-    Args:
-        one, other: (3, K) and (3, L) x, y (m) and time (s), L >= 2.
-        window: how many samples away from the last place the next one is looked for.
-        beside: (K,) written: distance from the other way, m.
-        late: (K,) written: how much later than there the place is reached, s.
-    """
-    x, y, t = one[0], one[1], one[2]
-    wx, wy, wt = other[0], other[1], other[2]
-    longest = 0.0
-    for s in range(wx.shape[0] - 1):
-        longest = max(longest, math.hypot(wx[s + 1] - wx[s], wy[s + 1] - wy[s]))
-    at = 0
-    for k in range(x.shape[0]):
-        best, near, behind = math.inf, at, 0.0
-        # The last place is at hand: what is farther off than that cannot be nearest.
-        dx, dy = x[k] - wx[at], y[k] - wy[at]
-        far = (math.sqrt(dx * dx + dy * dy) + 3.0 * longest + _NEAR) ** 2
-        for s in range(max(0, at - window), min(wx.shape[0] - 1, at + window + 1)):
-            px, py = x[k] - wx[s], y[k] - wy[s]
-            if px * px + py * py > far:
-                continue
-            ex, ey = wx[s + 1] - wx[s], wy[s + 1] - wy[s]
-            square = ex * ex + ey * ey
-            u = (px * ex + py * ey) / square if square > 0.0 else 0.0
-            u = max(u, -1.0 if s == 0 else 0.0)
-            u = min(u, 2.0 if s == wx.shape[0] - 2 else 1.0)
-            apart = (px - u * ex) ** 2 + (py - u * ey) ** 2
-            lag = t[k] - wt[s] - u * (wt[s + 1] - wt[s])
-            if apart < best - _SAME or (apart <= best + _SAME and abs(lag) < abs(behind)):
-                best, near, behind = min(apart, best), s, lag
-        at = near
-        beside[k], late[k] = math.sqrt(best), behind
+    x, y, t = way.path
+    length = np.hypot(x[1:] - x[:-1], y[1:] - y[:-1]).sum()
+    return float(length), float(t[-1] - t[0])

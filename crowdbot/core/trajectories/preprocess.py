@@ -78,6 +78,19 @@ def truncate_to_shorter(a: Trajectories, b: Trajectories) -> tuple[Trajectories,
     return truncate(a, float(a.t[0]) + shorter), truncate(b, float(b.t[0]) + shorter)
 
 
+def samples_of_shorter(a: Trajectories, b: Trajectories) -> tuple[Trajectories, Trajectories]:
+    """As `truncate_to_shorter`, for who asks for samples: the shorter run stays as it is.
+
+    Its trips and contacts may end after its last sample.
+    """
+    shorter = min(duration(a.t), duration(b.t))
+    first, second = (
+        run if duration(run.t) == shorter else truncate(run, float(run.t[0]) + shorter)
+        for run in (a, b)
+    )
+    return first, second
+
+
 def duration(t: Array) -> float:
     """From the first to the last sample, s."""
     return float(t[-1] - t[0])
@@ -241,14 +254,11 @@ def _completed(
 ) -> tuple[Array, Array]:
     """Recorded velocities, the secant where there is none, NaN where the body is absent."""
     known, here = present(*recorded), present(*position)
-    if np.array_equal(known & here, here):  # the usual case costs no derivation
-        secant = recorded
-    else:
-        secant = (_secant(t, position[0], valid), _secant(t, position[1], valid))
-    vx, vy = (
-        np.where(here, np.where(known, r, s), np.nan) for r, s in zip(recorded, secant, strict=True)
-    )
-    return vx, vy
+    vx, vy = recorded
+    if not np.array_equal(known & here, here):  # the usual case costs no derivation
+        vx = np.where(known, vx, _secant(t, position[0], valid))
+        vy = np.where(known, vy, _secant(t, position[1], valid))
+    return np.where(here, vx, np.nan), np.where(here, vy, np.nan)
 
 
 def _secant(t: Array, p: Array, valid: Mask) -> Array:

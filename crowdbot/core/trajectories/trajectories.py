@@ -25,10 +25,10 @@ def _read_only(values: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
     if np.iscomplexobj(values):
         raise InputError("trajectories: complex numbers where real ones are wanted")
     try:
-        array = np.array(values, dtype=dtype)
+        array = np.asarray(values, dtype=dtype)
     except (TypeError, ValueError) as error:
         raise InputError(f"trajectories: not an array of numbers: {error}") from error
-    return immutable(array)
+    return immutable(array if array.flags.forc else array.copy("K"))
 
 
 def _for_all(value: _Cached) -> _Cached:
@@ -212,6 +212,16 @@ class Trajectories(FromRecordings):
         _check(run)
         _check_travellers(run)
         return run
+
+
+def cached_beside(
+    run: Trajectories, other: Trajectories, key: Hashable, compute: Callable[[], _Cached]
+) -> _Cached:
+    """As `Trajectories.cached`, what ``compute`` makes of a run and another one."""
+    done: dict[int, tuple[Trajectories, _Cached]] = run.cached(("beside", key), dict)
+    if id(other) not in done:  # the other run is kept as well, so that nothing else gets its id
+        done[id(other)] = other, _for_all(compute())
+    return done[id(other)][1]
 
 
 def _signals(signals: Mapping[str, ArrayLike]) -> dict[str, Array]:

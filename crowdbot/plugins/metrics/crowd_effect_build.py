@@ -18,7 +18,11 @@ from crowdbot.core.interfaces import (
     truncate_at_arrival,
 )
 from crowdbot.core.trajectories.encounters import encounter, people, people_speeds
-from crowdbot.core.trajectories.preprocess import inf_to_nan, truncate_to_shorter
+from crowdbot.core.trajectories.preprocess import (
+    inf_to_nan,
+    samples_of_shorter,
+    truncate_to_shorter,
+)
 from crowdbot.core.trajectories.trips import DISTANCE_TOLERANCE, Durations, durations, meets_robot
 from crowdbot.plugins.metrics.crowd_effect import (
     CROWD_DEVIATION,
@@ -101,7 +105,7 @@ class EffectOnVelocity:
             return factory.all_undefined("no_reference")
         alone, run = truncate_at_arrival(refs.crowd_alone), truncate_at_arrival(run)
         literal = self._ratio("literal", alone, run, np.ones(len(alone.t)), np.ones(len(run.t)))
-        alone, run = truncate_to_shorter(alone, run)
+        alone, run = samples_of_shorter(alone, run)
         if min(duration(alone.t), duration(run.t)) <= 0:
             return [literal, factory.undefined("corrected", "too_few_samples")]
         weights = time_weights(alone.t), time_weights(run.t)

@@ -5,8 +5,10 @@ Bodies are the robot (0) and the people (1 to M); L = M + 1.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +22,7 @@ from crowdbot.core.interfaces import (
     Trajectories,
     truncate_at_arrival,
 )
+from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.trajectories.encounters import (
     people,
     people_velocities,
@@ -31,10 +34,8 @@ from crowdbot.plugins.metrics.overtaking import OVERTAKING_COUNT, OvertakingCoun
 
 #: Slack of the rules on speed (m/s), angle (rad) and side (m), so that rounding decides nothing.
 TOLERANCE = 1e-9
-#: Samples that are looked at together; bounds the memory that L x L tables take.
-CHUNK = 8
-#: Farther than anybody, m. Not inf: some BLAS kernels multiply it by a padding of zeros.
-_FAR = 1e300
+#: Slack where pairs are left out unseen, m: rounding must not leave out one that counts.
+_SLACK = 1e-3
 
 Index = NDArray[np.intp]
 
@@ -59,8 +60,7 @@ class OvertakingCount:
         ]
 
 
-@dataclass(frozen=True, slots=True)
-class OvertakingBodies:
+class OvertakingBodies(NamedTuple):
     """Robot and people: x, y, ux, uy (direction), walks are (N, L); valid is (N-1, L)."""
 
     x: Array
@@ -92,78 +92,127 @@ class OvertakingBodies:
             valid=np.column_stack(steps),
         )
 
-    def ahead(self, k: Index, a: Index, b: Index, *, then: int = 0) -> tuple[Array, Array]:
-        """How far b is ahead of a, and beside it, in the direction of a at sample k, m."""
-        dx, dy = (
-            self.x[k + then, b] - self.x[k + then, a],
-            self.y[k + then, b] - self.y[k + then, a],
-        )
-        ux, uy = self.ux[k, a], self.uy[k, a]
-        return dx * ux + dy * uy, dx * uy - dy * ux
+
+class _Rule(NamedTuple):
+    """Who overtakes whom; slack included.
+
+    Attributes:
+        level: less ahead or behind is side by side, m.
+        lateral: farther aside nobody is overtaken, m.
+        cosine: of the largest angle between both directions.
+    """
+
+    level: float
+    lateral: float
+    cosine: float
 
 
 def overtakes(bodies: OvertakingBodies, spec: OvertakingCountSpec) -> NDArray[np.int64]:
     """How often row overtook column (L, L)."""
     size = bodies.x.shape[1]
     counts = np.zeros((size, size), dtype=np.int64)
-    for k, a, b in _crossings(bodies, spec):
-        beside = np.abs(bodies.ahead(k, a, b, then=1)[1])
-        cosine = bodies.ux[k, a] * bodies.ux[k, b] + bodies.uy[k, a] * bodies.uy[k, b]
-        same_way = bodies.walks[k, b] & (cosine >= np.cos(spec.overtake_angle) - TOLERANCE)
-        counted = same_way & (beside <= spec.overtake_lateral + TOLERANCE)
-        k, a, b = k[counted], a[counted], b[counted]
-        armed = bodies.ahead(k, a, b)[0] > spec.overtake_eps
-        for row in np.flatnonzero(~armed):  # level now; who was ahead before?
-            armed[row] = _armed(bodies, spec, int(k[row]), int(a[row]), int(b[row]))
-        np.add.at(counts, (a[armed], b[armed]), 1)
+    rule = _Rule(
+        level=spec.overtake_eps,
+        lateral=spec.overtake_lateral + TOLERANCE,
+        cosine=float(np.cos(spec.overtake_angle)) - TOLERANCE,
+    )
+    _count(bodies, rule, np.arange(size), np.empty(size), counts)
     return counts
 
 
-def _crossings(
-    bodies: OvertakingBodies, spec: OvertakingCountSpec
-) -> Iterator[tuple[Index, Index, Index]]:
-    """Steps k on which b falls behind a, and was not behind before.
+@kernel
+def _count(
+    bodies: OvertakingBodies, rule: _Rule, order: Index, at: Array, counts: NDArray[np.int64]
+) -> None:
+    """Count who overtakes whom, step by step.
 
-    Who falls behind during a step was no farther ahead than both may have moved: that leaves few
-    pairs, found by one product of matrices.
+    Who is overtaken is near: not farther aside than the rule allows, and not farther behind than
+    both may have moved. So only bodies near along x are compared.
+
+    Args:
+        bodies, rule: what is counted, and how.
+        order: (L,) the bodies in any order; left in that of x.
+        at: (L,) for x after the step.
+        counts: (L, L) written: how often row overtook column.
     """
-    x, y, ux, uy = (np.nan_to_num(v) for v in (bodies.x, bodies.y, bodies.ux, bodies.uy))
-    moves = np.where(bodies.valid, np.hypot(np.diff(x, axis=0), np.diff(y, axis=0)), 0.0)
-    half = moves.max(axis=1, initial=0.0)[:, None] + spec.overtake_eps + TOLERANCE
-    middle = x[:-1] * ux[:-1] + y[:-1] * uy[:-1] + (half - spec.overtake_eps - TOLERANCE)
-    drives = bodies.walks[:-1] & bodies.valid
-    left = np.stack([ux[:-1], uy[:-1], np.where(drives, -middle, _FAR)], axis=2)
-    right = np.stack([x, y, np.ones_like(x)], axis=1)
-    size = x.shape[1]
-    offset, near = np.empty((CHUNK, size, size)), np.empty((CHUNK, size, size), dtype=bool)
-    for start in range(0, len(moves), CHUNK):
-        rows = slice(start, min(start + CHUNK, len(moves)))
-        count = rows.stop - start
-        # how far b is ahead of a, minus the middle of where it may be
-        np.matmul(left[rows], right[rows], out=offset[:count])
-        np.abs(offset[:count], out=offset[:count])
-        np.less_equal(offset[:count], half[rows, :, None], out=near[:count])
-        k, pair = np.divmod(np.flatnonzero(near[:count]), size * size)
-        a, b = np.divmod(pair, size)
-        k += start
-        keep = (a != b) & bodies.valid[k, b]
-        k, a, b = k[keep], a[keep], b[keep]
-        now, then = bodies.ahead(k, a, b)[0], bodies.ahead(k, a, b, then=1)[0]
-        falls = (now >= -spec.overtake_eps) & (then < -spec.overtake_eps)
-        yield k[falls], a[falls], b[falls]
+    size = bodies.x.shape[1]
+    for k in range(bodies.valid.shape[0]):
+        most = _place(bodies, k, at)
+        _sort(order, at)
+        behind = rule.level + 2.0 * most + _SLACK
+        reach = rule.lateral + behind
+        first = 0
+        for place in range(size):
+            a = order[place]
+            if at[a] == math.inf:
+                break
+            while at[a] - at[order[first]] > reach:
+                first += 1
+            if not bodies.walks[k, a]:
+                continue
+            for other in range(first, size):
+                b = order[other]
+                if at[b] - at[a] > reach:
+                    break
+                ahead, beside = _ahead(bodies, k, a, b, 1)
+                # First what is false nearly always: a guess that fails costs more than the rest.
+                if abs(ahead) > behind or abs(beside) > rule.lateral or a == b:
+                    continue
+                if ahead < -rule.level and _same_way(bodies, rule.cosine, k, a, b):
+                    counts[a, b] += _armed(bodies, rule.level, k, a, b)
 
 
-def _armed(bodies: OvertakingBodies, spec: OvertakingCountSpec, k: int, a: int, b: int) -> bool:
-    """Whether b was clearly ahead of a before it fell behind; looks back while they are level."""
+@kernel
+def _place(bodies: OvertakingBodies, k: int, at: Array) -> float:
+    """Write x of all bodies after a step, inf if it is not valid; the longest move, m."""
+    most = 0.0
+    for b in range(at.shape[0]):
+        at[b] = math.inf
+        if bodies.valid[k, b]:
+            at[b] = bodies.x[k + 1, b]
+            dx, dy = at[b] - bodies.x[k, b], bodies.y[k + 1, b] - bodies.y[k, b]
+            most = max(most, math.sqrt(dx * dx + dy * dy))
+    return most
+
+
+@kernel
+def _sort(order: Index, at: Array) -> None:
+    """Put bodies in the order of x, by insertion: after a step they are nearly so."""
+    for i in range(1, order.shape[0]):
+        body, place = order[i], i
+        while place > 0 and at[order[place - 1]] > at[body]:
+            order[place] = order[place - 1]
+            place -= 1
+        order[place] = body
+
+
+@inline_kernel
+def _ahead(bodies: OvertakingBodies, k: int, a: int, b: int, then: int) -> tuple[float, float]:
+    """How far b is ahead of a, and beside it, in the direction of a at sample k, m."""
+    dx = bodies.x[k + then, b] - bodies.x[k + then, a]
+    dy = bodies.y[k + then, b] - bodies.y[k + then, a]
+    ux, uy = bodies.ux[k, a], bodies.uy[k, a]
+    return dx * ux + dy * uy, dx * uy - dy * ux
+
+
+@inline_kernel
+def _same_way(bodies: OvertakingBodies, cosine: float, k: int, a: int, b: int) -> bool:
+    """Whether b walks, and nearly as a does; ``cosine`` is that of the largest angle."""
+    ux, uy = bodies.ux[k], bodies.uy[k]
+    return bool(bodies.walks[k, b] and ux[a] * ux[b] + uy[a] * uy[b] >= cosine)
+
+
+@kernel
+def _armed(bodies: OvertakingBodies, level: float, k: int, a: int, b: int) -> bool:
+    """Whether b was clearly ahead of a at sample k, or before while they have been level since."""
     for before in range(k, -1, -1):
         if not (bodies.walks[before, a] and bodies.valid[before, a] and bodies.valid[before, b]):
             return False
-        at = np.array([before]), np.array([a]), np.array([b])
-        if before < k and bodies.ahead(*at, then=1)[0][0] < -spec.overtake_eps:
+        if before < k and _ahead(bodies, before, a, b, 1)[0] < -level:
             return False  # it fell behind on that step already, by the direction of that step
-        now = bodies.ahead(*at)[0][0]
-        if abs(now) > spec.overtake_eps:
-            return bool(now > 0)
+        now = _ahead(bodies, before, a, b, 0)[0]
+        if abs(now) > level:
+            return bool(now > 0.0)
     return False
 
 

@@ -14,6 +14,7 @@ from crowdbot.core.trajectories.preprocess import (
     duration,
     path_length,
     robot_velocity,
+    samples_of_shorter,
     time_weights,
     travel_time,
     truncate,
@@ -22,7 +23,12 @@ from crowdbot.core.trajectories.preprocess import (
     valid_agent_steps,
     valid_robot_steps,
 )
-from crowdbot.core.trajectories.trajectories import AgentTracks, RobotTrack, Trajectories
+from crowdbot.core.trajectories.trajectories import (
+    AgentTracks,
+    RobotTrack,
+    Trajectories,
+    cached_beside,
+)
 from crowdbot.errors import InputError
 
 NAN = np.nan
@@ -143,6 +149,28 @@ def test_the_common_window_starts_with_each_run() -> None:
         one, two = truncate_to_shorter(first, second)
         assert duration(one.t) == duration(two.t) == 3.0
         assert one.t[0] == first.t[0]
+
+
+def test_of_the_shorter_run_all_samples_are_asked_as_they_are() -> None:
+    short, long = (Trajectories(t=np.arange(float(n))) for n in (4, 9))
+    found, cut = samples_of_shorter(short, long)
+    assert found is short
+    assert cut.t.tolist() == short.t.tolist()
+
+
+def test_what_two_runs_give_is_computed_once_for_each_other() -> None:
+    run, one, two = (Trajectories(t=np.arange(3.0) + k) for k in range(3))
+    asked: list[float] = []
+
+    def begin_of(other: Trajectories) -> float:
+        def ask() -> float:
+            asked.append(float(other.t[0]))
+            return asked[-1]
+
+        return cached_beside(run, other, "begin", ask)
+
+    assert [begin_of(other) for other in (one, two, one, two)] == [1.0, 2.0, 1.0, 2.0]
+    assert asked == [1.0, 2.0]
 
 
 def test_travel_time() -> None:

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core.trajectories.paired_people import WINDOW, follow
+from crowdbot.core.trajectories.laid_over import follow, longest_parts
+from crowdbot.core.trajectories.paired_people import WINDOW
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
 from tests.plugins.metrics.scenes import Array, scores_of, value_of, why
@@ -226,3 +227,15 @@ def test_segments_that_are_far_away_may_be_left_out(seed: int) -> None:
     expected = _followed(*ways)
     np.testing.assert_allclose(beside, expected[0], rtol=1e-12, atol=1e-15)
     np.testing.assert_allclose(late, expected[1], rtol=1e-12, atol=1e-12)
+
+
+def test_of_a_trip_its_longest_part_is_compared() -> None:
+    """Of equally long ones the first; of somebody without a column, and of no sample, none."""
+    valid = np.ones((9, 2), np.bool_)
+    valid[[2, 5], 1] = False  # samples 0 to 2, 3 to 5, 6 to 9
+    first, last = np.array([0, 0, 0, 4, 7]), np.array([9, 9, 5, 3, 9])
+    column = np.array([0, 1, 1, 0, -1])
+    parts = np.zeros((5, 3), np.int64)
+    longest_parts(valid, first, last, column, parts)
+    assert parts[:, 1].tolist() == [10, 10, 3, 0, 0]
+    assert parts[:, 0].tolist() == [0, 6, 0, 0, 0]
