@@ -20,9 +20,10 @@ from crowdbot.core.interfaces import (
     Score,
     ScoreFactory,
     Trajectories,
+    kernel,
     truncate_at_arrival,
 )
-from crowdbot.core.support.compile import inline_kernel, kernel
+from crowdbot.core.support.compile import inline_kernel
 from crowdbot.core.trajectories.encounters import (
     people,
     people_velocities,
