@@ -133,7 +133,7 @@ if TYPE_CHECKING:
     from crowdbot.core.sensing.range_model import RangeModel
     from crowdbot.core.sensing.scene import Scene
     from crowdbot.core.sensing.sensor import DepthCamera, NoiseGenerator, Sensor, SensorWithMemory
-    from crowdbot.core.support.compile import kernel
+    from crowdbot.core.support.compile import declared_kernel, kernel
     from crowdbot.core.trajectories.commands import Commands
     from crowdbot.core.trajectories.preprocess import (
         duration,
@@ -207,7 +207,7 @@ _HOMES = {
     "crowdbot.core.sensing.range_model": "RangeModel",
     "crowdbot.core.sensing.scene": "Scene",
     "crowdbot.core.sensing.sensor": "DepthCamera NoiseGenerator Sensor SensorWithMemory",
-    "crowdbot.core.support.compile": "kernel",
+    "crowdbot.core.support.compile": "declared_kernel kernel",
     "crowdbot.core.trajectories.commands": "Commands",
     "crowdbot.core.trajectories.preprocess": (
         "duration forward_speed path_length time_weights travel_time truncate_at_arrival yaw_rate"
@@ -348,6 +348,7 @@ __all__ = [
     "Trips",
     "Truth",
     "VelocityPolicy",
+    "declared_kernel",
     "desired_acceleration",
     "duration",
     "first_collision",

@@ -25,6 +25,7 @@ from crowdbot.core.interfaces import (
     WALL_D2,
     CompiledCost,
     Pointer,
+    declared_kernel,
     in_range,
     near_table,
     nearest_on_segment,
@@ -32,7 +33,7 @@ from crowdbot.core.interfaces import (
     wall_table,
     work_table,
 )
-from crowdbot.core.support.compile import array_kernel, declared_kernel
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.foe_avoidance import FoeAvoidanceSpec
 from crowdbot.plugins.crowd.cost_functions.force_build import no_base
 

@@ -19,8 +19,9 @@ from crowdbot.core.interfaces import (
     VY,
     WEIGHT,
     Pointer,
+    declared_kernel,
 )
-from crowdbot.core.support.compile import array_kernel, declared_kernel
+from crowdbot.core.support.compile import array_kernel
 
 #: No force is larger, m/s^2: a target has to stay finite when squared.
 _LARGEST = 1e9

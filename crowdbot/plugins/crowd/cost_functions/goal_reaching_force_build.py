@@ -14,8 +14,8 @@ from crowdbot.core.interfaces import (
     VY,
     CompiledCost,
     Pointer,
+    declared_kernel,
 )
-from crowdbot.core.support.compile import declared_kernel
 from crowdbot.plugins.crowd.cost_functions.force_build import (
     aim,
     from_target,

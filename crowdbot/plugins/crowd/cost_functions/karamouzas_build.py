@@ -22,11 +22,12 @@ from crowdbot.core.interfaces import (
     VY,
     CompiledCost,
     Pointer,
+    declared_kernel,
     first_collision,
     list_obstacles,
     work_table,
 )
-from crowdbot.core.support.compile import array_kernel, declared_kernel
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.karamouzas import KaramouzasSpec
 
 _ALPHA, _BETA, _GAMMA, _DELTA, _T_MAX = range(2, 7)  # entries of params

@@ -21,10 +21,11 @@ from crowdbot.core.interfaces import (
     RELAXATION,
     CompiledCost,
     Pointer,
+    declared_kernel,
     first_contact,
     list_approaching,
 )
-from crowdbot.core.support.compile import array_kernel, declared_kernel
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.moussaid import MoussaidSpec
 
 _D_MAX = 2  # entry of params

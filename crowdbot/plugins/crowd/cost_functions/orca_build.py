@@ -31,11 +31,12 @@ from crowdbot.core.interfaces import (
     WALL_D2,
     CompiledCost,
     Pointer,
+    declared_kernel,
     in_range,
     near_table,
     wall_table,
 )
-from crowdbot.core.support.compile import array_kernel, declared_kernel
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.half_planes_build import best_velocity, put, violation
 from crowdbot.plugins.crowd.cost_functions.orca import OrcaSpec
 

@@ -36,6 +36,7 @@ from crowdbot.core.interfaces import (
     WALL_D2,
     CompiledCost,
     Pointer,
+    declared_kernel,
     in_range,
     near_table,
     time_to_disc,
@@ -43,7 +44,7 @@ from crowdbot.core.interfaces import (
     wall_table,
     work_table,
 )
-from crowdbot.core.support.compile import array_kernel, declared_kernel
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.paris import ParisSpec
 
 _W_A, _W_B, _T_MAX = range(2, 5)  # entries of params

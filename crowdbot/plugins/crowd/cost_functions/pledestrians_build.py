@@ -23,10 +23,10 @@ from crowdbot.core.interfaces import (
     PY,
     CompiledCost,
     Pointer,
+    declared_kernel,
     first_collision,
     list_approaching,
 )
-from crowdbot.core.support.compile import declared_kernel
 from crowdbot.plugins.crowd.cost_functions.pledestrians import PledestriansSpec
 
 _W_A, _W_B, _T_MIN, _T_MAX, _COST_OF_WAY = range(2, 7)  # entries of params

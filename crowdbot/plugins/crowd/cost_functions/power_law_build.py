@@ -22,11 +22,12 @@ from crowdbot.core.interfaces import (
     VY,
     CompiledCost,
     Pointer,
+    declared_kernel,
     in_range,
     near_table,
     wall_table,
 )
-from crowdbot.core.support.compile import array_kernel, declared_kernel
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.force_build import (
     aim,
     from_target,

@@ -8,8 +8,15 @@ from __future__ import annotations
 import numpy as np
 
 from crowdbot.core.crowd.velocity_search.minstd import draw
-from crowdbot.core.interfaces import BASE, EXCESS, GRADIENT, PREPARE, CompiledCost, Pointer
-from crowdbot.core.support.compile import declared_kernel
+from crowdbot.core.interfaces import (
+    BASE,
+    EXCESS,
+    GRADIENT,
+    PREPARE,
+    CompiledCost,
+    Pointer,
+    declared_kernel,
+)
 from crowdbot.plugins.crowd.cost_functions.random_function import RandomFunctionSpec
 
 

@@ -21,11 +21,12 @@ from crowdbot.core.interfaces import (
     VY,
     CompiledCost,
     Pointer,
+    declared_kernel,
     first_collision,
     list_approaching,
     soonest_disc,
 )
-from crowdbot.core.support.compile import array_kernel, declared_kernel
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 
 _W = 2  # entry of params

@@ -19,9 +19,9 @@ from crowdbot.core.interfaces import (
     LOWER_BOUND,
     CompiledCost,
     Pointer,
+    declared_kernel,
     work_table,
 )
-from crowdbot.core.support.compile import declared_kernel
 from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
 from crowdbot.plugins.crowd.cost_functions.ttca_dca_gradient_build import gradient
 from crowdbot.plugins.crowd.cost_functions.ttca_dca_neighbours_build import prepare

@@ -8,8 +8,16 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.interfaces import GRADIENT, PREFERRED, PVX, PVY, Pointer, work_table
-from crowdbot.core.support.compile import array_kernel, declared_kernel
+from crowdbot.core.interfaces import (
+    GRADIENT,
+    PREFERRED,
+    PVX,
+    PVY,
+    Pointer,
+    declared_kernel,
+    work_table,
+)
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
     INV_DCA2,
     INV_TTCA2,

@@ -30,11 +30,12 @@ from crowdbot.core.interfaces import (
     WALL_D2,
     WORK_COLUMNS,
     Pointer,
+    declared_kernel,
     near_table,
     wall_table,
     work_table,
 )
-from crowdbot.core.support.compile import array_kernel, declared_kernel
+from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
     CLOSEST,
     INV_DCA2,

@@ -19,10 +19,10 @@ from crowdbot.core.interfaces import (
     VY,
     CompiledCost,
     Pointer,
+    declared_kernel,
     first_contact,
     list_obstacles,
 )
-from crowdbot.core.support.compile import declared_kernel
 from crowdbot.plugins.crowd.cost_functions.van_toll import VanTollSpec
 
 _MAX_DISTANCE = 2  # entry of params
