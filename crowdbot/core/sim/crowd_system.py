@@ -2,7 +2,7 @@
 
 The event is unrestricted, so it runs before the plant's discrete update: the force on the robot
 and the reaction on people come from one computation on one state, and balance exactly
-(docs/decisions/0004). Trips and contacts that end go to the recording from here.
+(docs/decisions/0004).
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ from pydrake.systems.framework import (
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.geometry.footprint import footprint_of_model
-from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.bodies import SEEN, rows_of
@@ -46,9 +45,13 @@ class CrowdOutputs(Protocol):
     def state(self) -> OutputPort:
         """Their flat state."""
 
+    @property
+    def events(self) -> OutputPort:
+        """How many of their trips, and of their contacts with the robot, have ended."""
+
 
 class CrowdSystem(Block):
-    """Input: robot state. Outputs: crowd state, force on the robot.
+    """Input: robot state. Outputs: crowd state, events, force on the robot.
 
     Attributes:
         engine: the people.
@@ -62,17 +65,11 @@ class CrowdSystem(Block):
         push: Push,
         robot: RobotModel,
         margin: float,
-        log: RunLog,
         tick: float = TICK,
     ) -> None:
-        """Take the people.
-
-        Args:
-            margin: how much larger than its body people take the robot for, m.
-            log: gets trips and contacts that end.
-        """
+        """``margin``: how much larger than its body people take the robot for, m."""
         super().__init__()
-        self._tick, self._log = tick, log
+        self._tick = tick
         self.engine, self._push = engine, push
         self._outline = footprint_of_model(robot).corners
         self._robot = rows_of([robot], margin)
@@ -80,9 +77,12 @@ class CrowdSystem(Block):
         self._port = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         crowd = self.DeclareDiscreteState(engine.initial_state())
         force = self.DeclareDiscreteState(push.size)
+        events = self.DeclareDiscreteState(1)
         self.DeclareStateOutputPort(ports.CROWD_STATE, crowd)
+        self.DeclareStateOutputPort(ports.EVENTS, events)
         self.DeclareStateOutputPort(ports.ROBOT_FORCE, force)
         self._crowd, self._force = DiscreteStateIndex(crowd), DiscreteStateIndex(force)
+        self._events = DiscreteStateIndex(events)
         self.DeclarePeriodicUnrestrictedUpdateEvent(tick, 0.0, self._update)
 
     def _update(self, context: Context, state: State) -> None:
@@ -96,8 +96,12 @@ class CrowdSystem(Block):
             return
         fx, fy, contacts, trips, torque = news
         self._push.write(values.get_mutable_value(self._force), fx, fy, torque)
-        if contacts + trips != self._log.events:
-            self._log.record_events(crowd)
+        values.get_mutable_value(self._events)[0] = contacts + trips
+
+    @property
+    def events(self) -> OutputPort:
+        """How many trips and contacts have ended."""
+        return self.GetOutputPort(ports.EVENTS)
 
     @property
     def state(self) -> OutputPort:
@@ -110,7 +114,6 @@ def add_crowd(
     built: BuiltRun,
     robot: ControlledRobot,
     engine: CrowdEngine | None,
-    log: RunLog,
     tick: float,
 ) -> CrowdSystem | None:
     """Add the people, if there are any, to a diagram; they and the robot push each other."""
@@ -118,7 +121,7 @@ def add_crowd(
         return None
     spec = built.scenario.crowd
     margin = spec.robot_response.margin if spec else 0.0
-    crowd = CrowdSystem(engine, robot.push, built.model, margin, log, tick)
+    crowd = CrowdSystem(engine, robot.push, built.model, margin, tick)
     builder.AddNamedSystem("crowd", crowd)
     builder.Connect(robot.port, crowd.GetInputPort(ports.ROBOT_STATE))
     if robot.push_port is not None:

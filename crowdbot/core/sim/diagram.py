@@ -59,7 +59,7 @@ def build_diagram(
     robot = add_robot(builder, built.parts, built.model, built.robot.control, tick)
 
     # Crowd and contact, one event: force on the robot, reaction on people.
-    crowd = add_crowd(builder, built, robot, engine, log, tick)
+    crowd = add_crowd(builder, built, robot, engine, tick)
 
     # Sensors, odometry among them.
     bank = add_sensors(builder, built, robot, crowd, log.writer, seed=seed)

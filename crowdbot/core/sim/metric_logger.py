@@ -80,9 +80,10 @@ class MetricLogger(Block):
         self.toppled_time: float | None = None
         self._fate, self._on_end = fate, on_end
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
-        self._crowd = (
-            self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size) if crowd_size else None
-        )
+        self._crowd = self._events = None
+        if crowd_size:
+            self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size)
+            self._events = self.DeclareVectorInputPort(ports.EVENTS, 1)
         # Asking an input port whether it has a value would compute the forces at every tick.
         self._forces = (
             self.DeclareAbstractInputPort(ports.FORCES, Value(ContactResults())) if felt else None
@@ -103,11 +104,15 @@ class MetricLogger(Block):
         self._before = now
         if self.toppled_time is None and now.item(_TILT) > LEANS:
             self.toppled_time = t
+        sampled = tick % self._ticks_per_sample == 0
+        crowd = self._crowd_state(context, always=sampled)
+        if crowd is not None:
+            self._log.record_events(crowd)
         arrived = False
         if not self._clearance.is_clear(now.item(0), now.item(1)):
             arrived = self._look(t, RobotState(*now.tolist()), before)
-        if tick % self._ticks_per_sample == 0:
-            self._log.sample(t, RobotState(*now.tolist()), self._people(context))
+        if sampled:
+            self._log.sample(t, RobotState(*now.tolist()), crowd)
         if arrived:
             return self._end(context, t, ARRIVED, "centre inside the goal zone")
         if self._fate is not None and self._fate.failure:
@@ -143,12 +148,17 @@ class MetricLogger(Block):
     def finish(self, context: Context, t: float) -> None:
         """Record what is still going on; ``context`` is this system's own."""
         self.walls.finish()
-        self._log.finish(t, self._people(context))
+        self._log.finish(t, None if self._crowd is None else self._crowd.Eval(context))
         self._on_end()
 
-    def _people(self, context: Context) -> Array | None:
-        """The flat state of the crowd, if there is one, copied."""
-        return None if self._crowd is None else self._crowd.Eval(context)
+    def _crowd_state(self, context: Context, *, always: bool) -> Array | None:
+        """The crowd, where there is something to log: it is copied each time it is looked at."""
+        if self._crowd is None or self._events is None:
+            return None
+        if not always and int(self._events.Eval(context)[0]) == self._log.events:
+            return None
+        crowd: Array = self._crowd.Eval(context)
+        return crowd
 
     def _look(self, t: float, robot: RobotState, before: Array | None) -> bool:
         """Watch walls and goal, one of which may be near; returns whether the robot is there."""
@@ -194,4 +204,5 @@ def add_metric_logger(
         builder.Connect(forces, logger.GetInputPort(ports.FORCES))
     if crowd is not None:
         builder.Connect(crowd.state, logger.GetInputPort(ports.CROWD_STATE))
+        builder.Connect(crowd.events, logger.GetInputPort(ports.EVENTS))
     return logger

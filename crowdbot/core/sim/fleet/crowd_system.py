@@ -23,7 +23,6 @@ from pydrake.systems.framework import (
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.robot_contact import FELT, TOUCH
-from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.bodies import SEEN, outlines_of, rows_of
@@ -46,10 +45,11 @@ class RobotsCrowd:
 
     engine: CrowdEngine
     state: OutputPort
+    events: OutputPort
 
 
 class FleetCrowdSystem(Block):
-    """Inputs: states of all robots. Outputs: crowd state; for each robot state and force.
+    """Inputs: states of all robots. Outputs: crowd state; for each robot state, events, force.
 
     Attributes:
         engine: the people.
@@ -63,12 +63,8 @@ class FleetCrowdSystem(Block):
         builts: Sequence[BuiltRun],
         robots: Sequence[ControlledRobot],
         fates: Sequence[Fate],
-        log: RunLog,
-        logs: Sequence[RunLog],
     ) -> None:
-        """Take the people; ``log`` gets their trips, ``logs`` contacts with each robot."""
         super().__init__()
-        self._log, self._logs = log, tuple(logs)
         self.engine, self._fates = engine, tuple(fates)
         self._pushes = [robot.push for robot in robots]
         scenario, models = builts[0].scenario, [built.model for built in builts]
@@ -85,9 +81,11 @@ class FleetCrowdSystem(Block):
         self.DeclareStateOutputPort(ports.CROWD_STATE, crowd)
         self._crowd, self._books = DiscreteStateIndex(crowd), DiscreteStateIndex(book)
         known = {"prerequisites_of_calc": {self.all_state_ticket()}}
+        self.DeclareVectorOutputPort(ports.EVENTS, 1, weak_callback(self._trips), **known)
         for k, push in enumerate(self._pushes):
             for port, size, calc in (
                 (ports.CROWD_STATE, s.size(len(engine.agents)), self._seen),
+                (ports.EVENTS, 1, self._count),
                 (ports.ROBOT_FORCE, push.size, self._push),
             ):
                 self.DeclareVectorOutputPort(
@@ -101,23 +99,14 @@ class FleetCrowdSystem(Block):
         here = [not fate.gone for fate in self._fates]
         values = state.get_mutable_discrete_state()
         books = values.get_mutable_value(self._books).reshape(self._books_shape)
-        felt, crowd = books[here], values.get_mutable_value(self._crowd)
+        felt = books[here]
         self.engine.advance(
-            crowd, self._rows[here], self._outlines[here],
+            values.get_mutable_value(self._crowd), self._rows[here], self._outlines[here],
             books=felt, stiffnesses=self._stiffness[here],
         )  # fmt: skip
         books[here] = felt
         books[np.logical_not(here), _FX] = books[np.logical_not(here), _FY] = 0.0
         books[np.logical_not(here), _TORQUE] = 0.0
-        self._record(crowd, books)
-
-    def _record(self, crowd: Array, books: Array) -> None:
-        """Record trips and contacts that have ended; those of a robot until it has ended itself."""
-        if crowd[s.TRIPS] != self._log.events:
-            self._log.record_events(crowd)
-        for fate, log, book in zip(self._fates, self._logs, books, strict=True):
-            if not fate.ended and book[_CONTACTS] != log.events:
-                log.record_events(_as_one(crowd, book))
 
     def _book(self, context: Context, k: int) -> Array:
         books: Array = context.get_discrete_state(self._books).value()
@@ -125,32 +114,38 @@ class FleetCrowdSystem(Block):
         return book
 
     def _seen(self, k: int, context: Context, output: BasicVector) -> None:
-        crowd = context.get_discrete_state(self._crowd).value()
-        output.get_mutable_value()[:] = _as_one(crowd, self._book(context, k))
+        book, flat = self._book(context, k), output.get_mutable_value()
+        flat[:] = context.get_discrete_state(self._crowd).value()
+        header, people = s.view(flat)
+        header[FELT] = book[: len(FELT)]
+        people[:, TOUCH] = book[len(FELT) :].reshape(-1, len(TOUCH))
+
+    def _count(self, k: int, context: Context, output: BasicVector) -> None:
+        output.get_mutable_value()[0] = self._book(context, k)[_CONTACTS]
 
     def _push(self, k: int, context: Context, output: BasicVector) -> None:
         book, values = self._book(context, k), output.get_mutable_value()
         values[:] = 0.0
         self._pushes[k].write(values, book[_FX], book[_FY], book[_TORQUE])
 
+    def _trips(self, context: Context, output: BasicVector) -> None:
+        flat = context.get_discrete_state(self._crowd).value()
+        output.get_mutable_value()[0] = flat[s.TRIPS]
+
     @property
     def state(self) -> OutputPort:
         """The crowd's flat state, which tells nothing of contacts with robots."""
         return self.GetOutputPort(ports.CROWD_STATE)
 
+    @property
+    def events(self) -> OutputPort:
+        """How many trips have ended."""
+        return self.GetOutputPort(ports.EVENTS)
+
     def view(self, k: int) -> RobotsCrowd:
         """The crowd as robot k takes it."""
-        state = self.GetOutputPort(ports.of_robot(ports.CROWD_STATE, k))
-        return RobotsCrowd(self.engine, state)
-
-
-def _as_one(crowd: Array, book: Array) -> Array:
-    """The crowd's flat state as if the robot of a book were the only one."""
-    flat: Array = crowd.copy()
-    header, people = s.view(flat)
-    header[FELT] = book[: len(FELT)]
-    people[:, TOUCH] = book[len(FELT) :].reshape(-1, len(TOUCH))
-    return flat
+        names = (ports.of_robot(name, k) for name in (ports.CROWD_STATE, ports.EVENTS))
+        return RobotsCrowd(self.engine, *map(self.GetOutputPort, names))
 
 
 def add_fleet_crowd(
@@ -159,13 +154,11 @@ def add_fleet_crowd(
     builts: Sequence[BuiltRun],
     robots: Sequence[ControlledRobot],
     fates: Sequence[Fate],
-    log: RunLog,
-    logs: Sequence[RunLog],
 ) -> FleetCrowdSystem | None:
     """Add the people, if there are any, to a diagram; their pushes are connected elsewhere."""
     if engine is None:
         return None
-    crowd = FleetCrowdSystem(engine, builts, robots, fates, log, logs)
+    crowd = FleetCrowdSystem(engine, builts, robots, fates)
     builder.AddNamedSystem("crowd", crowd)
     for k, robot in enumerate(robots):
         builder.Connect(robot.port, crowd.GetInputPort(ports.other_robot(k)[0]))

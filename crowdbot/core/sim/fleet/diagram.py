@@ -76,10 +76,9 @@ def build_fleet(
         with _named(builder, built.name):
             robots.append(add_robot(builder, built.parts, built.model, built.robot.control))
 
-    logs = [r.log for r in fleet]
-    crowd = add_fleet_crowd(builder, engine, builts, robots, fates, log, logs)
+    crowd = add_fleet_crowd(builder, engine, builts, robots, fates)
     models = [built.model for built in builts]
-    contacts = add_fleet_contacts(builder, models, robots, fates, logs)
+    contacts = add_fleet_contacts(builder, models, robots, fates, [r.log for r in fleet])
 
     loggers = []
     for k, one in enumerate(fleet):

@@ -27,9 +27,10 @@ class PeopleLogger(Block):
         super().__init__()
         self._log, self._fates = log, tuple(fates)
         self._ticks_per_sample, self._last_tick = ticks(rate), -1
-        self._crowd = (
-            self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size) if crowd_size else None
-        )
+        self._crowd = self._events = None
+        if crowd_size:
+            self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size)
+            self._events = self.DeclareVectorInputPort(ports.EVENTS, 1)
         self.DeclarePeriodicPublishEvent(TICK, 0.0, self._publish)
 
     def _publish(self, context: Context) -> EventStatus | None:
@@ -37,12 +38,19 @@ class PeopleLogger(Block):
         if tick == self._last_tick:  # Initialize and the first step may both publish t = 0
             return None
         self._last_tick = tick
+        self._record_events(context)
         if tick % self._ticks_per_sample == 0:
             crowd = None if self._crowd is None else self._crowd.Eval(context)
             self._log.sample(tick * TICK, None, crowd)
         if all(fate.ended for fate in self._fates):
             return EventStatus.ReachedTermination(self, "all robots have ended")
         return None
+
+    def _record_events(self, context: Context) -> None:
+        if self._crowd is None or self._events is None:
+            return
+        if int(self._events.Eval(context)[0]) != self._log.events:
+            self._log.record_events(self._crowd.Eval(context))
 
     def finish(self, context: Context, t: float) -> None:
         """Record what is still going on; ``context`` is this system's own."""
@@ -61,4 +69,5 @@ def add_people_logger(
     builder.AddNamedSystem("people_logger", logger)
     if crowd is not None:
         builder.Connect(crowd.state, logger.GetInputPort(ports.CROWD_STATE))
+        builder.Connect(crowd.events, logger.GetInputPort(ports.EVENTS))
     return logger
