@@ -6,7 +6,7 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from crowdbot.core.support.seldom_collected import collected_as_ever
+from crowdbot.core.support.seldom_collected import collected_as_usual
 
 
 @contextmanager
@@ -14,16 +14,17 @@ def gc_frozen() -> Iterator[None]:
     """Within this, the collector looks only at objects that are made within it.
 
     Hundreds of thousands of others belong to libraries: walking them takes a tenth of a second,
-    and finds nothing. Cycles that planners make meanwhile are collected as ever. In the end it
+    and finds nothing. Cycles that planners make meanwhile are collected as usual. In the end it
     collects the cycles that were made within it, such as a run's diagram: by itself it would wait
     until there are tens of thousands of objects, which some seventy runs leave, and 180 MB.
     """
     if gc.get_freeze_count():  # whoever did this already has to undo it, too
-        yield
+        with collected_as_usual():
+            yield
         return
     gc.freeze()
     try:
-        with collected_as_ever():
+        with collected_as_usual():
             yield
     finally:
         gc.collect()

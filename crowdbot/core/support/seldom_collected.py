@@ -1,4 +1,4 @@
-"""Python's collector of cycles, kept from walking documents again and again as they are read."""
+"""Python's collector of cycles, kept from walking again and again what is loaded for good."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from contextlib import contextmanager
 
 #: New objects before the collector looks at them, instead of 700: about 50 MB of small ones.
 _MANY = 500_000
-#: As this process began.
-_BEFORE = gc.get_threshold()
+#: Thresholds before `collect_seldom`; empty in processes that are not ours.
+_usual: list[tuple[int, int, int]] = []
 
 
 def collect_seldom() -> None:
@@ -17,9 +17,9 @@ def collect_seldom() -> None:
 
     A threshold that is larger already, or 0 (off), stays.
     """
-    first, *others = gc.get_threshold()
-    if 0 < first < _MANY:
-        gc.set_threshold(_MANY, *others)
+    before = gc.get_threshold()
+    if _raise_threshold():
+        _usual[:] = [before]
 
 
 @contextmanager
@@ -29,7 +29,7 @@ def seldom_collected() -> Iterator[None]:
     A decorator, too.
     """
     before = gc.get_threshold()
-    collect_seldom()
+    _raise_threshold()
     try:
         yield
     finally:
@@ -37,12 +37,26 @@ def seldom_collected() -> Iterator[None]:
 
 
 @contextmanager
-def collected_as_ever() -> Iterator[None]:
-    """Undoes `collect_seldom` for a while: what planners leave may be large."""
+def collected_as_usual() -> Iterator[None]:
+    """Undoes `collect_seldom` for a while: what planners leave may be large.
+
+    Where that was not called, thresholds are a user's, and nothing is done.
+    """
+    if not _usual:
+        yield
+        return
     before = gc.get_threshold()
-    if before[0] == _MANY:
-        gc.set_threshold(*_BEFORE)
+    gc.set_threshold(*_usual[0])
     try:
         yield
     finally:
         gc.set_threshold(*before)
+
+
+def _raise_threshold() -> bool:
+    """Whether the threshold was lower, and not off."""
+    first, *others = gc.get_threshold()
+    if not 0 < first < _MANY:
+        return False
+    gc.set_threshold(_MANY, *others)
+    return True

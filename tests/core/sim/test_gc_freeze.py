@@ -8,7 +8,8 @@ import weakref
 import pytest
 
 from crowdbot.core.sim.gc_freeze import gc_frozen
-from crowdbot.core.support.seldom_collected import seldom_collected
+from crowdbot.core.support import seldom_collected as module
+from crowdbot.core.support.seldom_collected import collect_seldom
 
 
 class _Knot:
@@ -32,12 +33,21 @@ def test_cycles_made_within_are_collected() -> None:
         assert knot() is None
 
 
-def test_cycles_are_collected_as_ever_also_in_a_process_that_collects_seldom() -> None:
-    with seldom_collected():
-        seldom = gc.get_threshold()
+def test_cycles_are_collected_as_usual_in_a_process_that_collects_seldom(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(module, "_usual", [])
+    before = gc.get_threshold()
+    collect_seldom()
+    seldom = gc.get_threshold()
+    try:
         with gc_frozen():
-            assert 0 < gc.get_threshold()[0] < seldom[0]
-        assert gc.get_threshold() == seldom
+            assert gc.get_threshold() == before
+            with gc_frozen():
+                assert gc.get_threshold() == before
+        assert gc.get_threshold() == seldom != before
+    finally:
+        gc.set_threshold(*before)
 
 
 def test_an_error_ends_it() -> None:

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import gc
+from collections.abc import Iterator
+from contextlib import ExitStack
 
 import pytest
 
+from crowdbot.core.support import seldom_collected as module
 from crowdbot.core.support.seldom_collected import (
     collect_seldom,
-    collected_as_ever,
+    collected_as_usual,
     seldom_collected,
 )
 
 
 @pytest.fixture(autouse=True)
-def _as_before() -> object:
+def _as_before(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setattr(module, "_usual", [])
     before = gc.get_threshold()
     yield
     gc.set_threshold(*before)
@@ -63,16 +67,28 @@ def test_errors_leave_it_as_it_was() -> None:
     assert gc.get_threshold() == (700, 10, 10)
 
 
-def test_for_a_while_as_ever() -> None:
+def test_for_a_while_as_usual() -> None:
     gc.set_threshold(700, 10, 10)
     collect_seldom()
-    with collected_as_ever():
+    with collected_as_usual():
         assert _collections() > 0
     assert _collections() == 0
 
 
 def test_what_was_never_made_seldom_stays() -> None:
     gc.set_threshold(3000, 5, 7)
-    with collected_as_ever():
+    with collected_as_usual():
         assert gc.get_threshold() == (3000, 5, 7)
     assert gc.get_threshold() == (3000, 5, 7)
+
+
+def test_a_user_s_threshold_survives_one_who_reads_meanwhile() -> None:
+    """As with two threads: a run begins while a document is read, and ends later."""
+    gc.set_threshold(700, 10, 10)
+    reading, run = seldom_collected(), collected_as_usual()
+    with ExitStack() as reads:
+        reads.enter_context(reading)
+        runs = ExitStack()
+        runs.enter_context(run)
+    runs.close()
+    assert gc.get_threshold() == (700, 10, 10)
