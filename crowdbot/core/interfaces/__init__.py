@@ -96,6 +96,7 @@ if TYPE_CHECKING:
         in_range,
         near_table,
         wall_table,
+        work_rows,
         work_table,
     )
     from crowdbot.core.crowd.world import CrowdWorld
@@ -185,7 +186,8 @@ _HOMES = {
         "LOWER_BOUND MAX_ACCELERATION MAX_SPEED NEAR_COLUMNS NPX NPY NVX NVY NX NY OPTIMUM "
         "PARITY PREFERRED PREPARE PVX PVY PX PY RADIUS RANDOM RANGE REACH RELAXATION RX RY "
         "STATIC TIME_STEP VX VY WALL_COLUMNS WALL_D2 WEIGHT WORK_COLUMNS AgentView "
-        "CompiledCost Neighbours NumpyCost Pointer in_range near_table wall_table work_table"
+        "CompiledCost Neighbours NumpyCost Pointer in_range near_table wall_table work_rows "
+        "work_table"
     ),
     "crowdbot.core.crowd.world": "CrowdWorld",
     "crowdbot.core.environments.place_parts": "place_parts",
@@ -380,6 +382,7 @@ __all__ = [
     "travel_time",
     "truncate_at_arrival",
     "wall_table",
+    "work_rows",
     "work_table",
     "yaw_rate",
 ]

@@ -165,5 +165,5 @@ class GoalsReader:
             if here is not None:
                 who = self._person[here]
                 found[k:, 0, who], found[k:, 1, who] = self._x[here], self._y[here]
-                self._now = found[-1]
+                self._now = found[-1].copy()
         return found

@@ -91,7 +91,7 @@ class Records:
         self._topics: dict[int, tuple[str, str, str]] = {}  # what both say of a channel
         self._total = 0
         self._left = MAX_RECORDS
-        self._seen = 0
+        self._seen = self._attached = 0
         self._zstd = zstandard.ZstdDecompressor()
 
     def __iter__(self) -> Iterator[Record]:
@@ -122,14 +122,22 @@ class Records:
                 inner = self._unpack(record)
                 broken = inner is None
                 yield from self._messages(inner or [])
-            elif isinstance(record, Statistics) and record.message_count != self._seen:
-                raise InputError(f"{self._path}: damaged: messages are missing")
+            elif isinstance(record, Statistics):
+                self._compare(record)
             elif isinstance(record, Attachment):
                 self._count(1)
+                self._attached += 1
                 self.attachments[record.name] = len(record.data)
             elif isinstance(record, Schema | Channel | Message):
                 self._count(1)
                 yield from self._messages([record])
+
+    def _compare(self, told: Statistics) -> None:
+        """Whether all is there that was written."""
+        if told.message_count != self._seen:
+            raise InputError(f"{self._path}: damaged: messages are missing")
+        if told.attachment_count != self._attached:
+            raise InputError(f"{self._path}: damaged: attached files are missing")
 
     def _top_level(self, data: mmap.mmap) -> Iterator[McapRecord]:
         try:

@@ -66,7 +66,10 @@ class LidarPoints:
             if name in readings:
                 stamp, ranges, _ = readings[name]
                 if ranges.shape != longest.shape:
-                    raise ValueError(f"{name} has {len(longest)} beams, not {ranges.shape}")
+                    raise ValueError(
+                        f"{name}: a reading of shape {ranges.shape}; its lidar has "
+                        f"{len(longest)} beams, so {longest.shape} is wanted"
+                    )
                 first, count = count, _add_points(ranges, longest, rays, x, y, out, count)
                 if t > stamp:
                     out[first:count] = _moved(out[first:count], t - stamp, twist, vy)

@@ -142,11 +142,14 @@ def _least_costs(
     """What each candidate costs at least, (C,): as much as if nothing were in its way.
 
     A hit ends a rollout, perhaps where more way was made or the heading was better, which may be
-    worth more than what the hit costs: by as much, weights being what they are, it may be less.
+    worth more than the hit costs. So three things are taken off: what better heading may be worth
+    beyond clearance, what impact gives back for steps beyond the horizon, and what progress at
+    full speed may be worth beyond impact.
 
     Args:
-        turns: of `rollouts`; toward: the unit vector of the
-            direction; all others are those of `evaluate`.
+        toward: unit vector of the direction.
+        turns: of `rollouts`.
+        p, now, candidates, facing, last: as of `evaluate`.
     """
     out, pace = np.empty(candidates.shape[0]), np.empty((turns.shape[1], 2))
     over = (turns.shape[1] - 1) * STEP / p[HORIZON] - 1.0  # steps go beyond the horizon

@@ -49,10 +49,11 @@ def minimum(values: Array) -> float:
 @kernel
 def _sector(x: float, y: float, sectors: int) -> int:
     """In which of the equal sectors of the full turn a point lies."""
-    at = (rough_angle(x, y) / (2.0 * math.pi) + 0.5) * sectors
-    within = at - math.floor(at)
-    if _DOUBT * sectors < within < 1.0 - _DOUBT * sectors:
-        return int(at)
+    if x != 0.0 or y != 0.0:
+        at = (rough_angle(x, y) / (2.0 * math.pi) + 0.5) * sectors
+        within = at - math.floor(at)
+        if _DOUBT * sectors < within < 1.0 - _DOUBT * sectors:
+            return int(at)
     return int((math.atan2(y, x) / (2.0 * math.pi) + 0.5) * sectors) % sectors
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 
 import pytest
@@ -72,6 +73,18 @@ def test_cut_inside_it_is_as_good_as_one_cut_off(path: Path, cut: int) -> None:
     path.write_bytes(whole[: whole.index(bytes(1000)) + cut])
     assert not contents(path).finished
     assert bits(read_trajectories(path)) == plain
+
+
+def test_one_that_is_called_something_else_is_missed(path: Path) -> None:
+    attach(path, {"a": bytes(1000)})
+    whole = bytearray(path.read_bytes())
+    head = whole.index(bytes(1000)) - len(struct.pack("<BQ", 9, 0))
+    at = whole.rindex(b"\x09", 0, head)  # the attachment's opcode
+    assert struct.unpack_from("<Q", whole, at + 1)[0] > 1000
+    whole[at] = 8
+    path.write_bytes(whole)
+    with pytest.raises(InputError, match="attached files are missing"):
+        list(Records(path))
 
 
 def test_why_they_cannot_be_read_is_never_empty(

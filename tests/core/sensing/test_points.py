@@ -59,5 +59,5 @@ def test_old_scans_turn_with_the_robot() -> None:
 
 def test_a_scan_of_another_lidar_is_refused() -> None:
     points = LidarPoints({"front": FRONT})
-    with pytest.raises(ValueError, match="front has 3 beams"):
+    with pytest.raises(ValueError, match="its lidar has 3 beams"):
         points({"front": Reading(0.0, np.ones(4))}, 0.0, (0.0, 0.0))
