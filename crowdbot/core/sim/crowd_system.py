@@ -13,6 +13,7 @@ from pydrake.systems.framework import (
     Context,
     DiagramBuilder,
     DiscreteStateIndex,
+    LeafSystem,
     OutputPort,
     State,
 )
@@ -21,7 +22,6 @@ from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.bodies import SEEN, rows_of
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
@@ -50,7 +50,7 @@ class CrowdOutputs(Protocol):
         """How many of their trips, and of their contacts with the robot, have ended."""
 
 
-class CrowdSystem(Block):
+class CrowdSystem(LeafSystem):
     """Input: robot state. Outputs: crowd state, events, force on the robot.
 
     Attributes:

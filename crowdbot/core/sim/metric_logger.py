@@ -15,6 +15,7 @@ from pydrake.systems.framework import (
     DiagramBuilder,
     DiscreteValues,
     EventStatus,
+    LeafSystem,
 )
 
 from crowdbot.core.geometry.polygon import distance_to, entry_fraction, inside
@@ -22,7 +23,6 @@ from crowdbot.core.planning.planner import Task
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.runs.outcome import ARRIVED, PLANNER_FAILED, TIMEOUT, TOPPLED
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.clearance_cache import ClearanceCache
 from crowdbot.core.sim.control import ControlledRobot
@@ -40,7 +40,7 @@ _TILT = RobotState._fields.index("tilt")
 LEANS = math.radians(60.0)
 
 
-class MetricLogger(Block):
+class MetricLogger(LeafSystem):
     """Inputs: robot state, crowd state, forces. Ends the run: arrived, toppled, out of time.
 
     Attributes:

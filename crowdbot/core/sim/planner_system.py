@@ -16,6 +16,7 @@ from pydrake.systems.framework import (
     DiagramBuilder,
     DiscreteStateIndex,
     DiscreteValues,
+    LeafSystem,
 )
 
 from crowdbot.core.crowd import CrowdEngine
@@ -26,7 +27,6 @@ from crowdbot.core.planning.planner import Observation, Task, Truth, named_signa
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.topics import is_odometry
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.companion import Companion, Company
 from crowdbot.core.sim.control import ControlledRobot
@@ -87,7 +87,7 @@ class People:
         )
 
 
-class PlannerSystem(Block):
+class PlannerSystem(LeafSystem):
     """Input: readings; robot and crowd for a privileged planner. Outputs: command, desired state.
 
     The command is the planner's; the desired state is what the control mode makes of it.

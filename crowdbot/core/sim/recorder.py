@@ -5,16 +5,15 @@ The blocks hand their rows to the writer themselves, at the tick to which they b
 
 from __future__ import annotations
 
-from pydrake.systems.framework import Context, DiagramBuilder
+from pydrake.systems.framework import Context, DiagramBuilder, LeafSystem
 
 from crowdbot.core.recording import RecordingWriter
-from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 
 _PERIOD = 1.0  # s
 
 
-class Recorder(Block):
+class Recorder(LeafSystem):
     """No ports. Chunks end by simulated time, so that equal runs give equal files."""
 
     __slots__ = NO_ATTRIBUTES

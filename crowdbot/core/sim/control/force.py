@@ -10,10 +10,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from pydrake.systems.framework import BasicVector, Context, DiagramBuilder
+from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, LeafSystem
 
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.control.controlled import ControlledRobot, push_on
 from crowdbot.core.sim.plant import RobotPlant, add_plant, motor_of, place_robot
 from crowdbot.core.sim.robot_state import MeasuredRobotState, add_robot_state
@@ -25,7 +24,7 @@ from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive, RobotMo
 _GRAVITY = 9.81  # m/s^2, the plant's
 
 
-class ForceDrive(Block):
+class ForceDrive(LeafSystem):
     """Inputs: robot state, wanted v, w and vy, push by people. Output: generalised force.
 
     The output follows the state directly: one tick late, a gain of one would oscillate.

@@ -15,11 +15,11 @@ from pydrake.systems.framework import (
     DiagramBuilder,
     DiscreteStateIndex,
     DiscreteValues,
+    LeafSystem,
 )
 
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.control.controlled import ControlledRobot, Push
 from crowdbot.core.sim.outline_gap import outline_gap
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
@@ -35,7 +35,7 @@ _SKIN = 1e-6  # m; corners keep this far off: a wall inside a polygon is no fart
 _ROUNDING = 1e-13  # m; must not hold a robot that drives along a wall
 
 
-class KinematicBase(Block):
+class KinematicBase(LeafSystem):
     """Input: v, w, vy. Output: `ports.ROBOT_STATE`, which is the whole state."""
 
     __slots__ = NO_ATTRIBUTES

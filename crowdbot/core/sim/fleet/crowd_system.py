@@ -16,6 +16,7 @@ from pydrake.systems.framework import (
     Context,
     DiagramBuilder,
     DiscreteStateIndex,
+    LeafSystem,
     OutputPort,
     State,
 )
@@ -24,7 +25,6 @@ from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.robot_contact import FELT, TOUCH
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.bodies import SEEN, outlines_of, rows_of
 from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.sim.built_run import BuiltRun
@@ -48,7 +48,7 @@ class RobotsCrowd:
     events: OutputPort
 
 
-class FleetCrowdSystem(Block):
+class FleetCrowdSystem(LeafSystem):
     """Inputs: states of all robots. Outputs: crowd state; for each robot state, events, force.
 
     Attributes:

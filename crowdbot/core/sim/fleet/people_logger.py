@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pydrake.systems.framework import Context, DiagramBuilder, EventStatus
+from pydrake.systems.framework import Context, DiagramBuilder, EventStatus, LeafSystem
 
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.crowd_system import CrowdOutputs
 from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 
 
-class PeopleLogger(Block):
+class PeopleLogger(LeafSystem):
     """Input: crowd state. Samples it; ends the run when all robots have ended.
 
     To be added after what watches the robots: blocks publish in the order in which they came.

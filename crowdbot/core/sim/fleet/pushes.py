@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from pydrake.systems.framework import BasicVector, Context, DiagramBuilder
+from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, LeafSystem
 
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.fleet.crowd_system import FleetCrowdSystem
 from crowdbot.core.sim.fleet.robot_contacts import FleetContacts
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 
 
-class PushSum(Block):
+class PushSum(LeafSystem):
     """Inputs: pushes of people and of robots. Output: their sum, as the control mode wants it."""
 
     __slots__ = NO_ATTRIBUTES

@@ -20,6 +20,7 @@ from pydrake.systems.framework import (
     Context,
     DiagramBuilder,
     DiscreteStateIndex,
+    LeafSystem,
     OutputPort,
     State,
 )
@@ -38,7 +39,6 @@ from crowdbot.core.crowd.contact.robot_contact import (
 )
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.bodies import SEEN, outlines_of, rows_of
 from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.sim.control import ControlledRobot
@@ -103,7 +103,7 @@ def _velocity_at(row: Array, x: float, y: float) -> tuple[float, float]:
     return row[RVX] - row[R_W] * (y - row[RY]), row[RVY] + row[R_W] * (x - row[RX])
 
 
-class FleetContacts(Block):
+class FleetContacts(LeafSystem):
     """Inputs: states of all robots. Outputs: of each, force x, y and torque (`ports.ROBOT_PUSH`).
 
     The event is unrestricted, as that of the crowd: both robots of a pair feel one computation.
