@@ -13,7 +13,8 @@ import crowdbot.core.sim
 
 
 def _systems(base: type = LeafSystem) -> Iterator[type]:
-    for subclass in base.__subclasses__():
+    subclasses: list[type] = base.__subclasses__()
+    for subclass in subclasses:
         if subclass.__module__.startswith("crowdbot."):
             yield subclass
             yield from _systems(subclass)
