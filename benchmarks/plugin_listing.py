@@ -25,9 +25,9 @@ def crowdbot_planners():
 WORDS = '''"""Words."""
 from typing import Literal
 from pydantic import Field
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.component_specs import PlannerSpec
-from crowdbot.dsl.quantities import PositiveLength, PositiveSpeed
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.component_specs import PlannerSpec
+from crowdbot.dsl.spec.quantities import PositiveLength, PositiveSpeed
 class Spec(PlannerSpec):
     """A planner."""
     kind: Literal["{name}.go"] = "{name}.go"

@@ -47,7 +47,7 @@ from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND
 from crowdbot.core.trajectories.evasion import evasion, own_legs
 from crowdbot.core.trajectories.trajectories import Trajectories
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 
 Array = NDArray[np.float64]
 BODY = 0.178  # radius of the challenge's robot, m

@@ -37,8 +37,8 @@ from crowdbot.core.scenarios.lock import population
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.built_run import build_run
 from crowdbot.core.sim.record import record_robot
-from crowdbot.core.sim.record_crowd import RunSetup
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.core.sim.run_setup import RunSetup
+from crowdbot.dsl.scenario.scenario import Scenario
 
 PLACES = ("pillars", "crossing", "corner", "junction", "bottleneck", "shed", "street", "plaza")
 DENSITY, WIDTH = 0.4, 6.0  # people per m^2 of challenge-2021's densest cells; m

@@ -24,7 +24,7 @@ from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.sim.built_run import build_run
 from crowdbot.core.sim.record_all import record_all
-from crowdbot.core.sim.record_crowd import RunSetup
+from crowdbot.core.sim.run_setup import RunSetup
 
 _DOCUMENT = """\
 crowdbot: 1

@@ -47,11 +47,11 @@ from crowdbot.core.sim.metric_logger import MetricLogger
 from crowdbot.core.sim.planner_system import PlannerSystem
 from crowdbot.core.sim.plant import add_plant, place_robot
 from crowdbot.core.sim.record import record_robot
-from crowdbot.core.sim.record_crowd import RunSetup
 from crowdbot.core.sim.rendering import check_egl
 from crowdbot.core.sim.robot_state import RobotStateSystem
+from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.sim.sensor_bank import SensorBank
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import MissingLibraryError
 
 #: What is laid over the robot's camera, by what is to be measured.

@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 import crowdbot
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_document
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 
 Array = NDArray[np.float64]
 Numbers = dict[str, float]

@@ -12,29 +12,29 @@ from crowdbot.lazy import lazy_names
 if TYPE_CHECKING:
     from crowdbot.api import evaluate, expand, load, results, score, simulate
     from crowdbot.core.results.rows import Results
-    from crowdbot.core.runs.request import Run
+    from crowdbot.core.runs.run import Run
     from crowdbot.core.scoring.evaluate import Scores
     from crowdbot.core.sim.session import Session
     from crowdbot.core.trajectories.commands import Commands
     from crowdbot.core.trajectories.questionnaires import Questionnaires
     from crowdbot.core.trajectories.trajectories import Trajectories
     from crowdbot.core.types.score import Score
-    from crowdbot.dsl.expand import Expansion as Suite
-    from crowdbot.dsl.scenario import Scenario
+    from crowdbot.dsl.scenario.scenario import Scenario
+    from crowdbot.dsl.suite.expand import Expansion as Suite
     from crowdbot.errors import CrowdbotError, RecordingWarning
 
 _HOMES = {
     "crowdbot.api": "evaluate expand load results score simulate",
     "crowdbot.core.results.rows": "Results",
-    "crowdbot.core.runs.request": "Run",
+    "crowdbot.core.runs.run": "Run",
     "crowdbot.core.scoring.evaluate": "Scores",
     "crowdbot.core.sim.session": "Session",
     "crowdbot.core.trajectories.commands": "Commands",
     "crowdbot.core.trajectories.questionnaires": "Questionnaires",
     "crowdbot.core.trajectories.trajectories": "Trajectories",
     "crowdbot.core.types.score": "Score",
-    "crowdbot.dsl.expand": "Expansion=Suite",
-    "crowdbot.dsl.scenario": "Scenario",
+    "crowdbot.dsl.suite.expand": "Expansion=Suite",
+    "crowdbot.dsl.scenario.scenario": "Scenario",
     "crowdbot.errors": "CrowdbotError RecordingWarning",
 }
 

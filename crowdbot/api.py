@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, overload
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.support.arguments import expect, number_of, path_of, texts_of
-from crowdbot.dsl.expand import Expansion
-from crowdbot.dsl.scenario import Scenario
-from crowdbot.dsl.settings import setting_texts
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.settings import setting_texts
 from crowdbot.errors import InputError, kind_of
 
 if TYPE_CHECKING:
     from crowdbot.core.planning.given_planner import GivenPlanner
     from crowdbot.core.results.rows import Results
     from crowdbot.core.runs.outcome import Progress
-    from crowdbot.core.runs.request import Recorded, Run
+    from crowdbot.core.runs.run import Recorded, Run
     from crowdbot.core.scoring.evaluate import MetricParameters, Scores
     from crowdbot.core.trajectories.commands import Commands
     from crowdbot.core.trajectories.questionnaires import Questionnaires
@@ -203,7 +203,7 @@ def evaluate(run: Run | str | Path, metrics: str | Sequence[str] = "*") -> Score
         InputError: it is not a run, or its recording cannot be read.
         PluginError: a metric failed.
     """
-    from crowdbot.core.runs.request import Run as RunOnDisk
+    from crowdbot.core.runs.run import Run as RunOnDisk
 
     made = RunOnDisk.open(run) if isinstance(run, str | Path) else run
     expect("run", made, RunOnDisk, hint="crowdbot.simulate returns one")

@@ -23,7 +23,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from crowdbot.dsl.diagnostics import Diagnostic
+    from crowdbot.dsl.text.diagnostics import Diagnostic
 
 
 #: So many names are listed in full when none looks like the one that was given.

@@ -15,8 +15,8 @@ import pluggy
 if TYPE_CHECKING:
     from importlib.resources.abc import Traversable
 
-    from crowdbot.dsl.component import Component
-    from crowdbot.dsl.component_specs import (
+    from crowdbot.dsl.spec.component import Component
+    from crowdbot.dsl.spec.component_specs import (
         CostFunctionSpec,
         CrowdPolicySpec,
         EnvironmentSpec,

@@ -13,7 +13,7 @@ from typing import Annotated, Any, get_args, get_origin
 
 from crowdbot import dsl
 from crowdbot.core import interfaces
-from crowdbot.dsl.quantities import UNITS, Quantity
+from crowdbot.dsl.spec.quantities import UNITS, Quantity
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "author_surface.md"
 

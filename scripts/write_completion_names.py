@@ -1,4 +1,4 @@
-"""Writes crowdbot/cli/_builtin_names.py: what a shell offers before anything was looked for.
+"""Writes crowdbot/cli/app/builtin_names.py: what a shell offers before anything was looked for.
 
 Example: .venv/bin/python scripts/write_completion_names.py
 """
@@ -10,7 +10,7 @@ from pathlib import Path
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import suite_names
 
-FILE = Path(__file__).parent.parent / "crowdbot" / "cli" / "_builtin_names.py"
+FILE = Path(__file__).parent.parent / "crowdbot" / "cli" / "app" / "builtin_names.py"
 _HEAD = '''"""Names of crowdbot's own planners, metrics and suites, for the tab key.
 
 Written by scripts/write_completion_names.py: to ask the components would take half a second.

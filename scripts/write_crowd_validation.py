@@ -27,8 +27,8 @@ from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.scenarios.named_crowds import crowd_parts, open_crowd
 from crowdbot.core.support.atomic_write import atomic_write
-from crowdbot.dsl.crowd_likeness import fingerprint
-from crowdbot.dsl.scenario import Crowd
+from crowdbot.dsl.identity.crowd_likeness import fingerprint
+from crowdbot.dsl.scenario.scenario import Crowd
 from crowdbot.errors import UnknownNameError
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -180,7 +180,7 @@ def write(rows: Mapping[str, tuple[str, dict[str, Any]]], reference: RealismRefe
 
 def main(arguments: Sequence[str]) -> None:
     """Measure and write."""
-    from crowdbot.cli._campaign_run import read_seeds
+    from crowdbot.cli.shared.campaign_run import read_seeds
 
     words = list(arguments)
     seeds: Sequence[int] = SEEDS

@@ -15,10 +15,10 @@ from pydantic import BaseModel, SerializeAsAny
 from pydantic.fields import FieldInfo
 
 from crowdbot.core.registry.registry import Registry, discover
-from crowdbot.dsl.areas import Area
-from crowdbot.dsl.assets import Asset
-from crowdbot.dsl.component_specs import CATEGORIES, FloorContact
-from crowdbot.dsl.parameters import (
+from crowdbot.dsl.spec.areas import Area
+from crowdbot.dsl.spec.assets import Asset
+from crowdbot.dsl.spec.component_specs import CATEGORIES, FloorContact
+from crowdbot.dsl.spec.parameters import (
     AccelerationSample,
     DurationSample,
     LengthSample,
@@ -27,9 +27,9 @@ from crowdbot.dsl.parameters import (
     SpeedDistribution,
     SpeedSample,
 )
-from crowdbot.dsl.quantities import UNITS, Quantity
-from crowdbot.dsl.spec import ComponentSpec, Mount, Range, Rectangle, TiltableMount
-from crowdbot.dsl.suite import ScenarioDocument, Seeds, SuiteDocument, SuiteHead
+from crowdbot.dsl.spec.quantities import UNITS, Quantity
+from crowdbot.dsl.spec.spec import ComponentSpec, Mount, Range, Rectangle, TiltableMount
+from crowdbot.dsl.suite.suite import ScenarioDocument, Seeds, SuiteDocument, SuiteHead
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "scenario.md"
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from crowdbot.cli.schema import DocumentKind, build, to_text
+from crowdbot.cli.commands.schema import DocumentKind, build, to_text
 from crowdbot.core.registry.registry import discover
 
 FOLDER = Path(__file__).parent.parent / "scenario_specs" / "schema"

@@ -30,7 +30,7 @@ LONG = (
     "tests/docs/test_example_package.py",
     "tests/dsl/test_mutations.py::test_refused_or_understood",
     "tests/dsl/test_safety.py::test_document",
-    "tests/dsl/test_schema.py::test_what_the_schema_refuses_validate_refuses",
+    "tests/dsl/schema/test_documents.py::test_what_the_schema_refuses_validate_refuses",
 )
 
 #: More cases of what `make test` tries with a few: 55 s of processor time.

@@ -52,8 +52,8 @@ def test_circles_are_found_through_others_and_chains_are_none() -> None:
 @pytest.mark.parametrize(
     ("importer", "imported", "up"),
     [
-        ("crowdbot.dsl.suite", "crowdbot.core.support.ticks", True),
-        ("crowdbot.core.support.ticks", "crowdbot.dsl.suite", False),
+        ("crowdbot.dsl.suite.suite", "crowdbot.core.support.ticks", True),
+        ("crowdbot.core.support.ticks", "crowdbot.dsl.suite.suite", False),
         ("crowdbot.core.crowd.engine", "crowdbot.core.sim.plant", True),
         ("crowdbot.core.crowd.engine", "crowdbot.core.sensing.noise", True),  # beside it
         ("crowdbot.core.sim.plant", "crowdbot.core.crowd.engine", False),

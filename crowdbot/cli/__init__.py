@@ -1,7 +1,8 @@
 """The command line: one file per command, found by its name, imported when it is called.
 
-A module ``crowdbot/cli/x.py`` offers the command ``x``: a function ``x``, or a `typer.Typer`
-named ``x`` for a command with commands of its own. Its docstring ends with an example. Heavy
+A module ``crowdbot/cli/commands/x.py`` offers the command ``x``: a function ``x``, or a
+`typer.Typer` named ``x`` for a command with commands of its own. Its docstring ends with an
+example. Heavy
 imports stay inside functions: ``--help`` imports every command. Modules that begin with an
 underscore are not commands.
 
@@ -21,12 +22,12 @@ from contextlib import contextmanager, nullcontext, redirect_stdout
 from functools import partial
 from pathlib import Path
 
-from crowdbot.cli._command_names import command_names
-from crowdbot.cli._mishaps import left_by, tell_of_threads
-from crowdbot.cli._plain import plain_call
+from crowdbot.cli.app.command_names import command_names
+from crowdbot.cli.app.mishaps import left_by, tell_of_threads
+from crowdbot.cli.app.plain import plain_call
 from crowdbot.core.registry.plugin_errors import telling_interrupts
-from crowdbot.core.support.quick_exit import end_without_collecting
-from crowdbot.core.support.seldom_collected import collect_seldom
+from crowdbot.core.support.gc_throttle import collect_seldom
+from crowdbot.core.support.skip_final_gc import end_without_collecting
 from crowdbot.errors import CrowdbotError, PluginError, SpecError, printable
 
 __all__ = ["command_names", "main"]
@@ -62,7 +63,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except Exception as error:
         if os.environ.get("CROWDBOT_DEBUG"):
             raise
-        from crowdbot.cli._mishaps import internal_error
+        from crowdbot.cli.app.mishaps import internal_error
 
         _say(internal_error(error))
         return 4
@@ -91,7 +92,7 @@ def _run(argv: Sequence[str] | None) -> int:
 
 def _with_options(words: list[str]) -> Callable[[], int | None]:
     """A call of any command, as typer reads it."""
-    from crowdbot.cli._typer_app import run
+    from crowdbot.cli.app.typer_app import run
 
     return partial(run, words)
 
@@ -140,7 +141,7 @@ class _Printable(logging.Formatter):
 
 def _text(error: CrowdbotError) -> str:
     if isinstance(error, SpecError):
-        from crowdbot.dsl.diagnostics import render
+        from crowdbot.dsl.text.diagnostics import render
 
         return render(error.diagnostics)
     return f"error: {error}"

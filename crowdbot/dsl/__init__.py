@@ -5,10 +5,10 @@ Its names here are what the spec side of a plugin imports; the build side is in
 and ruamel.yaml only.
 """
 
-from crowdbot.dsl import outlines
-from crowdbot.dsl.assets import Asset
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.component_specs import (
+from crowdbot.dsl.spec import outlines
+from crowdbot.dsl.spec.assets import Asset
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.component_specs import (
     CostFunctionSpec,
     CrowdPolicySpec,
     EnvironmentSpec,
@@ -19,10 +19,15 @@ from crowdbot.dsl.component_specs import (
     RobotSpec,
     SensorSpec,
 )
-from crowdbot.dsl.metric_component import Better, MetricComponent, MetricVariant, declare_metric
-from crowdbot.dsl.metric_invariants import MetricInvariants
-from crowdbot.dsl.place import Face, Heights, Pillar, Place, Solid
-from crowdbot.dsl.quantities import (
+from crowdbot.dsl.spec.metric_component import (
+    Better,
+    MetricComponent,
+    MetricVariant,
+    declare_metric,
+)
+from crowdbot.dsl.spec.metric_invariants import MetricInvariants
+from crowdbot.dsl.spec.place import Face, Heights, Pillar, Place, Solid
+from crowdbot.dsl.spec.quantities import (
     Angle,
     Length,
     NonNegativeDamping,
@@ -45,8 +50,15 @@ from crowdbot.dsl.quantities import (
     Quantity,
     Speed,
 )
-from crowdbot.dsl.range_sensor import MOST_RAYS, Incidence, RangeSensorSpec
-from crowdbot.dsl.spec import ComponentSpec, Mount, Range, Rectangle, Spec, TiltableMount
+from crowdbot.dsl.spec.range_sensor import MOST_RAYS, Incidence, RangeSensorSpec
+from crowdbot.dsl.spec.spec import (
+    ComponentSpec,
+    Mount,
+    Range,
+    Rectangle,
+    Spec,
+    TiltableMount,
+)
 
 __all__ = [
     "MOST_RAYS",

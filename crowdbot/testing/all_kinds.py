@@ -17,11 +17,11 @@ from ruamel.yaml import YAML
 
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.registry.registry import Registry
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.plain_yaml import to_yaml
-from crowdbot.dsl.quantities import UNITS, Quantity
-from crowdbot.dsl.spec import ComponentSpec
-from crowdbot.dsl.validation import nested_model
+from crowdbot.dsl.checks.pydantic_errors import nested_model
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.quantities import UNITS, Quantity
+from crowdbot.dsl.spec.spec import ComponentSpec
+from crowdbot.dsl.text.plain_yaml import to_yaml
 from crowdbot.testing.around import installed
 
 #: Loaded in a fraction of a second or not at all by whoever only validates.

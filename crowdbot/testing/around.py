@@ -10,9 +10,9 @@ from typing import Any
 from unittest import SkipTest
 
 from crowdbot.core.registry.registry import Plugin, Registry, assemble, discover
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.component_specs import CrowdPolicySpec
-from crowdbot.dsl.spec import ComponentSpec
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.component_specs import CrowdPolicySpec
+from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.errors import PluginError
 
 #: People of the kit's worlds, for policies that follow a record.

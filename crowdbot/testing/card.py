@@ -12,8 +12,8 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.metric_component import MetricComponent
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.metric_component import MetricComponent
 from crowdbot.testing import degenerate
 from crowdbot.testing.scored import metric_of, scores_of
 

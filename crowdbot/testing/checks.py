@@ -9,7 +9,7 @@ from typing import Any
 from unittest import SkipTest
 
 from crowdbot.core.registry.registry import Registry
-from crowdbot.dsl.component import Component
+from crowdbot.dsl.spec.component import Component
 from crowdbot.testing import (
     all_kinds,
     commanded_motion,

@@ -16,7 +16,7 @@ from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Command, Pose
 from crowdbot.core.types.robot import RobotModel, RobotState
-from crowdbot.dsl.component import Component
+from crowdbot.dsl.spec.component import Component
 
 #: Seconds to get up to speed, and seconds that are measured.
 _SETTLE, _MEASURE = 1.0, 1.0

@@ -27,7 +27,7 @@ from crowdbot.core.crowd.velocity_search.gradient import Descent
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.component import Component
+from crowdbot.dsl.spec.component import Component
 from crowdbot.testing.around import around, built, specs_of
 from crowdbot.testing.cost_parts import above_lower_bound, bases_of, forgets_work, stops_at_budget
 from crowdbot.testing.crowd_views import (

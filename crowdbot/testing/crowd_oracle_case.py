@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.component_specs import CostFunctionSpec
+from crowdbot.dsl.spec.component_specs import CostFunctionSpec
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
 from crowdbot.testing.crowd_oracle_policy import cost_spec, policy_spec
 

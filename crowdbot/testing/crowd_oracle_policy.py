@@ -9,8 +9,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from crowdbot.dsl.component_specs import CostFunctionSpec
-from crowdbot.dsl.spec import Range
+from crowdbot.dsl.spec.component_specs import CostFunctionSpec
+from crowdbot.dsl.spec.spec import Range
 from crowdbot.plugins.crowd.cost_functions.foe_avoidance import FoeAvoidanceSpec
 from crowdbot.plugins.crowd.cost_functions.goal_reaching_force import GoalReachingForceSpec
 from crowdbot.plugins.crowd.cost_functions.karamouzas import KaramouzasSpec

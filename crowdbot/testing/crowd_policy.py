@@ -11,7 +11,7 @@ from crowdbot.core.crowd import Agents, CrowdEngine, CrowdPolicy, CrowdView, Cro
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.component import Component
+from crowdbot.dsl.spec.component import Component
 from crowdbot.testing.around import around, built, specs_of
 from crowdbot.testing.crowd_views import (
     SEEDS,

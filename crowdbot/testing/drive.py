@@ -23,7 +23,7 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command, Pose
 from crowdbot.core.types.robot import RobotLimits, RobotState
 from crowdbot.core.types.sensor import Reading, SensorInfo
-from crowdbot.dsl.component_specs import SensorSpec
+from crowdbot.dsl.spec.component_specs import SensorSpec
 
 RATE = 16.0  # steps per second
 LIMITS = RobotLimits(v_min=-0.65, v_max=0.65, w_max=3.14, a_max=1.0, alpha_max=2.0)

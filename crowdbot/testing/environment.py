@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.dsl.component import Component
+from crowdbot.dsl.spec.component import Component
 from crowdbot.testing.around import around, built, specs_of, with_zone
 from crowdbot.testing.free_floor import FreeFloorGrid, seen_sides, viewpoints
 

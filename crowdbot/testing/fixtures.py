@@ -12,7 +12,7 @@ import pytest
 
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.library import open_spec
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.testing import tiny
 
 

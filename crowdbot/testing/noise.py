@@ -9,7 +9,7 @@ import numpy as np
 
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.sensing.sensor import NoiseGenerator
-from crowdbot.dsl.component import Component
+from crowdbot.dsl.spec.component import Component
 from crowdbot.testing.around import around, built, specs_of
 
 #: Distances as sensors hand them over: hits near and far, nothing hit, nobody looked.

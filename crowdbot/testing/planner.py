@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from crowdbot.core.registry.registry import Registry
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.spec import ComponentSpec
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.errors import PlannerError
 from crowdbot.testing.around import around, built, specs_of
 from crowdbot.testing.drive import AT_GOAL, COURSES, UNREACHABLE, Course, Driven, sensors_for

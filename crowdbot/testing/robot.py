@@ -13,8 +13,8 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots.check import check_model as checked
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotModel
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.spec import ComponentSpec
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.testing.around import around, built, specs_of
 from crowdbot.testing.commanded_motion import EMPTY_FLOOR
 

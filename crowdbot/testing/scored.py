@@ -11,9 +11,9 @@ import numpy as np
 from crowdbot.core.registry.registry import Plugin, assemble
 from crowdbot.core.scoring.evaluate import score
 from crowdbot.core.types.score import Score
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.metric_component import MetricComponent
-from crowdbot.dsl.metric_invariants import MetricInvariants
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.metric_component import MetricComponent
+from crowdbot.dsl.spec.metric_invariants import MetricInvariants
 from crowdbot.testing.worlds import World
 
 Scored = Mapping[str, Score]

@@ -18,8 +18,8 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sensing.sensor import DepthCamera
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import SensorInfo
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.range_sensor import RangeSensorSpec
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.range_sensor import RangeSensorSpec
 from crowdbot.testing.around import around, built, specs_of
 from crowdbot.testing.sensor_scenes import POSES, crowded, empty, in_front, pose_of, robot_at
 

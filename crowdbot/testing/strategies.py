@@ -10,8 +10,8 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
 from crowdbot.core.registry.registry import Registry
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.spec import ComponentSpec
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.testing.around import around
 
 #: At most so many fields differ from the examples.

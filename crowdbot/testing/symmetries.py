@@ -119,7 +119,7 @@ COMMAND_SYMMETRIES: Mapping[str, Callable[[Commands], Commands]] = {
     "shift_time": shift_commands,
     "reflect": mirror_commands,
 }
-#: By their names in `crowdbot.dsl.metric_invariants.SYMMETRIES`.
+#: By their names in `crowdbot.dsl.spec.metric_invariants.SYMMETRIES`.
 RUN_SYMMETRIES: Mapping[str, Change] = {
     "translate": lambda run: move(run, shift=_SHIFT),
     "rotate": lambda run: move(run, angle=_TURN),

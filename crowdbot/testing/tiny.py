@@ -12,8 +12,8 @@ import numpy as np
 
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.trajectories.trajectories import Trajectories
-from crowdbot.dsl.scenario import Scenario
-from crowdbot.dsl.spec import ComponentSpec
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.testing.around import with_zone
 
 #: Where the robot starts in the room, and its goal zone, m.

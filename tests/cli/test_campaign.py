@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from crowdbot import cli
-from crowdbot.cli._campaign_run import read_seeds
+from crowdbot.cli.shared.campaign_run import read_seeds
 from crowdbot.core.results.rows import FailureRow, Results, RunRow, ScoreRow
 from crowdbot.core.results.store import INDEX, load
 from crowdbot.core.statistics.groups import by_group

@@ -16,9 +16,10 @@ from hypothesis import strategies as st
 from rich.console import Console
 
 from crowdbot import cli
-from crowdbot.cli import _complete, _doctor
-from crowdbot.cli._builtin_names import BUILTIN_NAMES
-from crowdbot.cli.docs import _excerpt
+from crowdbot.cli.app import complete as _complete
+from crowdbot.cli.app.builtin_names import BUILTIN_NAMES
+from crowdbot.cli.commands.docs import _excerpt
+from crowdbot.cli.output import doctor as _doctor
 from crowdbot.core.scoring.scores_csv import scores_table
 from crowdbot.core.types.score import Score
 from scripts.write_completion_names import FILE as FILE_OF_NAMES

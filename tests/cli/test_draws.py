@@ -11,9 +11,10 @@ from typing import Any
 
 import pytest
 
-from crowdbot.cli import main, verify
+from crowdbot.cli import main
+from crowdbot.cli.commands import verify
 from crowdbot.core.registry.registry import discover
-from crowdbot.dsl.commitment import commitment_of
+from crowdbot.dsl.suite.commitment import commitment_of
 from crowdbot.errors import SpecError
 from tests.paths import DATA
 

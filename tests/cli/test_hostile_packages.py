@@ -73,7 +73,7 @@ BROKEN = {
     "no_build": (planner("no_build.go", build="nowhere"), "build must be text"),
     "twice": (planner("twice.go").replace("[PLANNER]", "[PLANNER, PLANNER]"),
               "E301 planner 'twice.go' is provided twice"),
-    "no_card": (HEAD + "from crowdbot.dsl.base import MetricSpec\n"
+    "no_card": (HEAD + "from crowdbot.dsl import MetricSpec\n"
                 "class Spec(MetricSpec):\n    kind: Literal['no_card.m'] = 'no_card.m'\n"
                 "@hookimpl\ndef crowdbot_metrics():\n"
                 "    return [Component(spec=Spec, build='a:b', summary='')]",
@@ -193,7 +193,7 @@ THREAD = (
     "\nimport threading\ndef go(): raise OSError('no bus')\nthreading.Thread(target=go).start()\n"
 )
 REPLACES = (
-    "\nimport crowdbot.dsl.expand as e\n"
+    "\nimport crowdbot.dsl.suite.expand as e\n"
     "def no(*_, **__): raise ZeroDivisionError('mine')\n"
     "e.expand_document = e.load_document = no\n"
 )

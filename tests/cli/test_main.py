@@ -7,8 +7,8 @@ import sys
 import pytest
 
 from crowdbot import cli
-from crowdbot.cli._plain import plain_call
-from crowdbot.cli._typer_app import load
+from crowdbot.cli.app.plain import plain_call
+from crowdbot.cli.app.typer_app import load
 from crowdbot.core.registry.plugin_errors import UserInterrupt
 from crowdbot.errors import CrowdbotError, PluginError, SimulationError, UsageError
 from tests.waiting import AT_MOST

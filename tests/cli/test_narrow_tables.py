@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from crowdbot.cli._plugin_table import table
-from crowdbot.cli._results_lines import print_table
-from crowdbot.cli.info import _show
+from crowdbot.cli.commands.info import _show
+from crowdbot.cli.output.plugin_table import table
+from crowdbot.cli.output.results_lines import print_table
 from crowdbot.core.recording.contents import RecordingContents, TopicContents
 
 LINE: dict[str, Any] = {

@@ -6,7 +6,7 @@ import signal
 
 import pytest
 
-from crowdbot.cli._one_run import interruptible
+from crowdbot.cli.shared.one_run import interruptible
 from crowdbot.core.registry.plugin_errors import UserInterrupt, is_user_interrupt
 
 

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from crowdbot import cli
-from crowdbot.cli._command_names import command_names
-from crowdbot.cli._typer_app import load
+from crowdbot.cli.app.command_names import command_names
+from crowdbot.cli.app.typer_app import load
 from tests.core.bundle.made_up_runs import make_bundle
 
 WRITERS = {

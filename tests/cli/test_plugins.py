@@ -76,7 +76,7 @@ def test_show_unknown(capsys: Captured) -> None:
 def test_what_is_built_in_is_described_where_it_says() -> None:
     import re
 
-    from crowdbot.cli._component_page import reference
+    from crowdbot.cli.output.component_page import reference
 
     root = ROOT
     registry = discover(allow=())
@@ -109,7 +109,7 @@ def test_checks_of_one_kind(capsys: Captured) -> None:
 
 
 def test_an_expected_failure_has_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
-    from crowdbot.cli import _check
+    from crowdbot.cli.output import check as _check
 
     def check_bad(component: object) -> None:
         """Fails. If this fails, rejoice."""

@@ -41,8 +41,8 @@ def test_components_of_plugins_are_in_it(tmp_path: Path) -> None:
     (tmp_path / "plugins").mkdir()
     (tmp_path / "plugins" / "acme_rooms.py").write_text(
         "from typing import Literal\n"
-        "from crowdbot.dsl.component import Component\n"
-        "from crowdbot.dsl.base import EnvironmentSpec\n"
+        "from crowdbot.dsl.spec.component import Component\n"
+        "from crowdbot.dsl import EnvironmentSpec\n"
         "from crowdbot.hookspecs import hookimpl\n"
         "class RoomSpec(EnvironmentSpec):\n"
         '    """A room."""\n'
@@ -56,7 +56,7 @@ def test_components_of_plugins_are_in_it(tmp_path: Path) -> None:
     code = (
         "from pathlib import Path\n"
         "from crowdbot.core.registry.registry import discover\n"
-        "from crowdbot.cli.schema import build\n"
+        "from crowdbot.cli.commands.schema import build\n"
         "import json\n"
         "schema = build('suite', discover(extra=[Path('plugins/acme_rooms.py')], allow=()))\n"
         "words = schema['$defs']['environment']['properties']['kind']['oneOf']\n"

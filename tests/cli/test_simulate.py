@@ -67,7 +67,7 @@ def test_the_run_directory_is_whole(whole: Path) -> None:
 def test_the_resolved_scenario_reads_back(whole: Path, capsys: pytest.CaptureFixture[str]) -> None:
     from crowdbot.core.registry.registry import discover
     from crowdbot.core.scenarios.library import open_spec
-    from crowdbot.dsl.canonical import content_hash
+    from crowdbot.dsl.identity.canonical import content_hash
 
     registry = discover()
     (scenario,) = open_spec(str(whole / "scenario.yaml"), registry).scenarios

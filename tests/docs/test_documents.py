@@ -14,7 +14,7 @@ import pytest
 
 import crowdbot
 from crowdbot.cli import command_names, main
-from crowdbot.cli._typer_app import load
+from crowdbot.cli.app.typer_app import load
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.scenarios.library import pick
 from tests.docs.doc_pages import (

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from crowdbot.dsl.component_specs import CATEGORIES
+from crowdbot.dsl.spec.component_specs import CATEGORIES
 from tests.docs.doc_pages import links, read, section
 from tests.paths import ROOT
 

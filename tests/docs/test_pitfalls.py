@@ -13,8 +13,8 @@ from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.view.build import build_map_content
-from crowdbot.dsl.canonical import content_hash
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.identity.canonical import content_hash
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import SpecError
 from tests.docs.doc_pages import read
 from tests.paths import ROOT

@@ -11,7 +11,7 @@ import pytest
 
 from crowdbot import hookspecs
 from crowdbot.cli import command_names
-from crowdbot.cli._typer_app import load
+from crowdbot.cli.app.typer_app import load
 from crowdbot.core import interfaces
 from crowdbot.core.crowd.build import build_cost
 from crowdbot.core.registry.registry import discover
@@ -127,7 +127,7 @@ def test_entries_of_the_cost_arrays_are_described() -> None:
 
 
 def test_every_quantity_is_listed_with_its_unit() -> None:
-    from crowdbot.dsl import quantities
+    from crowdbot.dsl.spec import quantities
 
     found = {
         name: next(m.si_unit for m in value.__metadata__ if isinstance(m, quantities.Quantity))
@@ -142,7 +142,7 @@ def test_every_quantity_is_listed_with_its_unit() -> None:
 
 
 def test_every_category_has_a_build_row() -> None:
-    from crowdbot.dsl.component_specs import CATEGORIES
+    from crowdbot.dsl.spec.component_specs import CATEGORIES
 
     rows = re.findall(r"^\| ([a-z ]+) \| `build\(spec", PLUGINS, re.M)
     assert set(rows) == {c.category for c in CATEGORIES}

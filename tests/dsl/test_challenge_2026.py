@@ -15,10 +15,10 @@ from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.scenarios.named_crowds import open_crowd
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
-from crowdbot.dsl.canonical import content_hash
-from crowdbot.dsl.expand import Expansion
-from crowdbot.dsl.robot_response import HumanResponse
-from crowdbot.dsl.scenario import Crowd
+from crowdbot.dsl.identity.canonical import content_hash
+from crowdbot.dsl.scenario.robot_response import HumanResponse
+from crowdbot.dsl.scenario.scenario import Crowd
+from crowdbot.dsl.suite.expand import Expansion
 
 REGISTRY = discover(allow=())
 #: Where the people start, m, and the way that they walk before they come back to where they were.

@@ -8,10 +8,10 @@ import pytest
 
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_suite
-from crowdbot.dsl import semantics_robot_ways
-from crowdbot.dsl.outlines import Point
-from crowdbot.dsl.place import Place
-from crowdbot.dsl.reach import areas_connected
+from crowdbot.dsl.checks import robots as semantics_robot_ways
+from crowdbot.dsl.checks.reach import areas_connected
+from crowdbot.dsl.spec.outlines import Point
+from crowdbot.dsl.spec.place import Place
 from crowdbot.errors import SpecError
 
 SUITE = """\

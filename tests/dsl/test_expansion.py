@@ -8,9 +8,9 @@ import pytest
 
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
-from crowdbot.dsl.canonical import content_hash
-from crowdbot.dsl.diagnostics import render
-from crowdbot.dsl.expand import Expansion, expand_document, load_document
+from crowdbot.dsl.identity.canonical import content_hash
+from crowdbot.dsl.suite.expand import Expansion, expand_document, load_document
+from crowdbot.dsl.text.diagnostics import render
 from crowdbot.errors import SpecError, UsageError
 from tests.paths import DATA
 
@@ -213,7 +213,7 @@ def test_all_errors_at_once_sorted(write: Write) -> None:
 def test_validator_of_a_plugin_that_crashes_is_a_plugin_error(
     write: Write, error: BaseException
 ) -> None:
-    from crowdbot.dsl.validation import validate
+    from crowdbot.dsl.checks.pydantic_errors import validate
     from crowdbot.errors import PluginError
 
     class Broken(REGISTRY.scenario_model):  # type: ignore[name-defined, misc]

@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
-from crowdbot.dsl.canonical import canonical_bytes, content_hash, dump_scenario_yaml
-from crowdbot.dsl.expand import expand_document, load_document
-from crowdbot.dsl.lock import flatten
-from crowdbot.dsl.scenario import OUTSIDE_HASH, Scenario
+from crowdbot.dsl.identity.canonical import canonical_bytes, content_hash, dump_scenario_yaml
+from crowdbot.dsl.scenario.lock import flatten
+from crowdbot.dsl.scenario.scenario import OUTSIDE_HASH, Scenario
+from crowdbot.dsl.suite.expand import expand_document, load_document
 from crowdbot.errors import SpecError
 from tests.examples import costly
 
@@ -185,7 +185,7 @@ def test_what_is_outside_does_not(path: str) -> None:
 @pytest.mark.slow
 def test_parts_validated_once_give_the_same_hashes(monkeypatch: pytest.MonkeyPatch) -> None:
     """`ValidParts` is a shortcut and nothing else."""
-    from crowdbot.dsl.validation_cache import ValidParts
+    from crowdbot.dsl.checks.validation_cache import ValidParts
 
     def listed() -> list[str]:
         return [hash_of(s) for s in open_spec("challenge-2020", REGISTRY).scenarios]

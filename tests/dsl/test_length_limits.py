@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from crowdbot.dsl.quantities import MOST, Length, PositiveDuration, PositiveLength
+from crowdbot.dsl.spec.quantities import MOST, Length, PositiveDuration, PositiveLength
 
 
 @pytest.mark.parametrize("value", [1e308, "1e308 m", "1001 km", 1_000_001, "1e300 km"])

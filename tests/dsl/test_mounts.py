@@ -14,8 +14,8 @@ from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.view.build import _sectors
 from crowdbot.core.view.map_content import _sector
-from crowdbot.dsl.canonical import canonical_bytes, content_hash, dump_scenario_yaml
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.identity.canonical import canonical_bytes, content_hash, dump_scenario_yaml
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import SpecError
 
 REGISTRY = discover(allow=())

@@ -22,12 +22,12 @@ from ruamel.yaml import YAML
 
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import installed
-from crowdbot.dsl.canonical import content_hash
-from crowdbot.dsl.diagnostics import CODES, Diagnostic, Source, render
-from crowdbot.dsl.expand import Expansion, expand_document, load_document
-from crowdbot.dsl.nodes import parse, to_data
-from crowdbot.dsl.plain_yaml import to_yaml
-from crowdbot.dsl.quantities import UNITS
+from crowdbot.dsl.identity.canonical import content_hash
+from crowdbot.dsl.spec.quantities import UNITS
+from crowdbot.dsl.suite.expand import Expansion, expand_document, load_document
+from crowdbot.dsl.text.diagnostics import CODES, Diagnostic, Source, render
+from crowdbot.dsl.text.nodes import parse, to_data
+from crowdbot.dsl.text.plain_yaml import to_yaml
 from crowdbot.errors import SpecError
 from tests.examples import THOROUGH
 from tests.paths import DATA

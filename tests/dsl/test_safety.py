@@ -14,8 +14,8 @@ import pytest
 
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import installed
-from crowdbot.dsl.diagnostics import MAX_ERRORS, Diagnostic, render
-from crowdbot.dsl.expand import expand_document, load_document
+from crowdbot.dsl.suite.expand import expand_document, load_document
+from crowdbot.dsl.text.diagnostics import MAX_ERRORS, Diagnostic, render
 from crowdbot.errors import SpecError, hidden_character
 from tests.paths import DATA
 

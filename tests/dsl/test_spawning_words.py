@@ -17,12 +17,12 @@ from hypothesis import strategies as st
 from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
-from crowdbot.dsl.agents_csv import read_agents
-from crowdbot.dsl.canonical import content_hash, dump_scenario_yaml
-from crowdbot.dsl.diagnostics import Diagnostic, Source, render
-from crowdbot.dsl.nodes import to_data
-from crowdbot.dsl.scenario import Crowd, Scenario
-from crowdbot.dsl.spawning import Agent
+from crowdbot.dsl.identity.canonical import content_hash, dump_scenario_yaml
+from crowdbot.dsl.scenario.scenario import Crowd, Scenario
+from crowdbot.dsl.scenario.spawning import Agent
+from crowdbot.dsl.suite.agents_csv import read_agents
+from crowdbot.dsl.text.diagnostics import Diagnostic, Source, render
+from crowdbot.dsl.text.nodes import to_data
 from crowdbot.errors import SpecError
 from tests.examples import costly
 from tests.paths import ROOT

@@ -9,9 +9,9 @@ import pytest
 
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import installed, open_spec
-from crowdbot.dsl.canonical import content_hash
-from crowdbot.dsl.diagnostics import render
-from crowdbot.dsl.expand import Expansion, expand_document, load_document
+from crowdbot.dsl.identity.canonical import content_hash
+from crowdbot.dsl.suite.expand import Expansion, expand_document, load_document
+from crowdbot.dsl.text.diagnostics import render
 from crowdbot.errors import SpecError
 from tests.paths import DATA
 

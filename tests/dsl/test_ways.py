@@ -9,7 +9,7 @@ import pytest
 
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
-from crowdbot.dsl.diagnostics import Diagnostic
+from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import SpecError
 
 REGISTRY = discover(allow=())

@@ -17,7 +17,7 @@ from pydantic import ConfigDict, Field
 
 from crowdbot.core.interfaces import References, Score, ScoreFactory, Trajectories
 from crowdbot.dsl import Component, MetricComponent, MetricSpec, SensorSpec, declare_metric
-from crowdbot.dsl.component_specs import CATEGORIES
+from crowdbot.dsl.spec.component_specs import CATEGORIES
 from crowdbot.errors import PluginError
 from crowdbot.testing import all_kinds, card, checks_of, metric, parametrize_with_checks
 from crowdbot.testing.checks import BY_CATEGORY, checks_for

@@ -15,10 +15,10 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.scenarios.lock_check import spec_of
 from crowdbot.core.scoring.scores_csv import parse_scores
-from crowdbot.dsl.canonical import dump_scenario_yaml
-from crowdbot.dsl.crowd_likeness import fingerprint
-from crowdbot.dsl.expand import Expansion
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.identity.canonical import dump_scenario_yaml
+from crowdbot.dsl.identity.crowd_likeness import fingerprint
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import InputError
 
 __all__ = ["ClaimedRun", "check_members", "check_suite", "claimed_runs", "problems_of"]

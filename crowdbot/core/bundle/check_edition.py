@@ -7,7 +7,7 @@ from pathlib import Path
 
 from crowdbot.core.bundle.manifest import LOCK, RULES, Manifest
 from crowdbot.core.bundle.verification import content_hash
-from crowdbot.dsl.expand import Expansion
+from crowdbot.dsl.suite.expand import Expansion
 
 _SHOWN = 3
 

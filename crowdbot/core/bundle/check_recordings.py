@@ -14,7 +14,7 @@ from crowdbot.core.bundle.pack import read_json
 from crowdbot.core.recording.attachments import attached
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.runs.robots import RecordedRun, read_recorded
+from crowdbot.core.runs.read_and_score import RecordedRun, read_recorded
 from crowdbot.errors import InputError
 
 #: What the record of a calibration run has besides what its id is the hash of.

@@ -16,7 +16,7 @@ from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_model import record_problems
 from crowdbot.core.scoring.fleet_scores import AT
 from crowdbot.core.types.score import Score
-from crowdbot.dsl.metric_component import MetricComponent
+from crowdbot.dsl.spec.metric_component import MetricComponent
 
 #: Keys of run.json that the run's id is the hash of; ``hashes`` without the trajectory.
 _IDENTITY = ("scenario", "suite", "planner", "seed", "hashes", "versions", "plugins")

@@ -22,7 +22,7 @@ from crowdbot.core.bundle.verification import content_hash, read_verification
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import CROWD_ALONE, ROBOT_ALONE
-from crowdbot.core.runs.robots import score_robots
+from crowdbot.core.runs.read_and_score import score_robots
 from crowdbot.core.scoring.metric import References
 from crowdbot.errors import InputError
 

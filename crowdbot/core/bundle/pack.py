@@ -26,8 +26,8 @@ from crowdbot.core.runs.record_model import record_problems
 from crowdbot.core.scenarios.lock_check import spec_of
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.support.strict_json import parse_json
-from crowdbot.dsl.expand import Expansion
-from crowdbot.dsl.lock import LockFiles
+from crowdbot.dsl.scenario.lock import LockFiles
+from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import InputError, UnknownNameError, printable
 
 _OF_A_RUN = (files.RECORD, files.SCENARIO, files.SCORES)

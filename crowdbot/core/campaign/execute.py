@@ -19,11 +19,11 @@ from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import Populate, Prepared, prepare, references_of, run_identity
 from crowdbot.core.runs.outcome import Progress
-from crowdbot.core.runs.request import Request
+from crowdbot.core.runs.run import Request
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.scenarios.with_crowds import with_crowds
 from crowdbot.core.sim.references import make_reference
-from crowdbot.dsl.expand import Expansion
+from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import CrowdbotError, InputError, PlannerError, SimulationError
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
-from crowdbot.core.runs.request import Recorded
+from crowdbot.core.runs.run import Recorded
 
 Kind = Literal["crowd_alone", "robot_alone", "run"]
 

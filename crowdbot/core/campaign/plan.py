@@ -30,7 +30,7 @@ from crowdbot.core.runs.identity import (
     run_identity,
 )
 from crowdbot.core.runs.outcome import PLANNER_FAILED
-from crowdbot.core.runs.request import Request
+from crowdbot.core.runs.run import Request
 from crowdbot.core.sim.preflight import preflight
 from crowdbot.errors import InputError
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.lock import Population, population
 from crowdbot.core.scenarios.lock_check import check_fits
-from crowdbot.dsl.lock_inputs import population_inputs
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.identity.population_inputs import population_inputs
+from crowdbot.dsl.scenario.scenario import Scenario
 
 
 def cached_population() -> Callable[[Scenario, Registry], Population]:

@@ -11,12 +11,12 @@ from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.planning.fleet_choice import planners_by_robot
 from crowdbot.core.planning.resolve import PlannerChoice, kinds_of_role, resolve_planner
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.runs.request import Recorded
+from crowdbot.core.runs.run import Recorded
 from crowdbot.core.scenarios.library import open_spec, select
 from crowdbot.core.scenarios.with_crowds import with_crowds
-from crowdbot.dsl.component_specs import PlannerRole
-from crowdbot.dsl.expand import Expansion
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.spec.component_specs import PlannerRole
+from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import InputError, UnknownNameError, UsageError
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from crowdbot.core.runs.identity import Prepared
-from crowdbot.dsl.seeds import stream_seed
+from crowdbot.dsl.scenario.seeds import stream_seed
 
 #: Scenarios of a suite in which floors and ceilings are run, where nobody asked for more: as many
 #: as the challenge has crowd draws.

@@ -20,14 +20,14 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import prepare
 from crowdbot.core.runs.outcome import Progress
-from crowdbot.core.runs.request import Request, Run
-from crowdbot.core.runs.robots import score_robots
+from crowdbot.core.runs.read_and_score import score_robots
+from crowdbot.core.runs.run import Request, Run
 from crowdbot.core.scoring.metric import References
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.sim.simulate import make_run
 from crowdbot.core.types.score import Score
-from crowdbot.dsl.expand import Expansion
-from crowdbot.dsl.seeds import stream_seed
+from crowdbot.dsl.scenario.seeds import stream_seed
+from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import InputError
 
 #: Keys of a planner in run.json that are not parameters of it.

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 from crowdbot.core.campaign.job import Done, Job
 from crowdbot.core.runs.outcome import Progress
-from crowdbot.core.support.quick_exit import end_without_collecting
+from crowdbot.core.support.skip_final_gc import end_without_collecting
 
 #: Seconds between beats.
 BEAT = 1.0

@@ -28,7 +28,7 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.support.immutable import immutable_fields
 from crowdbot.core.support.plain_numbers import plain_numbers
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.component_specs import CostFunctionSpec, CrowdPolicySpec
+from crowdbot.dsl.spec.component_specs import CostFunctionSpec, CrowdPolicySpec
 from crowdbot.errors import PluginError
 
 _SIGNATURES = {

@@ -22,8 +22,8 @@ from crowdbot.core.crowd.portals import draw_goal, enter
 from crowdbot.core.crowd.response.evasion import evade_robots
 from crowdbot.core.crowd.response.parameters import Human
 from crowdbot.core.crowd.routes import head_for
-from crowdbot.core.crowd.routing.aims import squeeze
 from crowdbot.core.crowd.routing.router import Router
+from crowdbot.core.crowd.routing.waypoints import squeeze
 from crowdbot.core.crowd.steering.parts import parts_of, steer
 from crowdbot.core.crowd.step import tick, ticks_without_robots
 from crowdbot.core.crowd.world import CrowdWorld

@@ -24,7 +24,7 @@ _GAZE, _COHESION, _REPULSION, _HALF_VIEW, _DISTANCE, _LIMIT = range(6)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cohesion:
-    """Strengths of what holds groups together, see `crowdbot.dsl.group_forces`; SI."""
+    """Strengths of what holds groups together, see `crowdbot.dsl.scenario.group_forces`; SI."""
 
     gaze: float = 4.0
     cohesion: float = 3.0

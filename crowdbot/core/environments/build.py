@@ -11,7 +11,7 @@ import numpy as np
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.dsl.component_specs import EnvironmentSpec
+from crowdbot.dsl.spec.component_specs import EnvironmentSpec
 from crowdbot.errors import PluginError
 
 

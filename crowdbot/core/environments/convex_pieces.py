@@ -12,7 +12,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped,unused-ignore]
 
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.outlines import Outline, is_convex, signed_area, turn
+from crowdbot.dsl.spec.outlines import Outline, is_convex, signed_area, turn
 
 #: Smaller triangles are rounding, m^2.
 _LEAST_AREA = 1e-9

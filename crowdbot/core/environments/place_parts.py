@@ -10,9 +10,9 @@ import numpy as np
 from crowdbot.core.environments.convex_pieces import convex_pieces
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.dsl.component_specs import EnvironmentSpec
-from crowdbot.dsl.outlines import counter_clockwise, sides
-from crowdbot.dsl.place import Heights, Place
+from crowdbot.dsl.spec.component_specs import EnvironmentSpec
+from crowdbot.dsl.spec.outlines import counter_clockwise, sides
+from crowdbot.dsl.spec.place import Heights, Place
 
 #: A side as x0, y0, x1, y1; bottom and top; whether it stops the robot, people.
 _Row = tuple[tuple[float, float, float, float], Heights, bool, bool]

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
-from crowdbot.dsl.component_specs import (
+from crowdbot.dsl.spec.component_specs import (
     CostFunctionSpec,
     CrowdPolicySpec,
     EnvironmentSpec,
@@ -21,7 +21,7 @@ from crowdbot.dsl.component_specs import (
     RobotSpec,
     SensorSpec,
 )
-from crowdbot.dsl.range_sensor import RangeSensorSpec
+from crowdbot.dsl.spec.range_sensor import RangeSensorSpec
 
 if TYPE_CHECKING:
     from crowdbot.core.crowd.policy import Agents, CrowdPolicy

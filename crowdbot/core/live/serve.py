@@ -17,10 +17,10 @@ from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import prepare
-from crowdbot.core.runs.request import Request, Run
+from crowdbot.core.runs.run import Request, Run
 from crowdbot.core.scenarios.one_robot import check_one_robot
 from crowdbot.core.sim.built_run import BuiltRun
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError, Interrupted
 
 _SWITCH = 0.0005  # s

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.dsl.component_specs import PlannerRole
+from crowdbot.dsl.spec.component_specs import PlannerRole
 
 if TYPE_CHECKING:
     from crowdbot.core.planning.planner import Planner

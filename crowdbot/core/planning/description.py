@@ -8,7 +8,7 @@ from typing import Any, cast, get_args
 
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.support.source_digest import declared_data
-from crowdbot.dsl.component_specs import PlannerRole
+from crowdbot.dsl.spec.component_specs import PlannerRole
 from crowdbot.errors import InputError, did_you_mean, nearest
 
 

@@ -27,8 +27,8 @@ from crowdbot.core.support.source_digest import source_digest
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
-from crowdbot.dsl.component_specs import PlannerSpec
-from crowdbot.dsl.settings import setting_texts
+from crowdbot.dsl.spec.component_specs import PlannerSpec
+from crowdbot.dsl.suite.settings import setting_texts
 from crowdbot.errors import InputError, kind_of
 
 #: What `choose_planner` takes: a name or file, a spec, a class, an object, a function.

@@ -12,8 +12,8 @@ from crowdbot.core.planning.python_file import checked_planner
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.component_specs import PlannerSpec
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.component_specs import PlannerSpec
 from crowdbot.errors import (
     CrowdbotError,
     InputError,

@@ -33,9 +33,9 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.support.near_files import near_files
 from crowdbot.core.support.source_digest import source_digest
 from crowdbot.core.types.sensor import SensorInfo
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.component_specs import PlannerRole, PlannerSpec
-from crowdbot.dsl.settings import setting_texts
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.component_specs import PlannerRole, PlannerSpec
+from crowdbot.dsl.suite.settings import setting_texts
 from crowdbot.errors import InputError
 
 #: Of a document, bytes.

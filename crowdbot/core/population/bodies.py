@@ -11,7 +11,7 @@ import numpy as np
 
 from crowdbot.core.population.draws import RngOf, draw_normal, draw_one
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.people_kinds import LOOKS, LengthChoice, MassChoice, PeopleKind
+from crowdbot.dsl.scenario.people_kinds import LOOKS, LengthChoice, MassChoice, PeopleKind
 
 #: From the floor to the hip, of the height; see `crowdbot.core.sensing.body_model`.
 HIP = 0.53

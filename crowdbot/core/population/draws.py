@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from crowdbot.core.types.arrays import Array, Point
-from crowdbot.dsl.areas import Area, Place
-from crowdbot.dsl.parameters import Sample, SpeedDistribution
-from crowdbot.dsl.people_kinds import WIDEST, LengthDistribution, MassDistribution
-from crowdbot.dsl.seeds import stream_seed
-from crowdbot.dsl.spawning import GroupSize
-from crowdbot.dsl.spec import Rectangle
+from crowdbot.dsl.scenario.people_kinds import WIDEST, LengthDistribution, MassDistribution
+from crowdbot.dsl.scenario.seeds import stream_seed
+from crowdbot.dsl.scenario.spawning import GroupSize
+from crowdbot.dsl.spec.areas import Area, Place
+from crowdbot.dsl.spec.parameters import Sample, SpeedDistribution
+from crowdbot.dsl.spec.spec import Rectangle
 
 #: Purpose and unit, such as a person, to the generator of that unit.
 RngOf = Callable[[str, int], np.random.Generator]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from crowdbot.core.population.ground import Ground
-from crowdbot.dsl.spawning import CLEAR_OF_ROBOT
+from crowdbot.dsl.scenario.spawning import CLEAR_OF_ROBOT
 
 
 class Occupancy:

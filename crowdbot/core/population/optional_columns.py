@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, get_args
 
-from crowdbot.dsl.people_kinds import LookName
+from crowdbot.dsl.scenario.people_kinds import LookName
 
 Numbers = tuple[float, ...]
 

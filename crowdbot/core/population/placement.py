@@ -8,7 +8,7 @@ import numpy as np
 
 from crowdbot.core.population.occupancy import Occupancy
 from crowdbot.core.types.arrays import Array, Point
-from crowdbot.dsl.areas import Area
+from crowdbot.dsl.spec.areas import Area
 
 #: Attempts to place one person, or one group, before the area counts as full.
 ATTEMPTS = 1000

@@ -27,10 +27,10 @@ from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.spawns import SpawnSampler
 from crowdbot.core.population.stream_sampler import StreamSampler
 from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.dsl.assets import Asset
-from crowdbot.dsl.people_kinds import LOOKS
-from crowdbot.dsl.scenario import Crowd, Flow, Scenario
-from crowdbot.dsl.spawning import Agent
+from crowdbot.dsl.scenario.people_kinds import LOOKS
+from crowdbot.dsl.scenario.scenario import Crowd, Flow, Scenario
+from crowdbot.dsl.scenario.spawning import Agent
+from crowdbot.dsl.spec.assets import Asset
 from crowdbot.errors import InputError
 
 Row = dict[str, Any]

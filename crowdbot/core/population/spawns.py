@@ -25,10 +25,10 @@ from crowdbot.core.population.ground import Ground
 from crowdbot.core.population.occupancy import Occupancy
 from crowdbot.core.population.placement import ATTEMPTS, Placer
 from crowdbot.core.types.arrays import Array, Point
-from crowdbot.dsl.areas import GoalArea
-from crowdbot.dsl.parameters import Sample
-from crowdbot.dsl.scenario import Crowd, Scenario
-from crowdbot.dsl.spawning import Goals, Spawn
+from crowdbot.dsl.scenario.scenario import Crowd, Scenario
+from crowdbot.dsl.scenario.spawning import Goals, Spawn
+from crowdbot.dsl.spec.areas import GoalArea
+from crowdbot.dsl.spec.parameters import Sample
 from crowdbot.errors import InputError
 
 #: Neighbours on the circle of a group's goals are so many diameters apart.

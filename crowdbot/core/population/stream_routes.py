@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.types.arrays import Point
-from crowdbot.dsl.areas import Area, GoalArea
-from crowdbot.dsl.outlines import along
-from crowdbot.dsl.scenario import AtGoal
-from crowdbot.dsl.stream_kinds import Lanes
+from crowdbot.dsl.scenario.scenario import AtGoal
+from crowdbot.dsl.scenario.streams import Lanes
+from crowdbot.dsl.spec.areas import Area, GoalArea
+from crowdbot.dsl.spec.outlines import along
 
 #: Goals of a walk from border to border, and the shortest way of it, of the smaller side.
 _TURNS, _SHORTEST = 16, 0.4

@@ -29,10 +29,8 @@ from crowdbot.core.population.stream_routes import (
     way_through,
 )
 from crowdbot.core.types.arrays import Array, Point
-from crowdbot.dsl.areas import Area, Place, places_in
-from crowdbot.dsl.parameters import DurationSample, Sample
-from crowdbot.dsl.scenario import AtGoal, Crowd, Scenario
-from crowdbot.dsl.stream_kinds import (
+from crowdbot.dsl.scenario.scenario import AtGoal, Crowd, Scenario
+from crowdbot.dsl.scenario.streams import (
     DirectionsStream,
     QueueStream,
     StreamChoice,
@@ -41,6 +39,8 @@ from crowdbot.dsl.stream_kinds import (
     ThroughStream,
     WanderingStream,
 )
+from crowdbot.dsl.spec.areas import Area, Place, places_in
+from crowdbot.dsl.spec.parameters import DurationSample, Sample
 from crowdbot.errors import InputError
 
 _AT_GOAL: dict[str, AtGoal] = {

@@ -8,8 +8,8 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
-from crowdbot.dsl.crowd_likeness import fingerprint
-from crowdbot.dsl.scenario import Crowd, Scenario
+from crowdbot.dsl.identity.crowd_likeness import fingerprint
+from crowdbot.dsl.scenario.scenario import Crowd, Scenario
 
 KNOWN = "known_crowds.json"
 

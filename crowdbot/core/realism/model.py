@@ -15,7 +15,7 @@ from crowdbot.core.crowd.steering.from_spec import steering_of
 from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.scenario import Crowd
+from crowdbot.dsl.scenario.scenario import Crowd
 
 #: Preferred speeds where a crowd names none, m/s: those of the recorded people.
 SPEED, SPEED_DEVIATION = 1.5, 0.2

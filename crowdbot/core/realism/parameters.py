@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.scenario import Crowd
+from crowdbot.dsl.scenario.scenario import Crowd
 from crowdbot.errors import InputError, UnknownNameError
 
 #: What a fit leaves alone: limits of bodies, how far people look, how contacts push.

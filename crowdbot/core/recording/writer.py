@@ -26,10 +26,10 @@ from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.header import RecordingHeader, tilts_message, with_frames
 from crowdbot.core.recording.images import REPLAY_IMAGE_RATE, REPLAY_IMAGE_WIDTH
 from crowdbot.core.recording.namespace import NamespacedFile
+from crowdbot.core.recording.ros_topics import ToolTopics
 from crowdbot.core.recording.scans import REPLAY_RATE, Thinning, whole_centimetres
 from crowdbot.core.recording.states import SeriesRows, StateSample, StatesWriter
 from crowdbot.core.recording.template import trip, whole_trip
-from crowdbot.core.recording.tools import ToolTopics
 from crowdbot.core.recording.topics import (
     Topic,
     is_cone,

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from crowdbot.core.registry.plugin_boundary import PluginCall
-from crowdbot.dsl.component import Component
+from crowdbot.dsl.spec.component import Component
 from crowdbot.errors import PluginError
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, overload
 
-from crowdbot.dsl.component import Component
+from crowdbot.dsl.spec.component import Component
 
 Components = tuple[Component[Any], ...]
 

@@ -21,11 +21,11 @@ from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.plugin_errors import is_user_interrupt
 from crowdbot.core.support.source_digest import data_files, declared_data, digest_of_files
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.component_specs import CATEGORIES
-from crowdbot.dsl.metric_component import MetricComponent
-from crowdbot.dsl.parts import parts_category
-from crowdbot.dsl.spec import ComponentSpec
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.component_specs import CATEGORIES
+from crowdbot.dsl.spec.metric_component import MetricComponent
+from crowdbot.dsl.spec.parts import parts_category
+from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.errors import CrowdbotError, PluginError, did_you_mean, nearest
 
 HOOKS = {

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from crowdbot.dsl.component import Component
+from crowdbot.dsl.spec.component import Component
 
 #: The name under which crowdbot's own components are registered.
 BUILTIN = "builtin"

@@ -22,13 +22,13 @@ from crowdbot.core.registry.component_list import ComponentsByKind, known_compon
 from crowdbot.core.registry.entry_points import ALLOW, find_plugins
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
-from crowdbot.core.support.seldom_collected import seldom_collected
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.component_specs import CATEGORIES, MetricSpec, PlannerSpec
-from crowdbot.dsl.components import components
-from crowdbot.dsl.parts import narrowed, parts_category
-from crowdbot.dsl.scenario import Crowd, NamedPolicy, Robot, Scenario
-from crowdbot.dsl.spec import ComponentSpec
+from crowdbot.core.support.gc_throttle import seldom_collected
+from crowdbot.dsl.scenario.components import components
+from crowdbot.dsl.scenario.scenario import Crowd, NamedPolicy, Robot, Scenario
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.component_specs import CATEGORIES, MetricSpec, PlannerSpec
+from crowdbot.dsl.spec.parts import narrowed, parts_category
+from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.errors import CrowdbotError, PluginError, UnknownNameError, did_you_mean, nearest
 
 __all__ = ["Plugin", "Registry", "assemble", "discover"]

@@ -28,7 +28,7 @@ from crowdbot.core.statistics import (
     summarise,
 )
 from crowdbot.core.statistics.axes import REALISED_DENSITY
-from crowdbot.core.statistics.centre import planner_mean
+from crowdbot.core.statistics.summary_estimator import planner_mean
 
 #: What the page is told of a comparison, in this order.
 FIELDS = (

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main, main_first
 from crowdbot.core.statistics import Table, headline_names
-from crowdbot.core.statistics.centre import Centre, centre_of
+from crowdbot.core.statistics.summary_estimator import Centre, centre_of
 
 #: Categories that come first; the others follow by name.
 _FIRST = (

@@ -12,7 +12,7 @@ from typing import Any
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.run_directory import RECORD, SCENARIO, SCORES, read_record
 from crowdbot.core.scenarios.library import open_spec, pick, suite_names
-from crowdbot.dsl.canonical import canonical_bytes, content_hash
+from crowdbot.dsl.identity.canonical import canonical_bytes, content_hash
 from crowdbot.errors import InputError
 
 #: What a run says about itself that two equal runs need not have in common.

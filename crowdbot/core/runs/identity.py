@@ -16,10 +16,10 @@ from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.outcome import PLANNER_FAILED
 from crowdbot.core.runs.record_model import record_problems
-from crowdbot.core.runs.request import Recorded, Request
+from crowdbot.core.runs.run import Recorded, Request
 from crowdbot.core.scenarios.lock import Population, population
-from crowdbot.dsl.canonical import content_hash
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.identity.canonical import content_hash
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError
 
 _LOG = logging.getLogger("crowdbot")

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 
 
 def mean_density(run: Trajectories, scenario: Scenario, parts: EnvironmentParts) -> float | None:

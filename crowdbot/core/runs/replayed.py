@@ -21,13 +21,13 @@ from crowdbot.core.robots import build_robot
 from crowdbot.core.robots.look import seen_from_above
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.runs.robots import SeenRun, read_robots
+from crowdbot.core.runs.read_and_score import SeenRun, read_robots
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.robot import RobotModel
 from crowdbot.core.types.score import Score
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError, UsageError
 
 

@@ -14,8 +14,8 @@ from crowdbot.core.recording.commands import read_commands
 from crowdbot.core.recording.reader import WholeRecording, holds_run, read_whole
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.runs.identity import CROWD_ALONE, ROBOT_ALONE
+from crowdbot.core.runs.read_and_score import references_by_robot, score_robots
 from crowdbot.core.runs.recordings import RecordingSource, find_source
-from crowdbot.core.runs.robots import references_by_robot, score_robots
 from crowdbot.core.scoring.evaluate import score
 from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.trajectories.questionnaires import Questionnaires

@@ -12,17 +12,17 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.outcome import Outcome
+from crowdbot.core.runs.read_and_score import trajectory_of
 from crowdbot.core.runs.realised_density import mean_density
-from crowdbot.core.runs.request import Request
-from crowdbot.core.runs.robots import trajectory_of
+from crowdbot.core.runs.run import Request
 from crowdbot.core.scoring.evaluate import Scores
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.trajectories.worst_moment import worst_moment
 from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.dsl.canonical import dump_scenario_yaml
-from crowdbot.dsl.crowd_likeness import fingerprint
-from crowdbot.dsl.robot_response import RobotResponse
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.identity.canonical import dump_scenario_yaml
+from crowdbot.dsl.identity.crowd_likeness import fingerprint
+from crowdbot.dsl.scenario.robot_response import RobotResponse
+from crowdbot.dsl.scenario.scenario import Scenario
 
 
 def run_record(

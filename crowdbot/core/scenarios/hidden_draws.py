@@ -21,11 +21,17 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.library import OpenDocument, check_writable, open_document
 from crowdbot.core.support.atomic_write import atomic_write
-from crowdbot.dsl.commitment import COMMITMENT, SALT, commitment_of, committed_content, is_random
-from crowdbot.dsl.diagnostics import Diagnostic
-from crowdbot.dsl.expand import expand_document
-from crowdbot.dsl.lock import LockFiles, changes, flatten
-from crowdbot.dsl.suite import ParsedSuite
+from crowdbot.dsl.scenario.lock import LockFiles, changes, flatten
+from crowdbot.dsl.suite.commitment import (
+    COMMITMENT,
+    SALT,
+    commitment_of,
+    committed_content,
+    is_random,
+)
+from crowdbot.dsl.suite.expand import expand_document
+from crowdbot.dsl.suite.suite import ParsedSuite
+from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import InputError, SpecError
 
 #: Bytes of a salt.

@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING, Any
 
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.support.gc_throttle import seldom_collected
 from crowdbot.core.support.near_files import near_files
-from crowdbot.core.support.seldom_collected import seldom_collected
-from crowdbot.dsl.diagnostics import Diagnostic
-from crowdbot.dsl.expand import Expanding, Expansion, expand_document, load_document
-from crowdbot.dsl.installed import Installed
-from crowdbot.dsl.lock import LockFiles
-from crowdbot.dsl.scenario import Locked, Scenario
-from crowdbot.dsl.suite import ParsedSuite
+from crowdbot.dsl.scenario.lock import LockFiles
+from crowdbot.dsl.scenario.scenario import Locked, Scenario
+from crowdbot.dsl.suite.expand import Expanding, Expansion, expand_document, load_document
+from crowdbot.dsl.suite.installed import Installed
+from crowdbot.dsl.suite.suite import ParsedSuite
+from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import CrowdbotError, InputError, SpecError, UnknownNameError, nearest
 
 if TYPE_CHECKING:

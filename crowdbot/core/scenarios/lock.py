@@ -18,8 +18,8 @@ from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.lock_check import check_fits, check_revealed, spec_of, values_of
-from crowdbot.dsl.expand import Expansion
-from crowdbot.dsl.lock import (
+from crowdbot.dsl.identity.population_inputs import population_inputs
+from crowdbot.dsl.scenario.lock import (
     LOCK,
     Lock,
     LockedScenario,
@@ -29,8 +29,8 @@ from crowdbot.dsl.lock import (
     split_values,
     table_hash,
 )
-from crowdbot.dsl.lock_inputs import population_inputs
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import InputError
 
 _NAME = re.compile(r"[A-Za-z0-9_.+-]+")

@@ -7,11 +7,11 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from crowdbot.core.registry.registry import Registry
-from crowdbot.dsl.canonical import content_hash, plain
-from crowdbot.dsl.expand import Expansion
-from crowdbot.dsl.lock import Lock, LockFiles, Values, changes, flatten
-from crowdbot.dsl.lock_inputs import population_inputs
-from crowdbot.dsl.scenario import OUTSIDE_HASH, Scenario
+from crowdbot.dsl.identity.canonical import content_hash, plain
+from crowdbot.dsl.identity.population_inputs import population_inputs
+from crowdbot.dsl.scenario.lock import Lock, LockFiles, Values, changes, flatten
+from crowdbot.dsl.scenario.scenario import OUTSIDE_HASH, Scenario
+from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import InputError
 
 

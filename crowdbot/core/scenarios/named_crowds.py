@@ -9,9 +9,9 @@ from pathlib import Path
 
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.library import installed, plugin_folders
-from crowdbot.dsl.diagnostics import Diagnostic
-from crowdbot.dsl.expand import expand_document, load_document
-from crowdbot.dsl.scenario import Crowd
+from crowdbot.dsl.scenario.scenario import Crowd
+from crowdbot.dsl.suite.expand import expand_document, load_document
+from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import InputError, SpecError, UnknownNameError
 
 _BUILTIN = "builtin"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError
 
 

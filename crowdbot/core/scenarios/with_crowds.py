@@ -8,8 +8,8 @@ from dataclasses import replace
 
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.named_crowds import open_crowd
-from crowdbot.dsl.expand import Expansion
-from crowdbot.dsl.scenario import Crowd, Scenario
+from crowdbot.dsl.scenario.scenario import Crowd, Scenario
+from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import InputError
 
 #: Axis that tells the crowds apart.

@@ -23,9 +23,9 @@ from crowdbot.core.trajectories.questionnaires import Questionnaires
 from crowdbot.core.trajectories.sizes import check_sizes
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
-from crowdbot.dsl.component import Component
-from crowdbot.dsl.component_specs import MetricSpec
-from crowdbot.dsl.metric_component import MetricComponent
+from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.component_specs import MetricSpec
+from crowdbot.dsl.spec.metric_component import MetricComponent
 from crowdbot.errors import (
     InputError,
     PluginError,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, SupportsFloat
 
 from crowdbot.core.types.score import Score
-from crowdbot.dsl.metric_component import MetricComponent
+from crowdbot.dsl.spec.metric_component import MetricComponent
 
 
 @dataclass(frozen=True, slots=True)

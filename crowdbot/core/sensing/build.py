@@ -17,7 +17,7 @@ from crowdbot.core.support.plain_numbers import plain_numbers
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import SensorInfo
-from crowdbot.dsl.component_specs import NoiseSpec, SensorSpec
+from crowdbot.dsl.spec.component_specs import NoiseSpec, SensorSpec
 from crowdbot.errors import PluginError, hidden_character
 
 #: Numbers of one reading: 100 images of a million pixels.

@@ -8,7 +8,7 @@ from crowdbot.core.geometry.rotation import rotation
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
-from crowdbot.dsl.spec import Mount, TiltableMount
+from crowdbot.dsl.spec.spec import Mount, TiltableMount
 
 #: Height of base_link above the floor (m) where the scene does not say it: the Kobuki's.
 BASE_HEIGHT = 0.0102

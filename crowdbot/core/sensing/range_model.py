@@ -25,7 +25,7 @@ from crowdbot.core.support.immutable import immutable
 from crowdbot.core.support.plain_numbers import plain_numbers
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
-from crowdbot.dsl.range_sensor import RangeSensorSpec
+from crowdbot.dsl.spec.range_sensor import RangeSensorSpec
 
 _KEPT = np.zeros(0, dtype=np.bool_)
 #: Of the range: errors beyond it leave nothing of a distance. Readings are recorded and published

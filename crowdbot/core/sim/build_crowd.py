@@ -21,8 +21,8 @@ from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.looks import Looks
-from crowdbot.dsl.scenario import Crowd, NamedPolicy, Scenario
-from crowdbot.dsl.seeds import stream_seed
+from crowdbot.dsl.scenario.scenario import Crowd, NamedPolicy, Scenario
+from crowdbot.dsl.scenario.seeds import stream_seed
 
 #: Names of the portals of a stream, from and to.
 Flow = tuple[str, str]

@@ -18,8 +18,8 @@ from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotModel, robot_body, wheels_of
 from crowdbot.core.types.sensor import SensorInfo
-from crowdbot.dsl.component_specs import with_driver, with_wheels
-from crowdbot.dsl.scenario import Robot, Scenario
+from crowdbot.dsl.scenario.scenario import Robot, Scenario
+from crowdbot.dsl.spec.component_specs import with_driver, with_wheels
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,7 +6,7 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from crowdbot.core.support.seldom_collected import collected_as_usual
+from crowdbot.core.support.gc_throttle import collected_as_usual
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from crowdbot.core.planning.fleet_choice import check_robots
-from crowdbot.core.runs.request import Request
+from crowdbot.core.runs.run import Request
 from crowdbot.core.sim.built_run import BuiltRun, build_runs
 from crowdbot.errors import InputError
 

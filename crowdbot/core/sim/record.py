@@ -21,12 +21,12 @@ from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.diagram import build_diagram
-from crowdbot.core.sim.record_crowd import RunSetup, agents, aim_of, ids, recording
+from crowdbot.core.sim.run_setup import RunSetup, agents, aim_of, ids, recording
 from crowdbot.core.sim.runner import run
 from crowdbot.core.sim.start_pose_check import check_start
 from crowdbot.core.support.compile_cache import compiled
 from crowdbot.core.types.robot import HolonomicDrive, RobotLimits
-from crowdbot.dsl.seeds import stream_seed
+from crowdbot.dsl.scenario.seeds import stream_seed
 from crowdbot.errors import PlannerError, PlannerHungError
 
 

@@ -8,7 +8,7 @@ from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.fleet.record import record_fleet
 from crowdbot.core.sim.record import record_robot
-from crowdbot.core.sim.record_crowd import RunSetup
+from crowdbot.core.sim.run_setup import RunSetup
 
 
 def record_all(setup: RunSetup, builts: Mapping[str, BuiltRun]) -> Outcome:

@@ -11,11 +11,11 @@ from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import CROWD_ALONE, Reference
 from crowdbot.core.runs.outcome import INTERRUPTED, PLANNER_FAILED, Outcome
-from crowdbot.core.runs.request import Request
+from crowdbot.core.runs.run import Request
 from crowdbot.core.runs.run_record import ending, write_scenario
 from crowdbot.core.sim.built_run import build_runs
 from crowdbot.core.sim.gc_freeze import gc_frozen
-from crowdbot.core.sim.record_crowd import RunSetup, record_crowd
+from crowdbot.core.sim.run_setup import RunSetup, record_crowd
 from crowdbot.errors import Interrupted, PluginError
 
 _LOG = logging.getLogger("crowdbot")

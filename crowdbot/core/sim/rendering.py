@@ -50,7 +50,7 @@ from crowdbot.core.sim.person_mesh import leg_obj, trunk_obj
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotModel
 from crowdbot.core.types.sensor import Pinhole
-from crowdbot.dsl.spec import Mount
+from crowdbot.dsl.spec.spec import Mount
 from crowdbot.errors import MissingLibraryError
 
 _NAME = "vtk"

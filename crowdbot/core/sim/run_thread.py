@@ -14,7 +14,7 @@ from crowdbot.core.planning.planner import Observation, Task
 from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.record import record_robot
-from crowdbot.core.sim.record_crowd import RunSetup
+from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import SensorInfo

@@ -25,13 +25,13 @@ from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.scenarios.one_robot import check_one_robot
 from crowdbot.core.sim.built_run import BuiltRun, build_run
-from crowdbot.core.sim.record_crowd import RunSetup
+from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.sim.run_thread import Exchange, own_stdout, start_run
 from crowdbot.core.support.arguments import expect, path_of, texts_of, whole_number_of
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.motion import Command
-from crowdbot.dsl.scenario import Scenario
-from crowdbot.dsl.seeds import stream_seed
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.scenario.seeds import stream_seed
 from crowdbot.errors import InputError, kind_of
 
 #: What a session takes as a command: v, w, and vy for a robot that can move sideways; m/s, rad/s.

@@ -28,18 +28,18 @@ from crowdbot.core.runs.identity import (
     run_identity,
 )
 from crowdbot.core.runs.outcome import Progress
-from crowdbot.core.runs.replayed import images_of_replay, shown_run
-from crowdbot.core.runs.request import (
-    Recorded,
-    Request,
-    Run,
-)
-from crowdbot.core.runs.robots import (
+from crowdbot.core.runs.read_and_score import (
     SeenRun,
     read_robots,
     reference_hashes,
     references_by_robot,
     score_robots,
+)
+from crowdbot.core.runs.replayed import images_of_replay, shown_run
+from crowdbot.core.runs.run import (
+    Recorded,
+    Request,
+    Run,
 )
 from crowdbot.core.runs.run_record import run_record, write_scenario
 from crowdbot.core.scoring.evaluate import Scores, metric_specs
@@ -48,12 +48,12 @@ from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.gc_freeze import gc_frozen
 from crowdbot.core.sim.preflight import preflight
 from crowdbot.core.sim.record_all import record_all
-from crowdbot.core.sim.record_crowd import RunSetup
 from crowdbot.core.sim.references import check_interrupted, make_references, partial
+from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.support.arguments import expect, expect_function, number_of, whole_number_of
-from crowdbot.dsl.axis_words import AxisWords
-from crowdbot.dsl.path_names import path_problem
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.suite.axis_words import AxisWords
+from crowdbot.dsl.text.path_names import path_problem
 from crowdbot.errors import InputError
 
 

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.statistics.estimate import Estimate
-from crowdbot.dsl.seeds import stream_seed
+from crowdbot.dsl.scenario.seeds import stream_seed
 
 Floats = NDArray[np.float64]
 #: Statistic of many weighted samples at once: weights (B, n) -> values (B,).

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.statistics import clusters as c
-from crowdbot.core.statistics.centre import bounds_of_difference, rate_difference
 from crowdbot.core.statistics.clusters import Bounds, Clusters, Floats
 from crowdbot.core.statistics.estimate import NOTHING, Counts, Estimate
 from crowdbot.core.statistics.signed_rank import double_ranks, least_p, p_value, signed_ranks
+from crowdbot.core.statistics.summary_estimator import bounds_of_difference, rate_difference
 from crowdbot.core.statistics.table import MISSING, UNDEFINED, Column, Name, Table
 
 Verdict = Literal["better", "worse", "not distinguishable", "not ranked"]

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core.realism.crowds import realism_by_name
 from crowdbot.core.results.rows import Results
-from crowdbot.core.statistics.centre import planner_mean
 from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.core.statistics.floors import PRIMARY
 from crowdbot.core.statistics.summary import headline_names
+from crowdbot.core.statistics.summary_estimator import planner_mean
 from crowdbot.core.statistics.table import Name, Table
 
 AXIS = "crowd"

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core.results.rows import PLANNER_FAILED, FailureRow, Results, RunRow
 from crowdbot.core.results.tables import axes_of
-from crowdbot.core.statistics.centre import mean_of_rows
 from crowdbot.core.statistics.clusters import Floats
 from crowdbot.core.statistics.estimate import Counts, Estimate
 from crowdbot.core.statistics.summary import bounds_of_mean, headline_names
+from crowdbot.core.statistics.summary_estimator import mean_of_rows
 from crowdbot.core.statistics.table import MISSING, OK, Key, Name, Table, counts_of
 from crowdbot.errors import UnknownNameError
 

@@ -15,7 +15,7 @@ from crowdbot.core.results.rows import PLANNER_FAILED, WITHOUT_RUN, Results, Run
 from crowdbot.core.scoring.score_scale import UNKNOWN, ScoreScale
 from crowdbot.core.statistics.clusters import Clusters, Floats
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts
-from crowdbot.dsl.matrix import DRAW
+from crowdbot.dsl.suite.matrix import DRAW
 
 #: Suite, scenario, seed: what runs are paired by.
 Key = tuple[str, str, int]

@@ -38,7 +38,7 @@ from numba.core.types import Omitted
 from numba.np import linalg
 
 from crowdbot.core.support.compile_files import PART, CacheFiles, PartLibrary, is_part
-from crowdbot.core.support.seldom_collected import seldom_collected
+from crowdbot.core.support.gc_throttle import seldom_collected
 
 _WHOLE = "whole, with its symbols"
 #: Held while a function is written to the cache.

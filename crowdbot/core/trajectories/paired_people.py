@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.trajectories.encounters import encounter, people
-from crowdbot.core.trajectories.laid_over import follow, longest_parts
+from crowdbot.core.trajectories.path_overlay import follow, longest_parts
 from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_agent_steps
 from crowdbot.core.trajectories.trajectories import Trajectories, cached_beside
 from crowdbot.core.trajectories.trips import trip_samples

@@ -15,7 +15,7 @@ class Looks:
         height: (N,) m; 0: the crowd's.
         leg_length: (N,) from the floor to the hip, m; 0: the usual share of the height.
         phase: (N,) of the legs at the start, rad.
-        look: names of what each looks like, see `crowdbot.dsl.people_kinds`; "" is an adult.
+        look: names of what each looks like (`crowdbot.dsl.scenario.people_kinds`); "": an adult.
     """
 
     height: Array

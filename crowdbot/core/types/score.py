@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from crowdbot.dsl.metric_component import Better
+from crowdbot.dsl.spec.metric_component import Better
 
 Status = Literal["ok", "undefined", "censored"]
 

@@ -16,11 +16,11 @@ from crowdbot.core.robots import build_model
 from crowdbot.core.types.arrays import Point
 from crowdbot.core.view.map_content import MapContent, RobotView, Sector
 from crowdbot.core.view.ways import ways_of
-from crowdbot.dsl.areas import Area
-from crowdbot.dsl.component_specs import SensorSpec
-from crowdbot.dsl.scenario import Crowd, Robot, Scenario
-from crowdbot.dsl.spec import Mount
-from crowdbot.dsl.stream_kinds import places_of
+from crowdbot.dsl.scenario.scenario import Crowd, Robot, Scenario
+from crowdbot.dsl.scenario.streams import places_of
+from crowdbot.dsl.spec.areas import Area
+from crowdbot.dsl.spec.component_specs import SensorSpec
+from crowdbot.dsl.spec.spec import Mount
 
 
 def build_map_content(scenario: Scenario, people: Realisation, registry: Registry) -> MapContent:

@@ -7,8 +7,8 @@ from collections import Counter
 import numpy as np
 
 from crowdbot.core.population.realisation import Realisation
-from crowdbot.dsl.scenario import Scenario
-from crowdbot.dsl.stream_kinds import Stream
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.scenario.streams import Stream
 
 
 def scenario_facts(scenario: Scenario, people: Realisation, spec_hash: str) -> dict[str, str]:

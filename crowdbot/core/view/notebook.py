@@ -8,8 +8,8 @@ from crowdbot.core.view.build import build_map_content
 from crowdbot.core.view.facts import scenario_facts
 from crowdbot.core.view.render import render
 from crowdbot.core.view.svg import element, stylesheet
-from crowdbot.dsl.canonical import content_hash
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.identity.canonical import content_hash
+from crowdbot.dsl.scenario.scenario import Scenario
 
 
 def scenario_html(scenario: Scenario) -> str:

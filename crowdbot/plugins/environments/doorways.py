@@ -14,8 +14,8 @@ from crowdbot.dsl import (
     PositiveLength,
     Rectangle,
     Solid,
-    outlines,
 )
+from crowdbot.dsl.spec import outlines
 from crowdbot.plugins.environments.walkways import PORTAL_DEPTH, WalkwaySpec, box, walkway
 
 

@@ -9,7 +9,8 @@ from typing import Annotated
 from annotated_types import Len
 from pydantic import Field, field_validator, model_validator
 
-from crowdbot.dsl import Face, Heights, Length, Pillar, PositiveLength, Solid, Spec, outlines
+from crowdbot.dsl import Face, Heights, Length, Pillar, PositiveLength, Solid, Spec
+from crowdbot.dsl.spec import outlines
 
 Point = Annotated[tuple[Length, Length], Field(strict=False)]
 Corners = Annotated[tuple[Point, ...], Len(3, 4096), Field(strict=False)]

@@ -27,9 +27,9 @@ from crowdbot.core.scenarios.lock_check import spec_of
 from crowdbot.core.scoring.score_factory import ScoreFactory
 from crowdbot.core.scoring.scores_csv import write_scores_csv
 from crowdbot.core.types.score import Score
-from crowdbot.dsl.canonical import dump_scenario_yaml
-from crowdbot.dsl.crowd_likeness import fingerprint
-from crowdbot.dsl.metric_component import MetricComponent
+from crowdbot.dsl.identity.canonical import dump_scenario_yaml
+from crowdbot.dsl.identity.crowd_likeness import fingerprint
+from crowdbot.dsl.spec.metric_component import MetricComponent
 
 TINY = """\
 crowdbot: 1

@@ -19,7 +19,7 @@ from crowdbot.core.bundle.manifest import MANIFEST
 from crowdbot.core.recording.attachments import attach
 from crowdbot.core.runs.record_model import record_problems
 from crowdbot.core.scenarios.library import open_suite
-from crowdbot.dsl.expand import Expansion
+from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import InputError
 from tests.core.bundle.made_up_runs import make_bundle, registry, rewrite, write_recording
 

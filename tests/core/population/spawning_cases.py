@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 
 REGISTRY = discover(allow=())
 HALL: dict[str, Any] = {

@@ -9,7 +9,7 @@ import pytest
 
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.realise import realise
-from crowdbot.dsl.people_kinds import LOOKS
+from crowdbot.dsl.scenario.people_kinds import LOOKS
 from tests.core.population.spawning_cases import hall
 
 MIX: dict[str, Any] = {

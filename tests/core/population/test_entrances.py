@@ -13,7 +13,7 @@ from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sim.build_crowd import build_crowd
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError, SpecError
 
 REGISTRY = discover(allow=())

@@ -12,7 +12,7 @@ from crowdbot.core.population.ground import Ground
 from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec, pick
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError
 
 REGISTRY = discover(allow=())

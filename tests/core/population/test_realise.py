@@ -9,8 +9,8 @@ from crowdbot.core.population.realisation import COLUMNS, Realisation
 from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec, pick
-from crowdbot.dsl.expand import Expansion
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import InputError
 
 

@@ -18,9 +18,9 @@ from crowdbot.core.population.placement import group_reach
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.realise import realise
 from crowdbot.core.population.spawns import SpawnSampler
-from crowdbot.dsl.areas import Area
-from crowdbot.dsl.semantics_agents import overlapping
-from crowdbot.dsl.semantics_spawns import most_points
+from crowdbot.dsl.checks.agents import overlapping
+from crowdbot.dsl.checks.spawns import most_points
+from crowdbot.dsl.spec.areas import Area
 from tests.core.population.spawning_cases import AREAS, LINKS, STANDING, drawn, gaps, groups, hall
 
 

@@ -14,9 +14,9 @@ from crowdbot.core.crowd.policy import PORTAL
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.population.realise import realise
 from crowdbot.core.sim.build_crowd import build_crowd
-from crowdbot.dsl.areas import Area
-from crowdbot.dsl.lock_inputs import population_inputs
-from crowdbot.dsl.spawning import CLEAR_OF_ROBOT
+from crowdbot.dsl.identity.population_inputs import population_inputs
+from crowdbot.dsl.scenario.spawning import CLEAR_OF_ROBOT
+from crowdbot.dsl.spec.areas import Area
 from crowdbot.errors import InputError
 from tests.core.population.spawning_cases import (
     AREAS,

@@ -29,7 +29,7 @@ from crowdbot.core.recording.candidates import (
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.runs.provenance import trajectory_hash
 from crowdbot.core.sim.crowd_only import run_crowd
-from crowdbot.core.sim.record_crowd import agents, choosers, ids
+from crowdbot.core.sim.run_setup import agents, choosers, ids
 from crowdbot.core.types.candidates import VelocityCandidates
 from crowdbot.errors import InputError
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec

@@ -23,7 +23,7 @@ from crowdbot.core.recording import (
 from crowdbot.core.recording.reader import recording_info
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.sensing.build import build_sensor
-from crowdbot.dsl.component_specs import SensorSpec
+from crowdbot.dsl.spec.component_specs import SensorSpec
 
 REGISTRY = discover(allow=())
 FIELDS: dict[str, dict[str, Any]] = {

@@ -10,8 +10,8 @@ import pytest
 from pydantic import ValidationError
 
 from crowdbot.core.registry.registry import Registry, discover
-from crowdbot.dsl.components import components
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.components import components
+from crowdbot.dsl.scenario.scenario import Scenario
 from tests.core.sim.sim_worlds import scenario
 
 PLUGIN = '''

@@ -17,7 +17,7 @@ from crowdbot.core.results.rows import PLANNER_FAILED, Results, RunRow, ScoreRow
 from crowdbot.core.scoring.score_factory import ScoreFactory
 from crowdbot.core.types.score import Score
 from crowdbot.dsl import MetricComponent
-from crowdbot.dsl.metric_invariants import MetricInvariants
+from crowdbot.dsl.spec.metric_invariants import MetricInvariants
 from tests.core.statistics.made_up_results import run
 
 #: Fields that rows of results have of a score.

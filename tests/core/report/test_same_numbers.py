@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from playwright.sync_api import sync_playwright
 
-from crowdbot.cli._results_lines import line_of, with_interval
+from crowdbot.cli.output.results_lines import line_of, with_interval
 from crowdbot.core.bundle.leaderboard import write_leaderboard
 from crowdbot.core.bundle.standings import standings
 from crowdbot.core.registry.registry import discover

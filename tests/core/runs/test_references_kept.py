@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from crowdbot.core.recording import read_trajectories
-from crowdbot.core.runs import request
-from crowdbot.core.runs.request import read_references
+from crowdbot.core.runs import run as request
+from crowdbot.core.runs.run import read_references
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError
 from tests.core.recording.recording_cases import bits, random_run, write_run

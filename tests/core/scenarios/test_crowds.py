@@ -11,7 +11,7 @@ from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.scenarios.named_crowds import crowd_parts, names_crowd, open_crowd
 from crowdbot.core.scenarios.with_crowds import with_crowds
-from crowdbot.dsl.crowd_likeness import fingerprint
+from crowdbot.dsl.identity.crowd_likeness import fingerprint
 from crowdbot.errors import InputError, SpecError, UnknownNameError
 
 REGISTRY = discover(allow=())

@@ -13,10 +13,10 @@ from crowdbot.core.scenarios import lock as locks
 from crowdbot.core.scenarios.library import open_spec, open_suite
 from crowdbot.core.scenarios.lock import make_lock, population, write_lock
 from crowdbot.core.scenarios.lock_check import differences
-from crowdbot.dsl.canonical import dump_scenario_yaml
-from crowdbot.dsl.expand import Expanding
-from crowdbot.dsl.lock import join_tables, split_tables
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.identity.canonical import dump_scenario_yaml
+from crowdbot.dsl.scenario.lock import join_tables, split_tables
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.suite.expand import Expanding
 from crowdbot.errors import InputError
 from tests.paths import DATA
 

@@ -13,7 +13,7 @@ from crowdbot.core.registry.registry import discover
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.dsl.component_specs import SensorSpec
+from crowdbot.dsl.spec.component_specs import SensorSpec
 
 Array = NDArray[np.float64]
 REGISTRY = discover(allow=())

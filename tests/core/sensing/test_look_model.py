@@ -14,7 +14,7 @@ from crowdbot.core.sensing.body_model import BOTTOM, PARTS, RADIUS, TOP, TRUNK
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.looks import Looks
-from crowdbot.dsl.people_kinds import LookName
+from crowdbot.dsl.scenario.people_kinds import LookName
 from tests.core.sensing.sensing_worlds import crowd_of
 
 NO_WALLS = np.zeros((0, 4))

@@ -31,7 +31,7 @@ from crowdbot.core.sim.built_run import BuiltRun, robot_task
 from crowdbot.core.sim.diagram import Blocks, build_diagram
 from crowdbot.core.sim.plant import RobotPlant
 from crowdbot.core.support.ticks import TICK
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 
 Array = NDArray[np.float64]
 EASY = "in-d0125-slow-c01-r02"

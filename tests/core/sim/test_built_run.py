@@ -17,13 +17,13 @@ from crowdbot.core.planning.planner import Observation
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
 from crowdbot.core.recording.records import Record, Records
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.runs.request import Recorded, Request
+from crowdbot.core.runs.run import Recorded, Request
 from crowdbot.core.sim.built_run import build_run
 from crowdbot.core.sim.session import Session
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.core.types.motion import Command
-from crowdbot.dsl.component_specs import EnvironmentSpec, RobotSpec, SensorSpec
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.spec.component_specs import EnvironmentSpec, RobotSpec, SensorSpec
 from crowdbot.errors import InputError
 from tests.core.sim.fleet.fleets import robot
 from tests.core.sim.fleet.fleets import scenario as fleet_scenario

@@ -11,7 +11,7 @@ import pytest
 from crowdbot.core.sim.control.force import moved
 from crowdbot.core.sim.plant import floor_of
 from crowdbot.core.support.ticks import TICK
-from crowdbot.dsl.canonical import canonical_bytes
+from crowdbot.dsl.identity.canonical import canonical_bytes
 from tests.core.sim.sim_worlds import Drive, alone, constant, rig
 
 pytestmark = pytest.mark.slow

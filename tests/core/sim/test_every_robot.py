@@ -19,7 +19,7 @@ from crowdbot.core.robots import build_model
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.support.ticks import TICK
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 from tests.core.sim.sim_worlds import Drive, constant, person, registry, rig, rows
 
 pytestmark = pytest.mark.slow

@@ -8,8 +8,8 @@ import weakref
 import pytest
 
 from crowdbot.core.sim.gc_freeze import gc_frozen
-from crowdbot.core.support import seldom_collected as module
-from crowdbot.core.support.seldom_collected import collect_seldom
+from crowdbot.core.support import gc_throttle as module
+from crowdbot.core.support.gc_throttle import collect_seldom
 
 
 class _Knot:

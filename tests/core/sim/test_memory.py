@@ -13,7 +13,7 @@ from pydrake.systems.framework import Diagram, DiagramBuilder, LeafSystem
 import crowdbot.core.sim
 from crowdbot.core.planning.given_planner import choose_planner
 from crowdbot.core.runs.identity import prepare, references_of
-from crowdbot.core.runs.request import Request
+from crowdbot.core.runs.run import Request
 from crowdbot.core.sim.references import make_reference
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.core.sim.weak_callback import weak_callback

@@ -13,7 +13,7 @@ from crowdbot.core.interfaces import Task
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.sim.built_run import robot_task
 from crowdbot.core.sim.runner import run
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 from tests.core.sim.sim_worlds import Drive, Rig, alone, constant, person, rig, scenario
 
 TICK = 1.0 / 128.0

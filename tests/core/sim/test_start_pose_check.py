@@ -20,9 +20,9 @@ from crowdbot.core.robots.check import check_model
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.sim.built_run import BuiltRun, build_run
 from crowdbot.core.sim.record import record_robot
-from crowdbot.core.sim.record_crowd import RunSetup
+from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.sim.start_pose_check import check_start
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError, PluginError
 from tests.core.sim.sim_worlds import alone, person, registry, scenario
 

@@ -1,4 +1,4 @@
-"""No system binds a method of Drake under the name of a virtual one: newer bindings then recurse."""
+"""No system binds a method of Drake under the name of a virtual one: that recurses without end."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crowdbot.cli._atlas_page import atlas_page
+from crowdbot.cli.output.atlas_page import atlas_page
 from crowdbot.core.results.rows import Results, ScoreRow
 from crowdbot.core.statistics import atlas
 from crowdbot.core.statistics.atlas import rank_correlation

@@ -17,9 +17,9 @@ from crowdbot.core.results.rows import Results
 from crowdbot.core.scoring.score_scale import ScoreScale, score_scales
 from crowdbot.core.statistics import clusters as c
 from crowdbot.core.statistics import summarise
-from crowdbot.core.statistics.centre import planner_mean, rate_difference
 from crowdbot.core.statistics.clusters import Bounds, Clusters
 from crowdbot.core.statistics.groups import by_group
+from crowdbot.core.statistics.summary_estimator import planner_mean, rate_difference
 from crowdbot.core.statistics.table import Table
 from tests.core.statistics.made_up_results import pairs, score
 from tests.core.statistics.test_strata import CONDITIONS, covers, crossed, nested

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.cli import _progress
-from crowdbot.cli._progress import show_progress
+from crowdbot.cli.shared import progress as _progress
+from crowdbot.cli.shared.progress import show_progress
 from crowdbot.core.support.compile_cache import kernel_folder
 from tests.waiting import wait_until
 

@@ -24,8 +24,8 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.looks import Looks
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotState
-from crowdbot.dsl.component_specs import CrowdPolicySpec
-from crowdbot.dsl.range_sensor import RangeSensorSpec
+from crowdbot.dsl.spec.component_specs import CrowdPolicySpec
+from crowdbot.dsl.spec.range_sensor import RangeSensorSpec
 from tests.core.sensing.sensing_worlds import REGISTRY
 
 

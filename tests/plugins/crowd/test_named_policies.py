@@ -15,7 +15,7 @@ from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sim.build_crowd import build_crowd
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 from tests.core.crowd.crowd_reference import Array
 from tests.core.crowd.crowd_worlds import TICKS, rows
 from tests.paths import ROOT

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core.trajectories.laid_over import follow, longest_parts
 from crowdbot.core.trajectories.paired_people import WINDOW
+from crowdbot.core.trajectories.path_overlay import follow, longest_parts
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
 from tests.plugins.metrics.scenes import Array, scores_of, value_of, why

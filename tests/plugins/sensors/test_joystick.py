@@ -16,7 +16,7 @@ from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.topics import sensor_topics
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.dsl.component_specs import with_driver
+from crowdbot.dsl.spec.component_specs import with_driver
 from crowdbot.plugins.sensors.joystick import JoystickSpec
 from crowdbot.plugins.sensors.joystick_build import build
 from crowdbot.plugins.sensors.wheel_odometry import WheelOdometrySpec

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 
 from crowdbot.core.crowd.response.parameters import Human, KeepOff, Response
-from crowdbot.dsl.robot_response import KeepOffResponse, RobotResponse
+from crowdbot.dsl.scenario.robot_response import KeepOffResponse, RobotResponse
 
 
 def response_of(spec: RobotResponse) -> Response:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from crowdbot.core.crowd.routing.parameters import WayFinding
-from crowdbot.dsl import routing as dsl
-from crowdbot.dsl.scenario import Crowd
-from crowdbot.dsl.seeds import stream_seed
+from crowdbot.dsl.scenario import routing as dsl
+from crowdbot.dsl.scenario.scenario import Crowd
+from crowdbot.dsl.scenario.seeds import stream_seed
 
 
 def routing_of(crowd: Crowd) -> WayFinding | None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WayFinding:
-    """People find their way around walls and pillars; see `crowdbot.dsl.routing`.
+    """People find their way around walls and pillars; see `crowdbot.dsl.scenario.routing`.
 
     Attributes:
         spread: how far aside of a corner people pass at most, m.

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.agents import Agents
-from crowdbot.core.crowd.routing.aims import Habits, find_aims
 from crowdbot.core.crowd.routing.packed_mesh import PackedMesh
 from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.crowd.routing.route_map import RouteMap
+from crowdbot.core.crowd.routing.waypoints import Habits, find_aims
 from crowdbot.core.types.arrays import Array
 
 #: Bodies are rounded up to a multiple of this, so that few maps are needed, m.

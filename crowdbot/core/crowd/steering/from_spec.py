@@ -13,7 +13,7 @@ from crowdbot.core.crowd.steering.parameters import (
     WallPush,
     Wander,
 )
-from crowdbot.dsl.steering import SteeringSpec
+from crowdbot.dsl.scenario.steering import SteeringSpec
 
 _PARTS: dict[str, type[Any]] = {
     "time_gap": TimeGap,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.crowd.steering.around import REACH, Around, first_within
 from crowdbot.core.crowd.steering.parameters import LaneKeeping
+from crowdbot.core.crowd.steering.sorted_discs import REACH, Around, first_within
 from crowdbot.core.crowd.velocity_search.neighbours import VX, VY, X, Y
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices, Mask

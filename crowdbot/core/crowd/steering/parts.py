@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from crowdbot.core.crowd.policy import CrowdView
-from crowdbot.core.crowd.steering.around import Around, around
 from crowdbot.core.crowd.steering.lanes import keep_lane
 from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.crowd.steering.personal_space import push_away
+from crowdbot.core.crowd.steering.sorted_discs import Around, around
 from crowdbot.core.crowd.steering.time_gap import limit_speed
 from crowdbot.core.crowd.steering.wall_push import push_off_walls
 from crowdbot.core.crowd.steering.wander import wander

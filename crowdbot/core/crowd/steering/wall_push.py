@@ -6,8 +6,8 @@ import math
 
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.policy import CrowdView
-from crowdbot.core.crowd.steering.around import Around
 from crowdbot.core.crowd.steering.parameters import WallPush
+from crowdbot.core.crowd.steering.sorted_discs import Around
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Mask
 

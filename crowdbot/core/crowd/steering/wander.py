@@ -12,8 +12,8 @@ import math
 import numpy as np
 
 from crowdbot.core.crowd.policy import CrowdView
-from crowdbot.core.crowd.steering.around import Around
 from crowdbot.core.crowd.steering.parameters import Wander
+from crowdbot.core.crowd.steering.sorted_discs import Around
 from crowdbot.core.crowd.velocity_search.counter_rng import WANDER, uniform
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices, Mask

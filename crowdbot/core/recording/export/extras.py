@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.chunk import Piece
 from crowdbot.core.recording.header import RecordingHeader
-from crowdbot.core.recording.tools import ToolTopics
+from crowdbot.core.recording.ros_topics import ToolTopics
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.recording.viewers import RobotWay
 from crowdbot.core.trajectories.trajectories import RobotTrack, Trajectories

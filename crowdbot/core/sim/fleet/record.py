@@ -33,7 +33,7 @@ from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.fleet.diagram import FleetBlocks, FleetRobot, build_fleet
 from crowdbot.core.sim.outline_overlap import overlap_of_robots
 from crowdbot.core.sim.record import description_of, header_of, hosted, watchdog_of
-from crowdbot.core.sim.record_crowd import RunSetup, agents, aim_of, choosers, ids
+from crowdbot.core.sim.run_setup import RunSetup, agents, aim_of, choosers, ids
 from crowdbot.core.sim.runner import LOOK, has_ended
 from crowdbot.core.sim.start_pose_check import check_start
 from crowdbot.core.types.robot import HolonomicDrive

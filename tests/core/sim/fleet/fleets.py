@@ -9,7 +9,7 @@ from typing import Any
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.sim.simulate import simulate
-from crowdbot.dsl.scenario import Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 
 HALL = """\
 crowdbot: 1

@@ -1,0 +1,1 @@
+"""The typer application: command names, completion, messages for unexpected errors."""

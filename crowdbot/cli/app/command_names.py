@@ -1,0 +1,14 @@
+"""Names of the commands, found without importing any."""
+
+from __future__ import annotations
+
+import pkgutil
+from pathlib import Path
+
+
+def command_names() -> list[str]:
+    """Names of all commands, sorted."""
+    modules = (
+        m.name for m in pkgutil.iter_modules([str(Path(__file__).parent.parent / "commands")])
+    )
+    return sorted(m.replace("_", "-") for m in modules if not m.startswith("_"))

@@ -1,0 +1,135 @@
+"""What a shell offers for suites, scenarios, planners and metrics.
+
+Names of crowdbot's own kinds are a table. Where plugins of others are installed, names of kinds are
+kept in the user's cache, and so are ids of a suite, so that pressing the tab key costs no
+validation: whatever is installed, or the file, having changed makes them anew.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+_CACHE = "completion"
+
+#: Parameter of a command -> what it is named by.
+OFFERS = {
+    "spec": "suites",
+    "suites": "suites",
+    "suite": "suites",
+    "scenario": "scenarios",
+    "id_": "scenarios",
+    "planner": "planners",
+    "planners": "planners",
+    "metric": "metrics",
+    "metrics": "metrics",
+}
+
+
+def offer(name: str) -> Callable[[Any, Any, str], list[str]] | None:
+    """What completes a parameter of this name; None: whatever the shell does of itself."""
+    what = OFFERS.get(name)
+    if what is None:
+        return None
+
+    def complete(ctx: Any, param: Any, incomplete: str) -> list[str]:
+        del param
+        try:
+            names = _scenarios(ctx) if what == "scenarios" else _kinds()[what]
+        except Exception:  # a tab key must never print a traceback
+            return []
+        return [n for n in names if n.startswith(incomplete)]
+
+    return complete
+
+
+def _scenarios(ctx: Any) -> list[str]:
+    """Ids of the suite that was named before."""
+    spec = ctx.params.get("spec") or ctx.params.get("suite") or ""
+    return [] if not spec else suite_ids(str(spec))
+
+
+def suite_ids(spec: str) -> list[str]:
+    """Ids of all scenarios of a file or packaged suite."""
+    path = Path(spec)
+    if path.suffix in (".yaml", ".yml"):
+        about = path.stat()
+        key = f"{path.resolve()} {about.st_mtime_ns} {about.st_size}"
+        return list(_kept("ids", key, lambda: _expanded(spec)))
+    lock = _packaged_folder() / f"{spec}.lock.json"
+    if lock.is_file():
+        return _ids_of_lock(json.loads(lock.read_text(encoding="utf-8")))
+    return list(_kept("ids", f"{spec} {_state()}", lambda: _expanded(spec)))
+
+
+def _ids_of_lock(document: dict[str, Any]) -> list[str]:
+    return list(document["scenarios"])
+
+
+def _packaged_folder() -> Path:
+    package = Path(__file__).parent.parent.parent
+    inside = package / "scenario_specs"
+    return inside if inside.is_dir() else package.parent / "scenario_specs"
+
+
+def _expanded(spec: str) -> list[str]:
+    from crowdbot.core.registry.registry import discover
+    from crowdbot.core.scenarios.library import open_spec
+
+    return [s.id for s in open_spec(spec, discover()).scenarios]
+
+
+def _kinds() -> dict[str, list[str]]:
+    """Names of planners, metrics and packaged suites; only plugins of others have to be loaded."""
+    from importlib.metadata import entry_points
+
+    from crowdbot.cli.app.builtin_names import BUILTIN_NAMES
+
+    if all(entry.value == "crowdbot.plugins" for entry in entry_points(group="crowdbot")):
+        return BUILTIN_NAMES
+    kept: dict[str, list[str]] = _kept("kinds", _state(), _discovered)
+    return kept
+
+
+def _discovered() -> dict[str, list[str]]:
+    from crowdbot.core.registry.registry import discover
+    from crowdbot.core.scenarios.library import suite_names
+
+    registry = discover()
+    return {
+        "planners": sorted(registry.components("planner")),
+        "metrics": sorted(registry.components("metric")),
+        "suites": suite_names(registry),
+    }
+
+
+def _state() -> str:
+    """Changes whenever something is installed, or our own components change."""
+    places = [Path(p) for p in sys.path if p.endswith(("site-packages", "dist-packages"))]
+    own = Path(__file__).parent.parent.parent / "plugins"
+    places += [own, *(p for p in own.rglob("*") if p.is_dir()), _packaged_folder()]
+    allowed = os.environ.get("CROWDBOT_PLUGINS", "")
+    return " ".join([allowed, *(f"{p} {p.stat().st_mtime_ns}" for p in places if p.is_dir())])
+
+
+def _kept(what: str, key: str, make: Callable[[], Any]) -> Any:
+    """What was made for a key, from the user's cache where it is there."""
+    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "crowdbot" / _CACHE
+    file = base / f"{what}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.json"
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        made = make()
+    try:
+        base.mkdir(parents=True, exist_ok=True)
+        part = file.with_suffix(f".{os.getpid()}")
+        part.write_text(json.dumps(made), encoding="utf-8")
+        part.replace(file)
+    except OSError:
+        pass  # a home that cannot be written only makes the tab key slower
+    return made

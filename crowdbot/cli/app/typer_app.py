@@ -1,0 +1,157 @@
+"""The command line as typer sees it: commands are modules, imported when they are called."""
+
+from __future__ import annotations
+
+import importlib
+import logging
+import shutil
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+from typer.main import get_command
+
+from crowdbot.cli.app.command_names import command_names
+from crowdbot.cli.app.complete import offer
+from crowdbot.errors import did_you_mean, nearest
+
+_SETTINGS: dict[str, Any] = {
+    "add_completion": False,
+    "pretty_exceptions_enable": False,
+    "context_settings": {"help_option_names": ["-h", "--help"]},
+}
+
+
+#: Columns; 80 have room for the longest option beside its type and what it does.
+_NARROW = 80
+
+
+def run(words: list[str]) -> None:
+    """Run a command line.
+
+    Raises:
+        SystemExit: when it is done.
+    """
+    get_command(_app())(words, prog_name="crowdbot")
+
+
+class _Commands(TyperGroup):
+    """The commands are the modules of this package."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        del ctx
+        return command_names()
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        known = command_names()
+        if cmd_name not in known:
+            near = did_you_mean(nearest(cmd_name, known))
+            ctx.fail(f"no command '{cmd_name}'{near or '; see crowdbot --help'}")
+        return load(cmd_name)
+
+
+def load(name: str) -> Any:
+    """The command of one module, with ``-v`` and ``-q`` added."""
+    module = name.replace("-", "_")
+    found = getattr(importlib.import_module(f"crowdbot.cli.commands.{module}"), module)
+    if not isinstance(found, typer.Typer):
+        app = typer.Typer(**_SETTINGS)
+        app.command(name=name)(found)
+        found = app
+    command = get_command(found)
+    command.name = name
+    for one in (command, *getattr(command, "commands", {}).values()):
+        one.help = _unwrapped(one.help)
+        if one.help and not one.short_help:  # or else click would leave out its end
+            one.short_help = one.help.partition("\n\n")[0]
+        if _is_narrow():
+            one.rich_markup_mode = None
+        taken = {text for param in one.params for text in param.opts}
+        one.params += [p for p in _verbosity_params() if not taken & set(p.opts)]
+        for param in one.params:
+            if completes := offer(param.name):
+                param._custom_shell_complete = completes
+    return command
+
+
+def _is_narrow() -> bool:
+    """Whether a table of options would cut their names off, which plain help does not."""
+    return shutil.get_terminal_size().columns < _NARROW
+
+
+def _unwrapped(text: str | None) -> str | None:
+    """Paragraphs of a docstring as single lines, which help wraps to the width of the screen."""
+    if text is None:
+        return None
+    return "\n\n".join(" ".join(part.split("\n")) for part in text.split("\n\n"))
+
+
+def _set_level(level: int) -> Any:
+    def callback(value: bool) -> None:
+        if value:
+            logging.getLogger("crowdbot").setLevel(level)
+
+    return callback
+
+
+_Verbose = Annotated[
+    bool,
+    typer.Option(
+        "-v", "--verbose", help="Say more.", callback=_set_level(logging.DEBUG), expose_value=False
+    ),
+]
+_Quiet = Annotated[
+    bool,
+    typer.Option(
+        "-q",
+        "--quiet",
+        help="Say only what went wrong.",
+        callback=_set_level(logging.WARNING),
+        expose_value=False,
+    ),
+]
+
+
+def _common(verbose: _Verbose = False, quiet: _Quiet = False) -> None:
+    """Options that every command has."""
+
+
+def _verbosity_params() -> list[Any]:
+    app = typer.Typer(**_SETTINGS)
+    app.command()(_common)
+    return list(get_command(app).params)
+
+
+def _show_version(value: bool) -> None:
+    if value:
+        from importlib.metadata import version
+
+        typer.echo(f"crowdbot {version('crowdbot')}")
+        raise typer.Exit
+
+
+_Version = Annotated[
+    bool,
+    typer.Option(
+        "--version", help="Print the version.", callback=_show_version, is_eager=True,
+        expose_value=False,
+    ),
+]  # fmt: skip
+
+
+def _app() -> typer.Typer:
+    settings = {**_SETTINGS, "add_completion": True}
+    if _is_narrow():
+        settings["rich_markup_mode"] = None
+    app = typer.Typer(cls=_Commands, no_args_is_help=True, **settings)
+
+    @app.callback()
+    def crowdbot(
+        verbose: _Verbose = False, quiet: _Quiet = False, version: _Version = False
+    ) -> None:
+        """A benchmark for robots that drive through dense human crowds.
+
+        Example: crowdbot simulate challenge-2020 in-d0125-slow-c01-r02 --planner dwa
+        """
+
+    return app

@@ -1,0 +1,128 @@
+"""``crowdbot audit``: whether a suite can tell floors from baselines."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crowdbot.cli.output.plugin_table import table
+from crowdbot.cli.shared.campaign_run import print_plan, read_seeds, run_plan, worker_count
+from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+
+if TYPE_CHECKING:
+    from crowdbot.core.campaign.plan import Plan
+    from crowdbot.core.registry.registry import Registry
+    from crowdbot.core.results.rows import Results
+    from crowdbot.core.statistics.audit import Audit
+
+
+def audit(
+    suite: Annotated[str, typer.Argument(metavar="SUITE", help="File or name.")],
+    scenarios: Annotated[
+        int | None,
+        typer.Option(
+            min=1, metavar="N", help="Only N scenarios, with many different crowds; default: all."
+        ),
+    ] = None,
+    only: Annotated[
+        str | None, typer.Option(metavar="GLOB", help="Only scenarios that match.")
+    ] = None,
+    seeds: Annotated[str, typer.Option(metavar="0,1,2|0..4", help="Run seeds.")] = "0",
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change every scenario; repeatable."),
+    ] = None,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")] = Path(
+        "runs"
+    ),
+    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Print the plan only.")] = False,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="The audit as JSON on stdout.")] = False,
+) -> None:
+    """Run floors, baselines and ceilings; exit code 1 if the suite cannot tell them apart.
+
+    Example: crowdbot audit challenge-2020 --scenarios 18 --jobs 2
+    """
+    from crowdbot.core.campaign.plan import make_plan
+    from crowdbot.core.campaign.request import CampaignRequest
+
+    request = CampaignRequest(
+        suites=[suite],
+        planners=(),
+        roles=("floor", "baseline", "ceiling"),
+        seeds=read_seeds(seeds),
+        only=only,
+        sample=scenarios,
+        out=out,
+        replay=False,
+        overrides=overrides or (),
+        plugins=plugin or (),
+    )
+    registry = installed(plugin, no_plugins)
+    plan = make_plan(request, registry)
+    if dry_run:
+        print_plan(plan, worker_count(jobs), as_json=as_json)
+        return
+    state = run_plan(plan, worker_count(jobs), None)
+    found, path = _judged(plan, registry)
+    typer.echo(json.dumps(found.model_dump(), indent=1) if as_json else _text(found, path))
+    if state.exit_code or not found.tells_apart:
+        raise typer.Exit(state.exit_code or 1)
+
+
+def _judged(plan: Plan, registry: Registry) -> tuple[Audit, Path]:
+    """The audit of the runs of a plan, and where it was written."""
+    from crowdbot.core.results.store import load
+    from crowdbot.core.scoring.score_scale import score_scales
+    from crowdbot.core.statistics.audit import AUDIT, write_audit
+    from crowdbot.core.statistics.audit import audit as judge
+
+    results = replace(_of(load(plan.out), plan), scales=score_scales(registry))
+    found = judge(results, _seeing_floors(registry))
+    path = plan.out / found.suite / AUDIT
+    write_audit(path, found)
+    return found, path
+
+
+def _seeing_floors(registry: Registry) -> list[str]:
+    """Labels of the floors that read any sensor."""
+    from crowdbot.core.planning.resolve import kinds_of_role, resolve_planner
+
+    floors = [resolve_planner(kind, registry) for kind in kinds_of_role("floor", registry)]
+    return [floor.label for floor in floors if floor.needs is None or floor.needs]
+
+
+def _of(results: Results, plan: Plan) -> Results:
+    """The runs and failures of a plan, out of all that are below its root."""
+    keys = {run.key for run in plan.runs}
+    folders = {run.directory.relative_to(plan.out).as_posix() for run in plan.runs}
+    runs = tuple(r for r in results.runs if r.run_id in keys)
+    places = {(r.suite, r.scenario, r.planner, r.seed) for r in runs}
+    failures = tuple(
+        f
+        for f in results.failures
+        if f"{f.suite}/{f.scenario}/{f.planner}/seed-{f.seed}" in folders
+        and (f.suite, f.scenario, f.planner, f.seed) not in places
+    )
+    scores = tuple(s for s in results.scores if s.run_id in keys)
+    return replace(results, runs=runs, scores=scores, failures=failures)
+
+
+def _text(found: Audit, path: Path) -> str:
+    rows = [["better", "worse", "needed", "lead", "interval", "pairs", "draws", "verdict"]]
+    for pair in found.pairs:
+        ends = (
+            "–" if pair.low is None or pair.high is None else f"{pair.low:.3g} to {pair.high:.3g}"
+        )
+        by = "–" if pair.by is None else f"{pair.by:+.3g}"
+        rows.append([
+            pair.better, pair.worse, "yes" if pair.required else "no", by, ends, str(pair.pairs),
+            str(pair.draws), pair.verdict + f" ({pair.reason})" * bool(pair.reason),
+        ])  # fmt: skip
+    return "\n".join([table(rows), "", found.text, f"wrote {path}"])

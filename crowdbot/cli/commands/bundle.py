@@ -1,0 +1,110 @@
+"""``crowdbot bundle``: pack the runs of one planner into an archive that others can check."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.core.support.plural import plural
+from crowdbot.errors import UsageError
+
+
+def bundle(
+    root: Annotated[
+        Path, typer.Argument(metavar="[ROOT]", help="Root of the run directories.")
+    ] = Path("runs"),
+    suite: Annotated[
+        str, typer.Option(metavar="SPEC", help="The suite that was run: file or name.")
+    ] = "challenge-2020",
+    planner: Annotated[
+        str, typer.Option(metavar="LABEL", help="The planner: name of its folders.")
+    ] = "dwa",
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="File to write; default: SUITE-PLANNER.cbz.")
+    ] = None,
+    team: Annotated[
+        str, typer.Option(metavar="NAME", help="Name of the team, for the leaderboard.")
+    ] = "",
+    contact: Annotated[
+        str, typer.Option(metavar="TEXT", help="Whom to ask about the bundle.")
+    ] = "",
+    partial: Annotated[
+        bool,
+        typer.Option("--partial", help="Pack the runs that are there, even if some are missing."),
+    ] = False,
+    recordings: Annotated[
+        bool, typer.Option("--recordings", help="Pack the recordings, too.")
+    ] = False,
+    check: Annotated[
+        bool, typer.Option("--check", help="Also do what the organiser's verify does.")
+    ] = False,
+    sample: Annotated[
+        int, typer.Option(min=0, metavar="N", help="--check: how many runs to make again.")
+    ] = 5,
+    seed: Annotated[
+        int | None,
+        typer.Option(min=0, metavar="S", help="--check: seed of the sample; default: a new one."),
+    ] = None,
+    source: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE.py:CLASS|FILE.yaml", help="--check: the planner, if not installed."
+        ),
+    ] = None,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="The manifest as JSON on stdout.")
+    ] = False,
+) -> None:
+    """Pack scores, hashes, scenarios and provenance of one planner's runs into one archive.
+
+    The same runs give the same bytes. crowdbot verify checks the archive and makes some of its
+    runs again.
+
+    Example: crowdbot bundle runs --suite challenge-2020 --planner dwa --out team.cbz --check
+    """
+    from crowdbot.cli.commands.verify import print_verdict, verify_bundle
+    from crowdbot.core.bundle.pack import Submission, other_seeds, pack
+    from crowdbot.core.planning.choice import ANYWHERE
+    from crowdbot.core.scenarios.library import open_suite
+    from crowdbot.core.scenarios.lock_check import check_revealed
+
+    if root.is_file():
+        raise UsageError(
+            f"{root} is a file; ROOT is a folder of runs. To check a bundle that is there: "
+            f"crowdbot verify {root}"
+        )
+    registry = installed(plugin, no_plugins)
+    expansion, lock = open_suite(suite, registry)
+    for scenario in expansion.scenarios:
+        check_revealed(scenario)
+    submission = Submission(
+        root=root, planner=planner, team=team, contact=contact, partial=partial,
+        recordings=recordings,
+    )  # fmt: skip
+    target = out or Path(f"{expansion.suite_id}-{planner}.cbz")
+    manifest = pack(submission, expansion, lock, registry, target)
+    if more := other_seeds(submission, expansion):
+        seeds = ", ".join(map(str, more))
+        typer.echo(f"warning: left out: seeds {seeds}, which the suite does not name", err=True)
+    verdict = (
+        verify_bundle(target, registry, suite, (source, ANYWHERE), sample, seed) if check else None
+    )
+    if as_json:
+        document = {"bundle": str(target), **manifest.model_dump(mode="json")}
+        typer.echo(json.dumps(document | ({"check": verdict} if verdict else {}), indent=2))
+        raise typer.Exit(0 if verdict is None or verdict["ok"] else 1)
+    lacking = f", {len(manifest.missing)} missing" if manifest.missing else ""
+    typer.echo(
+        f"{manifest.edition_name}: {manifest.label}, {plural(len(manifest.runs), 'run')}{lacking}, "
+        f"{plural(len(manifest.members), 'file')}, {target.stat().st_size / 1e6:.1f} MB"
+    )
+    typer.echo(f"wrote {target}")
+    if verdict is not None:
+        print_verdict(verdict)
+        raise typer.Exit(0 if verdict["ok"] else 1)

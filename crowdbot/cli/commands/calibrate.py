@@ -1,0 +1,139 @@
+"""``crowdbot calibrate``: fit the numbers of a crowd to people who were recorded."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from crowdbot.cli.output.plugin_table import table
+from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from crowdbot.core.realism.calibrate import Fit, Generation
+    from crowdbot.core.registry.registry import Registry
+
+_PLACES = ("speed", "body", "policy", "costs", "steering")
+
+
+def calibrate(
+    crowd: Annotated[
+        str, typer.Argument(metavar="POLICY", help="A named crowd, a part, or a kind of policy.")
+    ],
+    reference: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE",
+            help="Recordings of your own: .mcap, .csv (t,id,x,y), .ndjson (TrajNet++), .txt (ETH, "
+            "UCY), a bag of ROS or BAG:/TOPIC; repeatable.",
+        ),
+    ] = None,
+    fit: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=LOW..HIGH", help="Fit this number, SI units; default: all of them."
+        ),
+    ] = None,
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change the crowd first; repeatable."),
+    ] = None,
+    generations: Annotated[int, typer.Option(min=1, metavar="N", help="Steps of the fit.")] = 40,
+    population: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Crowds in each step; 0: 4 + 3 ln(numbers).")
+    ] = 0,
+    seed: Annotated[
+        int, typer.Option(min=1, help="Seed of the fit; equal seeds give equal fits.")
+    ] = 1,
+    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
+    out: Annotated[
+        Path,
+        typer.Option(metavar="FILE", help="File to write, .yaml; its log is beside it."),
+    ] = Path("fitted.yaml"),
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """Fit a crowd to recorded people and write it as a part; goes on where it was stopped.
+
+    Example: crowdbot calibrate power_law --fit costs.avoid.k=0.2..4 --generations 20 --jobs 2
+    """
+    from crowdbot.cli.shared.campaign_run import worker_count
+    from crowdbot.core.realism.calibrate import FitTask
+    from crowdbot.core.realism.calibrate import fit as run
+    from crowdbot.core.realism.parameters import parameters_of
+    from crowdbot.core.scenarios.named_crowds import open_crowd
+
+    check_ending(out, ".yaml", ".yml")
+    registry = installed(plugin, no_plugins)
+    task = FitTask(
+        crowd=str(Path(crowd).resolve()) if Path(crowd).is_file() else crowd,
+        overrides=tuple(overrides or ()),
+        plugins=tuple(str(p.resolve()) for p in plugin or ()),
+        allowed=() if no_plugins else None,
+        files=tuple(str(f.resolve()) for f in reference or ()),
+    )
+    parameters = parameters_of(open_crowd(task.crowd, registry, task.overrides), fit or ())
+    if not parameters:
+        raise InputError(f"{crowd}: it has no number to fit")
+    ceiling = task.reference.ceiling.score  # reads the files, before anything is simulated
+    typer.echo(f"{len(parameters)} numbers, recorded people reach {ceiling:.3f}", err=True)
+    found = run(
+        task, parameters, out.with_suffix(".fit.jsonl"), generations=generations,
+        population=population, seed=seed, jobs=worker_count(jobs), watch=_show,
+    )  # fmt: skip
+    atomic_write(out, _part(task.crowd, registry, task.overrides, found))
+    typer.echo(json.dumps(_facts(found, out), indent=2) if as_json else _text(found, out))
+
+
+def _show(step: Generation) -> None:
+    best, mean = min(step.losses), sum(step.losses) / len(step.losses)
+    note = ", from the log" if step.from_log else ""
+    typer.echo(f"step {step.number + 1}: best loss {best:.4f}, mean {mean:.4f}{note}", err=True)
+
+
+def _part(crowd: str, registry: Registry, overrides: Sequence[str], found: Fit) -> str:
+    from crowdbot.core.scenarios.named_crowds import open_crowd
+    from crowdbot.dsl.text.plain_yaml import to_yaml
+
+    changes = [f"{key}={float(f'{value:.4g}')!r}" for key, value in found.values.items()]
+    fitted = open_crowd(crowd, registry, [*overrides, *changes])
+    content = fitted.model_dump(mode="json", include=set(_PLACES), exclude_defaults=True)
+    content["policy"]["kind"] = fitted.policy.kind
+    for name, cost in fitted.costs.items():
+        content["costs"][name]["kind"] = cost.kind
+    head = (
+        f"# Fitted by `crowdbot calibrate {Path(crowd).stem}`: {found.held_out:.3f} beside "
+        f"recordings that were\n# held out, {found.training:.3f} beside those it was fitted to; "
+        f"recorded people reach {found.ceiling:.3f}.\n"
+    )
+    return head + to_yaml({"crowd": {n: content[n] for n in _PLACES if content.get(n)}})
+
+
+def _facts(found: Fit, out: Path) -> dict[str, Any]:
+    return {
+        "out": str(out),
+        "held_out": round(found.held_out, 4),
+        "training": round(found.training, 4),
+        "ceiling": round(found.ceiling, 4),
+        "evaluations": found.evaluations,
+        "parameters": {
+            key: {"value": value, "spread": found.spread[key]}
+            for key, value in found.values.items()
+        },
+    }
+
+
+def _text(found: Fit, out: Path) -> str:
+    rows = [["number", "value", "spread"]]
+    rows += [[k, f"{v:.4g}", f"{found.spread[k]:.2g}"] for k, v in found.values.items()]
+    return (
+        f"{table(rows)}\n\nheld out {found.held_out:.3f}, training {found.training:.3f}, "
+        f"recorded people {found.ceiling:.3f}; {found.evaluations} crowds simulated\nwrote {out}"
+    )

@@ -1,0 +1,141 @@
+"""``crowdbot campaign``: suites × planners × seeds; only what is missing is run."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from crowdbot.cli.shared.campaign_run import print_plan, read_seeds, run_plan, worker_count
+from crowdbot.cli.shared.options import (
+    MEMORY_GIB,
+    InProcess,
+    NoPlugins,
+    PlannerMemory,
+    Plugins,
+    installed,
+    planner_place,
+)
+from crowdbot.cli.shared.run_arguments import RecordChoice
+
+if TYPE_CHECKING:
+    from crowdbot.core.campaign.run import State
+
+_Set = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change every scenario; repeatable."),
+]
+_PlannerSet = Annotated[
+    list[str] | None,
+    typer.Option(metavar="KEY=VALUE", help="Change every planner; repeatable."),
+]
+_Planner = Annotated[
+    list[str] | None,
+    typer.Option(metavar="NAME|FILE|file.py:Class", help="A planner; repeatable."),
+]
+_Crowds = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME,NAME", help="Run every scenario in each of these crowds: the axis 'crowd'."
+    ),
+]
+_Only = Annotated[str | None, typer.Option(metavar="GLOB", help="Only scenarios that match.")]
+_Seeds = Annotated[
+    str | None,
+    typer.Option(metavar="0,1,2|0..4", help="Run seeds; default: those of the suite, or 0."),
+]
+_Out = Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")]
+_Jobs = Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")]
+_Record = Annotated[RecordChoice, typer.Option(help="Sensors to simulate and record.")]
+
+
+def campaign(
+    suites: Annotated[list[str], typer.Argument(metavar="SUITE...", help="Files or names.")],
+    planner: _Planner = None,
+    seeds: _Seeds = None,
+    only: _Only = None,
+    crowds: _Crowds = None,
+    out: _Out = Path("runs"),
+    jobs: _Jobs = 0,
+    record: _Record = RecordChoice.used,
+    replay: Annotated[bool, typer.Option(help="Write the replay pages.")] = True,
+    overrides: _Set = None,
+    planner_set: _PlannerSet = None,
+    floors: Annotated[
+        bool,
+        typer.Option(help="Run floors and ceilings besides, in at most 18 scenarios of a suite."),
+    ] = True,
+    retry_failed: Annotated[
+        bool, typer.Option("--retry-failed", help="Run again the runs whose planner failed.")
+    ] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Run everything again, calibration runs too.")
+    ] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Print the plan only.")] = False,
+    cluster: Annotated[
+        str | None, typer.Option(metavar="tcp://HOST:PORT", help="A Dask scheduler.")
+    ] = None,
+    in_process: InProcess = None,
+    planner_memory: PlannerMemory = MEMORY_GIB,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """Run every scenario with every planner and seed; what is complete is not run again.
+
+    Example: crowdbot campaign challenge-2020 --planner dwa --planner goal_seek --jobs 2
+    """
+    from crowdbot.core.campaign.plan import make_plan
+    from crowdbot.core.campaign.request import CampaignRequest
+
+    place = planner_place(in_process, planner_memory, lenient=True)
+    registry = installed(plugin, no_plugins)
+    request = CampaignRequest(
+        suites=suites,
+        planners=planner or (),
+        floors=floors,
+        seeds=None if seeds is None else read_seeds(seeds),
+        only=only,
+        crowds=[name.strip() for name in (crowds or "").split(",") if name.strip()],
+        out=out,
+        record=record.value,
+        replay=replay,
+        overrides=overrides or (),
+        planner_settings=planner_set or (),
+        plugins=plugin or (),
+        retry_failed=retry_failed,
+        force=force,
+        place=place,
+    )
+    plan = make_plan(request, registry)
+    size = worker_count(jobs)
+    if dry_run:
+        print_plan(plan, size, as_json=as_json)
+        return
+    try:
+        state = run_plan(plan, size, cluster)
+    except KeyboardInterrupt:
+        print("interrupted; the same command makes the runs that are missing", file=sys.stderr)
+        raise
+    if as_json:
+        typer.echo(json.dumps(_document(state), indent=2))
+    if state.exit_code:
+        raise typer.Exit(state.exit_code)
+
+
+def _document(state: State) -> dict[str, Any]:
+    statuses = list(state.statuses.values())
+    return {
+        "out": str(state.plan.out),
+        "runs": len(state.plan.runs),
+        "made": state.made,
+        "statuses": {s: statuses.count(s) for s in sorted(set(statuses))},
+        "failures": [
+            {"job": job.title, "error": state.failures[job.key].error}
+            for job in state.plan.jobs
+            if job.key in state.failures
+        ],
+    }

@@ -1,0 +1,76 @@
+"""``crowdbot diff``: two scenarios or two runs, field by field."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+
+if TYPE_CHECKING:
+    from crowdbot.core.runs.diff_side import DiffSide
+    from crowdbot.core.support.json_diff import Difference
+
+#: A longer value moves its neighbour to the right, and no others.
+_WIDEST = 72
+_SIDE = "SUITE/ID, FILE#ID, a file with one scenario, or a run directory."
+
+
+def diff(
+    a: Annotated[str, typer.Argument(metavar="A", help=_SIDE)],
+    b: Annotated[str, typer.Argument(metavar="B", help=_SIDE)],
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change B first; repeatable."),
+    ] = None,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """Compare two scenarios or two runs; exit 0 when equal, 1 when not.
+
+    Example: crowdbot diff challenge-2020/in-d0125-slow-c01-r02 challenge-2020/in-d0125-slow-c20-r02
+    """
+    from crowdbot.core.runs.diff_side import read_diff_side
+    from crowdbot.core.support.json_diff import differences
+
+    registry = installed(plugin, no_plugins)
+    first = read_diff_side(a, registry)
+    second = read_diff_side(b, registry, overrides or ())
+    found = {"scenario": list(differences(first.scenario, second.scenario))}
+    if first.run is not None and second.run is not None:
+        found["run"] = list(differences(first.run, second.run))
+        found["scores"] = list(differences(first.scores, second.scores))
+    if as_json:
+        typer.echo(json.dumps(_document(first, second, found), indent=2, ensure_ascii=False))
+    else:
+        _print(first, second, found)
+    raise typer.Exit(1 if any(found.values()) else 0)
+
+
+def _document(a: DiffSide, b: DiffSide, found: dict[str, list[Difference]]) -> dict[str, Any]:
+    return {
+        "equal": not any(found.values()),
+        "a": {"name": a.name, "hash": a.hash},
+        "b": {"name": b.name, "hash": b.hash},
+        **{part: [d.as_dict() for d in listed] for part, listed in found.items()},
+    }
+
+
+def _print(a: DiffSide, b: DiffSide, found: dict[str, list[Difference]]) -> None:
+    from crowdbot.core.support.json_diff import shown
+
+    for letter, side in (("a", a), ("b", b)):
+        typer.echo(f"{letter}  {side.name}  {side.hash}")
+    for part, listed in found.items():
+        if not listed:
+            typer.echo(f"{part}: equal")
+            continue
+        count = "1 difference" if len(listed) == 1 else f"{len(listed)} differences"
+        typer.echo(f"{part}: {count}")
+        rows = [(d.path, shown(d.a), shown(d.b)) for d in listed]
+        widths = [min(_WIDEST, max(len(row[i]) for row in rows)) for i in range(2)]
+        for path, left, right in rows:
+            typer.echo(f"  {path:<{widths[0]}}  {left:<{widths[1]}}  {right}")

@@ -1,0 +1,128 @@
+"""``crowdbot docs``: the documents that came with crowdbot, without a network."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from crowdbot.errors import InputError, UnknownNameError
+
+#: Characters that are shown of a line that holds a text.
+_EXCERPT = 120
+#: Pages at the top, and folders, as the index has them: what one learns from before what one asks.
+_ORDER = (
+    "index",
+    "tutorial",
+    "howto",
+    "examples",
+    "reference",
+    "gallery",
+    "explanation",
+    "decisions",
+)
+
+
+def docs(
+    page: Annotated[
+        str | None, typer.Argument(metavar="[PAGE]", help="Such as howto/score_own_data.")
+    ] = None,
+    search: Annotated[
+        str | None,
+        typer.Option(metavar="TEXT", help="Print the lines of all pages that contain a text."),
+    ] = None,
+    path: Annotated[bool, typer.Option("--path", help="Print only where the page is.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """List the pages of the documentation, print one, or search them. Needs no network.
+
+    Example: crowdbot docs howto/score_own_data
+    """
+    folder = documents()
+    if search is not None:
+        found = [] if not search.strip() else list(_lines(folder, search))
+        shown = [f"{f['page']}:{f['line']}: {_excerpt(str(f['text']), search)}" for f in found]
+        typer.echo(json.dumps(found, indent=2, ensure_ascii=False) if as_json else "\n".join(shown))
+        if not found:
+            raise InputError(f"no page holds '{search}'")
+        return
+    if page is None:
+        titles = {name: _title(folder / f"{name}.md") for name in pages(folder)}
+        if as_json:
+            typer.echo(json.dumps(titles, indent=2, ensure_ascii=False))
+        else:
+            width = max(map(len, titles))
+            typer.echo("\n".join(f"{n:<{width}}  {t}" for n, t in titles.items()))
+        return
+    file = _file(folder, page)
+    if as_json:
+        text = file.read_text(encoding="utf-8")
+        typer.echo(json.dumps({"path": str(file), "text": text}, ensure_ascii=False))
+    else:
+        typer.echo(str(file) if path else file.read_text(encoding="utf-8").rstrip())
+
+
+def documents() -> Path:
+    """The folder of the pages: inside an installed package, else beside it.
+
+    Raises:
+        InputError: there is neither.
+    """
+    package = Path(__file__).parent.parent.parent
+    for folder in (package / "docs", package.parent / "docs"):
+        if (folder / "index.md").is_file():
+            return folder
+    raise InputError(f"{package}: this installation has no documents")
+
+
+def pages(folder: Path) -> list[str]:
+    """Names of all pages: the index first, then folders in its order."""
+    names = (f.relative_to(folder).with_suffix("").as_posix() for f in folder.rglob("*.md"))
+    return sorted(names, key=_place)
+
+
+def _place(name: str) -> tuple[int, str]:
+    top = name.partition("/")[0]
+    return (_ORDER.index(top) if top in _ORDER else len(_ORDER), name)
+
+
+def _file(folder: Path, page: str) -> Path:
+    known = pages(folder)
+    name = page.removesuffix(".md").removeprefix("docs/")
+    last = [n for n in known if n.rpartition("/")[2] == name]
+    if name not in known and len(last) != 1:
+        raise UnknownNameError("page", page, [*known, *(n.rpartition("/")[2] for n in known)])
+    return folder / f"{name if name in known else last[0]}.md"
+
+
+def _title(file: Path) -> str:
+    with file.open(encoding="utf-8") as lines:
+        return next((line[2:].strip() for line in lines if line.startswith("# ")), "")
+
+
+def _excerpt(line: str, text: str) -> str:
+    """A line, or of a long one what stands around the text, in whole words."""
+    if len(line) <= _EXCERPT:
+        return line
+    at = max(line.casefold().find(text.casefold()), 0)
+    begin = max(0, min(at - _EXCERPT // 2, len(line) - _EXCERPT))
+    part = line[begin : begin + _EXCERPT]
+    before, after = begin > 0, begin + _EXCERPT < len(line)
+    part = part.partition(" ")[2] if before and " " in part[: at - begin] else part
+    end = part.rpartition(" ")[0] if after else part
+    part = end if text.casefold() in end.casefold() else part
+    return f"{'… ' if before else ''}{part}{' …' if after else ''}"
+
+
+def _lines(folder: Path, text: str) -> list[dict[str, object]]:
+    wanted = text.casefold()
+    return [
+        {"page": name, "line": number, "text": line.strip()}
+        for name in pages(folder)
+        for number, line in enumerate(
+            (folder / f"{name}.md").read_text(encoding="utf-8").splitlines(), 1
+        )
+        if wanted in line.casefold()
+    ]

@@ -1,0 +1,155 @@
+"""``crowdbot draws``: hide a suite's draws until a deadline, reveal them, and check."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+
+if TYPE_CHECKING:
+    from crowdbot.core.scenarios.hidden_draws import Change
+
+draws = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False)
+
+_Suite = Annotated[str, typer.Argument(metavar="SUITE", help="File of the suite.")]
+_Secret = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Seed and salt; default: NAME.secret.json beside the suite."),
+]
+_Print = Annotated[
+    bool, typer.Option("--print", help="Print the lines and leave the suite's file as it is.")
+]
+_Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
+
+
+@draws.callback()
+def about() -> None:
+    """Hide the draws of a suite until a deadline: commit first, reveal after it.
+
+    Example: crowdbot draws commit my_suite.yaml
+    """
+
+
+@draws.command("commit")
+def commit(
+    suite: _Suite,
+    secret: _Secret = None,
+    seed_file: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="The seed; default: from the system's entropy."),
+    ] = None,
+    print_only: _Print = False,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: _Json = False,
+) -> None:
+    """Choose seed and salt, keep them in a separate file, and write their hash into the suite.
+
+    Example: crowdbot draws commit my_suite.yaml --secret ../my_suite.secret.json
+    """
+    from crowdbot.core.scenarios import hidden_draws as hidden
+
+    seed = None if seed_file is None else hidden.read_seed(seed_file)
+    chosen, change = hidden.commit(suite, installed(plugin, no_plugins), seed)
+    path = secret or hidden.secret_path(change.path)
+    hidden.write_secret(path, chosen)
+    if not print_only:
+        try:
+            hidden.write_change(change)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                path.unlink()  # a secret of a commitment that nobody has seen
+            raise
+    if as_json:
+        document = {"suite": chosen.suite, "commitment": chosen.commitment, "secret": str(path)}
+        typer.echo(json.dumps(document | _what(change, print_only), indent=2))
+        return
+    _say(change, print_only)
+    typer.echo(f"{chosen.suite}: publish {chosen.commitment}")
+    typer.echo(f"seed and salt are in {path}: keep it, and keep it to yourself, until the deadline")
+
+
+@draws.command("reveal")
+def reveal(
+    suite: _Suite,
+    secret: _Secret = None,
+    print_only: _Print = False,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: _Json = False,
+) -> None:
+    """Write seed and salt into the suite, if they fit its commitment.
+
+    Example: crowdbot draws reveal my_suite.yaml --secret ../my_suite.secret.json
+    """
+    from crowdbot.core.scenarios import hidden_draws as hidden
+    from crowdbot.core.scenarios.library import open_document
+
+    registry = installed(plugin, no_plugins)
+    path = secret or hidden.secret_path(open_document(suite, registry).path)
+    found, change = hidden.reveal(suite, registry, path)
+    if not print_only:
+        hidden.write_change(change)
+    if as_json:
+        document = {"suite": found.suite, "commitment": found.commitment, "seed": found.seed}
+        document |= {"salt": found.salt}
+        typer.echo(json.dumps(document | _what(change, print_only), indent=2))
+        return
+    _say(change, print_only)
+    typer.echo(f"{found.suite}: seed {found.seed} is what was committed to; now: crowdbot lock")
+
+
+@draws.command("check")
+def check(
+    suite: Annotated[str, typer.Argument(metavar="SUITE", help="File, or name of a suite.")],
+    commitment: Annotated[
+        str | None,
+        typer.Option(metavar="sha256:HEX", help="What the organiser published before."),
+    ] = None,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: _Json = False,
+) -> None:
+    """Say whether the draws of a suite are hidden, or revealed as committed to.
+
+    Exit code 1 if seed and salt do not fit, or the commitment is not the given one.
+
+    Example: crowdbot draws check my_suite.yaml --commitment sha256:0123…
+    """
+    from crowdbot.core.scenarios.library import open_document
+    from crowdbot.errors import InputError
+
+    document = open_document(suite, installed(plugin, no_plugins))
+    found = document.suite
+    if commitment is not None and found.commitment != commitment:
+        there = found.commitment or "none"
+        raise InputError(f"{document.name}: its commitment is {there}, not {commitment}")
+    state = "open"
+    if found.commitment:
+        state = "hidden" if found.hidden else "revealed"
+    if as_json:
+        row = {"suite": found.id, "commitment": found.commitment or None, "draws": state}
+        typer.echo(json.dumps(row, indent=2))
+        return
+    said = {
+        "open": "its draws are open; nothing was committed to",
+        "hidden": f"its draws are hidden, committed to by {found.commitment}",
+        "revealed": f"its draws are revealed, and are those of {found.commitment}",
+    }
+    typer.echo(f"{found.id}: {said[state]}")
+
+
+def _what(change: Change, print_only: bool) -> dict[str, object]:
+    return {"file": None if print_only else str(change.path), "lines": list(change.lines)}
+
+
+def _say(change: Change, print_only: bool) -> None:
+    for line in change.lines:
+        typer.echo(line)
+    if not print_only:
+        typer.echo(f"wrote {change.path}")

@@ -1,0 +1,97 @@
+"""``crowdbot expand``: the scenarios of a suite, their hashes, and one of them in full."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crowdbot.cli.output.scenario_list import hash_of, print_scenarios
+from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+
+if TYPE_CHECKING:
+    from crowdbot.core.registry.registry import Registry
+    from crowdbot.dsl.scenario.scenario import Scenario
+    from crowdbot.dsl.suite.expand import Expansion
+
+
+def expand(
+    spec: Annotated[str, typer.Argument(metavar="SPEC", help="File, or name of a suite.")],
+    only: Annotated[
+        str | None, typer.Option(metavar="GLOB", help="Only ids that match, e.g. 'in-*-c50-*'.")
+    ] = None,
+    one: Annotated[
+        str | None, typer.Option(metavar="ID", help="Print one scenario with every default.")
+    ] = None,
+    explain: Annotated[
+        bool, typer.Option("--explain", help="With --one: say where each value comes from.")
+    ] = False,
+    count: Annotated[bool, typer.Option("--count", help="Print only how many there are.")] = False,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change every scenario; repeatable."),
+    ] = None,
+) -> None:
+    """List the scenarios of a suite with their hashes, or print one in full.
+
+    Example: crowdbot expand challenge-2020 --only 'counter-*-c50-*'
+    """
+    from crowdbot.core.scenarios.library import open_spec
+
+    if explain and one is None:
+        raise typer.BadParameter("--explain goes with --one ID")
+    registry = installed(plugin, no_plugins)
+    expansion = open_spec(spec, registry, overrides or ())
+    if one is not None:
+        typer.echo(_one(expansion, one, registry, as_json=as_json, explain=explain), nl=False)
+        return
+    scenarios = _matching(expansion, only)
+    if as_json and not count:
+        typer.echo(json.dumps([_row(expansion, s, registry) for s in scenarios], indent=2))
+    else:
+        print_scenarios(scenarios, registry, count=count)
+
+
+def _matching(expansion: Expansion, only: str | None) -> list[Scenario]:
+    """Scenarios whose id fits a pattern.
+
+    Raises:
+        UnknownNameError: none does.
+    """
+    from crowdbot.core.scenarios.library import select
+    from crowdbot.errors import UnknownNameError
+
+    if only is None:
+        return expansion.scenarios
+    found = select(expansion, only)
+    if not found:
+        raise UnknownNameError("scenario", only, [s.id for s in expansion.scenarios])
+    return found
+
+
+def _one(
+    expansion: Expansion, pattern: str, registry: Registry, *, as_json: bool, explain: bool
+) -> str:
+    from crowdbot.core.scenarios.library import pick
+    from crowdbot.dsl.identity.canonical import canonical_bytes, dump_scenario_yaml
+    from crowdbot.dsl.suite.explain import explain_yaml
+
+    scenario = pick(expansion, pattern)
+    if scenario.hidden:
+        typer.echo("its people are hidden: the seed below is not theirs", err=True)
+    if as_json:
+        text = canonical_bytes(scenario, registry.spec_versions(scenario)).decode()
+        content = {**_row(expansion, scenario, registry), "scenario": json.loads(text)}
+        return json.dumps(content, indent=2) + "\n"
+    if explain:
+        return explain_yaml(scenario, expansion.trees[scenario.id])
+    return dump_scenario_yaml(scenario, registry.spec_versions(scenario))
+
+
+def _row(expansion: Expansion, scenario: Scenario, registry: Registry) -> dict[str, str | None]:
+    row = {"suite": expansion.suite_id, "id": scenario.id, "title": scenario.title}
+    return row | {"hash": None if scenario.hidden else hash_of(scenario, registry)}

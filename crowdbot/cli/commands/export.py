@@ -1,0 +1,190 @@
+"""``crowdbot export``: recordings for other tools."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from crowdbot.core.recording.export.bag import BagOptions
+
+
+class ExportFormat(StrEnum):
+    """What other tools read."""
+
+    rosbag1 = "rosbag1"
+    rosbag2 = "rosbag2"
+    csv = "csv"
+    parquet = "parquet"
+    geojson = "geojson"
+    trajnet = "trajnet"
+
+
+class TreeChoice(StrEnum):
+    """Whose pose the tf tree has."""
+
+    truth = "truth"
+    odometry = "odometry"
+
+
+_ENDINGS = {
+    ExportFormat.rosbag1: ".bag",
+    ExportFormat.geojson: ".geojson",
+    ExportFormat.trajnet: ".ndjson",
+}
+
+
+def export(
+    run: Annotated[
+        Path, typer.Argument(metavar="RUN_DIR|FILE.mcap", help="A run, or its recording.")
+    ],
+    to: Annotated[ExportFormat, typer.Option("--to", help="The format.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="PATH", help="File or folder to write; default: beside it."),
+    ] = None,
+    offset: Annotated[
+        int, typer.Option(min=0, metavar="SECONDS", help="Bags: add this to all times.")
+    ] = 0,
+    tf: Annotated[
+        TreeChoice, typer.Option(help="Bags: true pose, or odom to base_footprint.")
+    ] = TreeChoice.truth,
+    markers: Annotated[
+        bool, typer.Option(help="Bags: add people and contacts as markers, one for each.")
+    ] = True,
+    names: Annotated[
+        bool,
+        typer.Option(
+            "--ros-names/--own-names",
+            help="Bags: names usual in ROS, such as /scan, or the recording's.",
+        ),
+    ] = True,
+    robot: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Tables: which of several robots.")
+    ] = None,
+) -> None:
+    """Write a recording in the format of other tools.
+
+    Example: crowdbot export runs/challenge-2020/in-d0125-slow-c01-r02/dwa/seed-0 --to rosbag2
+    """
+    from crowdbot.core.recording.export.bag import BagOptions
+    from crowdbot.core.runs.run_directory import RECORDING
+    from crowdbot.errors import InputError
+
+    recording = run / RECORDING if run.is_dir() else run
+    if not recording.is_file():
+        raise InputError(f"{run}: no such run directory or recording")
+    target = out or _target(run, to)
+    if target.exists():
+        raise InputError(f"{target}: exists already; it is not written over")
+    if to in (ExportFormat.rosbag1, ExportFormat.rosbag2):
+        options = BagOptions(
+            offset=offset * 10**9,
+            tree=tf.value,
+            ros_names=names,
+            markers=markers,
+            description=_description(run) if run.is_dir() else None,
+        )
+        _whole(target, lambda aside: _bag(to, recording, aside, options, run))
+    else:
+        _whole(target, lambda aside: _tables(to, recording, aside, robot))
+    typer.echo(str(target))
+
+
+def _target(run: Path, to: ExportFormat) -> Path:
+    """Beside the recording, named by the format."""
+    stem = run.resolve().with_suffix("") if run.is_file() else run.resolve()
+    return stem.with_name(f"{stem.name}-{to.value}{_ENDINGS.get(to, '')}")
+
+
+def _whole(target: Path, write: Callable[[Path], None]) -> None:
+    """Write under a temporary name, then rename: a file or a folder."""
+    from crowdbot.errors import InputError
+
+    folder = target.with_name(f".{target.name}.part")
+    try:
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        write(folder / target.name)  # files in it are called by its name
+        (folder / target.name).rename(target)
+    except OSError as error:
+        raise InputError(f"{target}: cannot be written: {error.strerror or error}") from error
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _bag(to: ExportFormat, recording: Path, out: Path, options: BagOptions, run: Path) -> None:
+    from crowdbot.core.recording import fleet_names
+    from crowdbot.core.recording.export.bag import write_ros1, write_ros2
+    from crowdbot.core.runs import run_directory as files
+    from crowdbot.errors import InputError
+
+    if names := fleet_names(recording):
+        raise InputError(
+            f"{recording}: bags are made of runs of one robot, not of {', '.join(names)}; the "
+            "recording itself is a ROS 2 one, which 'ros2 bag play -s mcap' plays"
+        )
+
+    if to is ExportFormat.rosbag1:
+        write_ros1(recording, out, options)
+        return
+    write_ros2(recording, out, options)
+    if run.is_dir():
+        for name in (files.RECORD, files.SCENARIO, files.SCORES):
+            if (run / name).is_file():
+                shutil.copyfile(run / name, out / name)
+
+
+def _tables(to: ExportFormat, recording: Path, out: Path, robot: str | None) -> None:
+    from crowdbot.core.recording import read_trajectories, recording_info
+    from crowdbot.core.recording.export import tables
+
+    run = read_trajectories(recording, robot)
+    if to is ExportFormat.geojson:
+        out.write_text(tables.geojson(run), encoding="utf-8")
+    elif to is ExportFormat.trajnet:
+        scenario = recording_info(recording).header.scenario
+        out.write_text(tables.trajnet(run, scenario), encoding="utf-8")
+    elif to is ExportFormat.csv:
+        out.mkdir()
+        tables.write_csv(run, out)
+    else:
+        _need_pyarrow()
+        out.mkdir()
+        tables.write_parquet(run, out)
+
+
+def _need_pyarrow() -> None:
+    from crowdbot.cli.serving.serve_options import needs
+
+    needs("analysis", "pyarrow")
+
+
+def _description(run: Path) -> str | None:
+    """The robot's URDF; None where its scenario names a plugin that is not installed."""
+    from crowdbot.cli.shared.options import installed
+    from crowdbot.core.robots import build_model
+    from crowdbot.core.robots.urdf_export import to_urdf
+    from crowdbot.core.runs.run_directory import SCENARIO
+    from crowdbot.core.scenarios.library import open_spec
+    from crowdbot.core.sensing.build import build_sensor
+    from crowdbot.errors import CrowdbotError
+
+    if not (run / SCENARIO).is_file():
+        return None
+    try:
+        registry = installed(None)
+        scenario = open_spec(str(run / SCENARIO), registry).scenarios[0]
+        ((name, robot),) = scenario.robots.items()
+        sensors = {n: build_sensor(registry, s).info() for n, s in robot.sensors.items()}
+        return to_urdf(build_model(registry, robot.model), sensors, name)
+    except CrowdbotError as error:
+        typer.echo(f"warning: /robot_description is left out: {error}", err=True)
+        return None
+    except ValueError:  # several robots, or none
+        return None

@@ -1,0 +1,73 @@
+"""``crowdbot export-urdf``: a robot's body and sensor frames for the tools of ROS."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from crowdbot.core.registry.registry import Registry
+    from crowdbot.core.types.sensor import SensorInfo
+    from crowdbot.dsl.scenario.scenario import Robot
+
+
+def export_urdf(
+    robot: Annotated[
+        str, typer.Argument(help="Kind of a robot; with --spec, name of a robot in a scenario.")
+    ],
+    spec: Annotated[
+        str | None, typer.Option("--spec", help="Scenario or suite that has the robot.")
+    ] = None,
+    id_: Annotated[
+        str | None, typer.Option("--id", help="Id in a suite; default: its first scenario.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="File to write; default: standard output.")
+    ] = None,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Write a robot as URDF, with a frame for each sensor.
+
+    Example: crowdbot export-urdf robot --spec challenge-2020 --out turtlebot2.urdf
+    """
+    from crowdbot.core.robots import build_model
+    from crowdbot.core.robots.urdf_export import to_urdf
+    from crowdbot.core.support.atomic_write import atomic_write
+
+    registry = installed(plugin, no_plugins)
+    sensors: Mapping[str, SensorInfo] = {}
+    if spec is None:
+        model = build_model(registry, registry.find("robot", robot).spec(kind=robot))
+    else:
+        found = _robot(registry, robot, spec, id_)
+        model, sensors = build_model(registry, found.model), _sensors(registry, found)
+    text = to_urdf(model, sensors, robot)
+    if out is None:
+        typer.echo(text, nl=False)
+    else:
+        atomic_write(out, text)
+        typer.echo(str(out), err=True)
+
+
+def _robot(registry: Registry, name: str, spec: str, id_: str | None) -> Robot:
+    from crowdbot.core.scenarios.library import open_spec, pick
+    from crowdbot.errors import UnknownNameError
+
+    expansion = open_spec(spec, registry)
+    scenario = expansion.scenarios[0] if id_ is None else pick(expansion, id_)
+    if name not in scenario.robots:
+        raise UnknownNameError("robot", name, scenario.robots)
+    return scenario.robots[name]
+
+
+def _sensors(registry: Registry, robot: Robot) -> Mapping[str, SensorInfo]:
+    from crowdbot.core.sensing.build import build_sensor
+
+    return {name: build_sensor(registry, spec).info() for name, spec in robot.sensors.items()}

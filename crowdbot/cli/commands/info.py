@@ -1,0 +1,96 @@
+"""``crowdbot info``: what is in a recording."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from crowdbot.core.recording.contents import RecordingContents
+
+
+def info(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE|RUN_DIR", help="A recording, or a run directory.")
+    ],
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """Say what is in a recording: topics with rates and sizes, duration, hash, complete or not.
+
+    Example: crowdbot info runs/challenge-2020/in-d0125-slow-c01-r02/dwa/seed-0/run.mcap
+    """
+    from crowdbot.core.recording.contents import contents
+    from crowdbot.core.runs.run_directory import RECORDING
+
+    path = file / RECORDING if file.is_dir() else file
+    found = contents(path)
+    about = _about(path, found)
+    if as_json:
+        topics = [
+            {
+                "topic": t.name, "type": t.msgtype, "messages": t.count, "rate": t.rate,
+                "bytes": t.size,
+            }
+            for t in found.topics
+        ]  # fmt: skip
+        typer.echo(json.dumps({**about, "topics": topics}, indent=2))
+        return
+    _show(about, found)
+
+
+def _about(path: Path, found: RecordingContents) -> dict[str, Any]:
+    from crowdbot.core.recording.reader import recording_info
+
+    about: dict[str, Any] = {
+        "file": str(path),
+        "bytes": found.size,
+        "duration": found.end,
+        "finished": found.finished,
+        "complete": found.complete,
+        "status": found.status,
+        "messages": sum(t.count for t in found.topics),
+        "attachments": dict(found.attachments),
+    }
+    if any(t.name == "/crowdbot/header" for t in found.topics):
+        header = recording_info(path).header
+        about |= {"scenario": header.scenario, "trajectory": _hash(path)}
+    return about
+
+
+def _hash(path: Path) -> str | None:
+    """The trajectory hash; None where there is not a single sample."""
+    from crowdbot.core.runs.read_and_score import read_recorded
+    from crowdbot.errors import InputError
+
+    try:
+        return read_recorded(path).trajectory
+    except InputError:
+        return None
+
+
+def _show(about: dict[str, Any], found: RecordingContents) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(soft_wrap=True, highlight=False)
+    ending = "complete" if found.complete else "NOT complete"
+    if not found.finished:
+        ending += ": the file was cut off; crowdbot recover makes a whole one of it"
+    elif found.status and not found.complete:
+        ending += f": {found.status}"
+    console.print(f"{about['file']}: {found.size} bytes, {found.end:.2f} s, {ending}", markup=False)
+    for name in ("scenario", "trajectory"):
+        if about.get(name):
+            console.print(f"{name}: {about[name]}", markup=False)
+    table = Table(box=None, pad_edge=False)
+    for name in ("topic", "type", "messages", "Hz", "bytes"):
+        table.add_column(name, overflow="fold", no_wrap=name not in ("topic", "type"))
+    for topic in found.topics:
+        rate = "" if topic.rate is None else f"{topic.rate:.1f}"
+        table.add_row(topic.name, topic.msgtype, str(topic.count), rate, str(topic.size))
+    console.print(table)
+    for name, size in found.attachments.items():
+        console.print(f"attached: {name}, {size} bytes", markup=False)

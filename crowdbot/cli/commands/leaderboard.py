@@ -1,0 +1,79 @@
+"""``crowdbot leaderboard``: one page from a folder of bundles."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+from crowdbot.core.support.plural import plural
+from crowdbot.errors import printable
+
+
+def leaderboard(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder with bundles (*.cbz).")],
+    out: Annotated[Path, typer.Option(metavar="FILE", help="File to write, .html: the page.")] = (
+        Path("leaderboard.html")
+    ),
+    by: Annotated[
+        str, typer.Option(metavar="METRIC", help="Which metric decides the order.")
+    ] = "safe_efficiency",
+    title: Annotated[str, typer.Option(metavar="TEXT", help="Heading.")] = "Leaderboard",
+    accept: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Compare although this differs; repeatable."),
+    ] = None,
+    audit: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE", help="Audit of a suite; repeatable. Default: FOLDER/*audit.json."
+        ),
+    ] = None,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="The order as JSON on stdout.")] = False,
+) -> None:
+    """Rank the bundles of a folder, by edition and class, on one offline page.
+
+    Bundles that cannot be told apart share a rank. Scores of older versions of a metric are
+    computed again where a bundle has recordings, and left out where not.
+
+    Example: crowdbot leaderboard bundles --out leaderboard.html --by spl
+    """
+    from crowdbot.core.bundle.entries import load_entries
+    from crowdbot.core.bundle.leaderboard import write_leaderboard
+    from crowdbot.core.bundle.standings import set_apart, standings
+    from crowdbot.core.scoring.score_scale import score_scales
+    from crowdbot.core.statistics.audit import AUDIT, read_audit
+    from crowdbot.errors import UnknownNameError
+
+    check_ending(out, ".html")
+    registry = installed(plugin, no_plugins)
+    if by not in registry.components("metric"):
+        raise UnknownNameError("metric", by, registry.components("metric"), registry.why_absent(by))
+    entries, left_out = load_entries(folder, registry)
+    entries, apart = set_apart(entries, accept or ())
+    left_out = dict(sorted((left_out | apart).items()))
+    audits = [read_audit(path) for path in audit or sorted(folder.glob(f"*{AUDIT}"))]
+    tables = standings(entries, by, accept or (), audits, score_scales(registry))
+    write_leaderboard(out, tables, left_out, title)
+    for name, why in left_out.items():
+        typer.echo(printable(f"warning: {name} is left out: {why}"), err=True)
+    if as_json:
+        document = [
+            {"edition": t.edition, "class": t.classed, "by": t.by, "suspicion": t.suspicion,
+             "crowds": t.crowds,
+             "by_crowd": None if t.by_crowd is None else t.by_crowd.as_json(),
+             "entries": [{"name": e.name, "rank": t.rank(by, e), "file": e.path.name}
+                         for e in t.entries]}
+            for t in tables
+        ]  # fmt: skip
+        typer.echo(
+            json.dumps({"page": str(out), "tables": document, "left_out": left_out}, indent=2)
+        )
+        return
+    counts = f"{plural(len(entries), 'bundle')}, {plural(len(tables), 'table')}"
+    typer.echo(f"{counts}; wrote {out}")

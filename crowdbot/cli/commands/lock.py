@@ -1,0 +1,97 @@
+"""``crowdbot lock``: freeze the agents and hashes of a suite, or check that they still fit."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.core.support.plural import plural
+
+if TYPE_CHECKING:
+    from crowdbot.core.registry.registry import Registry
+    from crowdbot.dsl.scenario.lock import LockFiles
+    from crowdbot.dsl.suite.expand import Expansion
+
+
+def lock(
+    spec: Annotated[str, typer.Argument(metavar="SUITE", help="File, or name of a suite.")],
+    check: Annotated[
+        bool, typer.Option("--check", help="Write nothing; exit 1 if the lock does not fit.")
+    ] = False,
+    redraw: Annotated[
+        bool, typer.Option("--redraw", help="Draw all agents anew, also where nothing changed.")
+    ] = False,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """Draw the agents of a suite once and freeze them, with the hashes of its scenarios.
+
+    NAME.lock.json and NAME.agents.csv are written beside NAME.yaml; crowdbot simulate then reads
+    the agents and never draws them. Agents whose scenarios did not change are kept.
+
+    Example: crowdbot lock my_suite.yaml; crowdbot lock challenge-2020 --check
+    """
+    from crowdbot.core.scenarios.library import open_suite
+
+    if check and redraw:
+        raise typer.BadParameter("--check writes nothing, --redraw writes; give one of them")
+    registry = installed(plugin, no_plugins)
+    expansion, files = open_suite(spec, registry)
+    if check:
+        _check(expansion, files, registry, as_json=as_json)
+    else:
+        _write(expansion, files, registry, redraw=redraw, as_json=as_json)
+
+
+def _check(expansion: Expansion, files: LockFiles, registry: Registry, *, as_json: bool) -> None:
+    from crowdbot.core.scenarios.lock_check import differences
+    from crowdbot.errors import InputError
+
+    if not files.lock_path.exists():
+        raise InputError(f"{files.spec} has no lock ({files.lock_path.name}); run {files.command}")
+    found = differences(expansion, files, registry)
+    count = len(expansion.scenarios)
+    if as_json:
+        listed = [d.as_dict() for d in found]
+        document = {"suite": expansion.suite_id, "ok": not found, "differences": listed}
+        typer.echo(json.dumps(document, indent=2))
+    elif found:
+        for difference in found:
+            typer.echo(str(difference))
+        typer.echo(f"{plural(len(found), 'difference')}; to accept: {files.command}", err=True)
+    else:
+        typer.echo(f"{expansion.suite_id}: the lock fits, {plural(count, 'scenario')}")
+    raise typer.Exit(1 if found else 0)
+
+
+def _write(
+    expansion: Expansion, files: LockFiles, registry: Registry, *, redraw: bool, as_json: bool
+) -> None:
+    from crowdbot.core.scenarios.library import check_writable
+    from crowdbot.core.scenarios.lock import make_lock, write_lock
+
+    check_writable(files)
+    keep = files.lock_path.exists() and not redraw
+    made = make_lock(expansion, registry, files if keep else None)
+    write_lock(files, made)
+    scenarios, draws = len(made.lock.scenarios), len(made.lock.draws)
+    if as_json:
+        document = {
+            "suite": expansion.suite_id,
+            "lock": str(files.lock_path),
+            "agents": str(files.agents_path),
+            "scenarios": scenarios,
+            "draws": draws,
+            "drawn": made.drawn,
+        }
+        typer.echo(json.dumps(document, indent=2))
+        return
+    typer.echo(
+        f"{expansion.suite_id}: {plural(scenarios, 'scenario')}, "
+        f"{plural(draws, 'table')} of agents ({made.drawn} drawn, {draws - made.drawn} kept)"
+    )
+    typer.echo(f"wrote {files.lock_path} and {files.agents_path.name}")

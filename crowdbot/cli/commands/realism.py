@@ -1,0 +1,138 @@
+"""``crowdbot realism``: how human a crowd is, beside people who were recorded in corridors."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crowdbot.cli.output.plugin_table import table
+from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.errors import InputError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from crowdbot.core.realism.measure import Realism
+    from crowdbot.core.realism.reference import RealismReference
+    from crowdbot.core.registry.registry import Registry
+
+#: More crowds than these are compared at the first draw only.
+_FEW = 4
+
+
+def realism(
+    crowd: Annotated[
+        str,
+        typer.Argument(
+            metavar="POLICY|SUITE|RUNS",
+            help="A named crowd, a part, the kind of a policy, a suite, or a folder of runs.",
+        ),
+    ],
+    reference: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE",
+            help="Recordings of your own: .mcap, .csv (t,id,x,y), .ndjson (TrajNet++), .txt (ETH, "
+            "UCY), a bag of ROS or BAG:/TOPIC; repeatable.",
+        ),
+    ] = None,
+    seeds: Annotated[str, typer.Option(metavar="1,2,3|1..5", help="Draws.")] = "1..16",
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change the crowd; repeatable."),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="File to write, .html: page with the curves."),
+    ] = None,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """Compare a crowd with recorded people: an index with its parts, ceiling and floor.
+
+    Example: crowdbot realism calibrated --out calibrated.html
+    """
+    from crowdbot.cli.shared.campaign_run import read_seeds
+    from crowdbot.core.realism.page import render
+
+    check_ending(out, ".html")
+    registry = installed(plugin, no_plugins)
+    beside = _reference(reference)
+    path = Path(crowd)
+    if path.is_dir() or path.suffix.lower() == ".mcap":
+        if overrides:
+            raise UsageError(f"--set: {crowd} are runs, which cannot be changed any more")
+        found = [_of_runs(path, beside)]
+    else:
+        found = _simulated(crowd, registry, beside, overrides or [], read_seeds(seeds))
+    if out is not None:
+        atomic_write(out, render(crowd, found))
+    typer.echo(_json(found) if as_json else "\n\n".join(_text(one) for one in found))
+    if out is not None and not as_json:
+        typer.echo(f"wrote {out}")
+
+
+def _reference(files: Sequence[Path] | None) -> RealismReference:
+    from crowdbot.core.realism.reference import read_reference, shipped
+
+    return read_reference(files) if files else shipped()
+
+
+def _simulated(
+    text: str,
+    registry: Registry,
+    beside: RealismReference,
+    overrides: Sequence[str],
+    seeds: Sequence[int],
+) -> list[Realism]:
+    """One crowd by name, or all different ones of a suite."""
+    from crowdbot.core.realism.crowds import different_crowds
+    from crowdbot.core.realism.measure import measure
+    from crowdbot.core.realism.model import model_of
+    from crowdbot.core.scenarios.library import open_spec
+    from crowdbot.core.scenarios.named_crowds import names_crowd, open_crowd
+
+    if names_crowd(text, registry):
+        crowds = {text: open_crowd(text, registry, overrides)}
+    else:
+        crowds = different_crowds(open_spec(text, registry, overrides).scenarios)
+        if not crowds:
+            raise InputError(f"{text}: there are no people in it")
+        if len(crowds) > _FEW:  # a minute for a suite, too
+            seeds = seeds[:1]
+    return [
+        measure(name, model_of(crowd, registry), beside, seeds) for name, crowd in crowds.items()
+    ]
+
+
+def _of_runs(path: Path, beside: RealismReference) -> Realism:
+    """What people in finished runs did, all runs together."""
+    from crowdbot.core.realism.measure import measure_tracks
+    from crowdbot.core.realism.recordings import read_runs
+
+    files = sorted(path.rglob("*.mcap")) if path.is_dir() else [path]
+    if not files:
+        raise InputError(f"{path}: there are no recordings (.mcap) in it")
+    tracks, without = read_runs(files)
+    if without:
+        typer.echo(f"left out: {len(without)} of {len(files)} recordings; {without[0]}", err=True)
+    return measure_tracks(str(path), [tracks], beside)
+
+
+def _json(found: Sequence[Realism]) -> str:
+    return json.dumps([one.as_json() for one in found], indent=2, ensure_ascii=False)
+
+
+def _text(one: Realism) -> str:
+    from crowdbot.core.realism.tables import rows
+
+    head = ["", "this crowd", "recorded", "avoid nobody"]
+    return (
+        f"crowd: {one.line}\nindex {one.index:.2f} (0: ghosts, 1: people), "
+        f"score {one.low:.3f} to {one.high:.3f} over draws\n" + table([head, *rows(one)])
+    )

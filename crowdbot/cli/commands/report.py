@@ -1,0 +1,237 @@
+"""``crowdbot report``: one offline page about the runs of a suite."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import shlex
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from datetime import UTC, datetime
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+from urllib.parse import quote
+
+import typer
+
+from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+from crowdbot.core.support.plural import plural
+from crowdbot.errors import InputError, UnknownNameError
+
+if TYPE_CHECKING:
+    from crowdbot.core.report import Contents
+    from crowdbot.core.results.confounds import Finding
+    from crowdbot.core.results.rows import Results
+    from crowdbot.core.statistics.audit import Audit
+
+_REFERENCE = " (reference)"
+#: So many damaged runs are named.
+_SHOWN = 3
+
+
+def report(
+    root: Annotated[
+        Path, typer.Argument(metavar="[ROOT]", help="Where campaigns and simulations put runs.")
+    ] = Path("runs"),
+    suite: Annotated[
+        str | None, typer.Option(metavar="ID", help="Which suite; needed where there are several.")
+    ] = None,
+    planner: Annotated[
+        list[str] | None,
+        typer.Option(metavar="GLOB", help="Only planners with such labels; repeatable."),
+    ] = None,
+    reference: Annotated[
+        Path | None,
+        typer.Option(metavar="ROOT", help="Results of others, shown as reference scores."),
+    ] = None,
+    out: Annotated[
+        Path,
+        typer.Option(metavar="FILE", help="File to write, .html; .csv and .md lie beside it."),
+    ] = Path("report.html"),
+    accept: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="CONFOUND", help="Compare although this differs; the page says so; repeatable."
+        ),
+    ] = None,
+    audit: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Audit of the suite; default: ROOT/ID/audit.json."),
+    ] = None,
+    no_replay_links: Annotated[
+        bool,
+        typer.Option(
+            "--no-replay-links", help="Leave out links to replays, for a page that is moved."
+        ),
+    ] = False,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="What was written, as JSON.")] = False,
+) -> None:
+    """Write one offline page with the scores of planners, and its CSV and Markdown beside it.
+
+    Example: crowdbot report runs --suite challenge-2020 --planner 'dwa*' --out report.html
+    """
+    from crowdbot.core.report import Heading, gather, write_report
+    from crowdbot.core.results.confounds import check_comparable, confounds
+    from crowdbot.core.results.store import load
+
+    check_ending(out, ".html")
+    results = _chosen(load(root), suite, planner or [], root)
+    links = {} if no_replay_links else _replays(results, root, out)
+    results, known = _with_reference(results, load(reference) if reference else None)
+    findings = confounds(results, accept or ())
+    check_comparable(findings)
+    heading = Heading(
+        suite=results.runs[0].suite,
+        made=f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
+        command=shlex.join(["crowdbot", *sys.argv[1:]]),
+        accepted=tuple(str(f) for f in findings if f.accepted),
+        warnings=(*(str(f) for f in findings if not f.accepted), *_left_out(results)),
+        references=known,
+        audit=_audit(audit, root / results.runs[0].suite),
+    )
+    contents = gather(results, installed(plugin, no_plugins), heading, links)
+    _tell(write_report(out, contents), contents, findings, as_json)
+
+
+def _left_out(results: Results) -> list[str]:
+    """What the page says of damaged runs."""
+    lost = [d.directory for d in results.damaged]
+    some = ", ".join(lost[:_SHOWN]) + (", …" if len(lost) > _SHOWN else "")
+    return [f"damaged: {plural(len(lost), 'run')} left out: {some}"] if lost else []
+
+
+def _chosen(results: Results, suite: str | None, planners: Sequence[str], root: Path) -> Results:
+    """The runs of one suite and some planners.
+
+    Raises:
+        InputError: there is none, or there are several suites to choose from.
+        UnknownNameError: no run has such a suite or planner.
+    """
+    suites = dict.fromkeys([*(r.suite for r in results.runs), *(f.suite for f in results.failures)])
+    if not results.runs:
+        raise InputError(f"{root}: there is no complete run below it")
+    if suite is None and len(suites) > 1:
+        raise InputError(
+            f"{root}: runs of several suites, choose with --suite: {', '.join(suites)}"
+        )
+    wanted = suite if suite is not None else next(iter(suites))
+    if wanted not in suites:
+        raise UnknownNameError("suite", wanted, suites)
+    labels = {r.planner for r in results.runs if r.suite == wanted}
+    labels |= {f.planner for f in results.failures if f.suite == wanted}
+    for pattern in planners:
+        if not any(fnmatchcase(label, pattern) for label in labels):
+            raise UnknownNameError("planner", pattern, labels)
+    kept = {p for p in labels if not planners or any(fnmatchcase(p, x) for x in planners)}
+    found = _only(results, wanted, kept)
+    if not found.runs:
+        raise InputError(f"{root}: no complete run of {', '.join(sorted(kept))} in {wanted}")
+    return found
+
+
+def _only(results: Results, suite: str, planners: set[str]) -> Results:
+    runs = tuple(r for r in results.runs if r.suite == suite and r.planner in planners)
+    ids = {r.run_id for r in runs}
+    return replace(
+        results,
+        runs=runs,
+        scores=tuple(s for s in results.scores if s.run_id in ids),
+        failures=tuple(f for f in results.failures if f.suite == suite and f.planner in planners),
+    )
+
+
+def _with_reference(results: Results, given: Results | None) -> tuple[Results, tuple[str, ...]]:
+    """Results with those of others for the same scenarios, under names of their own."""
+    if given is None:
+        return results, ()
+    suite = results.runs[0].suite
+    scenarios = {r.scenario for r in results.runs}
+    runs = [
+        replace(r, planner=r.planner + _REFERENCE)
+        for r in given.runs
+        if r.suite == suite and r.scenario in scenarios
+    ]
+    if not runs:
+        raise InputError(f"--reference: no run of a scenario of {suite} that is reported here")
+    ids = {r.run_id for r in runs} - {r.run_id for r in results.runs}
+    scores = [s for s in given.scores if s.run_id in ids]
+    both = replace(results, runs=(*results.runs, *runs), scores=(*results.scores, *scores))
+    return both, tuple(sorted({r.planner for r in runs}))
+
+
+def _audit(given: Path | None, folder: Path) -> Audit | None:
+    """The audit that somebody names, or the one beside the runs.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    from crowdbot.core.statistics.audit import AUDIT, read_audit
+
+    path = given or folder / AUDIT
+    return read_audit(path) if given or path.is_file() else None
+
+
+def _replays(results: Results, root: Path, out: Path) -> dict[str, str]:
+    """Run id -> address of its replay page as seen from the report, where there is one."""
+    from crowdbot.core.runs.run_directory import REPLAY
+
+    pages = {r.run_id: root / r.directory / REPLAY for r in results.runs}
+    here = out.resolve().parent
+    return {
+        run_id: quote(Path(os.path.relpath(page.resolve(), here)).as_posix())
+        for run_id, page in pages.items()
+        if page.is_file()
+    }
+
+
+def _tell(
+    paths: dict[str, Path], contents: Contents, findings: Sequence[Finding], as_json: bool
+) -> None:
+    quiet = logging.getLogger("crowdbot").level > logging.INFO
+    for finding in findings:
+        if quiet and finding.accepted:
+            continue
+        print(f"{'accepted' if finding.accepted else 'warning'}: {finding}", file=sys.stderr)
+    if not as_json:
+        if not quiet:
+            _tell_of(contents)
+        typer.echo(paths["html"])
+        return
+    document = {
+        **{name: str(path) for name, path in paths.items()},
+        "suite": contents.heading.suite,
+        "planners": contents.planners,
+        "runs": contents.counts(),
+        "accepted": contents.heading.accepted,
+        "warnings": contents.heading.warnings,
+        "floors": [
+            {"planner": c.planner, "beats_floors": c.beats_all, "text": c.text}
+            for c in contents.floors
+        ],
+        "suspicion": contents.suspicion,
+        "sample": None if contents.sample is None else asdict(contents.sample),
+        "crowds": contents.crowds,
+        "ranks_by_crowd": None if contents.ranks is None else contents.ranks.as_json(),
+    }
+    typer.echo(json.dumps(document, indent=2, ensure_ascii=False))
+
+
+def _tell_of(contents: Contents) -> None:
+    """What the page says first, on stderr."""
+    counts = contents.counts()
+    said = ", ".join(f"{n} {name.replace('_', ' ')}" for name, n in counts.items() if n)
+    print(f"{', '.join(contents.planners)}: {said}", file=sys.stderr)
+    ranks = contents.ranks.verdicts if contents.ranks else ()
+    told = [
+        *(f"crowd: {line}" for line in contents.crowds),
+        contents.suspicion,
+        contents.sample.text if contents.sample else "",
+        *(check.text for check in contents.floors),
+        *(verdict.text for verdict in ranks),
+    ]
+    print("\n".join(text for text in told if text), file=sys.stderr)

@@ -1,0 +1,252 @@
+"""``crowdbot results``: quick questions to the results of a campaign."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+from typer.core import TyperGroup
+
+from crowdbot.cli.output.results_lines import line_of, print_lines
+from crowdbot.core.scoring.four_scores import MAIN_SCORES
+from crowdbot.core.support.plural import plural
+
+if TYPE_CHECKING:
+    from crowdbot.core.results.rows import Results
+
+
+class _Tables(TyperGroup):
+    """The tables of results; where a folder is named, it is told where folders go."""
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        found = super().get_command(ctx, cmd_name)
+        if found is None and Path(cmd_name).is_dir():
+            ctx.fail(f"a folder of runs is given with --runs {cmd_name}")
+        return found
+
+
+results = typer.Typer(
+    cls=_Tables,
+    add_completion=False,
+    invoke_without_command=True,
+    pretty_exceptions_enable=False,
+)
+
+_Out = Annotated[
+    Path, typer.Option("--runs", "--out", metavar="DIR", help="Root of the run directories.")
+]
+_Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
+_ROOT = Path("runs")
+#: What is shown of every planner when nobody asks for more.
+_HEADLINES = (
+    *(s.metric for s in MAIN_SCORES),
+    "success", "collision_count", "min_clearance", "relative_time_to_goal", "delay",
+    "evasive_acceleration",
+)  # fmt: skip
+
+
+@results.callback()
+def show(
+    context: typer.Context,
+    out: _Out = _ROOT,
+    metric: Annotated[
+        str | None,
+        typer.Option(metavar="GLOB", help="Default: the suite's, and a few."),
+    ] = None,
+    variant: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Variant; default: rate, or else corrected.")
+    ] = None,
+    by: Annotated[
+        str, typer.Option(metavar="AXIS,AXIS", help="Groups: axes, planner, seed, status.")
+    ] = "planner",
+    planner: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Only this planner; repeatable.")
+    ] = None,
+    status: Annotated[
+        str | None, typer.Option(metavar="STATUS", help="Only runs that ended like this.")
+    ] = None,
+    worst: Annotated[
+        int, typer.Option(min=0, metavar="N", help="The N worst runs by --metric instead.")
+    ] = 0,
+    as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
+    as_json: _Json = False,
+) -> None:
+    """Show the scores of planners, by metric and group.
+
+    Example: crowdbot results --runs runs --metric 'collision*' --by planner,density
+    """
+    if context.invoked_subcommand is not None:
+        return
+    from crowdbot.core.results.rows import named_metrics
+    from crowdbot.core.results.store import load
+    from crowdbot.core.statistics.groups import by_group
+    from crowdbot.errors import UsageError
+
+    found = _with_scales(_only(load(out), planner, status))
+    if worst:
+        if metric is None:
+            raise UsageError("--worst needs --metric NAME")
+        print_lines(_worst(found, metric, variant, worst), as_csv=as_csv, as_json=as_json)
+        return
+    groups = [name.strip() for name in by.split(",") if name.strip()]
+    known = {s.metric for s in found.scores}
+    first = [*named_metrics(found.runs), *_HEADLINES]
+    wanted = [metric] if metric is not None else [m for m in dict.fromkeys(first) if m in known]
+    summaries = [s for m in wanted for s in by_group(found, m, groups, variant)]
+    print_lines([line_of(s) for s in summaries], as_csv=as_csv, as_json=as_json)
+    if not (as_csv or as_json):
+        damaged = f", {len(found.damaged)} damaged" if found.damaged else ""
+        runs, failures = plural(len(found.runs), "run"), plural(len(found.failures), "failure")
+        typer.echo(f"{runs}, {failures}{damaged}")
+
+
+@results.command()
+def export(
+    out: _Out = _ROOT,
+    csv: Annotated[Path | None, typer.Option(metavar="FILE", help="Write CSV.")] = None,
+    parquet: Annotated[Path | None, typer.Option(metavar="FILE", help="Write Parquet.")] = None,
+    table: Annotated[Literal["scores", "runs"], typer.Option(help="Which table.")] = "scores",
+) -> None:
+    """Write all scores, or all runs, as one table.
+
+    Example: crowdbot results export --runs runs --csv scores.csv
+    """
+    from crowdbot.core.results import tables
+    from crowdbot.core.results.store import load
+    from crowdbot.errors import UsageError
+
+    if csv is None and parquet is None:
+        raise UsageError("write --csv FILE or --parquet FILE")
+    found = load(out)
+    lines = tables.score_lines(found) if table == "scores" else tables.run_lines(found)
+    if csv is not None:
+        tables.write_csv(csv, lines)
+    if parquet is not None:
+        tables.write_parquet(parquet, lines)
+
+
+@results.command()
+def failures(
+    out: _Out = _ROOT,
+    traceback: Annotated[
+        bool, typer.Option("--traceback", help="Print Python's tracebacks, too.")
+    ] = False,
+    as_json: _Json = False,
+) -> None:
+    """List the runs that a campaign could not make.
+
+    Example: crowdbot results failures --runs runs --traceback
+    """
+    from crowdbot.core.results.store import load
+
+    found = load(out).failures
+    if as_json:
+        typer.echo(json.dumps([asdict(f) for f in found], indent=2))
+        return
+    for failure in found:
+        name = f"{failure.suite}/{failure.scenario} {failure.planner} seed {failure.seed}"
+        typer.echo(f"{name}: {failure.error}")
+        if traceback:
+            typer.echo(failure.traceback)
+    if not found:
+        typer.echo("no failures")
+
+
+@results.command()
+def atlas(
+    out: _Out = _ROOT,
+    floor: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="A planner that others ought to beat; repeatable."),
+    ] = None,
+    md: Annotated[Path | None, typer.Option(metavar="FILE", help="Write Markdown.")] = None,
+    as_json: _Json = False,
+) -> None:
+    """Say what changes each score, whether it tells floors from planners, and what repeats it.
+
+    Example: crowdbot results atlas --runs runs --floor goal_seek --md atlas.md
+    """
+    from crowdbot.cli.output.atlas_page import atlas_page
+    from crowdbot.core.results.store import load
+    from crowdbot.core.statistics import atlas as entries_of
+    from crowdbot.core.support.atomic_write import atomic_write
+
+    entries = entries_of(_with_scales(load(out)), floor or ())
+    if md is not None:
+        atomic_write(md, atlas_page(entries))
+    if as_json:
+        typer.echo(json.dumps([asdict(e) for e in entries], indent=2))
+    elif md is None:
+        typer.echo(atlas_page(entries), nl=False)
+
+
+def _with_scales(found: Results) -> Results:
+    """Results with what the installed metrics say of their values."""
+    from crowdbot.cli.shared.options import installed
+    from crowdbot.core.scoring.score_scale import score_scales
+
+    return replace(found, scales=score_scales(installed(None, False)))
+
+
+def _only(found: Results, planners: list[str] | None, status: str | None) -> Results:
+    """Runs of some planners that ended in some way, with their scores and failures.
+
+    Raises:
+        UnknownNameError: no run has such a planner or status.
+    """
+    from crowdbot.core.runs.outcome import ENDINGS
+    from crowdbot.errors import UnknownNameError
+
+    labels = {r.planner for r in found.runs} | {f.planner for f in found.failures}
+    for name in planners or ():
+        if name not in labels:
+            raise UnknownNameError("planner", name, labels)
+    statuses = (*ENDINGS, "failed")
+    if status is not None and status not in statuses:
+        raise UnknownNameError("status", status, statuses)
+    runs = tuple(
+        r
+        for r in found.runs
+        if (not planners or r.planner in planners) and status in (None, r.status)
+    )
+    ids = {r.run_id for r in runs}
+    return replace(
+        found,
+        runs=runs,
+        scores=tuple(s for s in found.scores if s.run_id in ids),
+        failures=tuple(
+            f
+            for f in found.failures
+            if (not planners or f.planner in planners) and status in (None, "failed")
+        ),
+    )
+
+
+def _worst(found: Results, metric: str, variant: str | None, count: int) -> list[dict[str, Any]]:
+    """Runs with the worst values of one metric; those without a value come first."""
+    from crowdbot.core.results.tables import score_lines
+    from crowdbot.core.statistics.groups import by_group
+
+    summaries = by_group(found, metric, (), variant)
+    if len(summaries) != 1:
+        from crowdbot.errors import InputError
+
+        names = ", ".join(s.metric for s in summaries) or "no metric"
+        raise InputError(f"--worst wants one metric; '{metric}' fits {names}")
+    (summary,) = summaries
+    lines = [
+        line
+        for line in score_lines(found)
+        if (line["metric"], line["variant"]) == (summary.metric, summary.variant)
+    ]
+    sign = 1.0 if summary.better == "higher" else -1.0
+    lines.sort(key=lambda n: (n["value"] is not None, sign * (n["value"] or 0.0)))
+    directories = {r.run_id: r.directory for r in found.runs}
+    kept = ("scenario", "planner", "seed", "run_status", "value", "unit", "status", "reason")
+    return [
+        {**{k: line[k] for k in kept}, "directory": directories[line["run_id"]]}
+        for line in lines[:count]
+    ]

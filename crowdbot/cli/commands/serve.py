@@ -1,0 +1,202 @@
+"""``crowdbot serve``: programs outside drive the robot of a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from crowdbot.cli.serving.serve_arguments import (
+    Budget,
+    Clock,
+    ClockChoice,
+    Connect,
+    Distro,
+    DistroChoice,
+    Domain,
+    Epoch,
+    Foxglove,
+    Hold,
+    Host,
+    Missed,
+    MissedChoice,
+    PlannerName,
+    Port,
+    Rate,
+    References,
+    RosVersion,
+    Stamped,
+    Stay,
+    Token,
+    Wait,
+    Zenoh,
+    ZenohRouter,
+)
+from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.cli.shared.run_arguments import (
+    AsJson,
+    MeshcatPort,
+    OutRoot,
+    Overrides,
+    Record,
+    RecordChoice,
+    RunSeed,
+    ScenarioArgument,
+    SpecArgument,
+)
+
+if TYPE_CHECKING:
+    from crowdbot.cli.serving.serve_options import Listen
+    from crowdbot.core.live.planner import Manner
+    from crowdbot.core.planning.resolve import PlannerChoice
+    from crowdbot.core.registry.registry import Registry
+    from crowdbot.core.runs.run import Request, Run
+    from crowdbot.dsl.scenario.scenario import Scenario
+    from crowdbot.dsl.suite.expand import Expansion
+
+
+def serve(
+    spec: SpecArgument,
+    scenario: ScenarioArgument = None,
+    host: Host = "127.0.0.1",
+    port: Port = 9090,
+    token: Token = None,
+    connect: Connect = None,
+    stamped: Stamped = False,
+    zenoh: Zenoh = None,
+    zenoh_router: ZenohRouter = False,
+    domain: Domain = 0,
+    distro: Distro = DistroChoice.jazzy,
+    foxglove: Foxglove = None,
+    meshcat: MeshcatPort = None,
+    rate: Rate = None,
+    clock: Clock = ClockChoice.internal,
+    budget: Budget = 5.0,
+    missed: Missed = MissedChoice.stop,
+    hold: Hold = 0.5,
+    wait: Wait = None,
+    epoch: Epoch = 0,
+    ros: RosVersion = 2,
+    name: PlannerName = "live",
+    stay: Stay = False,
+    overrides: Overrides = None,
+    seed: RunSeed = 0,
+    out: OutRoot = Path("runs"),
+    record: Record = RecordChoice.all,
+    references: References = False,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: AsJson = False,
+) -> None:
+    """Serve one scenario as a rosbridge server: a program outside drives the robot.
+
+    Example: crowdbot serve challenge-2020 in-d0125-slow-c01-r02 --port 9090
+    """
+    from crowdbot.cli.serving.serve_options import Listen, manner_of
+    from crowdbot.cli.shared.one_run import print_run
+    from crowdbot.core.support.stdout_guard import stdout_to_stderr
+
+    times = {"budget": budget, "hold": hold, "wait": wait}
+    manner = manner_of(rate, clock, missed, times, epoch)
+    listen = Listen(
+        host=host, port=port, token=token, ros=ros, connect=connect, stamped=stamped,
+        zenoh=zenoh, zenoh_router=zenoh_router, domain=domain, distro=distro, foxglove=foxglove,
+    )  # fmt: skip
+    with stdout_to_stderr():
+        registry = installed(plugin, no_plugins)
+        what = _what(registry, spec, scenario, overrides)
+        how = _Serving(
+            out=out, record=record, references=references, name=name, seed=seed, stay=stay,
+            meshcat=meshcat,
+        )  # fmt: skip
+        run = _serve(what, how, manner, listen)
+    print_run(run, as_json=as_json)
+    if run.status == "planner_failed":
+        raise typer.Exit(3)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _What:
+    """The suite, and the number of the scenario to begin with."""
+
+    registry: Registry
+    expansion: Expansion
+    first: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Serving:
+    """What the options say of the runs."""
+
+    out: Path
+    record: RecordChoice
+    references: bool
+    name: str
+    seed: int
+    stay: bool
+    meshcat: int | None
+
+
+def _what(
+    registry: Registry, spec: str, scenario: str | None, overrides: list[str] | None
+) -> _What:
+    from crowdbot.core.scenarios.library import open_spec, pick
+    from crowdbot.core.scenarios.one_robot import check_one_robot
+
+    expansion = open_spec(spec, registry, overrides or ())
+    whole = scenario is None and not expansion.single
+    chosen = expansion.scenarios[0] if whole else pick(expansion, scenario)
+    check_one_robot(chosen, "'crowdbot serve'")  # before anybody is asked to connect
+    first = expansion.scenarios.index(chosen)
+    return _What(registry=registry, expansion=expansion, first=first)
+
+
+def _serve(what: _What, how: _Serving, manner: Manner, listen: Listen) -> Run:
+    from crowdbot.cli.serving.serve_options import listening, report, watchers_of
+    from crowdbot.cli.shared.one_run import import_simulate, interruptible
+
+    import_simulate()
+    from crowdbot.core.live.serve import LiveServe, serve_runs
+    from crowdbot.core.live.session import LiveSession
+
+    with interruptible() as stop:
+        session = LiveSession(interrupted=stop)
+        with listening(session, manner, listen) as doors:
+            service = LiveServe(
+                session=session,
+                doors=doors,
+                manner=manner,
+                scenarios=what.expansion.scenarios,
+                first=what.first,
+                request=lambda *asked: _request(what, how, *asked),
+                name=how.name,
+                seed=how.seed,
+                stay=how.stay,
+                watchers=watchers_of(doors, how.meshcat),
+                on_run=lambda run: report(run.record),
+            )
+            return serve_runs(service)
+
+
+def _request(
+    what: _What, how: _Serving, scenario: Scenario, choice: PlannerChoice, seed: int
+) -> Request:
+    from crowdbot.core.runs.run import Request
+
+    expansion = what.expansion
+    return Request(
+        scenario=scenario,
+        choice=choice,
+        registry=what.registry,
+        seed=seed,
+        out=how.out,
+        suite=expansion.folder,
+        metrics=expansion.metrics,
+        axes=expansion.axes.get(scenario.id, {}),
+        words=expansion.words_of(scenario.id),
+        position=expansion.scenarios.index(scenario),
+        record=how.record.value,
+        references=how.references,
+    )

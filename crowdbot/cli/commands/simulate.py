@@ -1,0 +1,133 @@
+"""``crowdbot simulate``: run one scenario with one planner, record it, score it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from crowdbot.cli.shared.options import (
+    MEMORY_GIB,
+    InProcess,
+    NoPlugins,
+    PlannerMemory,
+    Plugins,
+    installed,
+    planner_place,
+)
+from crowdbot.cli.shared.run_arguments import (
+    AsJson,
+    MeshcatPort,
+    OutRoot,
+    Overrides,
+    Record,
+    RecordChoice,
+    RunSeed,
+    ScenarioArgument,
+    SpecArgument,
+)
+
+
+def simulate(
+    spec: SpecArgument,
+    scenario: ScenarioArgument = None,
+    planner: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="[ROBOT=]NAME|FILE|file.py:Class",
+            help="The planner under test, dwa by default; repeatable with the names of robots.",
+        ),
+    ] = None,
+    overrides: Overrides = None,
+    planner_set: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=VALUE", help="Change the planner; repeatable."),
+    ] = None,
+    seed: RunSeed = 0,
+    out: OutRoot = Path("runs"),
+    record: Record = RecordChoice.used,
+    references: Annotated[
+        bool, typer.Option(help="Run robot_alone and crowd_alone where they are missing.")
+    ] = True,
+    force: Annotated[
+        bool, typer.Option("--force", help="Run again even what is complete.")
+    ] = False,
+    step_budget: Annotated[
+        float | None,
+        typer.Option(metavar="SECONDS", help="Wall time that a planner step may take."),
+    ] = None,
+    in_process: InProcess = None,
+    planner_memory: PlannerMemory = MEMORY_GIB,
+    meshcat: MeshcatPort = None,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: AsJson = False,
+) -> None:
+    """Simulate one scenario with one planner; record, score and replay it.
+
+    Example: crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
+
+    Several robots: crowdbot simulate two.yaml --planner a=dwa --planner b=mine.py:Mine
+    """
+    from crowdbot.cli.serving.serve_options import meshcat_view
+    from crowdbot.cli.shared.one_run import (
+        end_hung_process,
+        import_simulate,
+        interruptible,
+        print_run,
+    )
+    from crowdbot.cli.shared.progress import show_progress
+    from crowdbot.core.scenarios.library import open_spec, pick
+    from crowdbot.core.support.stdout_guard import stdout_to_stderr
+
+    place = planner_place(in_process, planner_memory)
+    with stdout_to_stderr():
+        registry = installed(plugin, no_plugins)
+        expansion = open_spec(spec, registry, overrides or ())
+        chosen = pick(expansion, scenario)
+        simulate_it = import_simulate()
+        watchers = meshcat_view(meshcat)
+        with interruptible() as stop, show_progress() as progress:
+            run = simulate_it(
+                chosen,
+                registry,
+                planner=_one_or_several(planner),
+                planner_settings=planner_set or (),
+                seed=seed,
+                out=out,
+                suite=expansion.folder,
+                metrics=expansion.metrics,
+                axes=expansion.axes.get(chosen.id, {}),
+                words=expansion.words_of(chosen.id),
+                position=expansion.scenarios.index(chosen),
+                record=record.value,
+                references=references,
+                force=force,
+                progress=progress,
+                stop=stop,
+                on_hang=end_hung_process,
+                step_budget=step_budget,
+                place=place,
+                watchers=watchers,
+            )
+    print_run(run, as_json=as_json)
+    if run.status == "planner_failed":
+        raise typer.Exit(3)
+
+
+def _one_or_several(planners: Sequence[str] | None) -> str:
+    """The planner of all robots, or those of each, as `resolve_planner` takes them.
+
+    Raises:
+        UsageError: there are several, and one does not say of which robot it is.
+    """
+    from crowdbot.core.planning.fleet_choice import planners_by_robot
+    from crowdbot.errors import UsageError
+
+    given = list(planners or ("dwa",))
+    for text in given if len(given) > 1 else ():
+        if not planners_by_robot(text):
+            raise UsageError(f"--planner {text}: of which robot? Write ROBOT={text}")
+    return ",".join(given)

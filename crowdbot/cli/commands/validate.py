@@ -1,0 +1,38 @@
+"""``crowdbot validate``: every error of a document, without building anything."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Annotated
+
+import typer
+
+from crowdbot.cli.output.checked_documents import check_documents
+from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+
+
+class Format(StrEnum):
+    """How errors are written."""
+
+    TEXT = "text"
+    JSON = "json"
+    GITHUB = "github"
+
+
+def validate(
+    specs: Annotated[
+        list[str], typer.Argument(metavar="SPEC...", help="Files, or names of packaged suites.")
+    ],
+    format_: Annotated[
+        Format, typer.Option("--format", help="text on stderr; json or github on stdout.")
+    ] = Format.TEXT,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Same as --format json.")] = False,
+) -> None:
+    """Check suites and scenarios; report every error with its place.
+
+    Example: crowdbot validate challenge-2020 my_suite.yaml
+    """
+    form = "json" if as_json else format_.value
+    raise typer.Exit(check_documents(specs, installed(plugin, no_plugins), form))

@@ -1,0 +1,176 @@
+"""``crowdbot view``: a scenario from above before it is run; the replay page of a run."""
+
+from __future__ import annotations
+
+import json
+import threading
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.errors import InputError, UsageError
+
+if TYPE_CHECKING:
+    from crowdbot.core.registry.registry import Registry
+    from crowdbot.core.view.shapes import Drawing
+
+_FORMATS = (".html", ".svg", ".png")
+
+
+def view(
+    spec: Annotated[
+        str, typer.Argument(metavar="SPEC|RUN_DIR", help="File, name of a suite, or a run.")
+    ],
+    others: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[ID|RUN_DIR ...]",
+            help="Scenario: id, unique beginning, or pattern. Or more runs, to compare.",
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="File to write: .html, .svg, .png; default: ID.html; of runs compare.html.",
+        ),
+    ] = None,
+    open_: Annotated[bool, typer.Option("--open", help="Show it in the browser.")] = False,
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change the scenario; repeatable."),
+    ] = None,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    foxglove: Annotated[
+        int | None,
+        typer.Option(min=0, max=65535, metavar="PORT", help="Play a run in Foxglove; 0: any port."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Path and facts as JSON.")] = False,
+) -> None:
+    """Draw a scenario from above; find the replay page of a run, or compare runs on one page.
+
+    Nothing is simulated.
+
+    With --foxglove a run is played in Foxglove, with Foxglove's own controls.
+
+    Example: crowdbot view challenge-2020 counter-d0500-fast-c20-r05 --out scenario.png
+
+    Example: crowdbot view runs/a/dwa/seed-0 runs/a/stop_and_go/seed-0 --out compare.html
+    """
+    if foxglove is not None:
+        _play(Path(spec), foxglove)
+        return
+    facts: dict[str, str] = {}
+    if Path(spec).is_dir():
+        if overrides:
+            raise UsageError(f"{spec} is a run, which is over: no --set")
+        path = _replay([spec, *(others or [])], out, plugin, no_plugins=no_plugins)
+    else:
+        if len(others or []) > 1:
+            raise UsageError(f"one ID is drawn at a time, and {others} are several")
+        pattern = next(iter(others or []), None)
+        path, facts = _render_map(
+            installed(plugin, no_plugins), spec, pattern, out, overrides or []
+        )
+    if as_json:
+        typer.echo(json.dumps({"path": str(path), "facts": facts}, indent=2, ensure_ascii=False))
+    else:
+        typer.echo(path)
+    if open_:
+        typer.launch(str(path.resolve()))
+
+
+def _play(run: Path, port: int) -> None:
+    """Serve a run's recording to Foxglove until Ctrl-C."""
+    from crowdbot.cli.serving.serve_options import needs
+    from crowdbot.core.runs.run_directory import RECORDING
+
+    recording = run / RECORDING if run.is_dir() else run
+    if not recording.is_file():
+        raise InputError(f"{run}: --foxglove plays a run, or its recording; there is none")
+    needs("live", "foxglove")
+    from crowdbot.core.live.foxglove_playback import FoxglovePlayback
+
+    player = FoxglovePlayback(recording, "127.0.0.1", port)
+    typer.echo(f"foxglove: ws://127.0.0.1:{player.port}; Ctrl-C ends it", err=True)
+    with suppress(KeyboardInterrupt):
+        threading.Event().wait()
+    player.close()
+
+
+def _replay(
+    names: list[str], out: Path | None, plugin: list[Path] | None, *, no_plugins: bool
+) -> Path:
+    """The page that a run has; of several runs, or with ``out``, a new one."""
+    folders = [Path(name) for name in names]
+    for folder in folders:
+        if not folder.is_dir():
+            raise UsageError(f"{folder} is not a run directory, and {folders[0]} is one")
+    if len(folders) == 1 and out is None:
+        return _own_page(folders[0])
+    check_ending(out, ".html")
+    from crowdbot.core.replay import write_replay
+    from crowdbot.core.runs.replayed import replayed_runs
+
+    shown = replayed_runs(folders, installed(plugin, no_plugins))
+    path = out or Path("compare.html")
+    scenario = shown[0].facts["Scenario"]
+    write_replay(path, *shown, title=f"{scenario} · {' and '.join(one.label for one in shown)}")
+    return path
+
+
+def _own_page(run: Path) -> Path:
+    from crowdbot.core.runs.run_directory import RECORD, REPLAY
+
+    if not (run / RECORD).is_file():
+        raise InputError(f"{run}: no run directory, there is no {RECORD} in it")
+    if not (run / REPLAY).is_file():
+        raise InputError(
+            f"{run}: the run has no {REPLAY}; crowdbot view {run} --out {REPLAY} makes one"
+        )
+    return run / REPLAY
+
+
+def _render_map(
+    registry: Registry, spec: str, pattern: str | None, out: Path | None, overrides: list[str]
+) -> tuple[Path, dict[str, str]]:
+    from crowdbot.core.scenarios.library import open_spec, pick
+    from crowdbot.core.scenarios.lock import population
+    from crowdbot.core.view.build import build_map_content
+    from crowdbot.core.view.facts import scenario_facts
+    from crowdbot.core.view.render import render
+    from crowdbot.dsl.identity.canonical import content_hash
+
+    check_ending(out, *_FORMATS)
+    expansion = open_spec(spec, registry, overrides)
+    chosen = pick(expansion, pattern)
+    people = population(chosen, registry)
+    spec_hash = content_hash(chosen, registry.spec_versions(chosen))
+    facts = scenario_facts(chosen, people.agents, spec_hash)
+    title = chosen.id if expansion.single else f"{expansion.suite_id}/{chosen.id}"
+    path = out or Path(f"{chosen.id.replace('/', '_')}.html")
+    content = build_map_content(chosen, people.agents, registry)
+    heading = path.suffix.lower() != ".html"
+    atomic_write(
+        path, _serialise(render(content, title, facts, heading=heading), path.suffix.lower())
+    )
+    return path, facts
+
+
+def _serialise(drawing: Drawing, suffix: str) -> bytes:
+    if suffix == ".png":
+        from crowdbot.core.view.png import to_png
+
+        return to_png(drawing)
+    if suffix == ".svg":
+        from crowdbot.core.view.svg import to_svg
+
+        return to_svg(drawing).encode()
+    from crowdbot.core.view.page import to_html
+
+    return to_html(drawing).encode()

@@ -1,0 +1,106 @@
+"""What ``crowdbot validate`` finds in documents, and how it is written."""
+
+from __future__ import annotations
+
+import json
+import logging
+import sys
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from crowdbot.errors import SpecError, UnknownNameError
+
+if TYPE_CHECKING:
+    from crowdbot.core.registry.registry import Registry
+    from crowdbot.dsl.scenario.lock import LockFiles
+    from crowdbot.dsl.text.diagnostics import Diagnostic
+
+_LOG = logging.getLogger(__name__)
+
+
+def check_documents(specs: Sequence[str], registry: Registry, form: str = "text") -> int:
+    """Check documents and print what is wrong: as text on stderr, else on stdout.
+
+    Args:
+        specs: files, or names of packaged suites.
+        form: ``text``, ``json`` or ``github``.
+
+    Returns:
+        The exit code: 1 if something is wrong.
+    """
+    results = {spec: _check(spec, registry) for spec in dict.fromkeys(specs)}
+    errors = [d for _, found in results.values() for d in found]
+    if form == "json":
+        print(_as_json(results))
+    elif form == "github":
+        for diagnostic in errors:
+            print(_as_github(diagnostic))
+    else:
+        _print_text(results, errors)
+    return 1 if errors else 0
+
+
+def _check(spec: str, registry: Registry) -> tuple[int, list[Diagnostic]]:
+    """Number of scenarios, errors."""
+    from crowdbot.core.support.gc_throttle import seldom_collected
+
+    with seldom_collected():
+        return _check_all(spec, registry)
+
+
+def _check_all(spec: str, registry: Registry) -> tuple[int, list[Diagnostic]]:
+    from crowdbot.core.scenarios.library import open_suite
+    from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source
+
+    try:
+        expansion, files = open_suite(spec, registry)
+        return len(expansion.scenarios), list(_lock_problems(files))
+    except SpecError as error:
+        return 0, list(error.diagnostics)
+    except UnknownNameError as error:
+        return 0, [Diagnostic("E001", str(error), Mark(Source(spec)))]
+
+
+def _lock_problems(files: LockFiles) -> Iterator[Diagnostic]:
+    """What is wrong with the files of a lock as such; whether it fits is 'lock --check'."""
+    from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source
+    from crowdbot.errors import InputError
+
+    if not files.lock_path.exists():
+        return
+    checks = ((files.lock_path, lambda: files.lock), (files.agents_path, files.check_tables))
+    for path, check in checks:
+        try:
+            check()
+        except InputError as error:
+            yield Diagnostic("E001", str(error), Mark(Source(str(path))))
+
+
+def _print_text(results: dict[str, tuple[int, list[Diagnostic]]], errors: list[Diagnostic]) -> None:
+    from crowdbot.dsl.text.diagnostics import render
+
+    for spec, (count, found) in results.items():
+        if not found and _LOG.isEnabledFor(logging.INFO):
+            print(f"{spec}: ok, {'1 scenario' if count == 1 else f'{count} scenarios'}")
+    if errors:
+        print(render(errors), file=sys.stderr)
+
+
+def _as_json(results: dict[str, tuple[int, list[Diagnostic]]]) -> str:
+    listed = [
+        {"spec": spec, "ok": not found, "scenarios": count, "errors": [d.as_dict() for d in found]}
+        for spec, (count, found) in results.items()
+    ]
+    return json.dumps(listed, indent=2)
+
+
+def _as_github(diagnostic: Diagnostic) -> str:
+    """A workflow command; its own characters are escaped."""
+    mark = diagnostic.mark
+    text = diagnostic.message + (f" ({diagnostic.hint})" if diagnostic.hint else "")
+    place = f"file={_escape(mark.source.name, ':,')},line={mark.line + 1},col={mark.column + 1}"
+    return f"::error {place},title={diagnostic.code}::{_escape(text)}"
+
+
+def _escape(text: str, more: str = "") -> str:
+    return "".join(f"%{ord(c):02X}" if c in "%\r\n" + more else c for c in text)

@@ -1,0 +1,28 @@
+"""The list that ``crowdbot expand`` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from crowdbot.core.registry.registry import Registry
+    from crowdbot.dsl.scenario.scenario import Scenario
+
+
+def print_scenarios(scenarios: Sequence[Scenario], registry: Registry, *, count: bool) -> None:
+    """Print a line with id and hash for each scenario, or only how many there are."""
+    if count:
+        print(len(scenarios))
+        return
+    width = max((len(s.id) for s in scenarios), default=0)
+    for scenario in scenarios:
+        text = "hidden draw" if scenario.hidden else hash_of(scenario, registry)
+        print(f"{scenario.id:<{width}}  {text}")
+
+
+def hash_of(scenario: Scenario, registry: Registry) -> str:
+    """Its content hash, with the installed components."""
+    from crowdbot.dsl.identity.canonical import content_hash
+
+    return content_hash(scenario, registry.spec_versions(scenario))

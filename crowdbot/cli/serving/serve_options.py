@@ -1,0 +1,235 @@
+"""What the options of ``crowdbot serve`` mean."""
+
+from __future__ import annotations
+
+import math
+import secrets
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+from crowdbot.cli.serving.serve_arguments import ClockChoice, DistroChoice, MissedChoice
+from crowdbot.errors import MissingLibraryError, UsageError
+
+if TYPE_CHECKING:
+    from crowdbot.core.live.door import Door
+    from crowdbot.core.live.planner import Manner
+    from crowdbot.core.live.services import Service
+    from crowdbot.core.live.session import LiveSession
+    from crowdbot.core.recording.watcher import Watcher
+
+
+@dataclass(frozen=True, kw_only=True)
+class Listen:
+    """Where to listen, and for whom."""
+
+    host: str
+    port: int
+    token: str | None
+    ros: int
+    connect: str | None = None
+    stamped: bool = False
+    zenoh: str | None = None
+    zenoh_router: bool = False
+    domain: int = 0
+    distro: DistroChoice = DistroChoice.jazzy
+    foxglove: int | None = None
+
+
+def manner_of(
+    rate: float | None,
+    clock: ClockChoice,
+    missed: MissedChoice,
+    times: Mapping[str, float | None],
+    epoch: int,
+) -> Manner:
+    """How a live run goes on.
+
+    Args:
+        times: of ``budget``, ``hold`` and ``wait``, s.
+
+    Raises:
+        UsageError: two options contradict each other, or a number is out of range.
+    """
+    from crowdbot.core.live.planner import Manner
+
+    external = clock is ClockChoice.external
+    if external and rate is not None:
+        raise UsageError("--rate and --clock external exclude each other: who says the time?")
+    for name, value in {"rate": rate, **times}.items():
+        if value is not None and not (math.isfinite(value) and value > 0.0):
+            raise UsageError(f"--{name} must be above 0, not {value:g}")
+    wait = times["wait"]
+    return Manner(
+        rate=rate,
+        external_clock=external,
+        budget=times["budget"] or 0.0,
+        missed=missed.value,
+        hold=times["hold"] or 0.0,
+        wait=math.inf if wait is None else wait,
+        epoch=epoch * 10**9,
+    )
+
+
+@contextmanager
+def listening(session: LiveSession, manner: Manner, listen: Listen) -> Iterator[list[Door]]:
+    """The doors through which programs come in, closed at the end.
+
+    Raises:
+        MissingLibraryError: the extra ``live`` is not installed.
+        InputError: the address cannot be had.
+    """
+    with ExitStack() as stack:
+        first = _rosbridge if listen.connect is None else _connected
+        doors: list[Door] = [first(session, manner, listen)]
+        stack.callback(doors[0].close)
+        if listen.zenoh is not None:
+            doors.append(_zenoh(session, manner, listen.zenoh, listen))
+            stack.callback(doors[-1].close)
+        if listen.foxglove is not None:
+            doors.append(_foxglove(session, manner, listen, listen.foxglove))
+            stack.callback(doors[-1].close)
+        yield doors
+
+
+def _connected(session: LiveSession, manner: Manner, listen: Listen) -> Door:
+    from crowdbot.core.live.rosbridge.client import RosbridgeClient
+
+    needs("live", "websockets")
+    assert listen.connect is not None
+    door = RosbridgeClient(
+        session,
+        listen.connect,
+        ros=1 if listen.ros == 1 else 2,
+        stamped=listen.stamped,
+        external_clock=manner.external_clock,
+    )
+    _say(f"rosbridge: connected to {listen.connect}; waiting for commands on /cmd_vel")
+    return door
+
+
+def _foxglove(session: LiveSession, manner: Manner, listen: Listen, port: int) -> Door:
+    needs("live", "foxglove")
+    from crowdbot.core.live.foxglove_door import FoxgloveDoor
+
+    if not _is_this_machine(listen.host):
+        raise UsageError("--foxglove knows no token: it listens on this machine only")
+    door = FoxgloveDoor(session, listen.host, port, _services(session), manner.epoch)
+    _say(f"foxglove: ws://{listen.host}:{door.port}")
+    return door
+
+
+def _is_this_machine(host: str) -> bool:
+    from crowdbot.core.live.rosbridge.server import is_loopback
+
+    return is_loopback(host)
+
+
+def _zenoh(session: LiveSession, manner: Manner, endpoint: str, listen: Listen) -> Door:
+    needs("ros2", "zenoh")
+    from crowdbot.core.live.zenoh_door import Network, ZenohDoor
+
+    door = ZenohDoor(
+        session,
+        Network(
+            endpoint=endpoint,
+            router=listen.zenoh_router,
+            domain=listen.domain,
+            distro=listen.distro.value,
+        ),
+        _services(session),
+        resend=manner.lockstep,
+        external_clock=manner.external_clock,
+    )
+    role = "router at" if listen.zenoh_router else "connected to"
+    _say(f"ROS 2 ({listen.distro.value}, domain {listen.domain}): zenoh, {role} {endpoint}")
+    return door
+
+
+def _rosbridge(session: LiveSession, manner: Manner, listen: Listen) -> Door:
+    from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer, is_loopback
+
+    needs("live", "websockets", "cbor2")
+    token = listen.token or ""
+    if not is_loopback(listen.host):
+        token = token or secrets.token_urlsafe(16)
+        _say(
+            f"warning: {listen.host} can be reached from other machines; rosbridge is not "
+            "encrypted, and whoever knows the token drives the robot"
+        )
+    server = RosbridgeServer(
+        session,
+        Address(host=listen.host, port=listen.port, token=token),
+        _services(session),
+        ros=1 if listen.ros == 1 else 2,
+        resend=manner.lockstep,
+        external_clock=manner.external_clock,
+    )
+    shown = f"[{listen.host}]" if ":" in listen.host else listen.host
+    query = f"/?token={token}" if token else ""
+    _say(f"rosbridge: ws://{shown}:{server.port}{query}; waiting for a client that drives /cmd_vel")
+    return server
+
+
+def watchers_of(doors: Sequence[Door], meshcat: int | None) -> list[Watcher]:
+    """Who shows the truth of a run: Foxglove, and Meshcat at a port.
+
+    Raises:
+        InputError: the port cannot be had.
+    """
+    found = [cast("Watcher", door) for door in doors if hasattr(door, "sample")]
+    return found + meshcat_view(meshcat)
+
+
+def meshcat_view(port: int | None) -> list[Watcher]:
+    """Drake's Meshcat at a port; none without one.
+
+    Raises:
+        InputError: the port cannot be had.
+    """
+    if port is None:
+        return []
+    from crowdbot.core.sim.meshcat_view import MeshcatView
+
+    view = MeshcatView(port)
+    _say(f"meshcat: {view.url}")
+    return [view]
+
+
+def _services(session: LiveSession) -> dict[str, Service]:
+    """All services that clients may call."""
+    from crowdbot.core.live.services import services
+    from crowdbot.core.live.simulation_interfaces import simulation_services
+
+    return {**services(session), **simulation_services(session)}
+
+
+def needs(extra: str, *modules: str) -> None:
+    """Make sure that the libraries of an extra are installed.
+
+    Raises:
+        MissingLibraryError: one of them is not.
+    """
+    from importlib.util import find_spec
+
+    missing = [m for m in modules if find_spec(m) is None]
+    if missing:
+        raise MissingLibraryError(
+            f"{', '.join(missing)}: not installed; install it with 'pip install crowdbot[{extra}]'"
+        )
+
+
+def report(record: Mapping[str, Any]) -> None:
+    """Say on stderr what only a live run has."""
+    live = record["live"]
+    lag = f", at most {live['largest_lag']:.3g} s behind" if "largest_lag" in live else ""
+    _say(
+        f"live: {live['steps']} steps, {live['missed_steps']} without a command in time, "
+        f"{live['refused_commands']} commands refused{lag}"
+    )
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)

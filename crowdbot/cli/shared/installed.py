@@ -1,0 +1,47 @@
+"""What a command makes of the installation."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from crowdbot.core.registry.registry import Registry
+
+
+def installed(
+    plugin: Sequence[Path] | None, no_plugins: bool = False, *, strict: bool = True
+) -> Registry:
+    """The registry that a command works with.
+
+    Args:
+        plugin: paths given by hand.
+        no_plugins: leave out all that are installed.
+        strict: refuse a plugin given by hand that failed; otherwise it is listed as such.
+
+    Raises:
+        InputError: there is nothing at a path.
+        PluginError: a plugin given by hand failed.
+    """
+    from crowdbot.core.support.gc_throttle import seldom_collected
+    from crowdbot.core.support.stdout_guard import stdout_to_stderr
+    from crowdbot.errors import InputError, PluginError
+
+    paths = list(plugin or ())
+    for path in paths:
+        if not path.exists():
+            raise InputError(f"--plugin {path}: no such file or folder")
+    with seldom_collected(), stdout_to_stderr():
+        from crowdbot.core.registry.registry import discover
+
+        registry = discover(extra=paths, allow=() if no_plugins else None)
+    log = logging.getLogger("crowdbot")
+    for line in registry.unknown_allowed():
+        log.warning(line)
+    for found in registry.plugins:
+        if strict and found.error and found.given:
+            log.debug(found.traceback)
+            raise PluginError(f"--plugin {found.distribution}: {found.error}")
+    return registry

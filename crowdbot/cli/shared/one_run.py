@@ -1,0 +1,143 @@
+"""What commands share that make a run in their own process: Drake, Ctrl-C, what is printed."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import TYPE_CHECKING
+
+import typer
+
+from crowdbot.core.registry.plugin_errors import UserInterrupt
+
+if TYPE_CHECKING:
+    from crowdbot.core.runs.run import Run
+
+
+def import_simulate() -> Callable[..., Run]:
+    """Import Drake, which needs a system library that a bare machine may lack.
+
+    Raises:
+        MissingLibraryError: it is missing.
+    """
+    from crowdbot.errors import MissingLibraryError
+
+    try:
+        from crowdbot.core.sim.simulate import simulate as simulate_it
+    except ImportError as error:
+        if "libglib" not in str(error):
+            raise
+        raise MissingLibraryError(
+            "Drake needs the system library libglib2.0; install it with "
+            "'sudo apt-get install libglib2.0-0' (libglib2.0-0t64 on newer systems)"
+        ) from error
+    return simulate_it
+
+
+@contextmanager
+def interruptible() -> Iterator[Callable[[], bool]]:
+    """The first Ctrl-C asks the run to end and keep its recording; the second one insists.
+
+    While nothing runs yet, as when kernels are compiled, the first one is enough.
+    """
+    asked = running = False
+
+    def handler(number: int, frame: FrameType | None) -> None:
+        nonlocal asked
+        del number, frame
+        if asked or not running:
+            raise UserInterrupt
+        asked = True
+
+    def stop() -> bool:
+        nonlocal running
+        running = True
+        return asked
+
+    previous = signal.signal(signal.SIGINT, handler)
+    try:
+        yield stop
+    finally:
+        signal.signal(signal.SIGINT, previous)
+
+
+def end_hung_process() -> None:
+    """End this process: there is no other way out of a planner that swallows interruptions."""
+    print(
+        "error: the planner did not return and could not be interrupted; "
+        "the recording up to here is in the .partial directory",
+        file=sys.stderr,
+        flush=True,
+    )
+    os._exit(3)
+
+
+def print_run(run: Run, *, as_json: bool) -> None:
+    """Scores on stdout, as a table or as JSON; what went wrong on stderr, last, to be seen."""
+    _print_result(run, as_json=as_json)
+    if run.record["status"] == "planner_failed":
+        sys.stdout.flush()
+        print(f"error: {run.record['reason']}", file=sys.stderr)
+
+
+def _print_result(run: Run, *, as_json: bool) -> None:
+    from crowdbot.core.runs.run_directory import REPLAY, SCORES
+    from crowdbot.core.scoring.scores_csv import headlines, read_scores_csv, scores_table
+
+    rows = read_scores_csv(run.directory / SCORES)
+    if run.replaced:
+        logging.getLogger("crowdbot").info(
+            "note: it replaces a run that was recorded differently: %s", ", ".join(run.replaced)
+        )
+    if as_json:
+        scores = [
+            {
+                "metric": r.score.metric,
+                "variant": r.score.variant,
+                "value": r.score.value,
+                "unit": r.score.unit,
+                "status": r.score.status,
+                "reason": r.score.reason,
+                "lower": r.score.lower,
+                "upper": r.score.upper,
+            }
+            for r in rows
+        ]
+        typer.echo(
+            json.dumps(
+                {**run.record, "directory": str(run.directory), "reused": run.reused,
+                 "replaced": list(run.replaced), "scores": scores},
+                indent=2,
+            )
+        )  # fmt: skip
+        return
+    from rich.console import Console
+
+    console = Console()
+    console.print(scores_table(headlines([r.score for r in rows])))
+    console.print(_summary(run), highlight=False)
+    console.print(f"all variants: {run.directory / SCORES}", soft_wrap=True, highlight=False)
+    console.print(f"replay: {run.directory / REPLAY}", soft_wrap=True, highlight=False)
+
+
+def _summary(run: Run) -> str:
+    from crowdbot.core.runs.provenance import remarks
+
+    record = run.record
+    ending = {
+        "arrived": "arrived after {:.1f} s",
+        "timeout": "did not arrive within {:.1f} s",
+        "toppled": "toppled at {:.1f} s",
+        "planner_failed": "planner failed at {:.1f} s",
+    }[record["status"]].format(record["goal_time"] or record["sim_time"])
+    speed = f"{record['real_time_factor']:.1f} times real time"
+    note = "; was complete already, --force runs it again" if run.reused else f" ({speed})"
+    who = f"{record['scenario']} · {record['planner']['name']} · seed {record['seed']}"
+    flags = "".join(f"; {flag.lower()}" for flag in remarks(record))
+    return f"{who}: {ending}{note}{flags}"

@@ -1,0 +1,89 @@
+"""Options that several commands have, and what they make of the installation."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crowdbot.cli.shared.installed import installed
+
+if TYPE_CHECKING:
+    from crowdbot.core.planning.choice import PlannerPlace
+
+__all__ = [
+    "MEMORY_GIB",
+    "InProcess",
+    "NoPlugins",
+    "PlannerMemory",
+    "Plugins",
+    "check_ending",
+    "installed",
+    "planner_place",
+]
+
+Plugins = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--plugin",
+        metavar="PATH",
+        help="A plugin that is not installed: file, package or project; repeatable.",
+    ),
+]
+NoPlugins = Annotated[
+    bool, typer.Option("--no-plugins", help="Only crowdbot's own, and those of --plugin.")
+]
+InProcess = Annotated[
+    bool | None,
+    typer.Option(
+        "--in-process/--own-process",
+        help="Where planners run; default: crowdbot's own inside, others in separate processes.",
+        show_default=False,
+    ),
+]
+PlannerMemory = Annotated[
+    float,
+    typer.Option(metavar="GIB", min=0.0, help="Memory of a planner's process; 0: no limit."),
+]
+#: A Python with numpy needs about a third of it.
+_LEAST_GIB = 0.5
+#: Default of `PlannerMemory`, GiB.
+MEMORY_GIB = 4.0
+
+
+def check_ending(out: Path | None, *endings: str) -> None:
+    """Refuse a file for ``--out`` whose name says that something else is in it.
+
+    Args:
+        out: as it was given; None where it was not.
+        endings: those that there are, such as ``.html``.
+
+    Raises:
+        UsageError: the name ends otherwise.
+    """
+    from crowdbot.errors import UsageError
+
+    if out is not None and out.suffix.lower() not in endings:
+        known = " or ".join(filter(None, [", ".join(endings[:-1]), endings[-1]]))
+        raise UsageError(f"--out {out}: the name must end in {known}")
+
+
+def planner_place(in_process: bool | None, memory: float, *, lenient: bool = False) -> PlannerPlace:
+    """Where planners are to run.
+
+    Args:
+        in_process: as `InProcess`.
+        memory: as `PlannerMemory`.
+        lenient: as in `PlannerPlace`.
+
+    Raises:
+        UsageError: no process can start with so little.
+    """
+    from crowdbot.core.planning.choice import PlannerPlace
+    from crowdbot.errors import UsageError
+
+    if not memory < 2**20 or 0.0 < memory < _LEAST_GIB:
+        raise UsageError(f"--planner-memory {memory:g}: 0, or at least {_LEAST_GIB:g} GiB")
+    limit = round(memory * 2**30) if memory else None
+    return PlannerPlace(in_process=in_process, memory=limit, lenient=lenient)

@@ -1,0 +1,162 @@
+"""Runs of one robot or of several, read and scored alike: robot -> what it did."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+
+from crowdbot.core.recording import (
+    RecordingHeader,
+    fleet_names,
+    read_fleet,
+    read_run,
+    read_whole,
+)
+from crowdbot.core.recording.images import ImageCollector
+from crowdbot.core.recording.scans import ReplayScan
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs import provenance
+from crowdbot.core.runs.identity import CROWD_ALONE, ROBOT_ALONE
+from crowdbot.core.runs.run import read_kept, read_references
+from crowdbot.core.scoring.evaluate import Scores, score
+from crowdbot.core.scoring.fleet_scores import fleet_scores
+from crowdbot.core.scoring.metric import References
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.errors import InputError
+
+
+@dataclass(frozen=True, slots=True)
+class SeenRun:
+    """What one robot did, and what its sensors of distances saw."""
+
+    run: Trajectories
+    scans: Sequence[ReplayScan]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordedRun:
+    """What a recording of one robot or of several says of itself.
+
+    Attributes:
+        runs: of each robot; of one, or of people alone, under an empty name.
+        trajectory: hash of everything that was simulated.
+        until: s, how far it can be read.
+    """
+
+    header: RecordingHeader
+    runs: Mapping[str, Trajectories]
+    trajectory: str
+    complete: bool
+    until: float
+
+
+def read_robots(
+    path: Path,
+    robots: Sequence[str],
+    max_rate: float,
+    images: ImageCollector | None = None,
+) -> dict[str, SeenRun]:
+    """The runs of all robots of a recording.
+
+    Args:
+        path: a recording.
+        robots: their names, in the scenario's order.
+        max_rate: of scans, Hz.
+        images: collects what cameras saw, in the same pass.
+
+    Raises:
+        InputError: it cannot be read, or one is not in it.
+    """
+    also = None if images is None else images.add
+    if len(robots) == 1:
+        return {robots[0]: SeenRun(*read_run(path, max_rate, also))}
+    found = read_fleet(path, max_rate, also)
+    if missing := [name for name in robots if name not in found]:
+        raise InputError(f"{path}: robot '{missing[0]}' is not in it")
+    return {name: SeenRun(found[name].run, found[name].scans) for name in robots}
+
+
+def references_by_robot(paths: Mapping[str, Path], robots: Sequence[str]) -> dict[str, References]:
+    """What each robot's run is compared with; see `read_references`."""
+    if len(robots) == 1:
+        return {robots[0]: read_references(paths)}
+    people = read_references({n: p for n, p in paths.items() if n == CROWD_ALONE})
+    if ROBOT_ALONE not in paths:
+        return dict.fromkeys(robots, people)
+    alone = read_robots(paths[ROBOT_ALONE], robots, 1.0)
+    return {name: replace(people, robot_alone=alone[name].run) for name in robots}
+
+
+def score_robots(
+    registry: Registry,
+    runs: Mapping[str, Trajectories],
+    references: Mapping[str, References],
+    metrics: str | Sequence[str] = "*",
+    variants: str | Sequence[str] = "all",
+) -> Scores:
+    """Scores of a run: of its robot, or of the fleet and of each of its robots.
+
+    Raises:
+        InputError: as `score`.
+    """
+    by_robot = {
+        name: score(
+            registry, run, references[name].robot_alone, references[name].crowd_alone,
+            metrics=metrics, variants=variants,
+        )
+        for name, run in runs.items()
+    }  # fmt: skip
+    first = next(iter(by_robot.values()))
+    return first if len(by_robot) == 1 else Scores(tuple(fleet_scores(by_robot)))
+
+
+def trajectory_of(runs: Mapping[str, Trajectories]) -> str:
+    """Hash of every simulated number of a run of one robot or of several."""
+    hashes = {name: provenance.trajectory_hash(run) for name, run in runs.items()}
+    return next(iter(hashes.values())) if len(hashes) == 1 else provenance.digest(hashes)
+
+
+def read_recorded(path: Path) -> RecordedRun:
+    """A recording of one robot, of several, or of people alone.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    names = fleet_names(path)
+    if not names:
+        whole = read_whole(path)
+        return RecordedRun(
+            header=whole.header,
+            runs={"": whole.run},
+            trajectory=provenance.trajectory_hash(whole.run),
+            complete=whole.complete,
+            until=whole.until,
+        )
+    found = read_fleet(path)
+    runs = {name: one.run for name, one in found.items()}
+    return RecordedRun(
+        header=next(iter(found.values())).header,
+        runs=runs,
+        trajectory=trajectory_of(runs),
+        complete=all(one.complete for one in found.values()),
+        until=max(one.until for one in found.values()),
+    )
+
+
+def reference_hashes(paths: Mapping[str, Path]) -> dict[str, str]:
+    """Hashes of the calibration runs' trajectories, by name; kept as long as the files stay."""
+    found = {}
+    for name, path in paths.items():
+        state = path.stat()
+        found[name] = _hash(path.resolve(), state.st_ino, state.st_mtime_ns, state.st_size)
+    return found
+
+
+@lru_cache(maxsize=64)
+def _hash(path: Path, *state: int) -> str:
+    del state  # another one is another recording
+    if fleet_names(path):
+        return read_recorded(path).trajectory
+    return provenance.trajectory_hash(read_kept(path))

@@ -1,0 +1,224 @@
+"""What to simulate, and what came of it."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Any, Literal
+
+from crowdbot.core.planning.resolve import PlannerChoice
+from crowdbot.core.recording import read_fleet, read_trajectories
+from crowdbot.core.recording.watcher import Watcher
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.outcome import Progress
+from crowdbot.core.scoring.evaluate import Scores
+from crowdbot.core.scoring.metric import References
+from crowdbot.core.scoring.scores_csv import read_scores_csv
+from crowdbot.core.support.arguments import path_of
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.suite.axis_words import AxisWords
+from crowdbot.dsl.text.path_names import path_problem
+from crowdbot.errors import InputError
+
+#: What is recorded, most first: what a run has holds all that the levels after it ask for.
+Recorded = Literal["all", "used", "none"]
+
+
+@dataclass(frozen=True)
+class Run:
+    """A complete run on disk.
+
+    Attributes:
+        directory: where its files are.
+        record: ``run.json``.
+        reused: whether the run had been made before.
+        replaced: how an earlier run in the same folder, which this one has replaced, was
+            recorded differently; empty if there was none, or it was recorded in the same way.
+    """
+
+    directory: Path
+    record: Mapping[str, Any] = field(repr=False)
+    reused: bool = False
+    replaced: tuple[str, ...] = ()
+    _keep: object = field(default=None, repr=False, compare=False)
+
+    @classmethod
+    def open(cls, directory: str | Path) -> Run:
+        """Open a run that was made before.
+
+        Args:
+            directory: with its ``run.json``.
+
+        Raises:
+            InputError: the folder holds no complete run.
+        """
+        path = path_of("directory", directory)
+        record = files.read_record(path)
+        if record is None:
+            raise InputError(f"{directory}: no run directory, there is no {files.RECORD} in it")
+        return cls(path, record, reused=True)
+
+    @property
+    def scenario(self) -> str:
+        """Id of the scenario."""
+        return str(self.record["scenario"])
+
+    @property
+    def planner(self) -> str:
+        """Label of the planner, as scores carry it."""
+        return str(self.record["planner"]["label"])
+
+    @property
+    def seed(self) -> int:
+        """Of the run."""
+        return int(self.record["seed"])
+
+    @property
+    def status(self) -> str:
+        """``arrived``, ``timeout``, ``toppled`` or ``planner_failed``."""
+        return str(self.record["status"])
+
+    @cached_property
+    def scores(self) -> Scores:
+        """What was computed when it was made, read from ``scores.csv``.
+
+        Raises:
+            InputError: they cannot be read.
+        """
+        rows = read_scores_csv(self.directory / files.SCORES)
+        return Scores(tuple(r.score for r in rows), self.scenario, self.planner, self.seed)
+
+    @cached_property
+    def trajectories(self) -> Trajectories:
+        """The run itself, read from its recording.
+
+        Raises:
+            InputError: it has several robots; `robots` has the run of each.
+        """
+        return read_trajectories(self.directory / files.RECORDING)
+
+    @cached_property
+    def robots(self) -> Mapping[str, Trajectories]:
+        """The run of each of several robots, by name; empty of a run of one."""
+        found = read_fleet(self.directory / files.RECORDING) if "robots" in self.record else {}
+        return {name: one.run for name, one in found.items()}
+
+    @cached_property
+    def references(self) -> References:
+        """The calibration runs, as far as they were computed."""
+        paths: Mapping[str, str] = self.record["references"]
+        return read_references({n: (self.directory / p).resolve() for n, p in paths.items()})
+
+    def _repr_html_(self) -> str:
+        """The replay page for notebooks, in a frame of its own; without one, what is known."""
+        facts = f"{self.scenario} · {self.planner} · seed {self.seed}: {self.status}"
+        page = self.directory / files.REPLAY
+        if not page.is_file():
+            return f"<p>{html.escape(facts)}</p>"
+        text = html.escape(page.read_text(encoding="utf-8"), quote=True)
+        return (
+            f'<iframe srcdoc="{text}" title="{html.escape(facts, quote=True)}" '
+            'sandbox="allow-scripts" style="width:100%;height:640px;border:0"></iframe>'
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """What to simulate, and how.
+
+    Attributes:
+        seed: of the run: sensor noise and planner.
+        out: root of the run directories.
+        suite: first folder below it.
+        record: which sensors are simulated and recorded.
+        references: whether calibration runs are made where they are missing.
+        force: whether a complete run is made again.
+        metrics: patterns of the metrics to score; None is all.
+        axes: axis of the suite -> label, in the suite's order.
+        words: axis -> what it varies and the value here, in words.
+        position: of the scenario in its suite.
+        replay: whether to write the replay page.
+        references_finished: whoever asks has seen to the references; those in which the planner
+            failed are not tried again.
+        progress: called several times a simulated second.
+        stop: asked several times a simulated second; True ends the run as interrupted.
+        on_hang: called when a planner cannot be interrupted; should end the process.
+        step_budget: seconds of wall time that a planner step may take; None sets no limit.
+        watchers: show the run, not its references, while it goes on.
+    """
+
+    scenario: Scenario
+    choice: PlannerChoice
+    registry: Registry
+    seed: int
+    out: Path
+    suite: str = "scenarios"
+    record: Recorded = "used"
+    references: bool = True
+    force: bool = False
+    metrics: Sequence[str] | None = None
+    axes: Mapping[str, str] = field(default_factory=dict)
+    words: Mapping[str, AxisWords] = field(default_factory=dict)
+    position: int = 0
+    replay: bool = True
+    references_finished: bool = False
+    progress: Callable[[Progress], None] | None = None
+    stop: Callable[[], bool] = lambda: False
+    on_hang: Callable[[], object] | None = None
+    step_budget: float | None = None
+    watchers: Sequence[Watcher] = ()
+
+    @property
+    def pinned(self) -> bool:
+        """Whether planner and plugins all come from installed distributions."""
+        return self.choice.pinned and all(p.pinned for p in self.registry.plugins if not p.error)
+
+    @property
+    def directory(self) -> Path:
+        """Where the run goes.
+
+        Raises:
+            InputError: a name leads out of the root, or is one that crowdbot needs itself.
+        """
+        for name in (self.suite, self.scenario.id, self.choice.label):
+            if why := path_problem(name):
+                raise InputError(f"no folder can be called '{name[:80]}': it {why}")
+        return self.out / self.suite / self.scenario.id / self.choice.label / f"seed-{self.seed}"
+
+
+def read_references(paths: Mapping[str, Path]) -> References:
+    """The recordings of the calibration runs, by name.
+
+    Several runs share them: the latest few are kept, as long as their files do not change.
+    """
+    runs: dict[str, Any] = {name: read_kept(path) for name, path in paths.items()}
+    return References(**runs)
+
+
+def read_kept(path: Path) -> Trajectories:
+    """The trajectories of a recording that several runs share.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    try:
+        state = _state_of(path)
+    except OSError:
+        return read_trajectories(path)  # says what is wrong
+    return _kept(*state)
+
+
+def _state_of(path: Path) -> tuple[Path, int, int, int]:
+    state = path.stat()
+    return path.resolve(), state.st_ino, state.st_mtime_ns, state.st_size
+
+
+@lru_cache(maxsize=4)  # with 200 people for 180 s one takes 18 MB
+def _kept(path: Path, *state: int) -> Trajectories:
+    del state  # another one is another recording
+    return read_trajectories(path)

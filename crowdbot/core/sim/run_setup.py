@@ -1,0 +1,152 @@
+"""Records people alone, without Drake; and what both kinds of recordings share."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd import CrowdEngine
+from crowdbot.core.crowd import state as crowd_state
+from crowdbot.core.crowd.desired_acceleration import candidates_of
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.planning.resolve import PlannerChoice
+from crowdbot.core.population.realisation import Realisation
+from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter
+from crowdbot.core.recording.candidates import Choosers
+from crowdbot.core.recording.run_log import RunLog
+from crowdbot.core.recording.watcher import Watcher
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs.outcome import INTERRUPTED, TIMEOUT, Outcome, Progress
+from crowdbot.core.sim.build_crowd import build_crowd
+from crowdbot.core.sim.crowd_only import run_crowd
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.errors import InputError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunSetup:
+    """What one recording needs; ``hashes`` say whose it is, and stand in its header."""
+
+    scenario: Scenario
+    agents: Realisation
+    registry: Registry
+    choice: PlannerChoice
+    seed: int
+    recording: Path
+    record: Literal["all", "used", "none"]
+    stage: str
+    progress: Callable[[Progress], None] | None
+    stop: Callable[[], bool]
+    on_hang: Callable[[], object] | None
+    step_budget: float | None = None
+    hashes: Mapping[str, str] = field(default_factory=dict)
+    watchers: Sequence[Watcher] = ()
+
+
+def record_crowd(setup: RunSetup, duration: float) -> Outcome:
+    """Simulate the scenario's people without a robot.
+
+    Raises:
+        InputError: nobody walks there.
+    """
+    scenario, registry = setup.scenario, setup.registry
+    parts = build_environment(registry, scenario.environment)
+    engine = build_crowd(scenario, setup.agents, parts, registry)
+    if engine is None:
+        raise InputError(f"{scenario.id} has no crowd")
+    header = RecordingHeader(
+        scenario=scenario.id, hashes=setup.hashes, agents=agents(engine), walls=parts.walls
+    )
+    begin, cpu = time.perf_counter(), time.process_time()
+    now = 0.0
+
+    def report(t: float) -> None:
+        nonlocal now
+        now = t
+        if setup.progress is not None and t == int(t):
+            factor = t / max(time.perf_counter() - begin, 1e-9)
+            setup.progress(Progress(setup.stage, t, duration, factor, None))
+
+    with recording(setup, header, engine) as (writer, ending):
+        log = RunLog(writer, ids(engine), aim=engine.aim)
+        whole = run_crowd(
+            engine, log, duration, scenario.rates.log, on_sample=report, stop=setup.stop
+        )
+        outcome = Outcome(
+            status=TIMEOUT if whole else INTERRUPTED,
+            reason=f"ran for {duration:g} s" if whole else "interrupted by the user",
+            goal_time=None,
+            sim_time=now,
+            wall_time=time.perf_counter() - begin,
+            cpu_time=time.process_time() - cpu,
+        )
+        ending.append(outcome)
+    return outcome
+
+
+@contextmanager
+def recording(
+    setup: RunSetup, header: RecordingHeader, engine: CrowdEngine | None, description: str = ""
+) -> Iterator[tuple[RecordingWriter, list[Outcome]]]:
+    """A writer that is closed whatever happens; the body appends how the run ended."""
+    writer = RecordingWriter(
+        setup.recording,
+        header,
+        record=setup.record,
+        choosers=choosers(engine),
+        description=description,
+    )
+    ending: list[Outcome] = []
+    try:
+        yield writer, ending
+    finally:
+        last = ending[0] if ending else None
+        status = last.status if last else INTERRUPTED
+        goal_time = last.goal_time if last else None
+        writer.close(goal_time, status != INTERRUPTED, status)
+
+
+def ids(engine: CrowdEngine | None) -> NDArray[np.int64]:
+    """(N,) numbers of the people; none without an engine."""
+    return np.zeros(0, np.int64) if engine is None else engine.agents.id
+
+
+def agents(engine: CrowdEngine | None) -> AgentsHeader | None:
+    """What a recording says about the people; None without an engine."""
+    if engine is None:
+        return None
+    a = engine.agents
+    return AgentsHeader(id=a.id, radius=a.radius, mass=a.mass)
+
+
+def choosers(engine: CrowdEngine | None) -> list[Choosers]:
+    """Those whose policy says among which velocities they choose; none without an engine."""
+    if engine is None:
+        return []
+    a, found = engine.agents, list[Choosers]()
+    for number, policy in enumerate(engine.policies):
+        candidates = candidates_of(policy)
+        rows = np.flatnonzero(a.policy == number)
+        if candidates is not None and len(rows):
+            found.append(
+                Choosers(
+                    candidates=candidates,
+                    rows=rows,
+                    preferred_speed=a.preferred_speed[rows],
+                    radius=a.radius[rows],
+                    max_acceleration=a.max_acceleration[rows],
+                )
+            )
+    return found
+
+
+def aim_of(engine: CrowdEngine | None) -> int:
+    """Column of the crowd's state where the point begins to which people walk."""
+    return crowd_state.GOAL_X if engine is None else engine.aim

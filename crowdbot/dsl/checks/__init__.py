@@ -1,0 +1,1 @@
+"""Checks of a scenario beyond types, with positions."""

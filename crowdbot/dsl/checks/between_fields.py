@@ -1,0 +1,94 @@
+"""Checks between fields that no single field can make, after a scenario is validated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+from crowdbot.dsl.checks.agents import check_agents
+from crowdbot.dsl.checks.crowd import check_crowd
+from crowdbot.dsl.checks.facts import Facts
+from crowdbot.dsl.checks.pydantic_errors import locate, missing_field
+from crowdbot.dsl.checks.robots import check_robots
+from crowdbot.dsl.checks.spawns import check_spawns
+from crowdbot.dsl.checks.streams import check_streams
+from crowdbot.dsl.checks.ways import check_place, check_ways
+from crowdbot.dsl.scenario.components import components
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.text.diagnostics import Diagnostic
+from crowdbot.dsl.text.nodes import Node
+
+Check = Callable[[Facts], Iterator[Diagnostic]]
+
+
+class Checks:
+    """The checks of a document's scenarios; what was in order is not looked at again.
+
+    Each check says on which parts of a scenario it depends. A part is known by its node, which
+    scenarios share as far as no axis touches it; the caller keeps the nodes alive.
+    """
+
+    def __init__(self) -> None:
+        self._passed: set[tuple[object, ...]] = set()
+
+    def of(self, scenario: Scenario, tree: Node) -> list[Diagnostic]:
+        """All contradictions of a scenario, each with its place in the tree it came from."""
+        found, facts = list[Diagnostic](), Facts(scenario, tree)
+        for check, parts in _CHECKS:
+            key = (check, *(id(tree.child(part)) for part in parts))
+            if key not in self._passed:
+                wrong = list(check(facts))
+                found += wrong
+                if not wrong:
+                    self._passed.add(key)
+        return found
+
+
+def _check_kinds(part: str, facts: Facts) -> Iterator[Diagnostic]:
+    """A kind is always written: left out, it would mean something as long as one is installed."""
+    tree = facts.tree
+    for path, _ in components(facts.scenario):
+        if path[0] != part or _has_kind(tree, path):
+            continue
+        place = locate(tree, path)
+        if not place.rest and place.node.child("kind") is None:
+            yield missing_field(tree, place, "kind")
+
+
+def _has_kind(tree: Node, path: tuple[str, ...]) -> bool:
+    """Whether a kind is written at a path: the usual case, seen without looking for anything."""
+    node: Node | None = tree
+    for name in (*path, "kind"):
+        node = None if node is None else node.child(name)
+    return node is not None
+
+
+def _check_tasks(facts: Facts) -> Iterator[Diagnostic]:
+    zones = facts.scenario.environment.zones
+    for name, robot in facts.scenario.robots.items():
+        task, path = robot.task, ("robots", name, "task")
+        if task.goal.zone not in zones:
+            yield facts.unknown("zone", task.goal.zone, zones, *path, "goal", "zone")
+        yield from facts.outside(
+            f"the start {{at}} of robot '{name}'", [task.start[:2]], *path, "start"
+        )
+
+
+def _of_crowd(check: Check) -> Check:
+    """A check of scenarios that have people."""
+    return lambda facts: check(facts) if facts.scenario.crowd is not None else iter(())
+
+
+_PLACE, _PEOPLE, _ROBOTS = ("environment",), ("environment", "crowd"), ("environment", "robots")
+#: Each check, and the parts of a scenario that it looks at.
+_CHECKS: tuple[tuple[Check, tuple[str, ...]], ...] = (
+    *((partial(_check_kinds, part), (part,)) for part in ("environment", "crowd", "robots")),
+    (_of_crowd(check_crowd), _PEOPLE),
+    (_of_crowd(check_streams), _PEOPLE),
+    (_of_crowd(check_spawns), _PEOPLE),
+    (_of_crowd(check_agents), (*_PEOPLE, "robots")),
+    (check_place, _PLACE),
+    (check_robots, _ROBOTS),
+    (_of_crowd(check_ways), _PEOPLE),
+    (_check_tasks, _ROBOTS),
+)

@@ -1,0 +1,219 @@
+"""Checks of where people stand and whether a way leads to their goals; nothing is built."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from crowdbot.dsl.checks.facts import Facts, Path
+from crowdbot.dsl.checks.known_places import bodies_of, known_place, place_of
+from crowdbot.dsl.checks.reach import Box, Reach, areas_connected, has_room, reach_of
+from crowdbot.dsl.checks.robots import check_zones
+from crowdbot.dsl.scenario.routing import MeshRouting
+from crowdbot.dsl.scenario.spawning import Agent, Spawn
+from crowdbot.dsl.scenario.stream_legs import begins_in, legs
+from crowdbot.dsl.scenario.streams import QueueStream, Stream, places_of
+from crowdbot.dsl.spec.areas import Area
+from crowdbot.dsl.spec.areas import Place as PlaceName
+from crowdbot.dsl.spec.component_specs import EnvironmentSpec
+from crowdbot.dsl.spec.place import Place
+from crowdbot.dsl.text.diagnostics import Diagnostic
+from crowdbot.errors import InputError
+
+#: Kinds of people may be as thin as this, m.
+_THINNEST = 0.1
+
+#: A body may touch a wall by rounding, m.
+_SLACK = 1e-6
+
+
+def check_place(facts: Facts) -> Iterator[Diagnostic]:
+    """The place can be read, and its zones lie in it."""
+    try:
+        place = place_of(facts.scenario.environment)
+    except InputError as error:
+        yield Diagnostic("E144", str(error), facts.mark("environment", "file"))
+        return
+    if place is not None:
+        yield from check_zones(facts)
+
+
+def check_ways(facts: Facts) -> Iterator[Diagnostic]:
+    """Nobody of a crowd starts in a wall; who finds ways finds one."""
+    place = known_place(facts.scenario.environment)
+    if place is None:
+        return
+    finds_way = isinstance(facts.crowd.routing, MeshRouting)
+    if finds_way and place.torus is not None:
+        text = "routing 'mesh' does not lead across the borders of a torus"
+        hint = "use routing 'straight', or another border"
+        yield Diagnostic("E142", text, facts.mark("crowd", "routing"), hint)
+        return
+    bodies = bodies_of(place, facts.crowd.body.height)
+    ways = _Ways(facts, bodies, facts.scenario.environment)
+    yield from ways.check_starts()
+    yield from ways.check_room()
+    if finds_way:
+        yield from ways.check_streams()
+        yield from ways.check_flows()
+        yield from ways.check_agents()
+        yield from ways.check_spawns()
+
+
+@dataclass(frozen=True)
+class _Ways:
+    facts: Facts
+    place: Place
+    environment: EnvironmentSpec
+
+    def check_starts(self) -> Iterator[Diagnostic]:
+        """Explicit agents do not stand in walls."""
+        for i, agent in enumerate(self.facts.crowd.agents):
+            gap = self.place.clearance(agent.x, agent.y) - self._radius(agent)
+            if gap < -_SLACK:
+                text = f"agent {agent.id} stands in a wall, a block or a pillar"
+                hint = f"at ({agent.x:g}, {agent.y:g}) there is {-gap:.3g} m too little room"
+                yield Diagnostic("E143", text, self.facts.mark("crowd", "agents", i, "x"), hint)
+
+    def check_room(self) -> Iterator[Diagnostic]:
+        """There is room where streams begin and come in, in queues, and in portals."""
+        for name, stream in self.facts.crowd.streams.items():
+            radius = self._stream_radius(stream)
+            for field in begins_in(stream):
+                area = self._resolve(getattr(stream, field))
+                if area is not None and not has_room(self.place, area, radius):
+                    text = f"nobody of stream '{name}' can come in around {_at(area)}"
+                    yield self._no_room(text, radius, "crowd", "streams", name, field)
+            if isinstance(stream, QueueStream):
+                yield from self._check_line(name, stream, radius)
+        for path, pair, radius in self._users_of_portals():
+            for i, portal in enumerate(pair):
+                area = self._resolve(portal)
+                if area is not None and not has_room(self.place, area, radius):
+                    text = f"nobody can walk through portal '{portal}' around {_at(area)}"
+                    yield self._no_room(text, radius, *path, "portals", i)
+
+    def _no_room(self, text: str, radius: float, *path: str | int) -> Diagnostic:
+        hint = f"walls leave no room for a body of radius {radius:g} m"
+        return Diagnostic("E143", text, self.facts.mark(*path), hint)
+
+    def _check_line(self, name: str, queue: QueueStream, radius: float) -> Iterator[Diagnostic]:
+        for x, y in queue.places():
+            if self.place.clearance(x, y) < radius - _SLACK:
+                text = f"nobody can stand in the queue '{name}' at ({x:g}, {y:g})"
+                yield self._no_room(text, radius, "crowd", "streams", name, "line")
+                return
+
+    def _users_of_portals(self) -> Iterator[tuple[Path, tuple[str, str], float]]:
+        """Where each pair of portals is named, the pair, and how wide its people are, m."""
+        crowd, usual = self.facts.crowd, self._usual_radius
+        if crowd.flow is not None:
+            yield ("crowd", "flow"), crowd.flow.portals, usual
+        for i, agent in enumerate(crowd.agents):
+            if agent.portals is not None:
+                yield ("crowd", "agents", i), agent.portals, self._radius(agent)
+
+    # ----------------------------------------------------------------------------- ways
+    def check_streams(self) -> Iterator[Diagnostic]:
+        """A way leads from where each stream begins to everywhere it goes, in turn."""
+        for name, stream in self.facts.crowd.streams.items():
+            radius = self._stream_radius(stream)
+            areas = {name: one.area for name, one in self.facts.crowd.goal_areas.items()}
+            for start, goal, path in legs(stream, areas, self._resolve):
+                if not self._connects(start, goal, radius):
+                    text = f"no way leads stream '{name}' from {_at(start)} to {_at(goal)}"
+                    mark = self.facts.mark("crowd", "streams", name, *path)
+                    yield Diagnostic("E143", text, mark)
+                    break
+
+    def check_flows(self) -> Iterator[Diagnostic]:
+        """A way leads between the portals of a flow, and from where its people start."""
+        for path, pair, radius in self._users_of_portals():
+            ends = [area for area in map(self._resolve, pair) if area is not None]
+            flow = self.facts.crowd.flow
+            if path == ("crowd", "flow") and flow is not None:
+                ends = [*ends, *filter(None, [self._resolve(flow.area)])]
+            for other in ends[1:]:
+                if not self._connects(ends[0], other, radius):
+                    text = f"no way leads from portal '{pair[0]}' around {_at(ends[0])} "
+                    text += f"to {_at(other)}"
+                    yield Diagnostic("E143", text, self.facts.mark(*path, "portals"))
+                    break
+
+    def _connects(self, start: Area, goal: Area, radius: float) -> bool:
+        return areas_connected(self.place, radius, self._box, start.corners, goal.corners)
+
+    @property
+    def _usual_radius(self) -> float:
+        usual = self.facts.crowd.body.radius
+        return min(usual, _THINNEST) if self.facts.crowd.people else usual
+
+    def _stream_radius(self, stream: Stream) -> float:
+        return stream.body.radius or self._usual_radius
+
+    def _resolve(self, place: PlaceName) -> Area | None:
+        """A place as an area: of its own, a zone or a portal."""
+        portal = self.environment.portals.get(place) if isinstance(place, str) else None
+        return self.facts.resolve(place) or (Area.of(portal) if portal else None)
+
+    def check_agents(self) -> Iterator[Diagnostic]:
+        """A way leads along the whole route of each explicit agent."""
+        for i, agent in enumerate(self.facts.crowd.agents):
+            reach, at = self._reach(self._radius(agent)), (agent.x, agent.y)
+            for k, goal in enumerate(agent.goals):
+                if not reach.connects(at, goal):
+                    text = (
+                        f"no way leads agent {agent.id} from ({at[0]:g}, {at[1]:g}) "
+                        f"to its goal ({goal[0]:g}, {goal[1]:g})"
+                    )
+                    mark = self.facts.mark("crowd", "agents", i, "goals", k)
+                    hint = "" if reach.is_free(*goal) else "there is no room for a body"
+                    yield Diagnostic("E143", text, mark, hint)
+                    break
+                at = goal
+
+    def check_spawns(self) -> Iterator[Diagnostic]:
+        """A way leads from somewhere in each spawn's area into each of its goal areas."""
+        for name, spawn in self.facts.crowd.spawns.items():
+            start = self.facts.resolve(spawn.area)
+            for k, goal in enumerate(spawn.goals.areas if spawn.goals else ()):
+                found = self.facts.crowd.goal_areas.get(goal)
+                end = None if found is None else self.facts.resolve(found.area)
+                if start is not None and end is not None and not self._leads(spawn, start, end):
+                    text = (
+                        f"no way leads from spawn '{name}' around {_at(start)} "
+                        f"to goal area '{goal}' around {_at(end)}"
+                    )
+                    path = ("crowd", "spawns", name, "goals", "areas", k)
+                    yield Diagnostic("E143", text, self.facts.mark(*path))
+
+    def _leads(self, spawn: Spawn, start: Area, end: Area) -> bool:
+        usual = self.facts.crowd.body.radius
+        radius = spawn.radius.value - spawn.radius.spread if spawn.radius else usual
+        return self._connects(start, end, radius)
+
+    def _radius(self, agent: Agent) -> float:
+        return agent.radius or self.facts.crowd.body.radius
+
+    def _reach(self, radius: float) -> Reach:
+        return reach_of(self.place, radius, self._box)
+
+    @cached_property
+    def _box(self) -> Box:
+        """Around everything that is named, m."""
+        crowd = self.facts.crowd
+        points = [(a.x, a.y) for a in crowd.agents]
+        points += [goal for a in crowd.agents for goal in a.goals]
+        boxes = (*self.environment.zones.values(), *self.environment.portals.values())
+        points += [p for box in boxes for p in box.polygon]
+        named = [one.area for group in (crowd.spawns, crowd.goal_areas) for one in group.values()]
+        named += [place for one in crowd.streams.values() for _, place in places_of(one)]
+        points += [p for place in named if isinstance(place, Area) for p in place.corners]
+        points += [p for q in crowd.streams.values() for p in getattr(q, "line", ())]
+        xs, ys = [p[0] for p in points] or [0.0], [p[1] for p in points] or [0.0]
+        return min(xs), max(xs), min(ys), max(ys)
+
+
+def _at(area: Area) -> str:
+    return f"({area.centre[0]:g}, {area.centre[1]:g})"

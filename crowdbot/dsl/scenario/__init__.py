@@ -1,0 +1,1 @@
+"""The scenario model and its parts: crowd, streams, spawns, steering, routing."""

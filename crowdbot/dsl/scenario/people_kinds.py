@@ -1,0 +1,100 @@
+"""Kinds of people: how a crowd is mixed, and how each kind differs. Sources: `LOOKS`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+from annotated_types import Gt
+from pydantic import Discriminator, Field, Tag
+
+from crowdbot.dsl.spec.parameters import LengthSample, MassSample, SpeedChoice
+from crowdbot.dsl.spec.quantities import NonNegativeLength, PositiveLength, PositiveMass, Quantity
+from crowdbot.dsl.spec.spec import Spec
+from crowdbot.dsl.spec.unions import AnyOf
+
+#: What a person looks like to sensors.
+LookName = Literal["adult", "child", "elderly", "wheelchair_user", "stroller", "suitcase"]
+#: Draws from a normal distribution farther than this many standard deviations are drawn again.
+WIDEST = 2.5
+
+
+class LengthDistribution(Spec):
+    """Lengths: a normal distribution, truncated at 2.5 standard deviations."""
+
+    mean: PositiveLength = Field(description="Mean, m.")
+    std: NonNegativeLength = Field(description="Standard deviation, m.")
+
+
+class MassDistribution(Spec):
+    """Masses: a normal distribution, truncated at 2.5 standard deviations."""
+
+    mean: PositiveMass = Field(description="Mean, kg.")
+    std: Annotated[float, Gt(0), Quantity("mass")] = Field(description="Standard deviation, kg.")
+
+
+def _tag(value: Any) -> str:
+    normal = isinstance(value, LengthDistribution | MassDistribution) or (
+        isinstance(value, dict) and bool({"mean", "std"} & value.keys())
+    )
+    return "<normal>" if normal else "<uniform>"
+
+
+LengthChoice = Annotated[
+    Annotated[LengthSample, Tag("<uniform>")] | Annotated[LengthDistribution, Tag("<normal>")],
+    Discriminator(_tag),
+    AnyOf(),
+]
+MassChoice = Annotated[
+    Annotated[MassSample, Tag("<uniform>")] | Annotated[MassDistribution, Tag("<normal>")],
+    Discriminator(_tag),
+    AnyOf(),
+]
+
+
+class PeopleKind(Spec):
+    """One kind of people in a mixture; what is left out is as its look has it."""
+
+    look: LookName = Field(default="adult", description="What sensors see, and usual numbers.")
+    share: Annotated[float, Gt(0)] = Field(
+        default=1.0, description="Share of the people, on any scale."
+    )
+    radius: LengthChoice | None = Field(default=None, description="Radius of the disc, m.")
+    height: LengthChoice | None = Field(default=None, description="Height, m.")
+    leg_length: LengthChoice | None = Field(
+        default=None, description="From the floor to the hip, m; without it 0.53 of the height."
+    )
+    mass: MassChoice | None = Field(default=None, description="Mass in the physics, kg.")
+    speed: SpeedChoice | None = Field(
+        default=None,
+        description="Preferred speed, m/s; without it what others draw times the look's pace.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class UsualBody:
+    """Usual numbers of a look; None is as in `crowd.body`.
+
+    Attributes:
+        height, mass: mean and standard deviation, m and kg.
+        radius: of the disc that touches, m.
+        pace: preferred speed as a multiple of what others draw.
+    """
+
+    height: tuple[float, float]
+    mass: tuple[float, float] | None
+    radius: float | None
+    pace: float
+
+
+#: Where these come from: docs/reference/people.md.
+LOOKS: dict[LookName, UsualBody] = {
+    "adult": UsualBody((1.70, 0.09), (75.0, 13.0), None, 1.0),
+    "child": UsualBody((1.27, 0.06), (25.5, 4.0), 0.20, 1.0),
+    "elderly": UsualBody((1.64, 0.08), (71.0, 12.0), None, 0.8),
+    "wheelchair_user": UsualBody((1.30, 0.05), (92.0, 14.0), 0.40, 0.6),
+    "stroller": UsualBody((1.70, 0.09), (75.0, 13.0), None, 0.9),
+    "suitcase": UsualBody((1.70, 0.09), (75.0, 13.0), None, 0.95),
+}
+
+__all__ = ["LOOKS", "WIDEST", "LookName", "PeopleKind", "UsualBody"]

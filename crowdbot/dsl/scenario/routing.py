@@ -1,0 +1,59 @@
+"""How people find their way to their goals; chosen by ``kind``, straight where none is named.
+
+The numbers of `mesh` are proposed here; decision 0020 says what they do.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from annotated_types import Ge
+from pydantic import BeforeValidator, Field
+
+from crowdbot.dsl.spec.quantities import NonNegativeLength, PositiveDuration
+from crowdbot.dsl.spec.spec import Spec
+
+
+class Routing(Spec):
+    """How people find their way."""
+
+    category: ClassVar[str] = "routing"
+    #: The kind of a routing that names none.
+    usual: ClassVar[str] = "straight"
+    kind: str = Field(description="Name of the routing.")
+
+
+class StraightRouting(Routing):
+    """Straight to the goal; what is in between is left to the crowd policy and to contact."""
+
+    kind: Literal["straight"] = Field(default="straight", description="Name of the routing.")
+
+
+class MeshRouting(Routing):
+    """Shortest ways around walls and pillars, for bodies of each person's radius."""
+
+    kind: Literal["mesh"] = Field(default="mesh", description="Name of the routing.")
+    spread: NonNegativeLength = Field(
+        default=0.5,
+        description="Largest distance from a corner at which people pass it, drawn "
+        "for each person, m; never more than the opening has room for.",
+    )
+    patience: PositiveDuration = Field(
+        default=5.0, description="After this time without progress people look for another way, s."
+    )
+    detour: Annotated[float, Ge(1)] = Field(
+        default=1.5, description="Another way is at most so many times as long as the shortest."
+    )
+
+
+def _usual(value: Any) -> Any:
+    return {"kind": Routing.usual, **value} if isinstance(value, dict) else value
+
+
+#: One of the routings; of the usual kind where none is named.
+RoutingChoice = Annotated[
+    Annotated[StraightRouting | MeshRouting, Field(discriminator="kind")],
+    BeforeValidator(_usual),
+]
+
+__all__ = ["MeshRouting", "Routing", "RoutingChoice", "StraightRouting"]

@@ -1,0 +1,344 @@
+"""Scenario: everything the robot meets, fully explicit. No planner.
+
+The classes here are typed with abstract component specs. `crowdbot.core.registry.registry` narrows
+them to the components that are installed; the base classes refuse to validate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Le
+from pydantic import (
+    Field,
+    PrivateAttr,
+    SerializeAsAny,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
+
+from crowdbot.dsl.scenario.group_forces import GroupForces
+from crowdbot.dsl.scenario.lock import LockFiles
+from crowdbot.dsl.scenario.people_kinds import PeopleKind
+from crowdbot.dsl.scenario.robot_response import HumanResponse, RobotResponseChoice
+from crowdbot.dsl.scenario.routing import RoutingChoice
+from crowdbot.dsl.scenario.spawning import Agents, RouteEnd, Spawn
+from crowdbot.dsl.scenario.steering import SteeringSpec, unset
+from crowdbot.dsl.scenario.streams import StreamChoice
+from crowdbot.dsl.spec.areas import GoalArea
+from crowdbot.dsl.spec.body_regions import BodyRegion
+from crowdbot.dsl.spec.component_specs import (
+    CostFunctionSpec,
+    CrowdPolicySpec,
+    EnvironmentSpec,
+    RobotSpec,
+    SensorSpec,
+    with_wheels,
+)
+from crowdbot.dsl.spec.parameters import SpeedDistribution
+from crowdbot.dsl.spec.quantities import (
+    Angle,
+    Length,
+    NonNegativeDamping,
+    PositiveAcceleration,
+    PositiveDensity,
+    PositiveDuration,
+    PositiveFrequency,
+    PositiveLength,
+    PositiveMass,
+    PositiveSpeed,
+    PositiveStiffness,
+)
+from crowdbot.dsl.spec.spec import Spec
+from crowdbot.dsl.text.path_names import PathName
+from crowdbot.lazy import lazy_names
+
+#: What draws lies floors above; it is named as text, like whatever is built.
+_above = lazy_names(__name__, {"crowdbot.core.view.notebook": "scenario_html"})
+#: What an agent does at the end of its route. Those of streams: come in again where it came from;
+#: walk on in its direction for ever.
+AtGoal = Literal["portal", RouteEnd, "return", "onward"]
+
+
+class CrowdSeed(Spec):
+    """Where the crowd's random numbers come from; equal seeds draw equal people."""
+
+    root: Annotated[int, Ge(0), Le(2**63 - 1)] = Field(default=0, description="Root seed.")
+    key: str = Field(default="", description="Draw within the root: labels of the seed axes.")
+
+
+class Flow(Spec):
+    """A stream of people from one portal to the other, or two that meet."""
+
+    direction: Literal["in", "counter", "both"] = Field(
+        description="in: from the first portal to the second; counter: the other way; both: every "
+        "second person the other way."
+    )
+    portals: tuple[str, str] = Field(
+        default=("a", "b"), strict=False, description="Names of the two portals."
+    )
+    density: PositiveDensity = Field(description="People per area of the start zone, 1/m^2.")
+    area: str = Field(description="Zone in which people start.")
+
+
+class Body(Spec):
+    """What every agent of the crowd has in common."""
+
+    radius: PositiveLength = Field(default=0.33, description="Radius of the disc, m.")
+    avoided_radius: PositiveLength | None = Field(
+        default=None,
+        exclude_if=unset,
+        description="Radius of the disc that policies and steering parts keep clear of, m; by "
+        "default `radius`, which is what touches.",
+    )
+    mass: PositiveMass = Field(default=75.0, description="Mass in the physics, kg.")
+    max_speed: PositiveSpeed = Field(default=3.0, description="Largest walking speed, m/s.")
+    max_acceleration: PositiveAcceleration = Field(
+        default=5.0,
+        description="Largest acceleration that people choose, m/s^2; pushes may exceed it.",
+    )
+    height: PositiveLength = Field(default=1.7, description="Height, m.")
+
+
+class NamedPolicy(Spec):
+    """A policy that some agents follow instead of the crowd's own."""
+
+    policy: SerializeAsAny[CrowdPolicySpec]
+    costs: dict[str, SerializeAsAny[CostFunctionSpec]] = Field(
+        default={}, description="Named cost functions of a velocity-space policy."
+    )
+
+
+class Crowd(Spec):
+    """Who walks, from where to where, and how they decide: a flow, streams, spawns, agents.
+
+    Fields that came after the first locks are outside the hash while they are as usual.
+    """
+
+    flow: Flow | None = None
+    streams: dict[str, StreamChoice] = Field(
+        default={}, exclude_if=lambda streams: not streams, description="Named streams of people."
+    )
+    spawns: dict[str, Spawn] = Field(default={}, description="Named spawns.")
+    goal_areas: dict[str, GoalArea] = Field(default={}, description="Named areas of goals.")
+    agents: Agents = Field(
+        default=(), strict=False, description="Explicit agents: rows, or `{csv: FILE}`."
+    )
+    speed: SpeedDistribution | None = Field(
+        default=None, description="Preferred speeds of all who have none of their own."
+    )
+    body: Body = Field(default=Body(), description="Common to all agents.")
+    people: dict[str, PeopleKind] = Field(
+        default={},
+        exclude_if=lambda kinds: not kinds,
+        description="Named kinds of people that the crowd is a mixture of; without it all are "
+        "alike.",
+    )
+    groups: GroupForces | None = Field(
+        default=GroupForces(),
+        exclude_if=lambda forces: forces == GroupForces(),
+        description="What holds groups together; null: nothing.",
+    )
+    policy: SerializeAsAny[CrowdPolicySpec]
+    costs: dict[str, SerializeAsAny[CostFunctionSpec]] = Field(
+        default={}, description="Named cost functions of a velocity-space policy."
+    )
+    policies: dict[str, NamedPolicy] = Field(
+        default={}, description="Named policies for spawns and agents that follow another one."
+    )
+    exit_point: Literal["random", "offset"] = Field(
+        default="random",
+        description="Where people come out of a portal: anywhere in it, or opposite to where "
+        "they went in.",
+    )
+    goal_point: Literal["random", "ahead"] = Field(
+        default="random",
+        exclude_if=lambda value: value == "random",
+        description="Where in a portal people go on each trip: anywhere, so that ways cross, or "
+        "straight ahead of where they come in or start.",
+    )
+    robot_response: RobotResponseChoice = Field(
+        default=HumanResponse(), description="How people respond to the robot."
+    )
+    routing: RoutingChoice | None = Field(
+        default=None,
+        exclude_if=lambda value: value is None,
+        description="How people find their way; without it `straight` to their goals.",
+    )
+    steering: SteeringSpec | None = Field(
+        default=None,
+        exclude_if=unset,
+        description="Beside any policy: time gap, personal space, lanes, walls, wander.",
+    )
+    seed: CrowdSeed = Field(default=CrowdSeed(), description="Draws the crowd.")
+
+    @property
+    def names_nobody(self) -> bool:
+        """Whether there is neither a flow, nor a stream, nor a spawn, nor an explicit agent."""
+        return self.flow is None and not (self.streams or self.spawns or self.agents)
+
+
+class Goal(Spec):
+    """The zone in which the robot's centre has to be."""
+
+    zone: str = Field(description="Name of the goal zone.")
+
+
+class TaskSpec(Spec):
+    """What the robot is asked to do."""
+
+    start: tuple[Length, Length, Angle] = Field(
+        strict=False, description="x, y (m) and heading (rad) at t = 0, world frame."
+    )
+    goal: Goal
+    time_limit: PositiveDuration = Field(default=180.0, description="The run ends here, s.")
+    when_ended: Literal["stay", "leave"] = Field(
+        default="stay",
+        exclude_if=lambda value: value == "stay",
+        description="Of one robot among several that has arrived, failed or run out of time: it "
+        "stays where it is, as an obstacle, or leaves.",
+    )
+
+
+class Robot(Spec):
+    """One robot with its sensors and its task."""
+
+    model: SerializeAsAny[RobotSpec]
+    control: Literal["kinematic", "force", "differential_drive"] = Field(
+        default="differential_drive",
+        validate_default=False,  # where it does not fit, another one takes its place
+        description="How commands become motion. Default of a holonomic robot: force.",
+    )
+    sensors: dict[str, SerializeAsAny[SensorSpec]] = Field(default={}, description="Named sensors.")
+    task: TaskSpec
+
+    @field_validator("control")
+    @classmethod
+    def _fits_the_drive(cls, value: str, info: ValidationInfo) -> str:
+        model = info.data.get("model")
+        if model is not None and value not in model.controls:
+            raise ValueError(f"does not fit {model.kind}; what does: {', '.join(model.controls)}")
+        return value
+
+    @model_validator(mode="after")
+    def _default_that_fits(self) -> Robot:
+        if "control" not in self.model_fields_set:
+            object.__setattr__(self, "control", self.model.controls[0])
+        return self
+
+    @model_validator(mode="after")
+    def _wheels_of_the_robot(self) -> Robot:
+        """Wheel odometry that is not told the wheels takes those of the robot's spec."""
+        if self.model.wheels is not None:
+            fitted = {n: with_wheels(s, *self.model.wheels) for n, s in self.sensors.items()}
+            object.__setattr__(self, "sensors", fitted)
+        return self
+
+
+class Contact(Spec):
+    """Compliance between robot and pedestrians: Hunt-Crossley, F = k d (1 + c d')."""
+
+    stiffness: Annotated[PositiveStiffness, BodyRegion()] = Field(
+        default=30000.0,
+        description="k, N/m, or a body region whose value it takes, such as lower_leg.",
+    )
+    dissipation: NonNegativeDamping = Field(default=0.3, description="c, s/m.")
+
+
+class Rates(Spec):
+    """How often things happen; powers of two, so that Drake's events coincide exactly."""
+
+    crowd: PositiveFrequency = Field(default=16.0, description="Decisions of the crowd, Hz.")
+    planner: PositiveFrequency = Field(default=16.0, description="Steps of the planner, Hz.")
+    log: PositiveFrequency = Field(default=16.0, description="Samples for metrics, Hz.")
+
+    @field_validator("crowd", "planner", "log")
+    @classmethod
+    def _dyadic(cls, value: float) -> float:
+        if value not in (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0):
+            raise ValueError("must be a power of two from 1 to 128 Hz")
+        return value
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Locked:
+    """Where a scenario is locked.
+
+    Attributes:
+        files: of the suite.
+        origin: gives the scenario as the suite has it, without ``--set`` and whatever else was
+            changed since.
+    """
+
+    files: LockFiles
+    origin: Callable[[], Scenario]
+
+
+class Scenario(Spec):
+    """One fully explicit trial. ``id``, ``title`` and ``references`` are outside the hash."""
+
+    id: PathName = Field(
+        description="Stable name, unique in its suite.", pattern=r"^[A-Za-z0-9_.+/-]+$"
+    )
+    title: str = Field(default="", description="For people.")
+    environment: SerializeAsAny[EnvironmentSpec]
+    crowd: Crowd | None = None
+    robots: dict[str, Robot] = Field(default={}, description="Named robots.")
+    contact: Contact = Field(default=Contact(), description="Robot against pedestrian.")
+    rates: Rates = Field(default=Rates(), description="How often things happen.")
+    references: Mapping[str, Scenario] = Field(
+        default={}, exclude=True, repr=False, description="Calibration runs, by name."
+    )
+    _locked: Locked | None = PrivateAttr(default=None)  # where its agents are frozen
+    _hidden: str = PrivateAttr(default="")  # commitment to a seed that nobody knows yet
+
+    def __eq__(self, other: object) -> bool:
+        """Equal in content; where the agents are frozen does not count."""
+        return isinstance(other, Scenario) and self.__dict__ == other.__dict__
+
+    @property
+    def locked(self) -> Locked | None:
+        """Where its agents are frozen, if they are."""
+        return self._locked
+
+    @property
+    def hidden(self) -> str:
+        """The commitment to the seed of its people, where that has not been revealed; else ""."""
+        return self._hidden
+
+    def hide(self, commitment: str) -> None:
+        """Say that the seed of its people is hidden."""
+        self._hidden = commitment
+
+    def lock_to(self, locked: Locked) -> None:
+        """Say where the agents are frozen, also those of the references."""
+        for scenario in (self, *self.references.values()):
+            scenario._locked = locked
+
+    def _repr_html_(self) -> str:
+        """A drawing for notebooks."""
+        return str(_above("scenario_html")(self))
+
+
+#: Fields of a scenario that do not change what happens in it.
+OUTSIDE_HASH = ("id", "title", "references")
+
+__all__ = [
+    "OUTSIDE_HASH",
+    "AtGoal",
+    "Body",
+    "Contact",
+    "Crowd",
+    "CrowdSeed",
+    "Flow",
+    "Goal",
+    "NamedPolicy",
+    "Rates",
+    "Robot",
+    "Scenario",
+    "SpeedDistribution",
+    "TaskSpec",
+]

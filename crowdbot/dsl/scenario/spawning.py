@@ -1,0 +1,252 @@
+"""Who is in a crowd, beside its flow: spawns, goal areas, explicit agents.
+
+Everything is drawn once by `crowdbot.core.population.realise`; these are its specs.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from annotated_types import Ge, Le, Lt, MinLen
+from pydantic import (
+    BeforeValidator,
+    Discriminator,
+    Field,
+    Tag,
+    model_validator,
+)
+
+from crowdbot.dsl.scenario.people_kinds import LookName
+from crowdbot.dsl.spec.areas import Place
+from crowdbot.dsl.spec.parameters import (
+    AccelerationSample,
+    DurationSample,
+    LengthSample,
+    MassSample,
+    SpeedChoice,
+    SpeedSample,
+)
+from crowdbot.dsl.spec.quantities import (
+    Angle,
+    Length,
+    NonNegativeDuration,
+    PositiveAcceleration,
+    PositiveDensity,
+    PositiveLength,
+    PositiveMass,
+    PositiveSpeed,
+)
+from crowdbot.dsl.spec.spec import Spec
+from crowdbot.dsl.spec.unions import AnyOf
+
+#: What an agent with a route does at its end.
+RouteEnd = Literal["stop", "remove", "loop"]
+#: More people than this are a mistake, and would take hours to place.
+MAX_PEOPLE = 100_000
+
+#: Nobody is drawn closer to a robot's start than this, centre to centre, m.
+CLEAR_OF_ROBOT = 1.0
+
+Count = Annotated[int, Ge(1), Le(MAX_PEOPLE)]
+Point = Annotated[tuple[Length, Length], Field(strict=False)]
+
+
+def _heading_tag(value: Any) -> str:
+    word = isinstance(value, str) and value.lstrip("+-. ")[:1].isalpha()
+    return "<word>" if word else "<angle>"
+
+
+#: An angle, or how to find one.
+Heading = Annotated[
+    Annotated[Literal["goal", "random"], Tag("<word>")] | Annotated[Angle, Tag("<angle>")],
+    Discriminator(_heading_tag),
+    AnyOf(),
+]
+
+
+def _as_list(value: Any) -> Any:
+    return [value] if isinstance(value, str) else value
+
+
+#: One name or several.
+Names = Annotated[
+    tuple[str, ...],
+    BeforeValidator(_as_list, json_schema_input_type=str | tuple[str, ...]),
+]
+
+
+class GroupSize(Spec):
+    """How often groups of one size are."""
+
+    size: Annotated[int, Ge(1), Le(1000)] = Field(description="People in a group; 1: alone.")
+    frequency: Annotated[float, Ge(0)] = Field(
+        description="Share of the groups that have this size, on any scale."
+    )
+
+
+class Goals(Spec):
+    """The route of people: points in goal areas, drawn once for each group or single person."""
+
+    areas: Annotated[tuple[str, ...], MinLen(1)] = Field(
+        strict=False, description="Names of goal areas; of a `linked` walk, where it may begin."
+    )
+    order: Literal["fixed", "random", "linked"] = Field(
+        default="fixed",
+        description="fixed: the areas in turn; random: any of them each time; linked: a random "
+        "walk on the areas' `next` that turns straight back only where nothing else follows.",
+    )
+    count: Annotated[int, Ge(1), Le(1000)] | None = Field(
+        default=None, description="Points of the route; without it as many as areas."
+    )
+    at_goal: RouteEnd = Field(
+        default="stop",
+        description="At the end: stand still, leave the world, or begin again; a `linked` loop "
+        "first walks back the way it came.",
+    )
+
+    @property
+    def length(self) -> int:
+        """How many points a route has, a way back not counted."""
+        return len(self.areas) if self.count is None else self.count
+
+
+class Spawn(Spec):
+    """People who start in one area. What is left out is as in the crowd."""
+
+    area: Place = Field(description="Name of a zone, or an area written here; bodies lie inside.")
+    count: Count | None = Field(default=None, description="How many; this or `density`.")
+    density: PositiveDensity | None = Field(
+        default=None, description="People per area, 1/m^2; this or `count`."
+    )
+    spacing: PositiveLength | None = Field(
+        default=None,
+        description="Least distance between the centres of two of them, m; without it, and never "
+        "less than, both radii.",
+    )
+    heading: Heading = Field(
+        default="goal", description="At the start: an angle, to the first `goal`, or `random`; rad."
+    )
+    groups: tuple[GroupSize, ...] = Field(
+        default=(), strict=False, description="Sizes of groups; without it everybody is alone."
+    )
+    goals: Goals | None = Field(
+        default=None, description="A route; this, `portals` or `standing: true`."
+    )
+    portals: tuple[str, str] | None = Field(
+        default=None, strict=False, description="A stream: from the first portal to the second."
+    )
+    standing: bool = Field(default=False, description="Whether they stay where they are.")
+    speed: SpeedChoice | None = Field(default=None, description="Preferred speed, m/s.")
+    radius: LengthSample | None = Field(default=None, description="Radius of the disc, m.")
+    mass: MassSample | None = Field(default=None, description="Mass in the physics, kg.")
+    max_speed: SpeedSample | None = Field(default=None, description="Largest walking speed, m/s.")
+    max_acceleration: AccelerationSample | None = Field(
+        default=None,
+        description="Largest acceleration that people choose, m/s^2; pushes may exceed it.",
+    )
+    start_time: DurationSample = Field(
+        default=DurationSample(value=0.0), description="When each enters the world, s."
+    )
+    policy: Names = Field(
+        default=(),
+        strict=False,
+        description="Names in `crowd.policies`, one of which each draws; without it the crowd's.",
+    )
+
+    @model_validator(mode="after")
+    def _one_of_each(self) -> Spawn:
+        if (self.count is None) == (self.density is None):
+            raise ValueError("write one of 'count' and 'density'")
+        return self
+
+    def people(self, floor: float) -> float:
+        """How many people it has on an area of that size, m^2; not whole for a bad density."""
+        return float(self.count) if self.count else (self.density or 0.0) * floor
+
+
+class Agent(Spec):
+    """One explicit agent; what is left out is as in the crowd."""
+
+    id: Annotated[int, Ge(0), Le(2**31 - 1)] = Field(
+        description="Number of this agent; no other has it."
+    )
+    x: Length = Field(description="Start, m.")
+    y: Length = Field(description="Start, m.")
+    heading: Angle | None = Field(
+        default=None, description="At the start, rad; without it to the first goal."
+    )
+    speed: PositiveSpeed | None = Field(
+        default=None, description="Preferred speed, m/s; without it drawn from the crowd's."
+    )
+    radius: PositiveLength | None = Field(default=None, description="Radius of the disc, m.")
+    mass: PositiveMass | None = Field(default=None, description="Mass in the physics, kg.")
+    max_speed: PositiveSpeed | None = Field(default=None, description="Largest speed, m/s.")
+    max_acceleration: PositiveAcceleration | None = Field(
+        default=None, description="Largest acceleration by own will, m/s^2."
+    )
+    start_time: NonNegativeDuration = Field(default=0.0, description="When it enters the world, s.")
+    group: Annotated[int, Ge(-1), Le(2**31 - 1)] = Field(
+        default=-1, description="Equal numbers belong together; -1: alone."
+    )
+    policy: str = Field(
+        default="", description="Name in `crowd.policies`; without it the crowd's own."
+    )
+    attention: Annotated[float, Ge(0), Lt(1)] | None = Field(
+        default=None,
+        description="How attentive it is compared with others: the least attentive ignore robots, "
+        "the next notice them late, see `robot_response`; without it drawn.",
+    )
+    goals: tuple[Point, ...] = Field(
+        default=(), strict=False, description="Points of its route, m; these or `portals`."
+    )
+    at_goal: RouteEnd | None = Field(
+        default=None, description="At the end of the route; without it `stop`."
+    )
+    portals: tuple[str, str] | None = Field(
+        default=None, strict=False, description="A stream: from the first portal to the second."
+    )
+    pauses: tuple[NonNegativeDuration, ...] = Field(
+        default=(),
+        strict=False,
+        exclude_if=lambda pauses: not pauses,
+        description="How long it stays at each goal, s; without it nowhere.",
+    )
+    look: LookName | None = Field(
+        default=None,
+        exclude_if=lambda look: look is None,
+        description="What sensors see; its usual radius, mass and height where none is given.",
+    )
+    height: PositiveLength | None = Field(
+        default=None, exclude_if=lambda height: height is None, description="Height, m."
+    )
+
+    @model_validator(mode="after")
+    def _a_pause_for_each_goal(self) -> Agent:
+        if len(self.pauses) not in (0, len(self.goals)):
+            raise ValueError(f"write a pause for each of the {len(self.goals)} goals")
+        return self
+
+    @model_validator(mode="after")
+    def _portals_have_no_end(self) -> Agent:
+        if self.portals and self.at_goal:
+            raise ValueError("who walks through portals has no 'at_goal'")
+        return self
+
+
+class AgentsFile(Spec):
+    """Explicit agents in a table whose columns are the fields of an agent."""
+
+    csv: str = Field(description="Path, relative to the file that contains it.")
+
+
+def _rows(value: Any) -> Any:
+    if isinstance(value, dict) and "csv" in value:
+        raise ValueError("a CSV is read where a file names it, as 'crowd.agents: {csv: FILE}'")
+    return value
+
+
+#: Rows; documents may name a CSV instead, which `crowdbot.dsl.suite.include` replaces by its rows.
+Agents = Annotated[
+    tuple[Agent, ...],
+    BeforeValidator(_rows, json_schema_input_type=tuple[Agent, ...] | AgentsFile),
+]

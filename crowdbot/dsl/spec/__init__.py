@@ -1,0 +1,1 @@
+"""Typed specs and components: base classes, quantities, assets, unions."""

@@ -1,0 +1,94 @@
+"""A component: a spec type and, as text, its build function."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from crowdbot.dsl.spec.spec import ComponentSpec
+from crowdbot.errors import PluginError
+
+if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable
+
+S_co = TypeVar("S_co", bound=ComponentSpec, covariant=True)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Component(Generic[S_co]):
+    """What a plugin provides: a spec, the name of its build function, a summary.
+
+    Attributes:
+        spec: pydantic model whose ``kind`` is a Literal, e.g. ``Literal["acme.swarm"]``.
+        build: ``"package.module:function"``; imported when something is simulated or scored.
+        summary: one line, shown by ``crowdbot plugins``.
+        spec_version: raised when the meaning of a field changes.
+        examples: valid documents without ``kind``, fed to docs and conformance checks.
+        experimental: whether its meaning may still change; such metrics are scored on request.
+        successor: what replaced this kind, which is retired: naming it is an error that says so.
+        card: what a metric's numbers mean; Markdown, or ``"package:folder/name.md"``, a file of
+            a package. Default: ``cards/NAME.md`` beside the spec's module, where NAME is the kind
+            without the plugin's name. A metric without a card is refused.
+        exceptions: conformance check -> why this component cannot pass it; then it must fail.
+    """
+
+    spec: type[S_co]
+    build: str
+    summary: str
+    spec_version: int = 1
+    examples: tuple[Mapping[str, Any], ...] = ({},)
+    experimental: bool = False
+    successor: str = ""
+    card: str = ""
+    exceptions: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def kind(self) -> str:
+        """The component's name in YAML."""
+        (kind,) = self.spec.model_fields["kind"].annotation.__args__  # type: ignore[union-attr]
+        return str(kind)
+
+    @property
+    def category(self) -> str:
+        """What can be plugged: environment, robot, sensor and so on."""
+        return self.spec.category
+
+    @property
+    def card_place(self) -> str:
+        """Where the card is: ``package:path``; empty where it is the Markdown itself."""
+        if self.card:
+            return "" if any(c.isspace() for c in self.card) else self.card
+        package = getattr(sys.modules.get(self.spec.__module__), "__package__", None)
+        return f"{package}:cards/{self.kind.rpartition('.')[2]}.md" if package else ""
+
+    def has_card(self) -> bool:
+        """Whether there is a card; costs one look at the file system."""
+        if not self.card_place:
+            return bool(self.card)
+        try:
+            return self._card_file().is_file()
+        except (ImportError, TypeError):
+            return False
+
+    def read_card(self) -> str:
+        """The card as Markdown.
+
+        Raises:
+            PluginError: there is none, or it cannot be read.
+        """
+        if not self.has_card():
+            raise PluginError(
+                f"{self.kind}: no card{f' {self.card_place}' * bool(self.card_place)}"
+            )
+        try:
+            return self._card_file().read_text(encoding="utf-8") if self.card_place else self.card
+        except (OSError, UnicodeDecodeError) as error:
+            raise PluginError(f"{self.kind}: the card cannot be read: {error}") from error
+
+    def _card_file(self) -> Traversable:
+        from importlib.resources import files
+
+        package, _, path = self.card_place.partition(":")
+        return files(package).joinpath(path)

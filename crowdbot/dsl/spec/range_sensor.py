@@ -1,0 +1,69 @@
+"""What all sensors that measure distances have in common."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, ClassVar
+
+from annotated_types import Ge, Gt, Le, Lt
+from pydantic import BeforeValidator, Field, SerializeAsAny, model_validator
+
+from crowdbot.dsl.spec.component_specs import NoiseSpec, SensorSpec
+from crowdbot.dsl.spec.quantities import (
+    NonNegativeLength,
+    PositiveFrequency,
+    PositiveLength,
+    Quantity,
+)
+from crowdbot.dsl.spec.spec import Mount
+
+#: Rays that one reading of a sensor may take; more is a slip of the pen.
+MOST_RAYS = 200_000
+
+Incidence = Annotated[float, Gt(0), Le(math.pi / 2), Quantity("angle")]
+
+
+def _short_form(value: Any) -> Any:
+    """A bare length is the standard deviation of one Gaussian, called ``range``."""
+    is_length = isinstance(value, int | float | str) and not isinstance(value, bool)
+    if value in (0, "0") and is_length:
+        return {}
+    return {"range": {"kind": "gaussian", "std": value}} if is_length else value
+
+
+NoiseMap = dict[str, SerializeAsAny[NoiseSpec]]
+
+
+class RangeSensorSpec(SensorSpec):
+    """Abstract: a sensor that measures distances."""
+
+    parts_field: ClassVar[str] = "noise"
+    mount: Mount = Field(default=Mount(), description="Pose on the robot.")
+    rate: PositiveFrequency = Field(default=8.0, le=128, description="Readings per second, Hz.")
+    range_min: NonNegativeLength = Field(
+        default=0.2, description="Nearest reading; what is nearer reads this, m."
+    )
+    range_max: PositiveLength = Field(default=4.5, description="Farthest hit, m.")
+    max_incidence: Incidence = Field(
+        default=math.pi / 2,
+        description="Surfaces struck at a larger angle to their normal return nothing, rad.",
+    )
+    bits: Annotated[int, Ge(0), Le(32)] = Field(
+        default=0,
+        description="Readings are rounded down to 2^bits steps of the range; 0: no rounding.",
+    )
+    dropout: Annotated[float, Ge(0), Lt(1)] = Field(
+        default=0.0, description="Probability that a reading is lost."
+    )
+    noise: Annotated[
+        NoiseMap, BeforeValidator(_short_form, json_schema_input_type=NonNegativeLength | NoiseMap)
+    ] = Field(
+        default={},
+        description="Named errors, added in the order of names; a length is one Gaussian's std.",
+    )
+
+    @model_validator(mode="after")
+    def _range_ordered(self) -> RangeSensorSpec:
+        if not self.range_min < self.range_max:
+            raise ValueError("range_min must be below range_max")
+        return self

@@ -1,0 +1,159 @@
+"""The base of every spec: strict, frozen, no unknown field, no NaN."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, ClassVar, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler, model_validator
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
+
+from crowdbot.dsl.spec.quantities import Angle, Length, PositiveLength
+
+
+class Spec(BaseModel):
+    """A frozen, strict document."""
+
+    model_config = ConfigDict(
+        strict=True,
+        frozen=True,
+        extra="forbid",
+        allow_inf_nan=False,
+        validate_default=True,
+        defer_build=True,  # a document uses few of the specs that are installed
+    )
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """With the names of fields that are left out while they are as usual."""
+        made = handler(core_schema)
+        left_out = [name for name, f in cls.model_fields.items() if f.exclude_if is not None]
+        if left_out:
+            handler.resolve_ref_schema(made)["left_out"] = left_out
+        return made
+
+
+class ComponentSpec(Spec):
+    """Spec of something pluggable, told apart by ``kind``.
+
+    Abstract specs only say which category a component belongs to. They refuse documents: the
+    union of concrete specs is assembled from the registry.
+    """
+
+    category: ClassVar[str] = "component"
+    #: Name of the field that holds this component's parts, if it has any: a map of names to specs
+    #: of one other category. Parts are built first, and the build function is handed them.
+    parts_field: ClassVar[str] = ""
+    kind: str = Field(description="Name of the component.")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refuse_abstract(cls, value: Any) -> Any:
+        abstract = cls.model_fields["kind"].annotation is str  # concrete ones name theirs
+        if abstract and not isinstance(value, cls):
+            raise ValueError(f"{cls.__name__} is abstract; build the model from a registry")
+        return value
+
+    def beside(self, name: str, file: Path) -> Mapping[str, str]:
+        """Further assets that a file names and the document does not, by field, as paths from it.
+
+        Args:
+            name: field of the asset that was found.
+            file: where it lies.
+        """
+        del name, file
+        return {}
+
+    def parts(self) -> Mapping[str, ComponentSpec]:
+        """Specs that are built before this one, by name; empty where there are none."""
+        found: Mapping[str, ComponentSpec] = (
+            getattr(self, self.parts_field) if self.parts_field else {}
+        )
+        return found
+
+
+class Mount(Spec):
+    """Pose of a sensor on the robot, from base_link: x forward, y left, z up (REP-103)."""
+
+    x: Length = Field(default=0.0, description="Forward offset, m.")
+    y: Length = Field(default=0.0, description="Offset to the left, m.")
+    z: Length = Field(default=0.0, description="Height above base_link, m.")
+    yaw: Angle = Field(default=0.0, description="Heading, rad, counter-clockwise.")
+
+
+class TiltableMount(Mount):
+    """Pose of a sensor that may look up, down or aslant.
+
+    Turned first by roll about x, then by pitch about y, then by yaw about z, as in URDF: with a
+    positive pitch it looks down, with a roll of half a turn it hangs upside down.
+    """
+
+    roll: Angle = Field(
+        default=0.0,
+        exclude_if=lambda value: value == 0.0,
+        description="About its own x, rad; positive: the left side goes up.",
+    )
+    pitch: Angle = Field(
+        default=0.0,
+        exclude_if=lambda value: value == 0.0,
+        description="About its y, rad; positive: it looks down.",
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _level(cls, value: Any) -> Any:
+        """A `Mount` made in Python is one without roll and pitch."""
+        if isinstance(value, Mount) and not isinstance(value, cls):
+            return {name: getattr(value, name) for name in value.model_fields_set}
+        return value
+
+
+class Rectangle(Spec):
+    """An axis-aligned rectangle of the floor, world frame, m."""
+
+    x: tuple[Length, Length] = Field(strict=False, description="From, to; m.")
+    y: tuple[Length, Length] = Field(strict=False, description="From, to; m.")
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Rectangle:
+        if not (self.x[0] < self.x[1] and self.y[0] < self.y[1]):
+            raise ValueError("each pair must go from the smaller to the larger number")
+        return self
+
+    @property
+    def area(self) -> float:
+        """Area, m^2."""
+        return (self.x[1] - self.x[0]) * (self.y[1] - self.y[0])
+
+    @property
+    def polygon(self) -> tuple[tuple[float, float], ...]:
+        """The corners, counter-clockwise, m."""
+        (x0, x1), (y0, y1) = self.x, self.y
+        return ((x0, y0), (x1, y0), (x1, y1), (x0, y1))
+
+    def contains(self, x: float, y: float) -> bool:
+        """Whether a point lies inside or on the border."""
+        return self.x[0] <= x <= self.x[1] and self.y[0] <= y <= self.y[1]
+
+
+class Range(Spec):
+    """How far a cost function looks, and from where to where it measures.
+
+    A bare length is short for a range between centres.
+    """
+
+    model_config = ConfigDict(json_schema_extra={"short": "value"})
+
+    value: PositiveLength = Field(default=5.0, description="Distance, m.")
+    measure: Literal["centre", "surface"] = Field(
+        default="centre", description="Between centres, or between the surfaces of the discs."
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short_form(cls, value: Any) -> Any:
+        return {"value": value} if isinstance(value, int | float | str) else value

@@ -1,0 +1,1 @@
+"""Suites: matrix, selection, includes, expansion."""

@@ -1,0 +1,92 @@
+"""Finds the assets of a scenario and hashes them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from crowdbot.dsl.checks.pydantic_errors import mark_of
+from crowdbot.dsl.scenario.components import components
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.spec.assets import Asset, sha256_of
+from crowdbot.dsl.spec.spec import ComponentSpec
+from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
+from crowdbot.dsl.text.finder import Finder
+from crowdbot.dsl.text.nodes import Node
+
+
+class AssetFiles:
+    """The assets of one document; each file is hashed once."""
+
+    def __init__(self, finder: Finder) -> None:
+        self._finder = finder
+        self._known: dict[Path, str] = {}
+        self._complete: dict[int, ComponentSpec] = {}
+
+    def fill(
+        self, scenario: Scenario, tree: Node, data: dict[str, Any], problems: list[Diagnostic]
+    ) -> dict[str, Any]:
+        """The data of a scenario with its assets found; ``data`` itself if it has none to find.
+
+        Args:
+            scenario: validated.
+            tree: knows which file names the asset.
+            data: of the tree; it stays as it is.
+            problems: errors are added.
+        """
+        for path, asset, spec in self._waiting(scenario):
+            mark = _mark(tree, path)
+            found = self._found(asset, mark, problems)
+            if found is None:
+                continue
+            data = _replaced(data, path, found)
+            for name, text in spec.beside(path[-1], found.file).items():
+                beside = Asset(path=str(PurePosixPath(asset.path).parent / text))
+                other = self._found(beside, mark, problems)
+                data = data if other is None else _replaced(data, (*path[:-1], name), other)
+        return data
+
+    def _waiting(
+        self, scenario: Scenario
+    ) -> Iterator[tuple[tuple[str, ...], Asset, ComponentSpec]]:
+        """Assets to find. Scenarios share components: one that waits for none is seen once."""
+        for path, spec in components(scenario):
+            if id(spec) in self._complete:
+                continue
+            names = [n for n, v in vars(spec).items() if isinstance(v, Asset) and not v.is_found]
+            if not names:
+                self._complete[id(spec)] = spec  # kept, so that no other gets its number
+            for name in names:
+                yield (*path, name), getattr(spec, name), spec
+
+    def _found(self, asset: Asset, mark: Mark, problems: list[Diagnostic]) -> Asset | None:
+        """None: there is none, or a resolved scenario that was moved names it by its content."""
+        file = self._finder.find(asset.path, mark)
+        if isinstance(file, Diagnostic):
+            if not (file.code == "E201" and asset.sha256):
+                problems.append(file)
+            return None
+        try:
+            digest = self._known.get(file) or self._known.setdefault(file, sha256_of(file))
+        except OSError as error:
+            reason = error.strerror or str(error)
+            text = f"'{asset.path}' cannot be opened: {reason}"
+            problems.append(Diagnostic("E201", text, mark))
+            return None
+        if asset.sha256 not in (None, digest):
+            text = f"'{asset.path}' has another content than the sha256 written here"
+            problems.append(Diagnostic("E213", text, mark, f"its sha256 is {digest}"))
+            return None
+        return Asset.at(file, self._finder.name_of(file), digest)
+
+
+def _mark(tree: Node, path: tuple[str, ...]) -> Mark:
+    """Where the path of an asset is written, in either of its forms."""
+    return mark_of(tree, *path, "path")
+
+
+def _replaced(data: dict[str, Any], path: tuple[str, ...], value: object) -> dict[str, Any]:
+    """A copy with another value under a path."""
+    key, *rest = path
+    return {**data, key: _replaced(data[key], tuple(rest), value) if rest else value}

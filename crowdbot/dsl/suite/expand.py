@@ -1,0 +1,418 @@
+"""Nodes -> merge -> matrix -> validate: a document becomes an ordered list of scenarios."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+from crowdbot.dsl.checks.between_fields import Checks
+from crowdbot.dsl.checks.pydantic_errors import locate, validate
+from crowdbot.dsl.checks.validation_cache import ValidParts
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.suite.asset_files import AssetFiles
+from crowdbot.dsl.suite.axis_words import AxisWords, axis_words
+from crowdbot.dsl.suite.include import Loader
+from crowdbot.dsl.suite.installed import Installed
+from crowdbot.dsl.suite.matrix import DRAW, combinations
+from crowdbot.dsl.suite.suite import ParsedSuite, read_suite
+from crowdbot.dsl.text.diagnostics import MAX_ERRORS, Diagnostic, Mark, Source
+from crowdbot.dsl.text.finder import Finder, Roots
+from crowdbot.dsl.text.merge import Merged, merge, nest, undot
+from crowdbot.dsl.text.nodes import Entry, Node, parse, to_data
+from crowdbot.dsl.text.path_names import path_problem
+from crowdbot.errors import SpecError, UsageError
+
+#: With these the rest of a document is still worth looking at.
+_GO_ON = frozenset(
+    ("E003", "E102", "E103", "E111", "E112", "E116", "E014", "E120", "E121", "E204", "E205",
+     "E208", "E210", "E211", "E212", "E214", "E215")
+)  # fmt: skip
+
+#: Errors of single scenarios after which the rest of a suite is not looked at any more.
+_ENOUGH = 50_000
+
+
+@dataclass(frozen=True, slots=True)
+class Expansion:
+    """What a document says.
+
+    Attributes:
+        suite_id: id of the suite; of the scenario in a document that holds one.
+        metrics: names or patterns of the metrics to score; None means all.
+        trees: id -> the merged tree of the scenario, which knows where each value is written.
+        axes: id -> axis -> label, in the suite's order; no axes in a document without a matrix.
+        commitment: to the suite's seed; empty if there is none. While the seed is hidden, the
+            scenarios say so; once it is revealed, it has been checked.
+        run_seeds: seeds of the runs that a bundle consists of.
+        words: axis -> label -> what it varies and to which value, in words.
+    """
+
+    suite_id: str
+    title: str
+    scenarios: list[Scenario]
+    metrics: tuple[str, ...] | None = None
+    trees: dict[str, Node] = field(default_factory=dict, repr=False)
+    axes: dict[str, dict[str, str]] = field(default_factory=dict, repr=False)
+    commitment: str = ""
+    run_seeds: tuple[int, ...] = (0,)
+    words: dict[str, dict[str, AxisWords]] = field(default_factory=dict, repr=False)
+
+    def words_of(self, scenario: str) -> dict[str, AxisWords]:
+        """Axis -> words of the label that a scenario has on it; none of axes without words."""
+        labels = self.axes.get(scenario, {})
+        return {a: self.words[a][x] for a, x in labels.items() if x in self.words.get(a, {})}
+
+    @property
+    def single(self) -> bool:
+        """Whether the document holds one scenario by itself, no matrix of them."""
+        ids = [s.id.partition("+")[0] for s in self.scenarios]
+        return ids == [self.suite_id]
+
+    @property
+    def folder(self) -> str:
+        """Name of the folder of its runs: one for all documents that hold a single scenario."""
+        return "scenarios" if self.single else self.suite_id
+
+
+def load_document(
+    path: Path,
+    roots: Roots | None = None,
+    *,
+    name: str = "",
+    installed: Installed | None = None,
+) -> ParsedSuite:
+    """Read a suite or scenario file and everything it extends.
+
+    Args:
+        path: the file.
+        roots: plugin name -> packaged folders that ``extends`` may read.
+        name: what messages call the file; default: the path as given.
+        installed: the installed components; None leaves metrics and versions unchecked.
+
+    Raises:
+        SpecError: the document cannot be taken apart; with every error found so far.
+    """
+    loader = Loader(path, roots or {})
+    root = loader.load(name or str(path))
+    problems = loader.problems
+    if all(d.code in _GO_ON for d in problems):
+        suite = read_suite(root, problems, installed)
+        if suite is not None and all(d.code in _GO_ON for d in problems):
+            return replace(suite, finder=Finder(path, roots or {}))
+    raise SpecError(_sorted(problems))
+
+
+def expand_document(
+    suite: ParsedSuite, scenario_model: type[Scenario], overrides: Sequence[str] = ()
+) -> Expansion:
+    """Expand and validate all scenarios of a document.
+
+    Args:
+        suite: from `load_document`.
+        scenario_model: `Scenario`, narrowed to the installed components.
+        overrides: ``key=value`` with a dotted key and a YAML value; laid over every scenario.
+
+    Raises:
+        SpecError: every error of every scenario, equal ones folded.
+        UsageError: an override is not ``key=value``.
+    """
+    return _Expander(suite, scenario_model, overrides).run()
+
+
+class Expanding:
+    """A document's scenarios by their place in the `Expansion`, each expanded when asked for."""
+
+    def __init__(self, suite: ParsedSuite, scenario_model: type[Scenario]) -> None:
+        self._expander = _Expander(suite, scenario_model, ())
+
+    def scenario(self, index: int) -> Scenario:
+        """One scenario.
+
+        Raises:
+            SpecError: with the errors of those that were asked for.
+        """
+        return self._expander.one(index)
+
+
+@dataclass
+class _Folded:
+    """An error, and the scenarios that have it."""
+
+    diagnostic: Diagnostic
+    ids: list[str]
+    reference: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Bare:
+    """A combination: its id, key of the crowd's seed, its label on each axis, tree."""
+
+    name: str
+    key: str
+    labels: dict[str, str]
+    tree: Node
+
+    @property
+    def draw(self) -> str:
+        """Label of the crowd draw; empty where there is only one."""
+        return self.labels.get(DRAW, "")
+
+
+class _Expander:
+    """One expansion: memories of shared parts, and the errors so far."""
+
+    def __init__(self, suite: ParsedSuite, model: type[Scenario], overrides: Sequence[str]) -> None:
+        self._suite, self._model = suite, model
+        self._errors: dict[tuple[str, Mark, str], _Folded] = {}
+        self._problems = list(suite.problems)
+        self._set = _parse_overrides(overrides, self._problems)
+        self._suffix = "+" + _digest(overrides) if overrides else ""
+        self._set_in: dict[int, Node] = {}
+        self._merged: Merged = {}
+        self._data: dict[Node, Any] = {}
+        self._seeds: dict[str, Node] = {}
+        self._folders: dict[str, str] = {}
+        self._parts, self._checks = ValidParts(), Checks()
+        self._assets = AssetFiles(suite.finder) if suite.finder else None
+        self._validated: dict[tuple[tuple[str, int], ...], Scenario] = {}
+        self._bare: list[_Bare] | None = None
+        self._total = self._noted = 0
+
+    def run(self) -> Expansion:
+        scenarios, trees, axes = [], {}, {}
+        for bare in self._trees():
+            if self._noted > _ENOUGH:
+                break
+            tree = self._complete(bare)
+            scenario = self._scenario(bare, tree)
+            if scenario is not None:
+                scenarios.append(scenario)
+                trees[bare.name] = tree
+                axes[bare.name] = bare.labels
+        self._raise_problems()
+        suite = self._suite
+        return Expansion(
+            suite.id,
+            suite.title,
+            scenarios,
+            suite.metrics,
+            trees,
+            axes,
+            suite.commitment,
+            suite.run_seeds,
+            axis_words(suite.base, suite.axes, self._set),
+        )
+
+    def _unusable(self, bare: _Bare) -> str:
+        """Why a combination's id cannot be a folder beside those before; empty where it can."""
+        if bare.name == self._suite.scenario_id:
+            return ""
+        first = self._folders.setdefault(bare.name.lower(), bare.name)
+        if first != bare.name:
+            return f"'{bare.name}' is '{first}' where file systems do not tell capitals"
+        return path_problem(bare.name)
+
+    def _longest(self, bare: _Bare) -> Mark:
+        """Where the longest of a combination's labels is written."""
+        keys = {axis.name: axis.keys for axis in self._suite.axes}
+        marks = [
+            (len(label), keys[axis][label])
+            for axis, label in bare.labels.items()
+            if label in keys[axis]
+        ]
+        return max(marks, key=itemgetter(0), default=(0, self._suite.base.mark))[1]
+
+    def one(self, index: int) -> Scenario:
+        if self._bare is None:
+            self._bare = list(self._trees())
+        scenario = self._scenario(self._bare[index], self._complete(self._bare[index]))
+        self._raise_problems()
+        assert scenario is not None
+        return scenario
+
+    def _scenario(self, bare: _Bare, tree: Node) -> Scenario | None:
+        """A combination with its references; None if something is wrong, which is noted."""
+        self._total += 1
+        if why := self._unusable(bare):
+            self._note(Diagnostic("E116", f"the id {why}", self._longest(bare)), bare.name, "")
+            return None
+        scenario = self._validate(bare.name, tree)
+        references = {
+            reference: self._validate(bare.name, self._complete(bare, over), reference)
+            for reference, over in self._suite.references.items()
+        }
+        return scenario and scenario.model_copy(update={"references": references})
+
+    def _raise_problems(self) -> None:
+        if problems := [*self._problems, *self._folded()]:
+            raise SpecError(_sorted(problems))
+
+    def _trees(self) -> Iterator[_Bare]:
+        """The combinations that stay, as trees."""
+        suite, axes = self._suite, [axis.name for axis in self._suite.axes]
+        for combination in combinations(suite.base, suite.axes):
+            if suite.kept is not None and combination.labels not in suite.kept:
+                continue
+            labels = dict(zip(axes, combination.labels, strict=True))
+            key = "-".join(labels[axis] for axis in suite.crowd_axes)
+            name = "-".join(v for axis, v in labels.items() if axis != DRAW)
+            name = name or suite.scenario_id
+            draw = labels.get(DRAW)
+            name = f"{name}-{draw}" if name and draw else name
+            yield _Bare(name and name + self._suffix, key, labels, combination.tree)
+
+    def _complete(self, bare: _Bare, reference: Node | None = None) -> Node:
+        """The reference, ``--set`` and the seed laid over a combination, in this order."""
+        tree = bare.tree
+        if reference is None:
+            tree = merge(tree, self._set, self._merged)
+        else:
+            tree = merge(tree, reference, self._merged)
+            tree = merge(tree, self._set_below(reference), self._merged)
+        return self._with_seed(tree, bare.key, bare.draw)
+
+    def _set_below(self, reference: Node) -> Node:
+        """What ``--set`` changes of a reference; the same node for the same reference."""
+        if id(reference) not in self._set_in:
+            self._set_in[id(reference)] = _unless_removed(self._set, reference)
+        return self._set_in[id(reference)]
+
+    def _with_seed(self, tree: Node, key: str, draw: str) -> Node:
+        """Write root and key of the seed into a suite's crowd, under what the document says.
+
+        Another draw has other people even where the document writes the key itself.
+        """
+        crowd = tree.entries.get("crowd")
+        if self._suite.seed is None or crowd is None or not crowd.node.entries:
+            return tree
+        if key not in self._seeds:
+            mark = self._suite.seed.mark
+            parts = {"root": self._suite.seed, "key": Node(mark, key)}
+            if self._suite.hidden:
+                del parts["root"]
+            seed = Node(mark, {k: Entry(mark, node) for k, node in parts.items()}, implied=True)
+            self._seeds[key] = nest(("seed",), seed, mark)
+        node = merge(self._seeds[key], crowd.node, self._merged)
+        own = locate(crowd.node, ("seed", "key"))
+        if draw and not own.rest and isinstance(own.node.value, str):
+            joined = replace(own.node, value=f"{own.node.value}-{draw}".lstrip("-"))
+            node = merge(node, nest(("seed", "key"), joined, joined.mark))
+        return replace(tree, value={**tree.entries, "crowd": replace(crowd, node=node)})
+
+    def _validate(self, name: str, tree: Node, reference: str = "") -> Scenario | None:
+        """Validate a tree; equal ones of other combinations are validated once."""
+        data = to_data(tree, self._data)  # keeps the nodes alive, so that their ids stay unique
+        shared = tuple((key, id(entry.node)) for key, entry in sorted(tree.entries.items()))
+        if known := self._validated.get(shared):
+            return known.model_copy(update={"id": name})
+        if name:
+            data = {**data, "id": name}
+        scenario, found = self._with_assets(tree, data)
+        if scenario is not None and not found:
+            self._parts.add(tree, scenario)
+            found = self._checks.of(scenario, tree)
+        for diagnostic in found:
+            self._note(diagnostic, name, reference)
+        if found or scenario is None:
+            return None
+        if self._is_hidden(tree):
+            scenario.hide(self._suite.commitment)
+        self._validated[shared] = scenario
+        return scenario
+
+    def _is_hidden(self, tree: Node) -> bool:
+        """Whether people are drawn from the suite's seed, and that is hidden."""
+        crowd = tree.child("crowd")
+        if not self._suite.hidden or crowd is None or not crowd.entries:
+            return False
+        return bool(locate(crowd, ("seed", "root")).rest)
+
+    def _with_assets(
+        self, tree: Node, data: dict[str, Any]
+    ) -> tuple[Scenario | None, list[Diagnostic]]:
+        """The validated scenario with its files found, and what is wrong with it."""
+        scenario, found = self._with_known_parts(tree, data), list[Diagnostic]()
+        if scenario is None:
+            scenario, found = validate(self._model, data, tree)
+        if scenario is None or self._assets is None:
+            return scenario, found
+        filled = self._assets.fill(scenario, tree, data, found)
+        if filled is not data and not found:
+            scenario, found = validate(self._model, filled, tree)
+        return scenario, found
+
+    def _with_known_parts(self, tree: Node, data: dict[str, Any]) -> Scenario | None:
+        """The scenario, made of parts that are known to be valid; None if that does not work."""
+        try:
+            return self._model.model_validate(self._parts.fill(tree, data))
+        except (Exception, SystemExit):  # also a validator that does not expect validated parts
+            return None
+
+    def _note(self, diagnostic: Diagnostic, name: str, reference: str) -> None:
+        self._noted += 1
+        key = (diagnostic.code, diagnostic.mark, diagnostic.message)
+        folded = self._errors.setdefault(key, _Folded(diagnostic, [], reference))
+        if not folded.ids or folded.ids[-1] != name:
+            folded.ids.append(name)
+
+    def _folded(self) -> Iterator[Diagnostic]:
+        for folded in self._errors.values():
+            notes = [folded.diagnostic.hint] if folded.diagnostic.hint else []
+            if folded.reference:
+                notes.append(f"in reference '{folded.reference}'")
+            if len(folded.ids) < self._total:
+                of = f"the first {self._total}" if self._noted > _ENOUGH else str(self._total)
+                notes.append(f"in {len(folded.ids)} of {of} combinations, first: {folded.ids[0]}")
+            yield replace(folded.diagnostic, hint="; ".join(notes).replace("?; ", "? "))
+
+
+def _unless_removed(change: Node, reference: Node) -> Node:
+    """A change without what goes into parts that a reference removes: they stay removed."""
+    entries = {}
+    for key, entry in change.entries.items():
+        over = reference.child(key)
+        if over is None:
+            entries[key] = entry
+        elif over.entries and entry.node.entries:
+            entries[key] = replace(entry, node=_unless_removed(entry.node, over))
+        elif over.value is not None and over.value != {}:
+            entries[key] = entry
+    return replace(change, value=entries, implied=change.implied or not entries)
+
+
+def _parse_overrides(overrides: Sequence[str], problems: list[Diagnostic]) -> Node:
+    """``key=value`` texts as one tree, later ones over earlier ones."""
+    tree = Node(Mark(Source("--set")), {}, implied=True)
+    for text in overrides:
+        key, equals, value = text.partition("=")
+        if not equals or not key.strip():
+            raise UsageError(f"--set {text}: write key=value, e.g. --set crowd.speed.mean='1 m/s'")
+        if key.split(".")[0] in ("id", "references"):
+            raise UsageError(f"--set {text}: '{key}' cannot be set")
+        source = Source("--set", (text,))
+        try:
+            node = parse(value, source, problems, shift=len(key) + 1)
+        except SpecError as error:
+            problems += [d for d in error.diagnostics if d not in problems]
+            continue
+        entry = Entry(Mark(source, 0, 0, len(key)), node)
+        tree = merge(tree, undot(Node(entry.key, {key: entry}, implied=True), problems))
+    return tree
+
+
+def _digest(overrides: Sequence[str]) -> str:
+    return hashlib.sha256("\n".join(overrides).encode()).hexdigest()[:4]
+
+
+def _sorted(problems: Sequence[Diagnostic]) -> list[Diagnostic]:
+    return sorted(dict.fromkeys(problems), key=Diagnostic.sort_key)[:MAX_ERRORS]
+
+
+def where(tree: Node, *path: str) -> Mark | None:
+    """Where a value is written, or None for a default."""
+    place = locate(tree, path)
+    return None if place.rest else place.node.mark

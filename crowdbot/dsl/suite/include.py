@@ -1,0 +1,191 @@
+"""``extends``: files laid under the map that names them, left to right; tables of agents.
+
+A path is relative to the file that contains it, never to the working directory.
+"""
+
+from __future__ import annotations
+
+import os.path
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from crowdbot.dsl.suite.agents_csv import read_agents
+from crowdbot.dsl.text.bounded_files import read_text
+from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source
+from crowdbot.dsl.text.finder import Finder, Roots
+from crowdbot.dsl.text.merge import merge, undot
+from crowdbot.dsl.text.nodes import Node, parse
+from crowdbot.errors import SpecError
+
+MAX_INCLUDES = 64
+
+#: Maps at the top of a document whose keys are kinds, which have dots of their own.
+_VERBATIM = ("kinds",)
+
+
+@dataclass(frozen=True, slots=True)
+class _File:
+    """A file being read: where it is, what people call it, and the files that led to it."""
+
+    path: Path
+    name: str
+    chain: tuple[Path, ...]
+
+
+@dataclass
+class Loader:
+    """Reads a file and everything it extends; collects what is wrong on the way."""
+
+    top: Path
+    roots: Roots
+    problems: list[Diagnostic] = field(default_factory=list)
+    _count: int = 0
+
+    def load(self, name: str) -> Node:
+        """The top-level file as one tree, ``extends`` resolved, dotted keys written out."""
+        return self._read(_File(self.top, name, ()), None)
+
+    def _read(self, file: _File, included_from: Mark | None) -> Node:
+        """One file; an unreadable one counts as an empty map, its error is kept."""
+        source = Source(file.name, (), included_from, file.path)
+        try:
+            text = _read_text(file, source)
+            source = replace(source, lines=text.split("\n"))
+            root = parse(text, source, self.problems)
+        except SpecError as error:
+            self.problems += [d for d in error.diagnostics if d not in self.problems]
+            return Node(Mark(source), {}, implied=True)
+        if not isinstance(root.value, dict):
+            what = "is empty" if root.value is None else "must be a map of fields"
+            self.problems.append(Diagnostic("E011", f"the document {what}", root.mark))
+            return Node(root.mark, {})
+        here = replace(file, chain=(*file.chain, file.path.resolve()))
+        return self._resolve(
+            self._with_rows(undot(root, self.problems, verbatim=_VERBATIM), here), here
+        )
+
+    def _with_rows(self, node: Node, file: _File, below: str = "") -> Node:
+        """A tree in which the rows of each table stand for ``crowd.agents: {csv: FILE}``."""
+        changed = {}
+        for key, entry in node.entries.items():
+            table = entry.node.child("csv") if (below, key) == ("crowd", "agents") else None
+            made = (
+                self._with_rows(entry.node, file, key)
+                if table is None
+                else self._rows(entry.node, table, file)
+            )
+            if made is not entry.node:
+                changed[key] = replace(entry, node=made)
+        return replace(node, value={**node.entries, **changed}) if changed else node
+
+    def _rows(self, agents: Node, table: Node, file: _File) -> Node:
+        """The rows of a table of agents; none if it cannot be read, its error is kept."""
+        nothing = Node(table.mark, ())
+        for key, entry in agents.entries.items():
+            if key != "csv":
+                self._add("E102", f"unknown field '{key}' beside 'csv'", entry.key)
+        found = self._named_file(table, file, "E015", "csv wants the path of a table")
+        if found is None:
+            return nothing
+        source = Source(found.name, (), table.mark)
+        try:
+            text = _read_text(found, source)
+        except SpecError as error:
+            self.problems += [d for d in error.diagnostics if d not in self.problems]
+            return nothing
+        source = Source(found.name, text.split("\n"), table.mark)
+        return replace(read_agents(text, source, self.problems), mark=table.mark)
+
+    def _resolve(self, root: Node, file: _File) -> Node:
+        """Resolve ``extends`` wherever fields of a scenario stand, and at the root."""
+        entries = dict(root.entries)
+        for key, depth in (("matrix", 2), ("references", 1)):
+            if key in entries:
+                part = entries[key]
+                entries[key] = replace(part, node=self._below(part.node, file, depth))
+        for key in ("base", "scenario"):
+            if key in entries and entries[key].node.entries:
+                part = entries[key]
+                entries[key] = replace(part, node=self._extended(part.node, file))
+        return self._extended(replace(root, value=entries), file)
+
+    def _below(self, node: Node, file: _File, depth: int) -> Node:
+        """A map of maps, ``depth`` deep, whose innermost maps are resolved."""
+        if depth == 0:
+            return self._extended(node, file)
+        if not node.entries:
+            return node
+        below = {
+            k: replace(e, node=self._below(e.node, file, depth - 1))
+            for k, e in node.entries.items()
+        }
+        return replace(node, value=below)
+
+    def _extended(self, node: Node, file: _File) -> Node:
+        if "extends" not in node.entries:
+            return node
+        entries = dict(node.entries)
+        extends = entries.pop("extends")
+        own = replace(node, value=entries)
+        items = extends.node.value if isinstance(extends.node.value, tuple) else (extends.node,)
+        tree = Node(node.mark, {}, implied=True)
+        for item in items:
+            tree = merge(tree, self._include(item, file))
+        return merge(tree, own if own.entries else replace(own, implied=True))
+
+    def _include(self, item: Node, file: _File) -> Node:
+        found = self._named_file(item, file, "E111", "extends wants a path or a list of paths")
+        if found is None:
+            return Node(item.mark, {}, implied=True)
+        return self._read(found, item.mark)
+
+    def _named_file(self, item: Node, file: _File, code: str, wanted: str) -> _File | None:
+        """The file that a value names, if it may be read; else the error is kept."""
+        if not isinstance(item.value, str):
+            self._add(code, wanted, item.mark)
+            return None
+        found = self._find(item.value, item.mark, file)
+        if found is None:
+            return None
+        self._count += 1
+        if self._count > MAX_INCLUDES:
+            self._add("E206", f"more than {MAX_INCLUDES} files are included", item.mark)
+            return None
+        return found
+
+    def _find(self, text: str, mark: Mark, file: _File) -> _File | None:
+        """The file that a path means, if it may be read; else the error is kept."""
+        path = Finder(self.top, self.roots).find(text, mark)
+        if isinstance(path, Diagnostic):
+            self.problems.append(path)
+            return None
+        name = text if ":" in text else self._beside(file.name, text)
+        return self._unless_cycle(_File(path, name, file.chain), mark)
+
+    def _beside(self, name: str, text: str) -> str:
+        """What people call a file that another one names."""
+        plugin, colon, path = name.rpartition(":")
+        if plugin not in self.roots:
+            plugin, colon, path = "", "", name
+        return plugin + colon + os.path.normpath(os.path.join(os.path.dirname(path), text))  # noqa: PTH118, PTH120 - text, not files
+
+    def _unless_cycle(self, found: _File, mark: Mark) -> _File | None:
+        target = found.path.resolve()
+        if target not in found.chain:
+            return found
+        chain = " -> ".join(p.name for p in (*found.chain[found.chain.index(target) :], target))
+        self._add("E202", f"files include each other: {chain}", mark)
+        return None
+
+    def _add(self, code: str, message: str, mark: Mark, hint: str = "") -> None:
+        self.problems.append(Diagnostic(code, message, mark, hint))
+
+
+def _read_text(file: _File, source: Source) -> str:
+    """Text of a file; errors know who included it."""
+    try:
+        return read_text(file.path, file.name)
+    except SpecError as error:
+        raise SpecError(
+            [replace(d, mark=Mark(source, d.mark.line, d.mark.column)) for d in error.diagnostics]
+        ) from None

@@ -1,0 +1,353 @@
+"""What people write: a suite, or a single scenario, which is a suite of one.
+
+::
+
+    crowdbot: 1                 crowdbot: 1
+    suite: {id: …, seed: …}     scenario: {id: …, environment: …, …}
+    base: {…}
+    matrix: {axis: {label: {override}}}
+    only: {axis: [label, …]}    exclude: {axis: [label, …]}
+    draws: N
+    seeds: {crowd: [axis, …]}
+    metrics: [name, …]
+    references: {name: {override}}
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from importlib import metadata
+from typing import Annotated, Any
+
+from annotated_types import Ge, Le
+from pydantic import Field, WithJsonSchema
+
+from crowdbot.dsl.checks.pydantic_errors import validate
+from crowdbot.dsl.spec.spec import Spec
+from crowdbot.dsl.suite.commitment import COMMITMENT, SALT, read_commitment
+from crowdbot.dsl.suite.installed import Installed, check_metrics, check_versions
+from crowdbot.dsl.suite.matrix import DRAW, MAX_COMBINATIONS, Axis, read_axes
+from crowdbot.dsl.suite.selection import Kept, read_selection
+from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
+from crowdbot.dsl.text.finder import Finder
+from crowdbot.dsl.text.nodes import Node, count, to_data
+from crowdbot.dsl.text.path_names import PathName
+from crowdbot.errors import did_you_mean, nearest
+
+#: The version of the document format that this release reads.
+FORMAT = 1
+
+MAX_REFERENCES = 16
+MAX_FIELDS = 10_000_000
+MAX_RUN_SEEDS = 1000
+
+#: Fields of a scenario that a document never writes there.
+_ELSEWHERE = {
+    "id": "ids are made of the labels of the matrix",
+    "references": "references stand beside 'base' or 'scenario'",
+}
+
+
+_LABELS = {"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]}
+_CHOICE = {"type": "object", "additionalProperties": _LABELS, "minProperties": 1}
+_CHOICES = {
+    "anyOf": [_CHOICE, {"type": "array", "items": _CHOICE, "minItems": 1}, {"type": "null"}]
+}
+
+#: Checked by `read_selection`, which knows the axes.
+_Choices = Annotated[Any, WithJsonSchema(_CHOICES)]
+#: Checked by `check_versions`.
+_Versions = Annotated[
+    Any,
+    WithJsonSchema({"type": "object", "additionalProperties": {"type": "integer", "minimum": 1}}),
+]
+
+
+class SuiteHead(Spec):
+    """Name, title and seed of a suite."""
+
+    id: PathName = Field(pattern=r"^[A-Za-z0-9_.-]+$", description="Name of the suite.")
+    title: str = Field(
+        default="", description="What the suite is about, for people who read a list of suites."
+    )
+    seed: Annotated[int, Ge(0), Le(2**63 - 1)] = Field(
+        default=0, description="Root of every crowd's random numbers."
+    )
+    commitment: str | None = Field(
+        default=None,
+        pattern=COMMITMENT,
+        description="Hash of seed, salt and document, published before the seed is.",
+    )
+    salt: str | None = Field(
+        default=None,
+        pattern=SALT,
+        description="Hexadecimal digits that reveal the seed of a commitment, together with it.",
+    )
+
+
+class Seeds(Spec):
+    """Which axes change the random numbers; combinations that differ in others share them."""
+
+    crowd: tuple[str, ...] | None = Field(
+        default=None,
+        strict=False,
+        description="Axes that change the drawn crowd; default: all.",
+    )
+    runs: tuple[Annotated[int, Ge(0), Le(2**63 - 1)], ...] = Field(
+        default=(0,),
+        strict=False,
+        min_length=1,
+        max_length=MAX_RUN_SEEDS,
+        description="Run seeds that a bundle of this suite consists of, in rising order.",
+    )
+
+
+class SuiteDocument(Spec):
+    """The outermost fields of a suite."""
+
+    crowdbot: int = Field(description="Version of the format.")
+    suite: SuiteHead
+    base: dict[str, Any] = Field(description="What all scenarios have in common.")
+    matrix: Any = Field(
+        default=None,
+        description="Axes of variation: axis, label, and the fields that the label overrides.",
+    )
+    only: _Choices = Field(
+        default=None,
+        description="Combinations that stay: labels by axis, or a list of such maps, of which one "
+        "has to fit.",
+    )
+    exclude: _Choices = Field(
+        default=None, description="Combinations that are left out, written as in `only`."
+    )
+    draws: Annotated[int, Ge(1), Le(MAX_COMBINATIONS)] = Field(
+        default=1,
+        description="Crowd draws of each condition: as many scenarios, with other people each.",
+    )
+    seeds: Seeds | None = Field(default=None, description="Axes of the random numbers.")
+    metrics: list[str] | None = Field(default=None, description="Metrics to score; default all.")
+    references: dict[str, dict[str, Any]] = Field(default={}, description="Calibration runs.")
+    kinds: _Versions = Field(default=None, description="Least spec_version of components, by kind.")
+
+
+class ScenarioDocument(Spec):
+    """The outermost fields of a single scenario."""
+
+    crowdbot: int = Field(description="Version of the format.")
+    scenario: dict[str, Any] = Field(description="All fields of one scenario.")
+    metrics: list[str] | None = Field(default=None, description="Metrics to score; default all.")
+    references: dict[str, dict[str, Any]] = Field(default={}, description="Calibration runs.")
+    kinds: _Versions = Field(default=None, description="Least spec_version of components, by kind.")
+
+
+@dataclass(frozen=True, slots=True)
+class ParsedSuite:
+    """A document, read and taken apart; its scenarios are not validated yet.
+
+    Attributes:
+        scenario_id: id of the only scenario of a document without axes; empty if it has none.
+        seed: root seed with the place where it is written, or None for a single scenario.
+        crowd_axes: names of the axes whose labels make the crowd's seed key.
+        kept: labels of the combinations that stay; None: all.
+        commitment: to the seed; empty if there is none.
+        hidden: whether the seed has not been revealed; ``seed`` is a node of None then.
+        run_seeds: seeds of the runs that a bundle consists of.
+        problems: errors found so far.
+        tree: the whole document, all it extends included.
+        finder: finds the files that the document names; None: assets are not looked for.
+    """
+
+    id: str
+    title: str
+    scenario_id: str
+    seed: Node | None
+    base: Node
+    axes: tuple[Axis, ...]
+    crowd_axes: tuple[str, ...]
+    metrics: tuple[str, ...] | None
+    references: dict[str, Node]
+    problems: tuple[Diagnostic, ...]
+    tree: Node
+    kept: Kept | None = None
+    finder: Finder | None = None
+    commitment: str = ""
+    hidden: bool = False
+    run_seeds: tuple[int, ...] = (0,)
+
+
+def read_suite(
+    root: Node, problems: list[Diagnostic], installed: Installed | None = None
+) -> ParsedSuite | None:
+    """Take a document apart.
+
+    Args:
+        root: the merged tree of the whole document.
+        problems: errors so far; more are added.
+        installed: None leaves metrics and versions unchecked.
+
+    Returns:
+        None if the document is too broken to look at its scenarios.
+    """
+    if not _right_version(root, problems):
+        return None
+    if root.child("suite") is None and root.child("scenario") is None:
+        hint = "write 'suite:' and 'base:', or 'scenario:'"
+        text = "the document is neither a suite nor a scenario"
+        problems.append(Diagnostic("E013", text, root.mark, hint))
+        return None
+    model = ScenarioDocument if root.child("suite") is None else SuiteDocument
+    _, found = validate(model, to_data(root), root)
+    problems += found
+    if installed is not None:
+        check_metrics(root.child("metrics"), installed, problems)
+        check_versions(root.child("kinds"), installed, problems)
+    single = model is ScenarioDocument
+    body = root.child("scenario" if single else "base")
+    if body is None or not isinstance(body.value, dict):
+        return None
+    return _scenario(root, body, problems) if single else _suite(root, body, problems)
+
+
+def _scenario(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite:
+    name, title = _text(body.child("id"), ""), _text(body.child("title"), "")
+    _check_elsewhere(body, ("references",), problems)
+    _check_references(root, problems)
+    return ParsedSuite(
+        name, title, name, None, body, (), (), _metrics(root), _references(root), tuple(problems),
+        root,
+    )  # fmt: skip
+
+
+def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite:
+    head = root.child("suite")
+    name = _text(head.child("id") if head else None, "suite")
+    title = _text(head.child("title") if head else None, "")
+    axes = read_axes(root.child("matrix"), problems, root.child("draws"))
+    _check_elsewhere(body, ("id", "references"), problems)
+    for axis in axes:
+        for over in axis.labels.values():
+            _check_elsewhere(over, ("id", "references"), problems)
+    _check_references(root, problems)
+    _check_own_id(head, problems)
+    commitment, hidden = read_commitment(root, problems)
+    seed = head.child("seed") if head else None
+    if hidden or seed is None or not isinstance(seed.value, int):
+        seed = Node(head.mark if head else root.mark, None if hidden else 0)
+    crowd_axes = _crowd_axes(root, axes, problems)
+    kept = read_selection(root, axes, problems)
+    _check_size(root, body, axes, problems)
+    run_seeds = _run_seeds(root, problems)
+    return ParsedSuite(
+        name, title, name, seed, body, axes, crowd_axes, _metrics(root), _references(root),
+        tuple(problems), root, kept, None, commitment, hidden, run_seeds,
+    )  # fmt: skip
+
+
+def _check_own_id(head: Node | None, problems: list[Diagnostic]) -> None:
+    """Two suites of one id would write their runs into one folder."""
+    own = head.child("id") if head else None
+    includer = own.mark.source.included_from if own else None
+    if own is not None and includer is not None:
+        text = f"the suite has no id of its own, only that of the included '{own.value}'"
+        problems.append(Diagnostic("E212", text, includer, "add e.g. 'suite.id: my-suite'"))
+
+
+def _right_version(root: Node, problems: list[Diagnostic]) -> bool:
+    node = root.child("crowdbot")
+    if node is None:
+        text = "the document does not say which format it has"
+        problems.append(Diagnostic("E012", text, root.mark, f"start with 'crowdbot: {FORMAT}'"))
+    elif type(node.value) is not int or node.value < 1:
+        text = "the format version must be a whole number"
+        problems.append(Diagnostic("E012", text, node.mark, f"write 'crowdbot: {FORMAT}'"))
+    elif node.value > FORMAT:
+        text = (
+            f"format {node.value} needs crowdbot {node.value}.0 or newer; "
+            f"this is {metadata.version('crowdbot')}, which reads format {FORMAT}"
+        )
+        hint = f"pip install 'crowdbot>={node.value}.0'"
+        problems.append(Diagnostic("E012", text, node.mark, hint))
+    else:
+        return True
+    return False
+
+
+def _check_size(root: Node, body: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) -> None:
+    """Bounds the work that a small file can ask for."""
+    references = root.child("references")
+    if references is not None and len(references.entries) > MAX_REFERENCES:
+        text = f"the suite has {len(references.entries)} references; at most {MAX_REFERENCES}"
+        problems.append(Diagnostic("E207", f"{text} are allowed", references.mark))
+    combinations = math.prod(len(axis.labels) for axis in axes)
+    if (fields := count(body)) * combinations > MAX_FIELDS:
+        text = f"{combinations} combinations of {fields} fields are too many for one suite"
+        problems.append(Diagnostic("E207", text, body.mark))
+
+
+def _crowd_axes(root: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) -> tuple[str, ...]:
+    """Axes of the seed key in the matrix' order; all of them if the document names none."""
+    known = [axis.name for axis in axes]
+    seeds = root.child("seeds")
+    listed = seeds.child("crowd") if seeds else None
+    if listed is None or not isinstance(listed.value, tuple):
+        return tuple(known)
+    for item in listed.value:
+        if isinstance(item.value, str) and item.value not in known:
+            hint = did_you_mean(nearest(item.value, known)).removeprefix("; ")
+            text = f"the matrix has no axis '{item.value}'"
+            problems.append(Diagnostic("E208", text, item.mark, hint))
+    wanted = {item.value for item in listed.value if isinstance(item.value, str)}
+    return tuple(name for name in known if name in wanted or name == DRAW)
+
+
+def _run_seeds(root: Node, problems: list[Diagnostic]) -> tuple[int, ...]:
+    """The seeds of an edition; 0 where the document names none."""
+    seeds = root.child("seeds")
+    listed = seeds.child("runs") if seeds else None
+    if listed is None or not isinstance(listed.value, tuple):
+        return (0,)
+    found = tuple(i.value for i in listed.value if type(i.value) is int and i.value >= 0)
+    if list(found) != sorted(set(found)):
+        text = "the seeds of runs are not in rising order, each once"
+        hint = f"write {sorted(set(found))}"
+        problems.append(Diagnostic("E112", text, listed.mark, hint))
+    return found or (0,)
+
+
+def _check_elsewhere(body: Node, names: tuple[str, ...], problems: list[Diagnostic]) -> None:
+    for name in names:
+        if name in body.entries:
+            mark: Mark = body.entries[name].key
+            text = f"field '{name}' is not written here"
+            problems.append(Diagnostic("E102", text, mark, _ELSEWHERE[name]))
+
+
+def _check_references(root: Node, problems: list[Diagnostic]) -> None:
+    """A reference is known by its name, beside the id of its scenario."""
+    listed = root.child("references")
+    for entry in (listed.entries if listed else {}).values():
+        for name in {"id", "references"} & entry.node.entries.keys():
+            text = f"a reference has no '{name}'"
+            problems.append(Diagnostic("E102", text, entry.node.entries[name].key))
+
+
+def _metrics(root: Node) -> tuple[str, ...] | None:
+    listed = root.child("metrics")
+    if listed is None or not isinstance(listed.value, tuple):
+        return None
+    return tuple(item.value for item in listed.value if isinstance(item.value, str))
+
+
+def _references(root: Node) -> dict[str, Node]:
+    listed = root.child("references")
+    found = {name: entry.node for name, entry in (listed.entries if listed else {}).items()}
+    return {
+        name: node if node.entries else replace(node, implied=True)
+        for name, node in sorted(found.items())
+        if isinstance(node.value, dict)
+    }
+
+
+def _text(node: Node | None, default: str) -> str:
+    return node.value if node and isinstance(node.value, str) else default

@@ -1,0 +1,1 @@
+"""YAML as text: nodes with positions, diagnostics, merging, paths."""

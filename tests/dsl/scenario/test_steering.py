@@ -1,0 +1,64 @@
+"""Steering in documents: off by default, and then a scenario's hash does not know it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from crowdbot.core.crowd.steering.from_spec import steering_of
+from crowdbot.core.crowd.steering.parameters import Steering, TimeGap, Wander
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.scenarios.library import open_spec
+from crowdbot.dsl.identity.canonical import canonical_bytes, content_hash, dump_scenario_yaml
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.errors import SpecError
+
+REGISTRY = discover(allow=())
+
+
+def scenario(*overrides: str) -> Scenario:
+    return open_spec("challenge-2020", REGISTRY, overrides).scenarios[0]
+
+
+def test_unset_is_not_in_the_hash() -> None:
+    plain = canonical_bytes(scenario(), {})
+    assert b"steering" not in plain
+    assert b"avoided_radius" not in plain
+
+
+def test_each_part_changes_the_hash_and_reads_back(tmp_path: Path) -> None:
+    found = {content_hash(scenario(), {})}
+    for change in (
+        "crowd.steering.time_gap.time=1 s",
+        "crowd.steering.personal_space.reach=0.4 m",
+        "crowd.steering.lanes.reach=1 m",
+        "crowd.steering.wall_push.reach=0.1 m",
+        "crowd.steering.wander.time=0.5 s",
+        "crowd.body.avoided_radius=0.2 m",
+    ):
+        changed = scenario(change)
+        found.add(content_hash(changed, {}))
+        path = tmp_path / "again.yaml"
+        path.write_text(dump_scenario_yaml(changed))
+        again = open_spec(str(path), REGISTRY).scenarios[0]
+        assert content_hash(again, {}) == content_hash(changed, {})
+    assert len(found) == 7
+
+
+def test_wrong_words_and_numbers_are_refused() -> None:
+    with pytest.raises(SpecError, match="time_gab"):
+        scenario("crowd.steering.time_gab.time=1 s")
+    with pytest.raises(SpecError, match="behind"):
+        scenario("crowd.steering.personal_space.behind=1.5")
+
+
+def test_what_the_engine_takes() -> None:
+    crowd = scenario(
+        "crowd.steering.time_gap.time=0.8 s", "crowd.steering.wander.deviation=0.1 m/s^2"
+    ).crowd
+    assert crowd is not None
+    assert steering_of(crowd.steering, 5) == Steering(
+        time_gap=TimeGap(time=0.8), wander=Wander(deviation=0.1, key=5)
+    )
+    assert steering_of(None) == Steering()
