@@ -12,9 +12,9 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import crowdbot.testing.degenerate as degenerate
 from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.metric_component import MetricComponent
-from crowdbot.testing import degenerate
 from crowdbot.testing.scored import metric_of, scores_of
 
 SECTIONS = (

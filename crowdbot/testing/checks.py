@@ -8,20 +8,18 @@ from functools import partial
 from typing import Any
 from unittest import SkipTest
 
+import crowdbot.testing.all_kinds as all_kinds
+import crowdbot.testing.commanded_motion as commanded_motion
+import crowdbot.testing.cost_function as cost_function
+import crowdbot.testing.crowd_policy as crowd_policy
+import crowdbot.testing.environment as environment
+import crowdbot.testing.metric as metric
+import crowdbot.testing.noise as noise
+import crowdbot.testing.planner as planner
+import crowdbot.testing.robot as robot
+import crowdbot.testing.sensor as sensor
 from crowdbot.core.registry.registry import Registry
 from crowdbot.dsl.spec.component import Component
-from crowdbot.testing import (
-    all_kinds,
-    commanded_motion,
-    cost_function,
-    crowd_policy,
-    environment,
-    metric,
-    noise,
-    planner,
-    robot,
-    sensor,
-)
 
 Check = Callable[..., None]
 

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
+import crowdbot.testing.tiny as tiny
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.dsl.scenario.scenario import Scenario
-from crowdbot.testing import tiny
 
 
 @pytest.fixture(scope="session")

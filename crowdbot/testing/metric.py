@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
+import crowdbot.testing.degenerate as degenerate
 from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.component_specs import MetricSpec
-from crowdbot.testing import degenerate
 from crowdbot.testing.card import check_card_examples_run, check_card_says_what_the_scores_say
 from crowdbot.testing.scored import Scored, invariants_of, metric_of, scores_of, with_signals
 from crowdbot.testing.symmetries import (

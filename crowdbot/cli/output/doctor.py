@@ -108,7 +108,7 @@ def _disk(out: Path) -> Examined:
 
 def self_test() -> Examined:
     """One simulated second among people, recorded and scored, in a folder that goes away."""
-    from crowdbot import api
+    import crowdbot.api as api
 
     begin = time.perf_counter()
     try:

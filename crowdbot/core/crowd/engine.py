@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd import state as s
+import crowdbot.core.crowd.state as s
 from crowdbot.core.crowd.agents import ONWARD, PORTAL, Agents
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS
 from crowdbot.core.crowd.contact.robot_contact import DISC, FELT, R_W, RVX, RVY, TOUCH

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+import crowdbot.core.recording.messages as ros
+import crowdbot.core.recording.template as template
 from crowdbot.core.geometry.optical_frame import optical
-from crowdbot.core.recording import messages as ros
-from crowdbot.core.recording import template
 from crowdbot.core.recording.images import Grid, grid_of, thinned
 from crowdbot.core.recording.template import Template
 from crowdbot.core.types.sensor import CameraFrame, Pinhole, SensorInfo

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.recording import messages as ros
+import crowdbot.core.recording.messages as ros
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.candidates import VelocityCandidates
 from crowdbot.errors import InputError

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from crowdbot.core.recording import messages as ros
+import crowdbot.core.recording.messages as ros
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.records import Record, Records
 from crowdbot.core.recording.topics import Topic

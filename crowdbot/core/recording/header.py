@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.recording import messages as ros
+import crowdbot.core.recording.messages as ros
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import Pinhole, SensorInfo

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.recording import markers, template
-from crowdbot.core.recording import messages as ros
+import crowdbot.core.recording.markers as markers
+import crowdbot.core.recording.messages as ros
+import crowdbot.core.recording.template as template
 from crowdbot.core.recording.header import AgentsHeader
 from crowdbot.core.types.arrays import Array
 

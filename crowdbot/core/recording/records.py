@@ -35,7 +35,7 @@ from mcap.records import (
 )
 from mcap.stream_reader import MAGIC_SIZE, read_magic
 
-from crowdbot.core.recording import messages as ros
+import crowdbot.core.recording.messages as ros
 from crowdbot.errors import InputError
 
 #: Ours are 256 KiB plus one message. Larger ones are refused before they are unpacked.

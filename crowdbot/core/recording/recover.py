@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from crowdbot.core.recording import messages as ros
+import crowdbot.core.recording.messages as ros
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.contents import RECOVERED
 from crowdbot.core.recording.records import Record, Records

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Protocol
 
-from crowdbot.core.recording import markers, scenery, template
-from crowdbot.core.recording import messages as ros
+import crowdbot.core.recording.markers as markers
+import crowdbot.core.recording.messages as ros
+import crowdbot.core.recording.scenery as scenery
+import crowdbot.core.recording.template as template
 from crowdbot.core.recording.chunk import Piece
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.namespace import in_namespace

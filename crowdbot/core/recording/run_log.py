@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.watcher import Watcher
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command

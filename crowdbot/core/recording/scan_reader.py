@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.recording import messages as ros
+import crowdbot.core.recording.messages as ros
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.records import Record, decode
 from crowdbot.core.recording.scans import ReplayScan, Thinning

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+import crowdbot.core.recording.markers as markers
+import crowdbot.core.recording.messages as ros
 from crowdbot.core.geometry.optical_frame import OPTICAL_QUATERNION, optical
-from crowdbot.core.recording import markers
-from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.namespace import in_namespace
 from crowdbot.core.types.arrays import Array

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.recording import messages as ros
+import crowdbot.core.recording.messages as ros
 from crowdbot.core.recording.candidates import Choosers, GoalChanges, GoalsReader
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError

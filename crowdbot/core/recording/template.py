@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.recording import messages as ros
+import crowdbot.core.recording.messages as ros
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.sensor import SensorInfo

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crowdbot.core.recording import template
+import crowdbot.core.recording.template as template
 from crowdbot.core.recording.covariance import OdometryCovariance
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import SensorInfo

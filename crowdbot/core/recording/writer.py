@@ -19,7 +19,7 @@ from typing import Concatenate, Literal, ParamSpec, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.recording import messages as ros
+import crowdbot.core.recording.messages as ros
 from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.candidates import Choosers
 from crowdbot.core.recording.container import McapFile

@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 import pluggy
 from pydantic import Field, TypeAdapter
 
-from crowdbot import hookspecs
+import crowdbot.hookspecs as hookspecs
 from crowdbot.core.registry.component_list import ComponentList, Components
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.plugin_boundary import PluginCall

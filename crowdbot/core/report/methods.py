@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from crowdbot.core.report import provenance
+import crowdbot.core.report.provenance as provenance
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.results.rows import RunRow
 from crowdbot.core.scoring.four_scores import is_main

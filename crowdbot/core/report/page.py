@@ -6,7 +6,8 @@ from itertools import combinations
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.report import provenance, tables
+import crowdbot.core.report.provenance as provenance
+import crowdbot.core.report.tables as tables
 from crowdbot.core.report.cards import reference
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import encode_runs, encode_scores

@@ -15,7 +15,7 @@ import numpy as np
 
 from crowdbot.core.geometry.optical_frame import OPTICAL_RPY, optical
 from crowdbot.core.recording.scenery import FRAMES
-from crowdbot.core.robots import Description, read_description
+from crowdbot.core.robots.description import Description, read_description
 from crowdbot.core.robots.xml import matrix, name_of, pose_of
 from crowdbot.core.robots.xml import numbers as numbers_in
 from crowdbot.core.types.arrays import Array

@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.statistics import clusters as c
+import crowdbot.core.statistics.clusters as c
 from crowdbot.core.statistics.clusters import Bounds, Clusters, Floats
 from crowdbot.core.statistics.estimate import NOTHING, Counts, Estimate
 from crowdbot.core.statistics.signed_rank import double_ranks, least_p, p_value, signed_ranks

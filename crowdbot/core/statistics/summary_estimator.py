@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.statistics import clusters as c
+import crowdbot.core.statistics.clusters as c
 from crowdbot.core.statistics.clusters import Bounds, Floats
 from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.core.statistics.table import Name, Table

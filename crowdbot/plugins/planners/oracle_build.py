@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+import crowdbot.plugins.planners.oracle_rollout_build as rollout
 from crowdbot.core.interfaces import (
     Array,
     Command,
@@ -17,7 +18,6 @@ from crowdbot.core.interfaces import (
     Task,
     Truth,
 )
-from crowdbot.plugins.planners import oracle_rollout_build as rollout
 from crowdbot.plugins.planners.dwa_points_build import nearest_per_sector
 from crowdbot.plugins.planners.dwa_rollout_build import candidates
 from crowdbot.plugins.planners.goal_seek_build import braking_speed

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import math
 
+import crowdbot.plugins.robots.sdf as sdf
 from crowdbot.core.interfaces import HolonomicDrive, RobotModel
-from crowdbot.plugins.robots import sdf
 from crowdbot.plugins.robots.body_part import (
     BLACK,
     COAL,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd import state as s
+import crowdbot.core.crowd.state as s
 from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.crowd.routing.packed_mesh import PackedMesh
 from crowdbot.core.crowd.routing.parameters import WayFinding

@@ -18,7 +18,7 @@ from rosbags.interfaces import (
     QosTime,
 )
 
-from crowdbot.core.recording import messages as ros
+import crowdbot.core.recording.messages as ros
 from crowdbot.core.recording.export.extras import OFTEN, Extra, extras
 from crowdbot.core.recording.export.stamps import moved
 from crowdbot.core.recording.header import RecordingHeader

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from crowdbot.core.recording import messages as ros
+import crowdbot.core.recording.messages as ros
 from crowdbot.core.recording.chunk import Piece
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.ros_topics import ToolTopics

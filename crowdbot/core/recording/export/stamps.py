@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from crowdbot.core.recording import messages as ros
+import crowdbot.core.recording.messages as ros
 from crowdbot.core.recording.template import stamp
 
 _TF, _MARKERS = "tf2_msgs/msg/TFMessage", "visualization_msgs/msg/MarkerArray"
