@@ -11,7 +11,7 @@ from crowdbot.lazy import lazy_names
 
 if TYPE_CHECKING:
     from crowdbot.api import evaluate, expand, load, results, score, simulate
-    from crowdbot.core.results.rows import Results
+    from crowdbot.core.results.results import Results
     from crowdbot.core.runs.run import Run
     from crowdbot.core.scoring.evaluate import Scores
     from crowdbot.core.sim.session import Session
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from crowdbot.errors import CrowdbotError, RecordingWarning
 
 _HOMES = {
-    "crowdbot.api": "evaluate expand load results score simulate",
-    "crowdbot.core.results.rows": "Results",
+    "crowdbot.api": "Scenario evaluate expand load results score simulate",
+    "crowdbot.core.results.results": "Results",
     "crowdbot.core.runs.run": "Run",
     "crowdbot.core.scoring.evaluate": "Scores",
     "crowdbot.core.sim.session": "Session",
@@ -34,7 +34,6 @@ _HOMES = {
     "crowdbot.core.trajectories.trajectories": "Trajectories",
     "crowdbot.core.types.score": "Score",
     "crowdbot.dsl.suite.expand": "Expansion=Suite",
-    "crowdbot.dsl.scenario.scenario": "Scenario",
     "crowdbot.errors": "CrowdbotError RecordingWarning",
 }
 

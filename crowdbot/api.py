@@ -18,13 +18,23 @@ from crowdbot.errors import InputError, kind_of
 
 if TYPE_CHECKING:
     from crowdbot.core.planning.given_planner import GivenPlanner
-    from crowdbot.core.results.rows import Results
+    from crowdbot.core.results.results import Results
     from crowdbot.core.runs.outcome import Progress
     from crowdbot.core.runs.run import Recorded, Run
     from crowdbot.core.scoring.evaluate import MetricParameters, Scores
     from crowdbot.core.trajectories.commands import Commands
     from crowdbot.core.trajectories.questionnaires import Questionnaires
     from crowdbot.core.trajectories.trajectories import Trajectories
+
+
+def _draw(scenario: Scenario) -> str:
+    from crowdbot.core.view.notebook import scenario_html
+
+    return scenario_html(scenario)
+
+
+#: Drawing lies above the language; notebooks find it here.
+Scenario.draw_html = _draw
 
 #: Changes to a scenario: ``key=value``, several of them, or a mapping.
 Overrides = str | Sequence[str] | Mapping[str, object]
@@ -268,7 +278,7 @@ def results(root: str | Path = "runs") -> Results:
     Raises:
         InputError: there is no such folder, or a run in it is damaged.
     """
-    from crowdbot.core.results.rows import Results as AllResults
+    from crowdbot.core.results.results import Results as AllResults
 
     return AllResults.open(root)
 

@@ -203,6 +203,7 @@ def test_no_results_are_an_empty_frame(tmp_path: Path) -> None:
 
 def test_a_scenario_draws_itself() -> None:
     drawing = short()._repr_html_()
+    assert drawing is not None
     assert drawing.startswith("<svg")
     assert short().id in drawing
 

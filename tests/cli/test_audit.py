@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from crowdbot import cli
-from crowdbot.core.results.store import load
+from crowdbot.core.results.results import Results
 from crowdbot.core.statistics.audit import read_audit
 from tests.cli.campaign_cases import TINY, run
 
@@ -144,7 +144,7 @@ def test_floors_are_reused_like_any_other_run(tmp_path: Path) -> None:
     code, summary, err = run(tmp_path, *only, "--planner", "goal_seek")
     assert code == 0, err
     assert summary["made"] == 5
-    roles = {r.planner: r.role for r in load(tmp_path).runs}
+    roles = {r.planner: r.role for r in Results.open(tmp_path).runs}
     assert roles == {**dict.fromkeys(FLOORS, "floor"), "oracle+privileged": "ceiling"}
     code, summary, _ = run(tmp_path, *only, "--planner", "dwa")
     assert (code, summary["made"]) == (0, 1)

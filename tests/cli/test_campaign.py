@@ -16,8 +16,9 @@ import pytest
 
 from crowdbot import cli
 from crowdbot.cli.shared.campaign_run import read_seeds
-from crowdbot.core.results.rows import FailureRow, Results, RunRow, ScoreRow
-from crowdbot.core.results.store import INDEX, load
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import FailureRow, RunRow, ScoreRow
+from crowdbot.core.results.store import INDEX
 from crowdbot.core.statistics.groups import by_group
 from crowdbot.errors import UsageError
 from tests.cli.campaign_cases import TINY, outcome, run, start
@@ -90,7 +91,7 @@ def test_the_plan_is_printed_and_nothing_is_written(
 
 
 def test_results_know_axes_density_and_conditions(whole: Path) -> None:
-    results = load(whole)
+    results = Results.open(whole)
     assert [r.axes["range"] for r in results.runs] == ["r02", "r02", "r05", "r05", "r10", "r10"]
     assert [r.seed for r in results.runs] == [0, 1, 0, 1, 0, 1]
     first = results.runs[0]
@@ -104,16 +105,16 @@ def test_results_know_axes_density_and_conditions(whole: Path) -> None:
 
 
 def test_the_index_can_be_lost_damaged_or_in_use(whole: Path) -> None:
-    before = load(whole)
+    before = Results.open(whole)
     (whole / INDEX).write_bytes(b"this is not a database" * 100)
-    assert load(whole) == before
+    assert Results.open(whole) == before
     for file in whole.glob(f"{INDEX}*"):
         file.unlink()
-    assert load(whole) == before
+    assert Results.open(whole) == before
     from crowdbot.core.results.store import index
 
     with index(whole):
-        assert load(whole) == before
+        assert Results.open(whole) == before
     with sqlite3.connect(whole / INDEX) as database:
         assert database.execute("PRAGMA journal_mode").fetchone() == ("wal",)
 
@@ -170,11 +171,11 @@ def test_failures_are_on_record_and_stop_nobody(tmp_path: Path) -> None:
     assert "· Raises · seed 0: planner_failed" in err  # quiet is not mute
     assert "goal_seek" not in err
     assert summary["statuses"] == {"planner_failed": 3, "timeout": 1}
-    reasons = {r.planner: r.reason for r in load(tmp_path / "runs").runs}
+    reasons = {r.planner: r.reason for r in Results.open(tmp_path / "runs").runs}
     assert "its process was ended by signal 9 (SIGKILL)" in reasons["Dies"]
     assert "did not return from step within 10 s; its process was ended" in reasons["Hangs"]
     assert {
-        r.planner_process for r in load(tmp_path / "runs").runs if r.planner != "goal_seek"
+        r.planner_process for r in Results.open(tmp_path / "runs").runs if r.planner != "goal_seek"
     } == {"own"}
 
 
@@ -187,7 +188,7 @@ def test_failures_of_planners_in_the_workers_are_on_record_and_stop_nobody(tmp_p
     code, summary, _ = run(tmp_path / "runs", *only, *argv, "--planner", "goal_seek")
     assert code == 4
     assert summary["statuses"] == {"failed": 2, "planner_failed": 1, "timeout": 1}
-    results = load(tmp_path / "runs")
+    results = Results.open(tmp_path / "runs")
     errors = {f.planner: f.error for f in results.failures}
     assert "died 3 times (signal 9)" in errors["Dies"]
     assert "PlannerHungError" in errors["Hangs"]
@@ -242,7 +243,7 @@ def test_killed_and_resumed_it_ends_the_same(whole: Path, tmp_path: Path) -> Non
     assert code == 0, err
     assert summary["made"] < 6 or len(outcome(out)) == 6
     assert outcome(out) == outcome(whole)
-    assert len(load(out).runs) == 6
+    assert len(Results.open(out).runs) == 6
 
 
 def test_ctrl_c_ends_workers_and_keeps_what_is_finished(tmp_path: Path) -> None:

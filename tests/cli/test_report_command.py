@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 from crowdbot.cli import main
-from crowdbot.core.results import store
-from crowdbot.core.results.rows import Results
+from crowdbot.core.results.results import Results
 from crowdbot.core.scoring.scores_csv import write_scores_csv
 from crowdbot.core.types.score import Score
 from tests.core.report.report_cases import campaign
@@ -25,10 +24,10 @@ def runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> dict[str, Results]:
     """What a store would find below a folder of the working directory: name -> results."""
     found = {"runs": small()}
 
-    def load(root: Path) -> Results:
+    def opened(root: Path) -> Results:
         return found[root.name]
 
-    monkeypatch.setattr(store, "load", load)
+    monkeypatch.setattr(Results, "open", opened)
     monkeypatch.chdir(tmp_path)
     return found
 

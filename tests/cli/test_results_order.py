@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from crowdbot import cli
-from crowdbot.core.results import store
+from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import named_metrics
 from tests.core.report.report_cases import campaign
 
@@ -26,7 +26,7 @@ def test_named_metrics_come_first(
     assert named_metrics(found.runs) == NAMED
     shown: dict[str, list[str]] = {}
     for how, results in (("named", found), ("open", made)):
-        monkeypatch.setattr(store, "load", lambda _, results=results: results)
+        monkeypatch.setattr(Results, "open", lambda _, results=results: results)
         assert cli.main(["results", "--runs", str(tmp_path), "--json"]) == 0
         rows = json.loads(capsys.readouterr().out)
         shown[how] = list(dict.fromkeys(row["metric"] for row in rows))

@@ -16,7 +16,7 @@ from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 if TYPE_CHECKING:
     from crowdbot.core.campaign.plan import Plan
     from crowdbot.core.registry.registry import Registry
-    from crowdbot.core.results.rows import Results
+    from crowdbot.core.results.results import Results
     from crowdbot.core.statistics.audit import Audit
 
 
@@ -78,12 +78,12 @@ def audit(
 
 def _judged(plan: Plan, registry: Registry) -> tuple[Audit, Path]:
     """The audit of the runs of a plan, and where it was written."""
-    from crowdbot.core.results.store import load
+    from crowdbot.core.results.results import Results
     from crowdbot.core.scoring.score_scale import score_scales
     from crowdbot.core.statistics.audit import AUDIT, write_audit
     from crowdbot.core.statistics.audit import audit as judge
 
-    results = replace(_of(load(plan.out), plan), scales=score_scales(registry))
+    results = replace(_of(Results.open(plan.out), plan), scales=score_scales(registry))
     found = judge(results, _seeing_floors(registry))
     path = plan.out / found.suite / AUDIT
     write_audit(path, found)

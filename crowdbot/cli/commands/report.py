@@ -24,7 +24,7 @@ from crowdbot.errors import InputError, UnknownNameError
 if TYPE_CHECKING:
     from crowdbot.core.report import Contents
     from crowdbot.core.results.confounds import Finding
-    from crowdbot.core.results.rows import Results
+    from crowdbot.core.results.results import Results
     from crowdbot.core.statistics.audit import Audit
 
 _REFERENCE = " (reference)"
@@ -77,12 +77,12 @@ def report(
     """
     from crowdbot.core.report import Heading, gather, write_report
     from crowdbot.core.results.confounds import check_comparable, confounds
-    from crowdbot.core.results.store import load
+    from crowdbot.core.results.results import Results
 
     check_ending(out, ".html")
-    results = _chosen(load(root), suite, planner or [], root)
+    results = _chosen(Results.open(root), suite, planner or [], root)
     links = {} if no_replay_links else _replays(results, root, out)
-    results, known = _with_reference(results, load(reference) if reference else None)
+    results, known = _with_reference(results, Results.open(reference) if reference else None)
     findings = confounds(results, accept or ())
     check_comparable(findings)
     heading = Heading(

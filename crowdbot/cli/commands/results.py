@@ -15,7 +15,7 @@ from crowdbot.core.scoring.four_scores import MAIN_SCORES
 from crowdbot.core.support.plural import plural
 
 if TYPE_CHECKING:
-    from crowdbot.core.results.rows import Results
+    from crowdbot.core.results.results import Results
 
 
 class _Tables(TyperGroup):
@@ -80,12 +80,12 @@ def show(
     """
     if context.invoked_subcommand is not None:
         return
+    from crowdbot.core.results.results import Results
     from crowdbot.core.results.rows import named_metrics
-    from crowdbot.core.results.store import load
     from crowdbot.core.statistics.groups import by_group
     from crowdbot.errors import UsageError
 
-    found = _with_scales(_only(load(out), planner, status))
+    found = _with_scales(_only(Results.open(out), planner, status))
     if worst:
         if metric is None:
             raise UsageError("--worst needs --metric NAME")
@@ -115,13 +115,17 @@ def export(
     Example: crowdbot results export --runs runs --csv scores.csv
     """
     from crowdbot.core.results import tables
-    from crowdbot.core.results.store import load
+    from crowdbot.core.results.results import Results
     from crowdbot.errors import UsageError
 
     if csv is None and parquet is None:
         raise UsageError("write --csv FILE or --parquet FILE")
-    found = load(out)
-    lines = tables.score_lines(found) if table == "scores" else tables.run_lines(found)
+    found = Results.open(out)
+    lines = (
+        tables.score_lines(found.runs, found.scores)
+        if table == "scores"
+        else tables.run_lines(found.runs)
+    )
     if csv is not None:
         tables.write_csv(csv, lines)
     if parquet is not None:
@@ -140,9 +144,9 @@ def failures(
 
     Example: crowdbot results failures --runs runs --traceback
     """
-    from crowdbot.core.results.store import load
+    from crowdbot.core.results.results import Results
 
-    found = load(out).failures
+    found = Results.open(out).failures
     if as_json:
         typer.echo(json.dumps([asdict(f) for f in found], indent=2))
         return
@@ -170,11 +174,11 @@ def atlas(
     Example: crowdbot results atlas --runs runs --floor goal_seek --md atlas.md
     """
     from crowdbot.cli.output.atlas_page import atlas_page
-    from crowdbot.core.results.store import load
+    from crowdbot.core.results.results import Results
     from crowdbot.core.statistics import atlas as entries_of
     from crowdbot.core.support.atomic_write import atomic_write
 
-    entries = entries_of(_with_scales(load(out)), floor or ())
+    entries = entries_of(_with_scales(Results.open(out)), floor or ())
     if md is not None:
         atomic_write(md, atlas_page(entries))
     if as_json:
@@ -239,7 +243,7 @@ def _worst(found: Results, metric: str, variant: str | None, count: int) -> list
     (summary,) = summaries
     lines = [
         line
-        for line in score_lines(found)
+        for line in score_lines(found.runs, found.scores)
         if (line["metric"], line["variant"]) == (summary.metric, summary.variant)
     ]
     sign = 1.0 if summary.better == "higher" else -1.0

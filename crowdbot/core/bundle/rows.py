@@ -7,7 +7,8 @@ from typing import Any
 
 from crowdbot.core.bundle.check import ClaimedRun
 from crowdbot.core.bundle.pack import is_privileged
-from crowdbot.core.results.rows import Results, RunRow, ScoreRow
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import RunRow, ScoreRow
 from crowdbot.core.types.score import Score
 
 

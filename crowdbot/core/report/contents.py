@@ -13,7 +13,8 @@ from crowdbot.core.report.cards import cards
 from crowdbot.core.report.encode import FAILED, Attempt, attempts, axes_of, status_of
 from crowdbot.core.report.figures import Figures, figures
 from crowdbot.core.report.series import Series, all_series
-from crowdbot.core.results.rows import Results, RunRow, named_metrics
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import RunRow, named_metrics
 from crowdbot.core.runs.outcome import ENDINGS
 from crowdbot.core.scoring.score_scale import score_scales
 from crowdbot.core.statistics import (

@@ -10,7 +10,8 @@ import numpy as np
 
 from crowdbot.core.report.packing import deflate, pack
 from crowdbot.core.report.series import Series
-from crowdbot.core.results.rows import PLANNER_FAILED, WITHOUT_RUN, FailureRow, Results, RunRow
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import PLANNER_FAILED, WITHOUT_RUN, FailureRow, RunRow
 from crowdbot.core.runs.outcome import ENDINGS
 
 #: Code of a score that a run does not have.

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.report.series import Series
-from crowdbot.core.results.rows import Results
+from crowdbot.core.results.results import Results
 from crowdbot.core.statistics import (
     Comparison,
     Estimate,

@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from crowdbot.core.results.rows import Results, RunRow
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import RunRow
 from crowdbot.errors import InputError, UnknownNameError
 
 #: Name of a confound -> how bad it is, and what it is.

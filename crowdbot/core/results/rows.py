@@ -1,34 +1,11 @@
-"""The rows of a campaign's results, as everybody who reads them sees them.
-
-Plain values, so that statistics, report, linter and bundle need neither a store nor a simulator.
-"""
+"""The rows of a campaign's results: runs, scores, failures and damaged runs, as plain values."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import Any
 
-from crowdbot.core.scoring.score_scale import Scales
-from crowdbot.core.support.arguments import path_of
-from crowdbot.core.support.data_frame import to_arrow, to_pandas
-from crowdbot.errors import InputError
-from crowdbot.lazy import lazy_names
-
-if TYPE_CHECKING:
-    import pandas as pd  # type: ignore[import-untyped]
-    import pyarrow as pa  # type: ignore[import-untyped]
-
-Table = Literal["scores", "runs"]
-#: What reads and lists rows imports this file; it is named as text, like whatever is built.
-_beside = lazy_names(
-    __name__,
-    {
-        "crowdbot.core.results.store": "load",
-        "crowdbot.core.results.tables": "run_lines score_lines",
-    },
-)
 #: Status of a run whose planner failed.
 PLANNER_FAILED = "planner_failed"
 #: What is known of an attempt that left no run: its robot did not arrive.
@@ -168,61 +145,3 @@ class DamagedRun:
 
     directory: str
     reason: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Results:
-    """All runs, scores and failures, as they were when the folder was read.
-
-    Runs are sorted by suite, scenario in the suite's order, planner and seed; scores by run,
-    metric and variant. ``scales`` are those of the metrics that are installed, from
-    `crowdbot.core.scoring.score_scale.score_scales`: intervals do not leave bounds that are known.
-    ``damaged`` runs are listed apart from the others.
-    """
-
-    runs: tuple[RunRow, ...] = ()
-    damaged: tuple[DamagedRun, ...] = ()
-    scores: tuple[ScoreRow, ...] = ()
-    failures: tuple[FailureRow, ...] = ()
-    scales: Scales = field(default_factory=dict, repr=False)
-
-    @classmethod
-    def open(cls, root: str | Path = "runs") -> Results:
-        """All runs, scores and failures below a folder, as a campaign leaves them.
-
-        Args:
-            root: of the run directories.
-
-        Raises:
-            InputError: there is no such folder, or a run in it is damaged.
-        """
-        return cast(Results, _beside("load")(path_of("root", root)))
-
-    def to_pandas(self, table: Table = "scores") -> pd.DataFrame:
-        """One row per score, with suite, scenario, planner, seed and the axes of its run.
-
-        Args:
-            table: ``scores``, or ``runs`` for one row per run.
-
-        Raises:
-            InputError: pandas is not installed, or there is no such table.
-        """
-        return to_pandas(*self._lines(table))
-
-    def to_arrow(self, table: Table = "scores") -> pa.Table:
-        """The same as an Arrow table.
-
-        Args:
-            table: ``scores`` or ``runs``.
-
-        Raises:
-            InputError: pyarrow is not installed, or there is no such table.
-        """
-        return to_arrow(*self._lines(table))
-
-    def _lines(self, table: str) -> tuple[list[dict[str, Any]], list[str]]:
-        """Rows and names of the columns of a table."""
-        if table not in ("scores", "runs"):
-            raise InputError(f"there is no table {table!r}; there are 'scores' and 'runs'")
-        lines = _beside("score_lines" if table == "scores" else "run_lines")(self)
-        return lines, list(lines[0]) if lines else ["scenario", "planner", "seed"]

@@ -15,10 +15,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, suppress
 from operator import attrgetter
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from crowdbot.core.results.failure import SUFFIX, read_failure
-from crowdbot.core.results.rows import DamagedRun, FailureRow, Results, RunRow, ScoreRow
+from crowdbot.core.results.rows import DamagedRun, FailureRow, RunRow, ScoreRow
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_model import record_problems
 from crowdbot.core.scoring.scores_csv import RunScore, read_scores_csv, safe_cell
@@ -52,10 +52,19 @@ CREATE TABLE IF NOT EXISTS failures (
 """
 
 
-def load(root: Path) -> Results:
+class StoredRows(NamedTuple):
+    """Everything below a root: runs in the promised order, scores by run, and what has no run."""
+
+    runs: tuple[RunRow, ...]
+    scores: tuple[ScoreRow, ...]
+    failures: tuple[FailureRow, ...]
+    damaged: tuple[DamagedRun, ...]
+
+
+def read_rows(root: Path) -> StoredRows:
     """All runs, scores and failures below a root as they are now; nothing is written there.
 
-    A run that is damaged is left out, with a warning.
+    A damaged run is left out, with a warning.
 
     Raises:
         InputError: there is no such folder.
@@ -64,7 +73,7 @@ def load(root: Path) -> Results:
         raise InputError(f"{root}: no folder of results; 'crowdbot campaign' makes one")
     with _copy(root) as store:
         store.synchronise()
-        found = store.results()
+        found = store.rows()
     for run in found.damaged:
         _LOG.warning("%s is left out: %s", root / run.directory, run.reason)
     return found
@@ -185,7 +194,7 @@ class Store:
         with self._database:
             self._insert(directory + SUFFIX, _stamp(self._root / (directory + SUFFIX)))
 
-    def results(self) -> Results:
+    def rows(self) -> StoredRows:
         """Everything, in the promised order."""
         order = "ORDER BY suite, position, scenario, planner, seed"
         runs = self._database.execute(f"SELECT * FROM runs {order}").fetchall()
@@ -197,7 +206,7 @@ class Store:
             named = dict(zip(_SCORE, cells, strict=True))
             scores[directory].append(ScoreRow(run_id=ids[directory], **named))
         failures = self._database.execute(f"SELECT * FROM failures {order}").fetchall()
-        return Results(
+        return StoredRows(
             runs=tuple(_run(row) for row in runs),
             scores=tuple(s for directory in ids for s in scores[directory]),
             failures=tuple(_failure(row) for row in failures),

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.results.rows import Results
+from crowdbot.core.results.rows import RunRow, ScoreRow
 from crowdbot.core.scoring.scores_csv import write_table
 from crowdbot.errors import InputError, MissingLibraryError
 
@@ -25,26 +25,26 @@ _NUMBERS = ("goal_time", "sim_time", "wall_time", "density", "value", "lower", "
 _NULL = "\\N"
 
 
-def axes_of(results: Results) -> list[str]:
+def axes_of(runs: Iterable[RunRow]) -> list[str]:
     """Names of all axes, in the order of the suites."""
-    return list(dict.fromkeys(name for run in results.runs for name in run.axes))
+    return list(dict.fromkeys(name for run in runs for name in run.axes))
 
 
-def run_lines(results: Results) -> list[Line]:
+def run_lines(runs: Sequence[RunRow]) -> list[Line]:
     """One line a run; its label on axis ``x`` is in ``axis_x``."""
-    axes = axes_of(results)
+    axes = axes_of(runs)
     return [
         {**{n: getattr(run, n) for n in _RUN}, **{f"axis_{a}": run.axes.get(a) for a in axes}}
-        for run in results.runs
+        for run in runs
     ]
 
 
-def score_lines(results: Results) -> list[Line]:
-    """One line a score, with what tells its run."""
-    axes, runs = axes_of(results), {run.run_id: run for run in results.runs}
+def score_lines(runs: Sequence[RunRow], scores: Iterable[ScoreRow]) -> list[Line]:
+    """One line a score, with the columns that identify its run."""
+    axes, by_id = axes_of(runs), {run.run_id: run for run in runs}
     lines = []
-    for score in results.scores:
-        run = runs[score.run_id]
+    for score in scores:
+        run = by_id[score.run_id]
         lines.append(
             {
                 **{n: getattr(run, n) for n in ("suite", "scenario", "planner", "seed")},

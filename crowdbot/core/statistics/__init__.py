@@ -1,6 +1,6 @@
 """Statistics of campaigns: who is better, by how much, and how sure that is.
 
-Works on `crowdbot.core.results.rows.Results` alone: no store, no simulator, no page.
+Works on `crowdbot.core.results.results.Results` alone: no store, no simulator, no page.
 docs/explanation/statistics.md says what is computed and how to read it.
 """
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.results.rows import Results
+from crowdbot.core.results.results import Results
 from crowdbot.core.statistics.axes import axis_effects
 from crowdbot.core.statistics.clusters import Floats
 from crowdbot.core.statistics.comparison import compare

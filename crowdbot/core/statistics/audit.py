@@ -8,7 +8,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from crowdbot.core.results.rows import Results, RunRow
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import RunRow
 from crowdbot.core.statistics.floors import Lead, lead_over, primary_name
 from crowdbot.core.statistics.table import Table
 from crowdbot.core.support.atomic_write import atomic_write

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.realism.crowds import realism_by_name
-from crowdbot.core.results.rows import Results
+from crowdbot.core.results.results import Results
 from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.core.statistics.floors import PRIMARY
 from crowdbot.core.statistics.summary import headline_names

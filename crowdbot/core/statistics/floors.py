@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from crowdbot.core.results.rows import Results
+from crowdbot.core.results.results import Results
 from crowdbot.core.scoring import four_scores
 from crowdbot.core.statistics.comparison import Comparison, compare
 from crowdbot.core.statistics.estimate import NOTHING, Estimate

@@ -10,7 +10,8 @@ from fnmatch import fnmatchcase
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.results.rows import PLANNER_FAILED, FailureRow, Results, RunRow
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import PLANNER_FAILED, FailureRow, RunRow
 from crowdbot.core.results.tables import axes_of
 from crowdbot.core.statistics.clusters import Floats
 from crowdbot.core.statistics.estimate import Counts, Estimate
@@ -141,7 +142,7 @@ def _label(run: RunRow | FailureRow, name: str) -> str:
 
 
 def _check_names(results: Results, metric: str, by: Sequence[str]) -> None:
-    known = [*axes_of(results), "planner", "suite", "scenario", "seed", "status"]
+    known = [*axes_of(results.runs), "planner", "suite", "scenario", "seed", "status"]
     for name in by:
         if name not in known:
             raise UnknownNameError("axis", name, known)

@@ -8,7 +8,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from crowdbot.core.results.rows import Results
+from crowdbot.core.results.results import Results
 from crowdbot.core.scoring.four_scores import is_main, main_first
 from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, axis_effects, densities
 from crowdbot.core.statistics.clusters import Floats

@@ -11,7 +11,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.results.rows import PLANNER_FAILED, WITHOUT_RUN, Results, RunRow, ScoreRow
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import PLANNER_FAILED, WITHOUT_RUN, RunRow, ScoreRow
 from crowdbot.core.scoring.score_scale import UNKNOWN, ScoreScale
 from crowdbot.core.statistics.clusters import Clusters, Floats
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts

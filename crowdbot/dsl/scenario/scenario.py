@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Le
 from pydantic import (
@@ -54,10 +54,7 @@ from crowdbot.dsl.spec.quantities import (
 )
 from crowdbot.dsl.spec.spec import Spec
 from crowdbot.dsl.text.path_names import PathName
-from crowdbot.lazy import lazy_names
 
-#: What draws lies floors above; it is named as text, like whatever is built.
-_above = lazy_names(__name__, {"crowdbot.core.view.notebook": "scenario_html"})
 #: What an agent does at the end of its route. Those of streams: come in again where it came from;
 #: walk on in its direction for ever.
 AtGoal = Literal["portal", RouteEnd, "return", "onward"]
@@ -292,6 +289,9 @@ class Scenario(Spec):
     references: Mapping[str, Scenario] = Field(
         default={}, exclude=True, repr=False, description="Calibration runs, by name."
     )
+    #: Draws a scenario as HTML, for notebooks; registered by the Python API.
+    draw_html: ClassVar[Callable[[Scenario], str] | None] = None
+
     _locked: Locked | None = PrivateAttr(default=None)  # where its agents are frozen
     _hidden: str = PrivateAttr(default="")  # commitment to a seed that nobody knows yet
 
@@ -318,9 +318,10 @@ class Scenario(Spec):
         for scenario in (self, *self.references.values()):
             scenario._locked = locked
 
-    def _repr_html_(self) -> str:
-        """A drawing for notebooks."""
-        return str(_above("scenario_html")(self))
+    def _repr_html_(self) -> str | None:
+        """A drawing for notebooks; None where nothing has registered how to draw."""
+        draw = type(self).draw_html
+        return None if draw is None else draw(self)
 
 
 #: Fields of a scenario that do not change what happens in it.

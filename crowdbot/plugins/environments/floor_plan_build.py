@@ -18,7 +18,7 @@ from shapely.geometry import shape as shape_of  # type: ignore[import-untyped,un
 from crowdbot.dsl import Face, Place, Solid
 from crowdbot.dsl.spec import outlines
 from crowdbot.errors import InputError
-from crowdbot.plugins.environments.floor_plan import FloorPlanSpec
+from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 from crowdbot.plugins.environments.floor_plan_units_build import (
     check_numbers,
     check_place,
@@ -50,7 +50,7 @@ class _Plan:
     solids: list[tuple[Any, tuple[float, float]]] = field(default_factory=list)
 
 
-def place_of(spec: FloorPlanSpec) -> Place:
+def place_of(spec: FloorPlanFields) -> Place:
     """The walls of a plan.
 
     Raises:
@@ -74,7 +74,7 @@ def _stamp(file: Path | None) -> tuple[int, int]:
 @lru_cache(maxsize=8)
 def _place_of(
     words: str,
-    model: type[FloorPlanSpec],
+    model: type[FloorPlanFields],
     files: tuple[Path | None, Path | None],
     stamps: tuple[tuple[int, int], ...],
     told_unit: bool,
@@ -127,7 +127,7 @@ def _too_small(plan: _Plan) -> str:
     return f"; all of it is {width:.3g} m × {height:.3g} m and left away: see 'unit'"
 
 
-def _check_size(floor: list[Any], spec: FloorPlanSpec, name: str) -> None:
+def _check_size(floor: list[Any], spec: FloorPlanFields, name: str) -> None:
     """Refuse a floor that is larger than any crowd is simulated on."""
     width, height = _size(floor) if floor else (0.0, 0.0)
     if max(width, height) > MOST_SIDE:
@@ -143,7 +143,7 @@ def _size(shapes: list[Any]) -> tuple[float, float]:
 
 
 def _read(
-    spec: FloorPlanSpec, file: Path | None, image: Path | None, name: str, told_unit: bool
+    spec: FloorPlanFields, file: Path | None, image: Path | None, name: str, told_unit: bool
 ) -> _Plan:
     if spec.read_as == "ros_map":
         return _Plan(walkable=[_read_ros_map(spec, file, image)])
@@ -166,7 +166,7 @@ def _read(
     return plan
 
 
-def _read_ros_map(spec: FloorPlanSpec, file: Path | None, image: Path | None) -> Any:
+def _read_ros_map(spec: FloorPlanFields, file: Path | None, image: Path | None) -> Any:
     assert file is not None  # checked with the document
     found = read_map(file)
     grey = read_grey(image or file.parent / found.image, see_through=found.mode == "scale")
@@ -218,7 +218,7 @@ def _features(content: Any, name: str) -> Iterator[tuple[Any, dict[str, Any]]]:
 
 
 def _sort_in(
-    shape: Any, properties: dict[str, Any], spec: FloorPlanSpec, plan: _Plan, name: str
+    shape: Any, properties: dict[str, Any], spec: FloorPlanFields, plan: _Plan, name: str
 ) -> None:
     """Put a geometry among the floor or the solids; zones and portals are neither."""
     kind = properties.get("kind", "")
@@ -242,7 +242,7 @@ def _is_many(shape: Any) -> bool:
     return bool(shape.geom_type.startswith("Multi") or shape.geom_type == "GeometryCollection")
 
 
-def _heights(properties: dict[str, Any], spec: FloorPlanSpec, name: str) -> tuple[float, float]:
+def _heights(properties: dict[str, Any], spec: FloorPlanFields, name: str) -> tuple[float, float]:
     try:
         base = float(properties.get("base", 0.0))
         top = float(properties.get("height", spec.wall_height))
@@ -269,7 +269,7 @@ def _polygons(shape: Any) -> list[Any]:
     return [p for group in nested for p in group if p.geom_type == "Polygon" and not p.is_empty]
 
 
-def _simple(polygons: list[Any], spec: FloorPlanSpec, name: str) -> list[Any]:
+def _simple(polygons: list[Any], spec: FloorPlanFields, name: str) -> list[Any]:
     """Polygons without what is too small, in an order of their own."""
     del name
     found = []

@@ -12,7 +12,7 @@ import shapely  # type: ignore[import-untyped,unused-ignore]
 
 from crowdbot.core.interfaces import Array
 from crowdbot.errors import InputError
-from crowdbot.plugins.environments.floor_plan import FloorPlanSpec
+from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 
 _LOG = logging.getLogger(__name__)
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
@@ -38,7 +38,9 @@ def declared_crs(content: Any) -> str:
     return name if isinstance(name, str) else ""
 
 
-def check_numbers(shapes: list[Any], spec: FloorPlanSpec, name: str, crs: str, told: bool) -> None:
+def check_numbers(
+    shapes: list[Any], spec: FloorPlanFields, name: str, crs: str, told: bool
+) -> None:
     """Whether numbers can be what the unit says.
 
     Args:
@@ -83,7 +85,7 @@ def check_numbers(shapes: list[Any], spec: FloorPlanSpec, name: str, crs: str, t
         )
 
 
-def check_place(shapes: list[Any], spec: FloorPlanSpec, name: str) -> None:
+def check_place(shapes: list[Any], spec: FloorPlanFields, name: str) -> None:
     """Whether a plan lies near the world's (0, 0).
 
     Args:
@@ -111,7 +113,7 @@ def check_place(shapes: list[Any], spec: FloorPlanSpec, name: str) -> None:
     )
 
 
-def in_metres(shape: Any, spec: FloorPlanSpec, name: str) -> Any:
+def in_metres(shape: Any, spec: FloorPlanFields, name: str) -> Any:
     """A geometry in the world frame, m.
 
     Raises:
@@ -128,7 +130,7 @@ def in_metres(shape: Any, spec: FloorPlanSpec, name: str) -> Any:
     )
 
 
-def moved(points: Array, spec: FloorPlanSpec) -> Array:
+def moved(points: Array, spec: FloorPlanFields) -> Array:
     """Points (N, 2) of a plan in the world frame, m."""
     found: Array = _turned(points, spec.rotation) + np.array(spec.origin)
     return found

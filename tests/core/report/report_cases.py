@@ -16,7 +16,8 @@ import pytest
 
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.report import Contents, Heading, gather
-from crowdbot.core.results.rows import FailureRow, Results, RunRow, ScoreRow
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import FailureRow, RunRow, ScoreRow
 from crowdbot.core.scoring.score_factory import ScoreFactory
 from crowdbot.dsl import MetricComponent
 from tests.once import once

@@ -13,7 +13,8 @@ from crowdbot.core.bundle.check_run import ClaimedRun
 from crowdbot.core.bundle.entries import LeaderboardEntry
 from crowdbot.core.bundle.manifest import BundledRun, Edition, Manifest
 from crowdbot.core.registry.registry import discover
-from crowdbot.core.results.rows import PLANNER_FAILED, Results, RunRow, ScoreRow
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import PLANNER_FAILED, RunRow, ScoreRow
 from crowdbot.core.scoring.score_factory import ScoreFactory
 from crowdbot.core.types.score import Score
 from crowdbot.dsl import MetricComponent

@@ -8,7 +8,7 @@ import pytest
 
 from crowdbot.core.report.markdown import markdown
 from crowdbot.core.report.page import render
-from crowdbot.core.results.rows import Results
+from crowdbot.core.results.results import Results
 from crowdbot.core.statistics.audit import Audit, audit
 from crowdbot.core.statistics.crowds import CrowdOrder, CrowdRanks
 from tests.core.report.report_cases import AXES, DRAWN, campaign, contents

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from crowdbot.core.results.rows import Results
+from crowdbot.core.results.results import Results
 from crowdbot.core.statistics import Table
 from tests.core.report.report_cases import contents
 from tests.core.statistics.test_floors import results

@@ -22,7 +22,8 @@ from crowdbot.core.report.cards import card, reference
 from crowdbot.core.report.markdown import markdown
 from crowdbot.core.report.page import render
 from crowdbot.core.report.tables import csv_rows
-from crowdbot.core.results.rows import FailureRow, Results
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import FailureRow
 from crowdbot.core.statistics.estimate_text import joined_text
 from crowdbot.errors import InputError
 from tests.core.report.report_cases import campaign, contents, full

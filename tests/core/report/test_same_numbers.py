@@ -20,7 +20,7 @@ from crowdbot.core.bundle.standings import standings
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.report import Contents, write_report
 from crowdbot.core.report.markdown import markdown
-from crowdbot.core.results.rows import Results
+from crowdbot.core.results.results import Results
 from crowdbot.core.scoring.score_scale import score_scales
 from crowdbot.core.statistics import Estimate, Table, headline_names
 from crowdbot.core.statistics.estimate_text import (

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from crowdbot.core.results.confounds import KINDS, check_comparable, confounds
-from crowdbot.core.results.rows import Results, RunRow
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import RunRow
 from crowdbot.errors import InputError, UnknownNameError
 from tests.core.statistics.made_up_results import run
 

@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from crowdbot import cli
-from crowdbot.core.results.store import INDEX, index, load
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.store import INDEX, index
 from crowdbot.core.runs import run_directory as files
 from tests.core.bundle.made_up_runs import make_runs, record_runs, write_suite
 
@@ -94,14 +95,14 @@ def test_a_damaged_run_is_one_warning(
         with index(root) as store:
             store.synchronise()
     runs = sorted(root.glob("tiny/*/dwa/seed-0"))
-    assert len(load(root).runs) == len(runs) == 6
+    assert len(Results.open(root).runs) == len(runs) == 6
     for number, (damage, why) in enumerate(DAMAGE):
         run = runs[number % 6]
         before = {f.name: f.read_bytes() for f in run.iterdir()}
         damage(run)
         caplog.clear()
         with caplog.at_level(logging.WARNING, "crowdbot"):
-            found = load(root)
+            found = Results.open(root)
         assert [d.directory for d in found.damaged] == [run.relative_to(root).as_posix()]
         assert why in found.damaged[0].reason
         assert len(found.runs) == 5
@@ -111,7 +112,7 @@ def test_a_damaged_run_is_one_warning(
         for name, content in before.items():
             (run / name).unlink(missing_ok=True)
             (run / name).write_bytes(content)
-    assert load(root).damaged == ()
+    assert Results.open(root).damaged == ()
 
 
 @pytest.mark.parametrize("indexed", [False, True])
@@ -124,7 +125,7 @@ def test_reading_writes_nothing(
         assert (root / INDEX).exists()
     (next(root.glob("tiny/*/dwa/seed-0")) / "run.json").unlink()
     before = state(root)
-    assert len(load(root).runs) == 5
+    assert len(Results.open(root).runs) == 5
     out = tmp_path / "page.html"
     assert cli.main(["report", str(root), "--out", str(out)]) == 0
     assert "damaged: 1 run left out: tiny/" in out.read_text(encoding="utf-8")
@@ -140,4 +141,4 @@ def test_a_campaign_that_writes_is_read_beside(root: Path) -> None:
     with index(root) as store:
         store.synchronise()
         (next(root.glob("tiny/*/dwa/seed-0")) / "run.json").unlink()
-        assert len(load(root).runs) == 5
+        assert len(Results.open(root).runs) == 5

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.results.rows import Results, RunRow, ScoreRow
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import RunRow, ScoreRow
 
 AXES = {
     "flow": ("in", "counter"),

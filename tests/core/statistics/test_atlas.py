@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from crowdbot.cli.output.atlas_page import atlas_page
-from crowdbot.core.results.rows import Results, ScoreRow
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import ScoreRow
 from crowdbot.core.statistics import atlas
 from crowdbot.core.statistics.atlas import rank_correlation
 from crowdbot.errors import UnknownNameError

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.core.results.rows import Results
+from crowdbot.core.results.results import Results
 from crowdbot.core.statistics.audit import audit, read_audit, suspicion, write_audit
 from crowdbot.errors import InputError
 from tests.core.statistics.test_floors import results

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from crowdbot.core.registry.registry import discover
-from crowdbot.core.results.rows import Results
+from crowdbot.core.results.results import Results
 from crowdbot.core.scoring.score_scale import ScoreScale, score_scales
 from crowdbot.core.statistics import clusters as c
 from crowdbot.core.statistics import summarise

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crowdbot.core.results.rows import FailureRow, Results, RunRow, ScoreRow
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import FailureRow, RunRow, ScoreRow
 from crowdbot.core.statistics import Comparison, summarise
 from tests.core.statistics.made_up_results import cells, censored, challenge, pairs, run, score
 

@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from crowdbot.core.results.rows import Results, RunRow, ScoreRow
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import RunRow, ScoreRow
 from crowdbot.core.statistics import crowds
 from crowdbot.core.statistics.crowds import crowd_ranks, kendall
 from tests.core.statistics.made_up_results import run, score

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core.results.rows import FailureRow, Results
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import FailureRow
 from crowdbot.core.statistics import check_floors, summarise
 from crowdbot.core.statistics.floors import FloorCheck
 from tests.core.statistics.made_up_results import run, score

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from crowdbot.core.results.rows import Results, ScoreRow
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import ScoreRow
 from crowdbot.core.scoring.four_scores import MAIN_SCORES, PRIMARY, is_main, main_first
 from crowdbot.core.statistics import Table, headline_names, summarise
 from crowdbot.core.statistics.signed_rank import holm

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from crowdbot.core.results.rows import Results
+from crowdbot.core.results.results import Results
 from crowdbot.core.statistics.groups import by_group
 from tests.core.statistics.made_up_results import censored, run, score
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crowdbot.core.results.rows import Results
+from crowdbot.core.results.results import Results
 from crowdbot.core.statistics import Table, clusters, headline_names, summarise
 from crowdbot.core.statistics.clusters import Clusters
 from crowdbot.core.statistics.signed_rank import holm, p_value, signed_ranks

@@ -1,0 +1,82 @@
+"""Results: all rows of a campaign, read from its folder, and their tables for pandas and Arrow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from crowdbot.core.results.rows import DamagedRun, FailureRow, RunRow, ScoreRow
+from crowdbot.core.results.tables import run_lines, score_lines
+from crowdbot.core.scoring.score_scale import Scales
+from crowdbot.core.support.arguments import path_of
+from crowdbot.core.support.data_frame import to_arrow, to_pandas
+from crowdbot.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd  # type: ignore[import-untyped]
+    import pyarrow as pa  # type: ignore[import-untyped]
+
+Table = Literal["scores", "runs"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Results:
+    """All runs, scores and failures, as they were when the folder was read.
+
+    Runs are sorted by suite, scenario in the suite's order, planner and seed; scores by run,
+    metric and variant. ``scales`` are those of the metrics that are installed, from
+    `crowdbot.core.scoring.score_scale.score_scales`: intervals do not leave bounds that are known.
+    ``damaged`` runs are listed apart from the others.
+    """
+
+    runs: tuple[RunRow, ...] = ()
+    damaged: tuple[DamagedRun, ...] = ()
+    scores: tuple[ScoreRow, ...] = ()
+    failures: tuple[FailureRow, ...] = ()
+    scales: Scales = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def open(cls, root: str | Path = "runs") -> Results:
+        """Read all runs, scores and failures below a folder; write nothing there.
+
+        A damaged run is left out, with a warning.
+
+        Args:
+            root: of the run directories.
+
+        Raises:
+            InputError: there is no such folder.
+        """
+        from crowdbot.core.results.store import read_rows  # statistics need no database
+
+        return cls(**read_rows(path_of("root", root))._asdict())
+
+    def to_pandas(self, table: Table = "scores") -> pd.DataFrame:
+        """One row per score, with suite, scenario, planner, seed and the axes of its run.
+
+        Args:
+            table: ``scores``, or ``runs`` for one row per run.
+
+        Raises:
+            InputError: pandas is not installed, or there is no such table.
+        """
+        return to_pandas(*self._lines(table))
+
+    def to_arrow(self, table: Table = "scores") -> pa.Table:
+        """The same as an Arrow table.
+
+        Args:
+            table: ``scores`` or ``runs``.
+
+        Raises:
+            InputError: pyarrow is not installed, or there is no such table.
+        """
+        return to_arrow(*self._lines(table))
+
+    def _lines(self, table: str) -> tuple[list[dict[str, Any]], list[str]]:
+        """Rows and names of the columns of a table."""
+        if table not in ("scores", "runs"):
+            raise InputError(f"there is no table {table!r}; there are 'scores' and 'runs'")
+        lines = score_lines(self.runs, self.scores) if table == "scores" else run_lines(self.runs)
+        return lines, list(lines[0]) if lines else ["scenario", "planner", "seed"]

@@ -1,0 +1,100 @@
+"""The fields of a floor plan, and the format of its file."""
+
+from __future__ import annotations
+
+from pathlib import PurePosixPath
+from typing import Annotated, Literal
+
+from annotated_types import Le
+from pydantic import Field, model_validator
+
+from crowdbot.dsl import (
+    Angle,
+    Asset,
+    EnvironmentSpec,
+    NonNegativeLength,
+    PositiveLength,
+    Quantity,
+)
+
+Format = Literal["auto", "geojson", "wkt", "ros_map"]
+_SUFFIXES: dict[str, Format] = {
+    ".geojson": "geojson", ".json": "geojson", ".wkt": "wkt", ".txt": "wkt",
+    ".yaml": "ros_map", ".yml": "ros_map",
+}  # fmt: skip
+
+
+#: National grids have numbers of this size.
+_FarLength = Annotated[float, Quantity("length", most=1e8)]
+
+
+class FloorPlanFields(EnvironmentSpec):
+    """What a document says about a floor plan."""
+
+    kind: Literal["floor_plan"] = "floor_plan"
+    file: Asset | None = Field(
+        default=None,
+        description="GeoJSON, WKT, or the `map.yaml` of an occupancy grid of ROS; this or `wkt`.",
+    )
+    image: Asset | None = Field(
+        default=None,
+        description="Image of an occupancy grid, PGM or PNG; without it the one that the "
+        "`map.yaml` names.",
+    )
+    wkt: str | None = Field(
+        default=None, description="The geometry as well-known text; this or `file`."
+    )
+    format: Format = Field(
+        default="auto", description="Of the file; `auto`: by the ending of its name."
+    )
+    polygons: Literal["walkable", "obstacles"] = Field(
+        default="walkable", description="What polygons are that do not say so themselves."
+    )
+    unit: Literal["m", "cm", "mm", "ft", "in", "deg"] = Field(
+        default="m",
+        description="Of the numbers in GeoJSON and WKT; `deg`: longitude and latitude.",
+    )
+    origin: tuple[_FarLength, _FarLength] = Field(
+        default=(0.0, 0.0),
+        strict=False,
+        description="Where the file's (0, 0) lies in the world, m; with `deg`, the longitude and "
+        "latitude of the world's (0, 0), as bare numbers.",
+    )
+    rotation: Angle = Field(
+        default=0.0, description="The plan is turned about its (0, 0) by this angle, rad."
+    )
+    unknown: Literal["solid", "free"] = Field(
+        default="solid", description="What cells of a grid are that are neither free nor occupied."
+    )
+    tolerance: NonNegativeLength | None = Field(
+        default=None,
+        description="Outlines are simplified by at most this, m; without it 0 in GeoJSON and WKT, "
+        "and one cell in a grid.",
+    )
+    least_area: Annotated[float, Le(100)] = Field(
+        default=0.02, ge=0.0, description="Smaller pieces and holes are left out, m^2."
+    )
+    thickness: PositiveLength = Field(default=0.1, description="Of lines that are walls, m.")
+    wall_height: PositiveLength = Field(default=2.5, description="Height of the walls, m.")
+
+    @model_validator(mode="after")
+    def _one_source(self) -> FloorPlanFields:
+        if (self.file is None) == (self.wkt is None):
+            raise ValueError("write one of 'file' and 'wkt'")
+        if self.wkt is not None and self.format not in ("auto", "wkt"):
+            raise ValueError(f"format '{self.format}' belongs to a file")
+        if self.file is not None and self.format == "auto" and self._suffix not in _SUFFIXES:
+            known = ", ".join(sorted(_SUFFIXES))
+            raise ValueError(f"the name of file ends in none of {known}; write its 'format'")
+        return self
+
+    @property
+    def read_as(self) -> Format:
+        """The format, found."""
+        if self.format != "auto" or self.file is None:
+            return "wkt" if self.format == "auto" else self.format
+        return _SUFFIXES[self._suffix]
+
+    @property
+    def _suffix(self) -> str:
+        return "" if self.file is None else PurePosixPath(self.file.path).suffix.lower()
