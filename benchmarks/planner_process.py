@@ -23,7 +23,7 @@ from statistics import median
 SPEC = ("challenge-2020", "counter-d0250-dispersed-c20-r05")
 PLANNER = '''
 import numpy as np
-from crowdbot.core.interfaces import Command, LidarPoints
+from crowdbot.plugin import Command, LidarPoints
 
 class Mine:
     """Drives, and stands where something is near."""

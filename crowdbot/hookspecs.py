@@ -44,7 +44,7 @@ def crowdbot_environments() -> Sequence[Component[EnvironmentSpec]]:  # type: ig
 
     Called once, while the registry is built, before any document is read. The components are
     built later, once for each recording:
-    `crowdbot.core.interfaces.build_functions.BuildEnvironment`.
+    `crowdbot.plugin.BuildEnvironment`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -66,7 +66,7 @@ def crowdbot_robots() -> Sequence[Component[RobotSpec]]:  # type: ignore[empty-b
 
     Called once, while the registry is built, before any document is read. The components are
     built later, once for each recording:
-    `crowdbot.core.interfaces.build_functions.BuildRobot`.
+    `crowdbot.plugin.BuildRobot`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -88,7 +88,7 @@ def crowdbot_sensors() -> Sequence[Component[SensorSpec]]:  # type: ignore[empty
 
     Called once, while the registry is built, before any document is read. The components are
     built later, when a run is prepared, and where they are simulated:
-    `crowdbot.core.interfaces.build_functions.BuildSensor`.
+    `crowdbot.plugin.BuildSensor`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -110,7 +110,7 @@ def crowdbot_noise_generators() -> Sequence[Component[NoiseSpec]]:  # type: igno
 
     Called once, while the registry is built, before any document is read. The components are
     built later, before their sensor, in the order of their names:
-    `crowdbot.core.interfaces.build_functions.BuildNoise`.
+    `crowdbot.plugin.BuildNoise`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -132,7 +132,7 @@ def crowdbot_planners() -> Sequence[Component[PlannerSpec]]:  # type: ignore[emp
 
     Called once, while the registry is built, before any document is read. The components are
     built later, once for each recording with a robot, also for the one without people:
-    `crowdbot.core.interfaces.build_functions.BuildPlanner`.
+    `crowdbot.plugin.BuildPlanner`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -154,7 +154,7 @@ def crowdbot_crowd_policies() -> Sequence[Component[CrowdPolicySpec]]:  # type: 
 
     Called once, while the registry is built, before any document is read. The components are
     built later, once for each recording with people:
-    `crowdbot.core.interfaces.build_functions.BuildPolicy`.
+    `crowdbot.plugin.BuildPolicy`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -176,7 +176,7 @@ def crowdbot_cost_functions() -> Sequence[Component[CostFunctionSpec]]:  # type:
 
     Called once, while the registry is built, before any document is read. The components are
     built later, before the policy that minimises them:
-    `crowdbot.core.interfaces.build_functions.BuildCost`.
+    `crowdbot.plugin.BuildCost`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
@@ -198,7 +198,7 @@ def crowdbot_metrics() -> Sequence[Component[MetricSpec]]:  # type: ignore[empty
 
     Called once, while the registry is built, before any document is read. The components are
     built later, once for each scoring:
-    `crowdbot.core.interfaces.build_functions.BuildMetric`.
+    `crowdbot.plugin.BuildMetric`.
 
     Returns:
         A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry

@@ -1,4 +1,4 @@
-"""Packages whose names are imported when they are first used."""
+"""Modules whose names are imported when they are first used."""
 
 from __future__ import annotations
 
@@ -8,23 +8,26 @@ from typing import Any
 
 
 def lazy_names(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
-    """The ``__getattr__`` of a package.
+    """Return the ``__getattr__`` of a module.
 
     Args:
         package: its name, for messages.
         homes: module -> names that come from it, with spaces between them; ``Original=Name`` where
-            the package calls it otherwise.
+            the module calls it otherwise. A name may also be a submodule.
     """
-    found: dict[str, tuple[str, str]] = {}
-    for module, names in homes.items():
-        for text in names.split():
-            original, _, name = text.partition("=")
-            found[name or original] = (module, original)
+    found = {
+        name or original: (module, original)
+        for module, names in homes.items()
+        for original, _, name in (text.partition("=") for text in names.split())
+    }
 
     def get(name: str) -> Any:
         if name not in found:
             raise AttributeError(f"module '{package}' has no attribute '{name}'")
         module, original = found[name]
-        return getattr(importlib.import_module(module), original)
+        home = importlib.import_module(module)
+        if hasattr(home, original):
+            return getattr(home, original)
+        return importlib.import_module(f"{module}.{original}")
 
     return get

@@ -9,13 +9,13 @@ import numpy as np
 from PIL import Image
 
 from crowdbot.core.geometry.footprint import footprint_of_model
-from crowdbot.core.interfaces import Pose, RobotState
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.robots import build_model
 from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.rendering import Renderer
 from crowdbot.core.types.sensor import Pinhole
+from crowdbot.plugin import Pose, RobotState
 from scripts.draw_robots import FOLDER, KINDS
 
 _SIZE, _VIEW = (1000, 400), math.radians(85.0)

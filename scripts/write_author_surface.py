@@ -1,4 +1,4 @@
-"""Writes docs/reference/author_surface.md from the two modules that plugins import.
+"""Write docs/reference/author_surface.md from the module that plugins import.
 
 Example: .venv/bin/python scripts/write_author_surface.py
 """
@@ -8,12 +8,11 @@ from __future__ import annotations
 import inspect
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from types import ModuleType
 from typing import Annotated, Any, get_args, get_origin
 
-from crowdbot import dsl
-from crowdbot.core import interfaces
+from crowdbot import plugin
 from crowdbot.dsl.spec.quantities import UNITS, Quantity
+from crowdbot.plugin.homes import HOMES
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "author_surface.md"
 
@@ -22,14 +21,14 @@ _HEAD = """\
 
 <!-- Written by scripts/write_author_surface.py: change the modules, not this page. -->
 
-Two modules hold all that a package of components needs: `crowdbot.dsl` for the modules with specs,
-which are imported to list and to validate, and `crowdbot.core.interfaces` for the modules with
-build functions. Beside them there are `crowdbot` (the [Python API](python_api.md)),
-`crowdbot.errors`, `crowdbot.hookspecs` and `crowdbot.testing`. Everything else may change from one
-version to the next. crowdbot's own components import from here, too.
+`crowdbot.plugin` holds all that a package of components needs: specs and components, which are
+imported to list and to validate, and contracts, values and tools for the modules with build
+functions. Beside it there are `crowdbot` (the [Python API](python_api.md)), `crowdbot.errors` and
+`crowdbot.testing`. Everything else may change from one version to the next. crowdbot's own
+components import from here, too.
 
-`crowdbot.dsl` imports no numpy. Names of `crowdbot.core.interfaces` are imported when they are
-first used: a module that needs only `Command` does not wait for numba. The page
+Names are imported when they are first used: a module that needs only `Command` does not wait for
+numba, and one that needs only names of the first two sections imports no numpy. The page
 [plugins](plugins.md) says what a component is, and what its methods are called with.
 """
 #: What has no docstring of its own.
@@ -42,6 +41,7 @@ _SAID = {
     "PORTAL": "`Agents.at_goal`: leave through a portal and come in by its entrance.",
     "REMOVE": "`Agents.at_goal`: leave the world.",
     "STOP": "`Agents.at_goal`: stand there.",
+    "hookimpl": "Marks a function as a hook: `@hookimpl`.",
     "Heights": "Bottom and top, m.",
     "CONTACT_STIFFNESS": "Push between overlapping people where a policy does not say, 1/s².",
     "CrowdPolicy": "A `VelocityPolicy` or an `AcceleratingPolicy`.",
@@ -75,9 +75,9 @@ _TOGETHER: Mapping[str, str] = {
     "RANGE FROM_SURFACE": "First two entries of `params`.",
     "WORK_COLUMNS": "Columns of `work`.",
 }
-#: Heading -> modules below crowdbot.core from which its names come.
+#: Heading -> beginnings of the modules, below crowdbot.core, from which its names come.
 _GROUPS: Mapping[str, tuple[str, ...]] = {
-    "Build functions": ("interfaces",),
+    "Build functions": ("crowdbot.plugin.build_functions",),
     "Planners": ("planning", "types.motion", "sensing.points"),
     "Sensors and noise": ("sensing", "types.sensor"),
     "Robots": ("robots", "types.robot", "geometry"),
@@ -93,11 +93,11 @@ _GROUPS: Mapping[str, tuple[str, ...]] = {
 
 def author_surface_page() -> str:
     """The whole page as Markdown."""
-    parts = [_HEAD, "## crowdbot.dsl\n", _table(_specs())]
-    parts.append("### Quantities\n\nNumbers in the unit given; documents may use others.\n")
-    parts += [_table(_quantities()), "## crowdbot.core.interfaces\n"]
+    parts = [_HEAD, "## Specs and components\n", _table(_specs())]
+    parts.append("## Quantities\n\nNumbers in the unit given; documents may use others.\n")
+    parts.append(_table(_quantities()))
     for title in _GROUPS:
-        parts += [f"### {title}\n", _table(_group(title))]
+        parts += [f"## {title}\n", _table(_group(title))]
     return "\n".join(parts).rstrip() + "\n"
 
 
@@ -105,15 +105,22 @@ def _table(rows: Iterator[tuple[str, str]]) -> str:
     return "\n".join(["| name | |", "|---|---|", *(f"| {n} | {t} |" for n, t in rows), ""])
 
 
+def _of_documents() -> list[str]:
+    """Return the names that modules of specs import: none of core."""
+    return [
+        n for n in plugin.__all__ if not _home(n).startswith(("crowdbot.core.", "crowdbot.plugin."))
+    ]
+
+
 def _specs() -> Iterator[tuple[str, str]]:
-    for name in dsl.__all__:
-        if name in _SAID or not _is_quantity(getattr(dsl, name)):
-            yield f"`{name}`", _line(dsl, name)
+    for name in _of_documents():
+        if name in _SAID or not _is_quantity(getattr(plugin, name)):
+            yield f"`{name}`", _line(name)
 
 
 def _quantities() -> Iterator[tuple[str, str]]:
-    for name in dsl.__all__:
-        value = getattr(dsl, name)
+    for name in _of_documents():
+        value = getattr(plugin, name)
         if name not in _SAID and _is_quantity(value):
             (quantity,) = (m for m in get_args(value) if isinstance(m, Quantity))
             yield f"`{name}`", f"{quantity.dimension}, {next(iter(UNITS[quantity.dimension]))}"
@@ -124,14 +131,15 @@ def _is_quantity(value: object) -> bool:
 
 
 def _group(title: str) -> Iterator[tuple[str, str]]:
-    names = [n for n in interfaces.__all__ if _title(n) == title]
+    of_documents = _of_documents()
+    names = [n for n in plugin.__all__ if n not in of_documents and _title(n) == title]
     together = {n: words for words in _TOGETHER for n in words.split()}
     for words, text in _TOGETHER.items():
         if words.split()[0] in names:
             yield ", ".join(f"`{n}`" for n in words.split()), text
     for name in names:
         if name not in together:
-            yield f"`{name}`", _line(interfaces, name)
+            yield f"`{name}`", _line(name)
 
 
 def _title(name: str) -> str:
@@ -141,14 +149,14 @@ def _title(name: str) -> str:
 
 
 def _home(name: str) -> str:
-    return next(m for m, names in interfaces._HOMES.items() if name in names.split())
+    return next(m for m, names in HOMES.items() if name in names.split())
 
 
-def _line(module: ModuleType, name: str) -> str:
+def _line(name: str) -> str:
     """The first paragraph of a docstring, in one line."""
     if name in _SAID:
         return _SAID[name]
-    value: Any = getattr(module, name)
+    value: Any = getattr(plugin, name)
     text = inspect.getdoc(getattr(value, "py_func", value)) or ""
     return " ".join(text.partition("\n\n")[0].replace("``", "`").replace("|", "\\|").split())
 

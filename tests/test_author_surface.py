@@ -1,4 +1,4 @@
-"""What plugins import: two modules, a snapshot of their names, and nobody who goes past them."""
+"""The module that plugins import: a snapshot of its names, and all who go through it."""
 
 from __future__ import annotations
 
@@ -13,13 +13,12 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot import dsl
-from crowdbot.core import interfaces
+from crowdbot import plugin
+from crowdbot.plugin.homes import HOMES
 from tests.docs.doc_pages import PAGES, blocks
 from tests.paths import DATA, ROOT
 
-SURFACE = ("crowdbot.dsl", "crowdbot.core.interfaces")
-PUBLIC = (*SURFACE, "crowdbot", "crowdbot.errors", "crowdbot.hookspecs", "crowdbot.testing")
+PUBLIC = ("crowdbot.plugin", "crowdbot", "crowdbot.errors", "crowdbot.testing")
 #: What a package's own tests may import beside that: the command line as a function.
 COMMAND = "crowdbot.cli"
 #: Components that others build on are theirs to import, as those of any package are.
@@ -30,19 +29,17 @@ _IMPORT = re.compile(r"^\s*(?:from|import) (crowdbot(?:\.\w+)*)(?![\w$])", re.MU
 
 
 def test_the_names_are_those_of_the_snapshot() -> None:
-    found = [f"{m.__name__}.{n}" for m in (dsl, interfaces) for n in sorted(m.__all__)]
     kept = (DATA / "author_surface.txt").read_text().splitlines()
-    assert found == kept, "a change of what plugins import: say so in CHANGELOG.md"
-    assert len(set(found)) == len(found)
-    assert not set(dsl.__all__) & set(interfaces.__all__), "one name, one module"
+    assert sorted(plugin.__all__) == kept, "a change of what plugins import: say so in CHANGELOG.md"
+    assert sorted(n for names in HOMES.values() for n in names.split()) == kept
 
 
-@pytest.mark.parametrize("name", interfaces.__all__)
-def test_every_name_of_the_build_side_resolves(name: str) -> None:
-    assert getattr(interfaces, name) is not None
-    assert name in dir(interfaces)
+@pytest.mark.parametrize("name", plugin.__all__)
+def test_every_name_resolves(name: str) -> None:
+    assert getattr(plugin, name) is not None
+    assert name in dir(plugin)
     with pytest.raises(AttributeError, match="has no attribute"):
-        getattr(interfaces, name + "_")
+        getattr(plugin, name + "_")
 
 
 def test_the_page_is_up_to_date() -> None:
@@ -55,7 +52,7 @@ def test_the_page_has_a_line_on_each_name() -> None:
     page = (ROOT / "docs" / "reference" / "author_surface.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (`.*?) \| (.*) \|$", page, re.MULTILINE)
     told = {name: text for names, text in rows for name in re.findall(r"`(\w+)`", names)}
-    assert told.keys() == {*dsl.__all__, *interfaces.__all__}
+    assert told.keys() == {*plugin.__all__}
     assert [n for n, text in told.items() if not text.strip()] == []
 
 
@@ -86,7 +83,7 @@ def test_what_others_copy_imports_the_surface_only(source: str, module: str) -> 
 
 def test_many_sources_were_looked_at() -> None:
     assert len({s for s, _ in SOURCES}) > 50
-    assert {m for _, m in SOURCES} >= set(SURFACE)
+    assert {m for _, m in SOURCES} >= set(PUBLIC[:2])
 
 
 def _imports(file: Path) -> Iterator[tuple[str, str]]:
@@ -103,19 +100,19 @@ def _imports(file: Path) -> Iterator[tuple[str, str]]:
 def test_our_own_plugins_import_from_where_others_do(file: Path) -> None:
     """What is on the surface comes from there; a few tools of ours are not on it."""
     for module, name in _imports(file):
-        assert not module.startswith("crowdbot.dsl."), module
-        if module.startswith("crowdbot.core.") and module != interfaces.__name__:
+        assert not module.startswith("crowdbot.dsl"), module
+        if module.startswith("crowdbot.core."):
             found = getattr(importlib.import_module(module), name)
-            same = callable(found) and found is getattr(interfaces, name, None)
+            same = callable(found) and found is getattr(plugin, name, None)
             assert not same, f"{name} comes from {module}"
-            assert name not in interfaces._HOMES.get(module, "").split(), f"{module}: {name}"
+            assert name not in HOMES.get(module, "").split(), f"{module}: {name}"
 
 
 def test_the_build_side_is_cheap_until_it_is_used() -> None:
     code = (
         "import sys\n"
-        "import crowdbot.core.interfaces\n"
-        "from crowdbot.core.interfaces import Command\n"
+        "import crowdbot.plugin\n"
+        "from crowdbot.plugin import Command\n"
         "print(*sorted({'numba', 'pydrake', 'mcap'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

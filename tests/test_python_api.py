@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 
 import crowdbot
-from crowdbot.core.interfaces import Command, Observation
 from crowdbot.core.planning.given_planner import choose_planner
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.registry.registry import discover
+from crowdbot.plugin import Command, Observation
 from crowdbot.plugins.planners.dwa import DwaSpec
 from tests.paths import ROOT
 

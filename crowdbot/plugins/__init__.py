@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
-from crowdbot.dsl import (
+from crowdbot.hookspecs import API_VERSION, hookimpl
+from crowdbot.plugin import (
     Component,
     CostFunctionSpec,
     CrowdPolicySpec,
@@ -21,7 +22,6 @@ from crowdbot.dsl import (
     RobotSpec,
     SensorSpec,
 )
-from crowdbot.hookspecs import API_VERSION, hookimpl
 from crowdbot.plugins import crowd, environments, noise, robots, sensors
 
 CROWDBOT_API = API_VERSION

@@ -88,7 +88,7 @@ def check_round_trip(component: Component[Any]) -> None:
 def check_fields_are_described(component: Component[Any]) -> None:
     """Every field has a description, and numbers say their unit.
 
-    If this fails, use a quantity of ``crowdbot.dsl``, or end the description with
+    If this fails, use a quantity of ``crowdbot.plugin``, or end the description with
     ``, UNIT.``; a number without unit is a "weight", "factor", "fraction", "ratio" or "share".
     """
     for path, field in _fields(component.spec):

@@ -14,8 +14,8 @@ MAIN = "import sys; from crowdbot.cli import main; sys.exit(main())"
 HEAD = """
 from typing import Any, ClassVar, Literal
 from pydantic import Field, field_validator
-from crowdbot.dsl import Component
-from crowdbot.dsl import PlannerSpec, RobotSpec
+from crowdbot.plugin import Component
+from crowdbot.plugin import PlannerSpec, RobotSpec
 from crowdbot.hookspecs import hookimpl
 CROWDBOT_API = 1
 """

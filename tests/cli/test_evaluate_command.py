@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from crowdbot.cli import main
-from crowdbot.core.interfaces import RobotLimits
 from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter, RobotHeader
 from crowdbot.core.scoring.evaluate import score
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.plugin import RobotLimits
 from tests.plugins.metrics.scenes import REGISTRY, grid, line, scene
 
 Captured = pytest.CaptureFixture[str]

@@ -12,12 +12,12 @@ from crowdbot import cli
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.environments.build import build_environment
-from crowdbot.core.interfaces import EnvironmentParts
 from crowdbot.core.population.realise import realise
 from crowdbot.core.recording import read_trajectories
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sim.build_crowd import build_crowd
+from crowdbot.plugin import EnvironmentParts
 from crowdbot.plugins.environments import COMPONENTS
 from tests.core.crowd.routing.floor_plans import crossings
 from tests.paths import ROOT

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from crowdbot.cli import main
-from crowdbot.core.interfaces import RobotModel
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.robots import build_model
 from crowdbot.core.robots.urdf_export import to_urdf
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import CrowdbotError, InputError
+from crowdbot.plugin import RobotModel
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")

@@ -17,9 +17,9 @@ PLUGIN = '''
 import sys
 from typing import Literal
 import numpy as np
-from crowdbot.dsl import Component
-from crowdbot.core.interfaces import ScoreFactory, SensorInfo
-from crowdbot.dsl import CrowdPolicySpec, MetricSpec, SensorSpec, declare_metric
+from crowdbot.plugin import Component
+from crowdbot.plugin import ScoreFactory, SensorInfo
+from crowdbot.plugin import CrowdPolicySpec, MetricSpec, SensorSpec, declare_metric
 from crowdbot.hookspecs import hookimpl
 
 class SensorWords(SensorSpec):

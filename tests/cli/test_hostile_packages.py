@@ -73,7 +73,7 @@ BROKEN = {
     "no_build": (planner("no_build.go", build="nowhere"), "build must be text"),
     "twice": (planner("twice.go").replace("[PLANNER]", "[PLANNER, PLANNER]"),
               "E301 planner 'twice.go' is provided twice"),
-    "no_card": (HEAD + "from crowdbot.dsl import MetricSpec\n"
+    "no_card": (HEAD + "from crowdbot.plugin import MetricSpec\n"
                 "class Spec(MetricSpec):\n    kind: Literal['no_card.m'] = 'no_card.m'\n"
                 "@hookimpl\ndef crowdbot_metrics():\n"
                 "    return [Component(spec=Spec, build='a:b', summary='')]",

@@ -18,8 +18,8 @@ pytestmark = pytest.mark.slow
 PLUGIN = '''
 import sys
 from typing import ClassVar, Literal
-from crowdbot.dsl import Component
-from crowdbot.dsl import PlannerSpec
+from crowdbot.plugin import Component
+from crowdbot.plugin import PlannerSpec
 from crowdbot.hookspecs import hookimpl
 CROWDBOT_API = 1
 

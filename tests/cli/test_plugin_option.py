@@ -12,7 +12,7 @@ from crowdbot.cli import main
 
 PLUGIN = '''
 from typing import Literal
-from crowdbot.dsl import Component
+from crowdbot.plugin import Component
 from crowdbot.hookspecs import hookimpl
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec
 

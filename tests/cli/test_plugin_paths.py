@@ -14,7 +14,7 @@ pytestmark = pytest.mark.slow
 
 ENTRY = '[project]\nname = "crowdbot-acme"\n[project.entry-points.crowdbot]\nacme = "acme_go"\n'
 MODULE = """
-from crowdbot.core.interfaces import Command
+from crowdbot.plugin import Command
 
 class Go:
     def __init__(self, spec): pass

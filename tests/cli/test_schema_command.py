@@ -42,7 +42,7 @@ def test_components_of_plugins_are_in_it(tmp_path: Path) -> None:
     (tmp_path / "plugins" / "acme_rooms.py").write_text(
         "from typing import Literal\n"
         "from crowdbot.dsl.spec.component import Component\n"
-        "from crowdbot.dsl import EnvironmentSpec\n"
+        "from crowdbot.plugin import EnvironmentSpec\n"
         "from crowdbot.hookspecs import hookimpl\n"
         "class RoomSpec(EnvironmentSpec):\n"
         '    """A room."""\n'

@@ -13,8 +13,8 @@ METRIC = (
     HEAD
     + '''
 import os
-from crowdbot.core.interfaces import ScoreFactory
-from crowdbot.dsl import MetricSpec, declare_metric
+from crowdbot.plugin import ScoreFactory
+from crowdbot.plugin import MetricSpec, declare_metric
 
 class Words(MetricSpec):
     """A metric."""

@@ -17,7 +17,6 @@ from matplotlib.image import imread
 from numpy.typing import NDArray
 
 from crowdbot.cli import main
-from crowdbot.core.interfaces import EnvironmentParts, RobotModel
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import Registry, discover
@@ -30,6 +29,7 @@ from crowdbot.core.view.shapes import DARK, LIGHT, LOOKS
 from crowdbot.core.view.shapes import Path as Line
 from crowdbot.core.view.svg import to_svg
 from crowdbot.core.view.world import LEFT, Map, nice
+from crowdbot.plugin import EnvironmentParts, RobotModel
 
 Captured = pytest.CaptureFixture[str]
 REGISTRY = discover(allow=())

@@ -12,7 +12,6 @@ import pytest
 from crowdbot import hookspecs
 from crowdbot.cli import command_names
 from crowdbot.cli.app.typer_app import load
-from crowdbot.core import interfaces
 from crowdbot.core.crowd.build import build_cost
 from crowdbot.core.registry.registry import discover
 from tests.docs.doc_pages import read, section
@@ -86,9 +85,8 @@ def _protocols() -> dict[str, Any]:
 
     return {
         name: value
-        for module in (interfaces, policy)
-        for name, value in vars(module).items()
-        if getattr(value, "_is_protocol", False) and value.__module__ == module.__name__
+        for name, value in vars(policy).items()
+        if getattr(value, "_is_protocol", False) and value.__module__ == policy.__name__
     }
 
 

@@ -23,10 +23,10 @@ PLUGIN = """
 from typing import Literal
 import numpy as np
 from numba import njit
-from crowdbot.dsl import Component
+from crowdbot.plugin import Component
 from crowdbot.core.crowd.velocity_search.cost import BASE, CompiledCost, NumpyCost
-from crowdbot.core.interfaces import EnvironmentParts, SensorInfo
-from crowdbot.dsl import CostFunctionSpec, CrowdPolicySpec, EnvironmentSpec, SensorSpec
+from crowdbot.plugin import EnvironmentParts, SensorInfo
+from crowdbot.plugin import CostFunctionSpec, CrowdPolicySpec, EnvironmentSpec, SensorSpec
 from crowdbot.hookspecs import hookimpl
 
 class Cost(CostFunctionSpec):

@@ -23,8 +23,8 @@ from crowdbot.core.types.robot import (
     wheels_of,
 )
 from crowdbot.core.view.build import field_of_view
-from crowdbot.dsl import Mount, SensorSpec
 from crowdbot.dsl.spec.component_specs import with_wheels
+from crowdbot.plugin import Mount, SensorSpec
 from crowdbot.plugins.planners.robot_outline_build import disc_radius, half_width_and_front
 from crowdbot.plugins.sensors.infrared import InfraredSpec
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec

@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core.registry.registry import Registry
-from crowdbot.dsl import Component
 from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.plugin import Component
 from crowdbot.testing.fixtures import expand_one, registry, run_directory, tiny_scenario
 from crowdbot.testing.strategies import specs
 from tests.testing.wrong import BUILT_IN

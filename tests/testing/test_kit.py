@@ -15,10 +15,19 @@ import numpy as np
 import pytest
 from pydantic import ConfigDict, Field
 
-from crowdbot.core.interfaces import References, Score, ScoreFactory, Trajectories
-from crowdbot.dsl import Component, MetricComponent, MetricSpec, SensorSpec, declare_metric
 from crowdbot.dsl.spec.component_specs import CATEGORIES
 from crowdbot.errors import PluginError
+from crowdbot.plugin import (
+    Component,
+    MetricComponent,
+    MetricSpec,
+    References,
+    Score,
+    ScoreFactory,
+    SensorSpec,
+    Trajectories,
+    declare_metric,
+)
 from crowdbot.testing import all_kinds, card, checks_of, metric, parametrize_with_checks
 from crowdbot.testing.checks import BY_CATEGORY, checks_for
 from tests.paths import ROOT

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from crowdbot.core.interfaces import EnvironmentParts, RobotLimits, RobotModel
+from crowdbot.plugin import EnvironmentParts, RobotLimits, RobotModel
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec
 from crowdbot.plugins.robots.turtlebot2_build import build as turtlebot2
 from crowdbot.testing import environment, robot

@@ -11,7 +11,7 @@ from unittest import SkipTest
 import numpy as np
 import pytest
 
-from crowdbot.core.interfaces import Command, NoValidCommand, Observation
+from crowdbot.plugin import Command, NoValidCommand, Observation
 from crowdbot.testing import planner
 from tests.testing.wrong import BUILT_IN, WrongPlanner, assert_fails, made
 

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Pose, SensorInfo
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.dsl.spec.range_sensor import RangeSensorSpec
+from crowdbot.plugin import Pose, SensorInfo
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 from crowdbot.plugins.sensors.lidar2d_build import build as lidar2d
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Literal
 import pytest
 
 from crowdbot.core.registry.registry import Registry, discover
-from crowdbot.dsl import (
+from crowdbot.plugin import (
     Component,
     CostFunctionSpec,
     CrowdPolicySpec,

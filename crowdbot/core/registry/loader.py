@@ -220,7 +220,7 @@ def _literal_kind(component: Component[Any]) -> str:
     spec = component.spec
     if not (inspect.isclass(spec) and issubclass(spec, ComponentSpec)):
         raise PluginError(
-            f"{_shown(spec)} is not a spec: it must derive from one of those in crowdbot.dsl"
+            f"{_shown(spec)} is not a spec: it must derive from one of those in crowdbot.plugin"
         )
     field = spec.model_fields.get("kind")
     values = get_args(field.annotation) if field else ()

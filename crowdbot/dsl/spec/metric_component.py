@@ -118,7 +118,7 @@ def declare_metric(
             ``package.motion:SpeedSpec`` is ``package.motion_build:Speed``.
         summary: one line. Default: the symbol and the first line of the spec's docstring.
         spec_version, examples, experimental, successor, card, exceptions: as in
-            `crowdbot.dsl.Component`.
+            `crowdbot.plugin.Component`.
         invariants: fields of `MetricInvariants` that all variants have.
 
     Raises:

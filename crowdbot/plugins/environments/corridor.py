@@ -6,7 +6,15 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from crowdbot.dsl import Component, EnvironmentSpec, Face, Pillar, Place, PositiveLength, Rectangle
+from crowdbot.plugin import (
+    Component,
+    EnvironmentSpec,
+    Face,
+    Pillar,
+    Place,
+    PositiveLength,
+    Rectangle,
+)
 from crowdbot.plugins.environments.pillar_sets import PillarFieldSpec, PillarGridSpec
 from crowdbot.plugins.environments.shapes import PillarSpec, check_heights
 

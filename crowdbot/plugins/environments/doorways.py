@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from crowdbot.dsl import (
+from crowdbot.plugin import (
     Component,
     Length,
     NonNegativeLength,
@@ -14,8 +14,8 @@ from crowdbot.dsl import (
     PositiveLength,
     Rectangle,
     Solid,
+    outlines,
 )
-from crowdbot.dsl.spec import outlines
 from crowdbot.plugins.environments.walkways import PORTAL_DEPTH, WalkwaySpec, box, walkway
 
 

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from crowdbot.dsl import Component, EnvironmentSpec, Place, PositiveLength, Rectangle
+from crowdbot.plugin import Component, EnvironmentSpec, Place, PositiveLength, Rectangle
 from crowdbot.plugins.environments.shapes import (
     BlockSpec,
     PillarSpec,

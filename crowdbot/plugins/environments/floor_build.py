@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from crowdbot.core.interfaces import EnvironmentParts, place_parts
+from crowdbot.plugin import EnvironmentParts, place_parts
 from crowdbot.plugins.environments.floor import FloorSpec
 
 

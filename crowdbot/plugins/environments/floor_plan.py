@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from crowdbot.dsl import Component, Place, Rectangle
+from crowdbot.plugin import Component, Place, Rectangle
 from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 
 

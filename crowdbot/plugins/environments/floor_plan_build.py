@@ -15,9 +15,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped,unused-ignore]
 from shapely.geometry import shape as shape_of  # type: ignore[import-untyped,unused-ignore]
 
-from crowdbot.dsl import Face, Place, Solid
-from crowdbot.dsl.spec import outlines
-from crowdbot.errors import InputError
+from crowdbot.plugin import Face, InputError, Place, Solid, outlines
 from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 from crowdbot.plugins.environments.floor_plan_units_build import (
     check_numbers,

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from annotated_types import Le
 from pydantic import Field, model_validator
 
-from crowdbot.dsl import (
+from crowdbot.plugin import (
     Angle,
     Asset,
     EnvironmentSpec,

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 import shapely  # type: ignore[import-untyped,unused-ignore]
 
-from crowdbot.core.interfaces import Array
-from crowdbot.errors import InputError
+from crowdbot.plugin import Array, InputError
 from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 
 _LOG = logging.getLogger(__name__)

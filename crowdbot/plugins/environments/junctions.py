@@ -8,8 +8,15 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le
 from pydantic import Field
 
-from crowdbot.dsl import Component, NonNegativeLength, Place, PositiveLength, Quantity, Rectangle
-from crowdbot.dsl.spec import outlines
+from crowdbot.plugin import (
+    Component,
+    NonNegativeLength,
+    Place,
+    PositiveLength,
+    Quantity,
+    Rectangle,
+    outlines,
+)
 from crowdbot.plugins.environments.walkways import (
     PORTAL_DEPTH,
     WalkwaySpec,

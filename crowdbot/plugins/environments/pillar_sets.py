@@ -10,8 +10,7 @@ from typing import Annotated
 from annotated_types import Ge, Le
 from pydantic import Field
 
-from crowdbot.dsl import NonNegativeLength, Pillar, PositiveLength, Rectangle, Spec
-from crowdbot.dsl.spec import outlines
+from crowdbot.plugin import NonNegativeLength, Pillar, PositiveLength, Rectangle, Spec, outlines
 
 Count = Annotated[int, Ge(1), Le(1000)]
 #: Draws for one pillar before there is no room for it.

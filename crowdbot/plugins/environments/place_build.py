@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from crowdbot.core.interfaces import EnvironmentParts, place_parts
-from crowdbot.dsl import EnvironmentSpec
-from crowdbot.errors import InputError
+from crowdbot.plugin import EnvironmentParts, EnvironmentSpec, InputError, place_parts
 
 
 def build(spec: EnvironmentSpec) -> EnvironmentParts:

@@ -9,8 +9,7 @@ from typing import Annotated
 from annotated_types import Len
 from pydantic import Field, field_validator, model_validator
 
-from crowdbot.dsl import Face, Heights, Length, Pillar, PositiveLength, Solid, Spec
-from crowdbot.dsl.spec import outlines
+from crowdbot.plugin import Face, Heights, Length, Pillar, PositiveLength, Solid, Spec, outlines
 
 Point = Annotated[tuple[Length, Length], Field(strict=False)]
 Corners = Annotated[tuple[Point, ...], Len(3, 4096), Field(strict=False)]

@@ -9,8 +9,7 @@ from typing import Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
-from crowdbot.dsl import EnvironmentSpec, Face, Length, PositiveLength, Rectangle, Spec
-from crowdbot.dsl.spec import outlines
+from crowdbot.plugin import EnvironmentSpec, Face, Length, PositiveLength, Rectangle, Spec, outlines
 
 #: Portals reach so far beyond an end, and the walls beside it as far, m.
 PORTAL_DEPTH = 1.0

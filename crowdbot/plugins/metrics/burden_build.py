@@ -7,16 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.trajectories.encounters import people
+from crowdbot.core.trajectories.evasion import Evasion, evasion, ghost_run, own_legs
+from crowdbot.core.trajectories.headway import share_below
+from crowdbot.plugin import (
     References,
     Score,
     ScoreFactory,
     Trajectories,
     truncate_at_arrival,
 )
-from crowdbot.core.trajectories.encounters import people
-from crowdbot.core.trajectories.evasion import Evasion, evasion, ghost_run, own_legs
-from crowdbot.core.trajectories.headway import share_below
 from crowdbot.plugins.metrics.burden import (
     EVASIVE_ACCELERATION,
     PUSH_WORK,

@@ -7,16 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
-    Array,
-    References,
-    Score,
-    ScoreFactory,
-    Trajectories,
-    duration,
-    path_length,
-    truncate_at_arrival,
-)
 from crowdbot.core.trajectories.encounters import (
     contact_runs,
     encounter,
@@ -28,6 +18,16 @@ from crowdbot.core.trajectories.encounters import (
     touching,
 )
 from crowdbot.core.trajectories.person_contacts import PersonContacts, person_contacts
+from crowdbot.plugin import (
+    Array,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    duration,
+    path_length,
+    truncate_at_arrival,
+)
 from crowdbot.plugins.metrics.collision import (
     COLLISION_COUNT,
     COLLISION_RATE,

@@ -10,7 +10,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.trajectories.encounters import robot_of
+from crowdbot.core.trajectories.preprocess import present
+from crowdbot.plugin import (
     Array,
     Footprint,
     Score,
@@ -18,8 +20,6 @@ from crowdbot.core.interfaces import (
     Trajectories,
     truncate_at_arrival,
 )
-from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.preprocess import present
 
 #: What is smaller came from rounding, m or J.
 _NOTHING = 1e-9

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from crowdbot.core.interfaces import (
+from crowdbot.plugin import (
     ContactEvents,
     Mask,
     References,

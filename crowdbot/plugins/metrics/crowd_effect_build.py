@@ -7,7 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.trajectories.encounters import encounter, people, people_speeds
+from crowdbot.core.trajectories.preprocess import (
+    inf_to_nan,
+    samples_of_shorter,
+    truncate_to_shorter,
+)
+from crowdbot.core.trajectories.trips import DISTANCE_TOLERANCE, Durations, durations, meets_robot
+from crowdbot.plugin import (
     Array,
     References,
     Score,
@@ -17,13 +24,6 @@ from crowdbot.core.interfaces import (
     time_weights,
     truncate_at_arrival,
 )
-from crowdbot.core.trajectories.encounters import encounter, people, people_speeds
-from crowdbot.core.trajectories.preprocess import (
-    inf_to_nan,
-    samples_of_shorter,
-    truncate_to_shorter,
-)
-from crowdbot.core.trajectories.trips import DISTANCE_TOLERANCE, Durations, durations, meets_robot
 from crowdbot.plugins.metrics.crowd_effect import (
     CROWD_DEVIATION,
     EFFECT_ON_TIME,

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.trajectories.encounters import robot_of
+from crowdbot.core.trajectories.person_contacts import at_fault, person_contacts
+from crowdbot.core.trajectories.proper_response import FaultRule
+from crowdbot.plugin import (
     References,
     Score,
     ScoreFactory,
@@ -13,9 +16,6 @@ from crowdbot.core.interfaces import (
     path_length,
     truncate_at_arrival,
 )
-from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.person_contacts import at_fault, person_contacts
-from crowdbot.core.trajectories.proper_response import FaultRule
 from crowdbot.plugins.metrics.common_reference_build import way_made_good
 from crowdbot.plugins.metrics.fault import (
     CONTACTS_AT_FAULT,

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.trajectories.encounters import encounter, people
+from crowdbot.core.trajectories.evasion import DISTANCE_TOLERANCE, evasion
+from crowdbot.core.trajectories.headway import share_below
+from crowdbot.plugin import (
     References,
     Score,
     ScoreFactory,
     Trajectories,
     truncate_at_arrival,
 )
-from crowdbot.core.trajectories.encounters import encounter, people
-from crowdbot.core.trajectories.evasion import DISTANCE_TOLERANCE, evasion
-from crowdbot.core.trajectories.headway import share_below
 from crowdbot.plugins.metrics.common_reference_build import rate_and_way
 from crowdbot.plugins.metrics.intrusion import INTRUSION, IntrusionSpec
 

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.trajectories.encounters import robot_of, robot_velocities
+from crowdbot.core.trajectories.preprocess import heading_changes, wrap
+from crowdbot.plugin import (
     Array,
     References,
     Score,
@@ -20,8 +22,6 @@ from crowdbot.core.interfaces import (
     truncate_at_arrival,
     yaw_rate,
 )
-from crowdbot.core.trajectories.encounters import robot_of, robot_velocities
-from crowdbot.core.trajectories.preprocess import heading_changes, wrap
 from crowdbot.plugins.metrics.motion import (
     ACCELERATION,
     CUMULATIVE_HEADING_CHANGE,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from crowdbot.dsl import MetricSpec, declare_metric
+from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import (
     HeadingMinSpeed,
     JumpSpeed,

@@ -13,7 +13,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.support.compile import inline_kernel
+from crowdbot.core.trajectories.encounters import (
+    people,
+    people_velocities,
+    robot_of,
+    robot_velocities,
+)
+from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_agent_steps, valid_robot_steps
+from crowdbot.plugin import (
     Array,
     Mask,
     References,
@@ -23,14 +31,6 @@ from crowdbot.core.interfaces import (
     kernel,
     truncate_at_arrival,
 )
-from crowdbot.core.support.compile import inline_kernel
-from crowdbot.core.trajectories.encounters import (
-    people,
-    people_velocities,
-    robot_of,
-    robot_velocities,
-)
-from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_agent_steps, valid_robot_steps
 from crowdbot.plugins.metrics.overtaking import OVERTAKING_COUNT, OvertakingCountSpec
 
 #: Slack of the rules on speed (m/s), angle (rad) and side (m), so that rounding decides nothing.

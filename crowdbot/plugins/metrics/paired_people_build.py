@@ -8,19 +8,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.trajectories.paired_people import (
+    Effects,
+    Pairing,
+    meeting_effects,
+    whole_effects,
+)
+from crowdbot.plugin import (
     Array,
     References,
     Score,
     ScoreFactory,
     Trajectories,
     truncate_at_arrival,
-)
-from crowdbot.core.trajectories.paired_people import (
-    Effects,
-    Pairing,
-    meeting_effects,
-    whole_effects,
 )
 from crowdbot.plugins.metrics.paired_people import (
     DELAY,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Array
+from crowdbot.plugin import Array
 
 #: Two times closer than this are the same, s.
 SAME_TIME = 1e-6

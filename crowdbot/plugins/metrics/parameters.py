@@ -12,7 +12,7 @@ from typing import Annotated
 from annotated_types import Ge, Le
 from pydantic import Field
 
-from crowdbot.dsl import (
+from crowdbot.plugin import (
     NonNegativeDuration,
     NonNegativeLength,
     NonNegativeSpeed,

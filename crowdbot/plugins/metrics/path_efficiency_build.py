@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.trajectories.encounters import robot_of
+from crowdbot.core.trajectories.preprocess import heading_changes, inf_to_nan, valid_robot_steps
+from crowdbot.plugin import (
     Array,
     References,
     Score,
@@ -19,8 +21,6 @@ from crowdbot.core.interfaces import (
     truncate_at_arrival,
     yaw_rate,
 )
-from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.preprocess import heading_changes, inf_to_nan, valid_robot_steps
 from crowdbot.plugins.metrics.common_reference_build import shortest_time
 from crowdbot.plugins.metrics.path_efficiency import (
     RELATIVE_JERK,

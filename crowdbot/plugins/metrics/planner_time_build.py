@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, References, Score, ScoreFactory, Trajectories
+from crowdbot.plugin import Array, References, Score, ScoreFactory, Trajectories
 from crowdbot.plugins.metrics.planner_time import (
     MAX_PLANNER_TIME,
     MEAN_PLANNER_TIME,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Literal
 
-from crowdbot.dsl import MetricSpec, declare_metric
+from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import AwaySpeed
 
 declare = partial(declare_metric, category="task")

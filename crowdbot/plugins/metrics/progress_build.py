@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.interfaces import References, Score, ScoreFactory, Trajectories
+from crowdbot.plugin import References, Score, ScoreFactory, Trajectories
 from crowdbot.plugins.metrics.common_reference_build import goal_distance
 from crowdbot.plugins.metrics.progress import REGRESS, RegressSpec
 

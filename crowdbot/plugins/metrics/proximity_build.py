@@ -8,7 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.trajectories.encounters import encounter
+from crowdbot.core.trajectories.trips import DISTANCE_TOLERANCE
+from crowdbot.plugin import (
     Array,
     Mask,
     References,
@@ -19,8 +21,6 @@ from crowdbot.core.interfaces import (
     time_weights,
     truncate_at_arrival,
 )
-from crowdbot.core.trajectories.encounters import encounter
-from crowdbot.core.trajectories.trips import DISTANCE_TOLERANCE
 from crowdbot.plugins.metrics.proximity import (
     LOCAL_DENSITY,
     NEIGHBOUR_COUNT,

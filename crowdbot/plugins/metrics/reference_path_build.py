@@ -7,7 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.trajectories.dynamic_time_warping import least_warping, spaced
+from crowdbot.core.trajectories.encounters import robot_of
+from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_robot_steps
+from crowdbot.plugin import (
     Array,
     References,
     Score,
@@ -15,9 +18,6 @@ from crowdbot.core.interfaces import (
     Trajectories,
     truncate_at_arrival,
 )
-from crowdbot.core.trajectories.dynamic_time_warping import least_warping, spaced
-from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_robot_steps
 from crowdbot.plugins.metrics.pairing_build import paired_samples
 from crowdbot.plugins.metrics.reference_path import (
     ADE_TO_REFERENCE,

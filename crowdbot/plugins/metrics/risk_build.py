@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.trajectories.disc_around_robot import as_disc
+from crowdbot.core.trajectories.encounters import approach
+from crowdbot.plugin import (
     Array,
     References,
     Score,
@@ -17,8 +19,6 @@ from crowdbot.core.interfaces import (
     time_weights,
     truncate_at_arrival,
 )
-from crowdbot.core.trajectories.disc_around_robot import as_disc
-from crowdbot.core.trajectories.encounters import approach
 from crowdbot.plugins.metrics.risk import (
     EXPECTED_SEVERITY,
     INTEGRATED_TIME_TO_COLLISION,

@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.trajectories.encounters import robot_of
+from crowdbot.core.trajectories.evasion import evasion, own_legs
+from crowdbot.core.trajectories.headway import share_below
+from crowdbot.core.trajectories.person_contacts import at_fault, person_contacts
+from crowdbot.plugin import (
     References,
     Score,
     ScoreFactory,
@@ -13,10 +17,6 @@ from crowdbot.core.interfaces import (
     travel_time,
     truncate_at_arrival,
 )
-from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.evasion import evasion, own_legs
-from crowdbot.core.trajectories.headway import share_below
-from crowdbot.core.trajectories.person_contacts import at_fault, person_contacts
 from crowdbot.plugins.metrics.common_reference_build import shortest_time
 from crowdbot.plugins.metrics.fault_build import fault_rule
 from crowdbot.plugins.metrics.safe_efficiency import SAFE_EFFICIENCY, SafeEfficiencySpec

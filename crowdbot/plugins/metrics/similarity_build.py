@@ -7,17 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
-    Array,
-    References,
-    Score,
-    ScoreFactory,
-    Trajectories,
-    path_length,
-    time_weights,
-    travel_time,
-    truncate_at_arrival,
-)
 from crowdbot.core.trajectories.encounters import (
     encounter,
     people,
@@ -32,6 +21,17 @@ from crowdbot.core.trajectories.trips import (
     displacement,
     durations,
     walked_distances,
+)
+from crowdbot.plugin import (
+    Array,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    path_length,
+    time_weights,
+    travel_time,
+    truncate_at_arrival,
 )
 from crowdbot.plugins.metrics.common_reference_build import missed_goal
 from crowdbot.plugins.metrics.similarity import (

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.trajectories.encounters import robot_of
+from crowdbot.core.trajectories.trips import durations
+from crowdbot.plugin import (
     References,
     Score,
     ScoreFactory,
@@ -17,8 +19,6 @@ from crowdbot.core.interfaces import (
     travel_time,
     truncate_at_arrival,
 )
-from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.trips import durations
 from crowdbot.plugins.metrics.collision_build import events
 from crowdbot.plugins.metrics.common_reference_build import (
     goal_distance,

@@ -7,7 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.trajectories.encounters import contact_events, robot_of
+from crowdbot.core.trajectories.footprint_of_run import footprint_of
+from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_robot_steps
+from crowdbot.plugin import (
     Array,
     Footprint,
     References,
@@ -18,9 +21,6 @@ from crowdbot.core.interfaces import (
     time_weights,
     truncate_at_arrival,
 )
-from crowdbot.core.trajectories.encounters import contact_events, robot_of
-from crowdbot.core.trajectories.footprint_of_run import footprint_of
-from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_robot_steps
 from crowdbot.plugins.metrics.walls import (
     AVG_WALL_CLEARANCE,
     MIN_WALL_CLEARANCE,

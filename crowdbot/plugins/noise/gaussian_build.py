@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array
+from crowdbot.plugin import Array
 from crowdbot.plugins.noise.gaussian import GaussianSpec
 
 

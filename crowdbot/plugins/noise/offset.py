@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from crowdbot.dsl import Component, Length, NoiseSpec
+from crowdbot.plugin import Component, Length, NoiseSpec
 
 
 class OffsetSpec(NoiseSpec):

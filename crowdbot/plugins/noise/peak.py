@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le
 from pydantic import Field
 
-from crowdbot.dsl import Component, Length, NoiseSpec, NonNegativeLength
+from crowdbot.plugin import Component, Length, NoiseSpec, NonNegativeLength
 
 
 class PeakSpec(NoiseSpec):

@@ -10,7 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 import crowdbot.plugins.planners.dwa_rollout_build as rollout
-from crowdbot.core.interfaces import (
+from crowdbot.core.support.immutable import immutable
+from crowdbot.plugin import (
     Array,
     Command,
     LidarPoints,
@@ -21,7 +22,6 @@ from crowdbot.core.interfaces import (
     SensorInfo,
     Task,
 )
-from crowdbot.core.support.immutable import immutable
 from crowdbot.plugins.planners.dwa import DwaSpec
 from crowdbot.plugins.planners.dwa_evaluate_build import evaluate
 from crowdbot.plugins.planners.dwa_map_build import AIM, remembered, way_out

@@ -10,8 +10,8 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, kernel
 from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import Array, kernel
 from crowdbot.plugins.planners.dwa_points_build import unsigned
 from crowdbot.plugins.planners.dwa_rollout_build import (
     A_MAX,

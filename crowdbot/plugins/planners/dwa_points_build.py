@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from crowdbot.core.geometry.rough_angle import rough_angle
-from crowdbot.core.interfaces import Array, Mask, kernel
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.support.stable_order import stable_order
+from crowdbot.plugin import Array, Mask, kernel
 
 #: Directions that are tried on either side of the goal's.
 _HALF = 24

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, kernel
 from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import Array, kernel
 from crowdbot.plugins.planners.dwa_points_build import minimum
 from crowdbot.plugins.planners.robot_outline_build import nearest_to_core
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from crowdbot.core.interfaces import Command, Observation, Pose, RobotLimits, SensorInfo, Task
+from crowdbot.plugin import Command, Observation, Pose, RobotLimits, SensorInfo, Task
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 
 

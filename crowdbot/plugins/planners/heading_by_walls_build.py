@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, Indices, Pose, kernel
+from crowdbot.plugin import Array, Indices, Pose, kernel
 
 #: Bins of a histogram of directions of lines, over half a turn.
 BINS = 360

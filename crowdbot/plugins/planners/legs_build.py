@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, Pose, RobotLimits
+from crowdbot.plugin import Array, Pose, RobotLimits
 
 #: Fastest, m/s; share of full braking that it counts on.
 _SPEED, _BRAKING = 0.4, 0.6

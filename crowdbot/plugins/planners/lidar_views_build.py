@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, Mask, Pose, Reading, SensorInfo
+from crowdbot.plugin import Array, Mask, Pose, Reading, SensorInfo
 
 #: A point is gone if a lidar sees this far behind it, m, and so it does on both sides of it, rad:
 #: past the outline of a body some beams always go.

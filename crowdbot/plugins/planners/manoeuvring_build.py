@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 import crowdbot.plugins.planners.dwa_rollout_build as rollout
-from crowdbot.core.interfaces import Array, Observation, Pose, Reading, RobotLimits
+from crowdbot.plugin import Array, Observation, Pose, Reading, RobotLimits
 from crowdbot.plugins.planners.dwa_evaluate_build import evaluate
 from crowdbot.plugins.planners.dwa_map_build import islands
 from crowdbot.plugins.planners.dwa_points_build import nearest_per_sector

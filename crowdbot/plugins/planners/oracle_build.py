@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 import crowdbot.plugins.planners.oracle_rollout_build as rollout
-from crowdbot.core.interfaces import (
+from crowdbot.plugin import (
     Array,
     Command,
     LidarPoints,

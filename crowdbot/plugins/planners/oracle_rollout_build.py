@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.interfaces import Array, kernel
+from crowdbot.plugin import Array, kernel
 from crowdbot.plugins.planners.robot_outline_build import core_gap
 
 #: Steps of a rollout, s.

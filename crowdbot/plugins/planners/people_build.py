@@ -13,8 +13,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Array, kernel
 from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import Array, kernel
 from crowdbot.plugins.planners.dwa_points_build import nearest_per_sector
 
 #: Points farther apart than this, and a share of their distance, belong to two bodies, m.

@@ -7,7 +7,7 @@ from collections import deque
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, Pose
+from crowdbot.plugin import Array, Pose
 from crowdbot.plugins.planners.dwa_points_build import apparent_velocity
 
 #: Apparent motion below this is that of legs, above that a person who was hidden, m/s.

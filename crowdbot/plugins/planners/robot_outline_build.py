@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, RobotBody, kernel
+from crowdbot.plugin import Array, RobotBody, kernel
 
 #: Of a TurtleBot2, m: for who tells a planner nothing of the robot.
 ROBOT_RADIUS = 0.178

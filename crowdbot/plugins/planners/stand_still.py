@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from crowdbot.dsl import Component, PlannerRole, PlannerSpec
+from crowdbot.plugin import Component, PlannerRole, PlannerSpec
 
 
 class StandStillSpec(PlannerSpec):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from crowdbot.core.interfaces import Command, Observation, RobotLimits, SensorInfo, Task
+from crowdbot.plugin import Command, Observation, RobotLimits, SensorInfo, Task
 from crowdbot.plugins.planners.stand_still import StandStillSpec
 
 

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.plugin import (
     Array,
     Command,
     LidarPoints,

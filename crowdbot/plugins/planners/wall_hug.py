@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from annotated_types import Gt, Le
 from pydantic import Field
 
-from crowdbot.dsl import (
+from crowdbot.plugin import (
     Component,
     NonNegativeLength,
     PlannerRole,

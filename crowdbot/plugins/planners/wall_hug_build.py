@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-from crowdbot.core.interfaces import Command, Observation, RobotLimits, SensorInfo, Task
+from crowdbot.plugin import Command, Observation, RobotLimits, SensorInfo, Task
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import GoalSeek
 from crowdbot.plugins.planners.robot_outline_build import swept_half_width

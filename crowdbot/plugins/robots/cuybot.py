@@ -6,7 +6,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from crowdbot.dsl import Component, PositiveForce, PositiveStiffness
+from crowdbot.plugin import Component, PositiveForce, PositiveStiffness
 from crowdbot.plugins.robots.limits import (
     LimitedRobotSpec,
     Mass,

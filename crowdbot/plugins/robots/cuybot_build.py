@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 import crowdbot.plugins.robots.sdf as sdf
-from crowdbot.core.interfaces import HolonomicDrive, RobotModel
+from crowdbot.plugin import HolonomicDrive, RobotModel
 from crowdbot.plugins.robots.body_part import (
     BLACK,
     COAL,

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from crowdbot.dsl import (
+from crowdbot.plugin import (
     PositiveAcceleration,
     PositiveAngularAcceleration,
     PositiveAngularSpeed,

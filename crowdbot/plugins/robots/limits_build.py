@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from crowdbot.core.interfaces import RobotLimits
+from crowdbot.plugin import RobotLimits
 from crowdbot.plugins.robots.limits import LimitedRobotSpec
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 import crowdbot.plugins.robots.sdf as sdf
-from crowdbot.core.interfaces import HolonomicDrive, RobotModel
+from crowdbot.plugin import HolonomicDrive, RobotModel
 from crowdbot.plugins.robots.body_part import (
     BLACK,
     COAL,

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from crowdbot.dsl import Component, PositiveLength
+from crowdbot.plugin import Component, PositiveLength
 from crowdbot.plugins.robots.limits import (
     LimitedRobotSpec,
     Mass,

@@ -7,7 +7,7 @@ are in `crowdbot.plugins.robots.turtlebot2_parts`.
 from __future__ import annotations
 
 import crowdbot.plugins.robots.sdf as sdf
-from crowdbot.core.interfaces import DifferentialDrive, RobotModel
+from crowdbot.plugin import DifferentialDrive, RobotModel
 from crowdbot.plugins.robots.body_part import balance
 from crowdbot.plugins.robots.limits_build import limits_of
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec

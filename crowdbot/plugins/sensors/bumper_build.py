@@ -11,7 +11,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import (
     Array,
     Pose,
     Scene,
@@ -20,7 +21,6 @@ from crowdbot.core.interfaces import (
     nearest_on_segment,
     sensor_pose_in_world,
 )
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.sensors.bumper import BumperSpec
 
 _EDGE = 1e-9  # rad; what presses the very edge of the outer sectors is felt

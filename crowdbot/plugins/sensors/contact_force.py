@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from crowdbot.dsl import Component, Mount, PositiveForce, PositiveFrequency, SensorSpec
+from crowdbot.plugin import Component, Mount, PositiveForce, PositiveFrequency, SensorSpec
 
 
 class ContactForceSpec(SensorSpec):

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, Pose, Scene, SensorInfo, mount_pose
+from crowdbot.plugin import Array, Pose, Scene, SensorInfo, mount_pose
 from crowdbot.plugins.sensors.contact_force import ContactForceSpec
 
 

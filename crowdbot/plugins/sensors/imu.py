@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge
 from pydantic import Field
 
-from crowdbot.dsl import Component, PositiveFrequency, SensorSpec, TiltableMount
+from crowdbot.plugin import Component, PositiveFrequency, SensorSpec, TiltableMount
 
 NotNegative = Annotated[float, Ge(0)]
 

@@ -17,8 +17,16 @@ import math
 import numpy as np
 
 from crowdbot.core.geometry.rotation import rotation
-from crowdbot.core.interfaces import Array, Pose, Scene, SensorInfo, kernel, mount_pose, mount_tilt
-from crowdbot.errors import SimulationError
+from crowdbot.plugin import (
+    Array,
+    Pose,
+    Scene,
+    SensorInfo,
+    SimulationError,
+    kernel,
+    mount_pose,
+    mount_tilt,
+)
 from crowdbot.plugins.sensors.imu import ImuSpec
 
 GRAVITY = 9.81  # m/s^2, the plant's

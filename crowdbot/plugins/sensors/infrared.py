@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Gt, Le
 from pydantic import Field
 
-from crowdbot.dsl import Component, Incidence, Quantity, RangeSensorSpec, TiltableMount
+from crowdbot.plugin import Component, Incidence, Quantity, RangeSensorSpec, TiltableMount
 
 
 class InfraredSpec(RangeSensorSpec):

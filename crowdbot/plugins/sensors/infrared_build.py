@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, NoiseGenerator, Pose, RangeModel, Scene, SensorInfo
+from crowdbot.plugin import Array, NoiseGenerator, Pose, RangeModel, Scene, SensorInfo
 from crowdbot.plugins.sensors.infrared import InfraredSpec
 
 

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le, MinLen
 from pydantic import Field, field_validator, model_validator
 
-from crowdbot.dsl import (
+from crowdbot.plugin import (
     Component,
     Length,
     NonNegativeDuration,

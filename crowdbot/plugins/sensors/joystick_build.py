@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, Pose, Scene, SensorInfo
+from crowdbot.plugin import Array, Pose, Scene, SensorInfo
 from crowdbot.plugins.sensors.joystick import JoystickSpec
 
 #: Layout of the memory: whether there was a reading, its time, the error of the hand ahead and

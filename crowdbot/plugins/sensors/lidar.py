@@ -6,7 +6,7 @@ import math
 
 from pydantic import Field, model_validator
 
-from crowdbot.dsl import (
+from crowdbot.plugin import (
     MOST_RAYS,
     Angle,
     NonNegativeLength,

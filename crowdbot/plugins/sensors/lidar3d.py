@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le, MaxLen
 from pydantic import Field, model_validator
 
-from crowdbot.dsl import MOST_RAYS, Angle, Component, PositiveAngle, Quantity
+from crowdbot.plugin import MOST_RAYS, Angle, Component, PositiveAngle, Quantity
 from crowdbot.plugins.sensors.lidar import LidarSpec
 
 Elevation = Annotated[float, Ge(-1.5), Le(1.5), Quantity("angle")]

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, NoiseGenerator, Pose, RangeModel, Scene, SensorInfo
 from crowdbot.core.sensing.raycast_columns import RayGrid
 from crowdbot.core.sensing.raycast_tilted import NO_RAYS, grid_rays
+from crowdbot.plugin import Array, NoiseGenerator, Pose, RangeModel, Scene, SensorInfo
 from crowdbot.plugins.sensors.lidar3d import Lidar3dSpec
 
 

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Gt, Le, Lt
 from pydantic import Field
 
-from crowdbot.dsl import (
+from crowdbot.plugin import (
     Component,
     Mount,
     NonNegativeLength,

@@ -12,7 +12,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.sensing.body_model import trunk_radius
+from crowdbot.plugin import (
     Array,
     Indices,
     Pose,
@@ -21,7 +22,6 @@ from crowdbot.core.interfaces import (
     mount_pose,
     sensor_pose_in_world,
 )
-from crowdbot.core.sensing.body_model import trunk_radius
 from crowdbot.plugins.sensors.people_tracker import PeopleTrackerSpec
 
 NOBODY = (-1.0, 0.0, 0.0, 0.0, 0.0)

@@ -13,7 +13,11 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.sensing.depth_mm import depth_mm
+from crowdbot.core.sensing.depth_renderer import MOST_MILLIMETRES, DepthRenderer
+from crowdbot.core.sensing.raycast_columns import RayGrid
+from crowdbot.core.sensing.raycast_tilted import NO_RAYS
+from crowdbot.plugin import (
     Array,
     Pinhole,
     Pose,
@@ -25,10 +29,6 @@ from crowdbot.core.interfaces import (
     sensor_pose_in_world,
     sensor_rotation_in_world,
 )
-from crowdbot.core.sensing.depth_mm import depth_mm
-from crowdbot.core.sensing.depth_renderer import MOST_MILLIMETRES, DepthRenderer
-from crowdbot.core.sensing.raycast_columns import RayGrid
-from crowdbot.core.sensing.raycast_tilted import NO_RAYS
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 
 Image = NDArray[np.float32]

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le
 from pydantic import Field
 
-from crowdbot.dsl import Component, PositiveLength, Quantity, RangeSensorSpec, TiltableMount
+from crowdbot.plugin import Component, PositiveLength, Quantity, RangeSensorSpec, TiltableMount
 
 _DEGREE = math.pi / 180.0
 

@@ -13,16 +13,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
-    Array,
-    Indices,
-    NoiseGenerator,
-    Pose,
-    RangeModel,
-    Scene,
-    SensorInfo,
-    kernel,
-)
 from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
 from crowdbot.core.sensing.raycast_columns import (
     FAR,
@@ -37,6 +27,16 @@ from crowdbot.core.sensing.raycast_columns import (
     meet,
 )
 from crowdbot.core.sensing.raycast_tilted import NO_RAYS, grid_rays
+from crowdbot.plugin import (
+    Array,
+    Indices,
+    NoiseGenerator,
+    Pose,
+    RangeModel,
+    Scene,
+    SensorInfo,
+    kernel,
+)
 from crowdbot.plugins.sensors.ultrasound import UltrasoundSpec
 
 _HALVINGS = 40

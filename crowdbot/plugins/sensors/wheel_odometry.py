@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Gt
 from pydantic import Field
 
-from crowdbot.dsl import Component, PositiveFrequency, PositiveLength, SensorSpec
+from crowdbot.plugin import Component, PositiveFrequency, PositiveLength, SensorSpec
 
 
 class OdometrySpec(SensorSpec):

@@ -16,8 +16,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import Array, Pose, Scene, SensorInfo, kernel
-from crowdbot.errors import SimulationError
+from crowdbot.plugin import Array, Pose, Scene, SensorInfo, SimulationError, kernel
 from crowdbot.plugins.sensors.wheel_odometry import HolonomicOdometrySpec, WheelOdometrySpec
 
 #: Layout of the memory: three errors (rad) and a reading of six numbers begin where it says.

@@ -1,6 +1,6 @@
 import numpy as np
 
-from crowdbot.core.interfaces import Agents, CrowdEngine, CrowdWorld, policy_of
+from crowdbot.plugin import Agents, CrowdEngine, CrowdWorld, policy_of
 
 angle = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
 x, y = 6.0 * np.cos(angle), 6.0 * np.sin(angle)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from crowdbot.core.interfaces import Command, Observation, RobotLimits, SensorInfo, Task
+from crowdbot import Command, Observation, RobotLimits, SensorInfo, Task
 
 MARGIN = 0.3  # m, kept free ahead
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.policy import Agents, CrowdView
-from crowdbot.dsl import CostFunctionSpec
+from crowdbot.plugin import CostFunctionSpec
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
 

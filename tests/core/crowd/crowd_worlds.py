@@ -13,7 +13,7 @@ from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sim.build_crowd import build_crowd
-from crowdbot.dsl import Range
+from crowdbot.plugin import Range
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec

@@ -11,7 +11,7 @@ import shapely  # type: ignore[import-untyped,unused-ignore]
 from numpy.typing import NDArray
 
 from crowdbot.cli import main
-from crowdbot.core.interfaces import EnvironmentParts
+from crowdbot.plugin import EnvironmentParts
 from crowdbot.plugins.environments.floor_plan import FloorPlanSpec
 from crowdbot.plugins.environments.halls import ShedSpec
 from crowdbot.plugins.environments.place_build import build

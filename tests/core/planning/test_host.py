@@ -14,7 +14,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.planning.host import PlannerHost
+from crowdbot.core.planning.watchdog import Watchdog
+from crowdbot.errors import Interrupted, PlannerError, PlannerHungError
+from crowdbot.plugin import (
     Command,
     NoValidCommand,
     Observation,
@@ -24,9 +27,6 @@ from crowdbot.core.interfaces import (
     SensorInfo,
     Task,
 )
-from crowdbot.core.planning.host import PlannerHost
-from crowdbot.core.planning.watchdog import Watchdog
-from crowdbot.errors import Interrupted, PlannerError, PlannerHungError
 from tests.waiting import AT_MOST
 
 LIMITS = RobotLimits(v_min=-0.2, v_max=0.65, w_max=3.14, a_max=1.0, alpha_max=2.0)
@@ -260,7 +260,7 @@ def test_signals_are_passed_on() -> None:
 PROGRAM = """
 import os, sys, threading, time
 import numpy as np
-from crowdbot.core.interfaces import *
+from crowdbot.plugin import *
 from crowdbot.core.planning.host import PlannerHost
 from crowdbot.core.planning.watchdog import Watchdog
 from crowdbot.errors import PlannerHungError

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 from pydantic import Field
 
-from crowdbot.core.interfaces import SensorInfo
 from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner, select_sensors
 from crowdbot.core.registry.registry import Plugin, Registry, assemble, discover
-from crowdbot.dsl import Component, PlannerSpec, PositiveLength
 from crowdbot.errors import InputError, PlannerError, UnknownNameError
+from crowdbot.plugin import Component, PlannerSpec, PositiveLength, SensorInfo
 
 
 class TinySpec(PlannerSpec):
@@ -174,7 +173,7 @@ def test_unreadable_yaml_files(registry: Registry, tmp_path: Path) -> None:
 
 # ---------------------------------------------------------------------- Python files
 SOURCE = """
-from crowdbot.core.interfaces import Command
+from crowdbot.plugin import Command
 import helper_beside
 
 class Mine:

@@ -9,8 +9,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Array, Command, Reading, RobotLimits, SensorInfo
 from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter, RobotHeader
+from crowdbot.plugin import Array, Command, Reading, RobotLimits, SensorInfo
 
 ANGLES = np.linspace(-2.0, 2.0, 33)
 WALLS = np.array([[0.0, -5.0, 50.0, -5.0], [0.0, 5.0, 50.0, 5.0]])

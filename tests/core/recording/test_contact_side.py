@@ -12,13 +12,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.core.geometry.footprint import body_side
-from crowdbot.core.interfaces import Pinhole, SensorInfo
 from crowdbot.core.recording import RecordingWriter, read_trajectories, recording_info, typestore
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.container import McapFile
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError
+from crowdbot.plugin import Pinhole, SensorInfo
 from tests.core.recording.recording_cases import header_of, random_run
 
 RUN = random_run(n=3, m=2)

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
-from crowdbot.core.interfaces import CameraFrame, Reading, SensorInfo
 from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.header import RecordingHeader, RobotHeader
 from crowdbot.core.registry.registry import discover
@@ -22,6 +21,7 @@ from crowdbot.core.robots.urdf_export import to_urdf
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sensing.depth_mm import depth_mm
+from crowdbot.plugin import CameraFrame, Reading, SensorInfo
 
 pytestmark = pytest.mark.slow
 

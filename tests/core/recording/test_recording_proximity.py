@@ -11,7 +11,6 @@ import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
-from crowdbot.core.interfaces import Reading, SensorInfo
 from crowdbot.core.recording import (
     RecordingHeader,
     RecordingWriter,
@@ -24,6 +23,7 @@ from crowdbot.core.recording.reader import recording_info
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.dsl.spec.component_specs import SensorSpec
+from crowdbot.plugin import Reading, SensorInfo
 
 REGISTRY = discover(allow=())
 FIELDS: dict[str, dict[str, Any]] = {

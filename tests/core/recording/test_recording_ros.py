@@ -13,9 +13,9 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import QosDurability
 
-from crowdbot.core.interfaces import SensorInfo
 from crowdbot.core.recording.definitions import DEFINITIONS
 from crowdbot.core.recording.topics import sensor_topics
+from crowdbot.plugin import SensorInfo
 from tests.core.recording.recording_cases import ANGLES, ODOMETRY, random_run, write_run
 from tests.paths import ROOT
 

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from crowdbot.core.interfaces import Reading, SensorInfo
 from crowdbot.core.recording import RecordingHeader, RecordingWriter, RobotHeader
 from crowdbot.core.recording.reader import read_run, read_scans, recording_info
 from crowdbot.core.recording.scenery import static_frames
 from crowdbot.core.replay.encode_scans import encode_scans
 from crowdbot.core.sensing.points import LidarPoints
+from crowdbot.plugin import Reading, SensorInfo
 from tests.core.recording.recording_cases import LIDAR, LIMITS, ODOMETRY, WALLS, ZONE
 
 TILT = (0.3, 0.4)

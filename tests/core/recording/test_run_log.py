@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.interfaces import Array, Command, RobotState
 from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.run_log import RunLog
+from crowdbot.plugin import Array, Command, RobotState
 
 
 class Rows:

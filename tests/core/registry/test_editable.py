@@ -12,7 +12,7 @@ from crowdbot.core.runs import provenance
 
 PLUGIN = """
 from typing import ClassVar, Literal
-from crowdbot.dsl import Component
+from crowdbot.plugin import Component
 from crowdbot.dsl.spec.component_specs import PlannerSpec
 from crowdbot.hookspecs import hookimpl
 

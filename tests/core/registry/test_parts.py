@@ -17,7 +17,7 @@ from tests.core.sim.sim_worlds import scenario
 PLUGIN = '''
 from typing import Any, ClassVar, Literal
 from pydantic import Field, SerializeAsAny
-from crowdbot.dsl import Component, CrowdPolicySpec, CostFunctionSpec, NoiseSpec, SensorSpec
+from crowdbot.plugin import Component, CrowdPolicySpec, CostFunctionSpec, NoiseSpec, SensorSpec
 from crowdbot.hookspecs import hookimpl
 
 class MixSpec(CrowdPolicySpec):

@@ -13,13 +13,13 @@ from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.registry.component_list import ComponentList, ComponentsByKind
 from crowdbot.core.registry.registry import Plugin, Registry, assemble, discover
 from crowdbot.core.support.source_digest import declared_data
-from crowdbot.dsl import Component
 from crowdbot.errors import PluginError, UnknownNameError
+from crowdbot.plugin import Component
 
 PLUGIN = """
 from typing import ClassVar, Literal
-from crowdbot.dsl import Component
-from crowdbot.dsl import PlannerSpec, RobotSpec
+from crowdbot.plugin import Component
+from crowdbot.plugin import PlannerSpec, RobotSpec
 from crowdbot.hookspecs import hookimpl
 CROWDBOT_API = {api}
 

@@ -19,7 +19,7 @@ from crowdbot.core.report import Contents, Heading, gather
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import FailureRow, RunRow, ScoreRow
 from crowdbot.core.scoring.score_factory import ScoreFactory
-from crowdbot.dsl import MetricComponent
+from crowdbot.plugin import MetricComponent
 from tests.once import once
 
 AXES = {

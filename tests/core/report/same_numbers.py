@@ -17,8 +17,8 @@ from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import PLANNER_FAILED, RunRow, ScoreRow
 from crowdbot.core.scoring.score_factory import ScoreFactory
 from crowdbot.core.types.score import Score
-from crowdbot.dsl import MetricComponent
 from crowdbot.dsl.spec.metric_invariants import MetricInvariants
+from crowdbot.plugin import MetricComponent
 from tests.core.statistics.made_up_results import run
 
 #: Fields that rows of results have of a score.

@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.robots.check import check_model
+from crowdbot.errors import PluginError
+from crowdbot.plugin import (
     DifferentialDrive,
     HolonomicDrive,
     PublishedWheel,
@@ -17,8 +19,6 @@ from crowdbot.core.interfaces import (
     read_description,
     read_published,
 )
-from crowdbot.core.robots.check import check_model
-from crowdbot.errors import PluginError
 from tests.core.robots.published_files import WHEELS, pepper, qolo
 
 SHELL = """<collision><origin xyz="0 0 -0.3"/>

@@ -12,13 +12,12 @@ import numpy as np
 import pytest
 from pydantic import Field
 
-from crowdbot.core.interfaces import References
 from crowdbot.core.registry.registry import Plugin, Registry, assemble
 from crowdbot.core.scoring.evaluate import Scores, score
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
-from crowdbot.dsl import Component, MetricSpec, PositiveLength
 from crowdbot.errors import InputError, PluginError, UnknownNameError
+from crowdbot.plugin import Component, MetricSpec, PositiveLength, References
 
 
 class HeightSpec(MetricSpec):

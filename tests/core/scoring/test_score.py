@@ -12,8 +12,8 @@ import crowdbot
 from crowdbot.core.registry.registry import Plugin, assemble
 from crowdbot.core.scoring.evaluate import score
 from crowdbot.core.trajectories.trajectories import Trajectories
-from crowdbot.dsl import Component, MetricComponent, MetricSpec
 from crowdbot.errors import InputError, UnknownNameError
+from crowdbot.plugin import Component, MetricComponent, MetricSpec
 from crowdbot.plugins.metrics import COMPONENTS
 from tests.plugins.metrics.scenes import REGISTRY, grid, line, random_scene, scene
 

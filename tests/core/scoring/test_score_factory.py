@@ -6,8 +6,7 @@ from typing import Any, Literal
 
 import pytest
 
-from crowdbot.core.interfaces import Score, ScoreFactory
-from crowdbot.dsl import MetricSpec, declare_metric
+from crowdbot.plugin import MetricSpec, Score, ScoreFactory, declare_metric
 
 
 class GapSpec(MetricSpec):

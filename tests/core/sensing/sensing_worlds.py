@@ -8,12 +8,12 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core.interfaces import Pose, RobotState, Sensor
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.dsl.spec.component_specs import SensorSpec
+from crowdbot.plugin import Pose, RobotState, Sensor
 
 Array = NDArray[np.float64]
 REGISTRY = discover(allow=())

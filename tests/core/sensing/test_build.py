@@ -7,12 +7,11 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from crowdbot.core.interfaces import DepthCamera, SensorInfo
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.sensing.build import CheckedCamera, CheckedSensor, build_sensor, checked_sensor
-from crowdbot.dsl import SensorSpec
 from crowdbot.errors import PluginError
+from crowdbot.plugin import DepthCamera, SensorInfo, SensorSpec
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import RgbdCamera
 

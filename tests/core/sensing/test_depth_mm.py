@@ -9,10 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core.interfaces import DepthCamera, Pose
 from crowdbot.core.sensing.depth_mm import depth_mm
 from crowdbot.core.sensing.noise import sensor_rng
-from crowdbot.dsl import TiltableMount
+from crowdbot.plugin import DepthCamera, Pose, TiltableMount
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import build
 from tests.core.sensing.sensing_worlds import world

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Pinhole
 from crowdbot.core.sensing.depth_renderer import DepthRenderer
 from crowdbot.core.sensing.raycast_columns import DEEPEST, RayGrid
 from crowdbot.core.sensing.scene import Scene
+from crowdbot.plugin import Pinhole
 from tests.core.sensing.sensing_worlds import scene_of, world
 
 Array = NDArray[np.float64]

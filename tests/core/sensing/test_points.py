@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from crowdbot.core.interfaces import Reading, SensorInfo
 from crowdbot.core.sensing.points import LidarPoints
+from crowdbot.plugin import Reading, SensorInfo
 
 
 def lidar(angles: list[float], mount: tuple[float, float, float, float]) -> SensorInfo:

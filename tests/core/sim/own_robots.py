@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from functools import cache
 
-from crowdbot.core.interfaces import RobotModel
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.robots import build_model
+from crowdbot.plugin import RobotModel
 from tests.paths import ROOT
 
 HOWTO = ROOT / "docs" / "howto" / "files"

@@ -16,7 +16,6 @@ from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.response.parameters import KeepOff, Response
 from crowdbot.core.environments.build import build_environment
-from crowdbot.core.interfaces import CameraFrame, Command, Observation, Planner, Reading, RobotState
 from crowdbot.core.planning.host import PlannerHost
 from crowdbot.core.population.realise import realise
 from crowdbot.core.recording import RecordingWriter
@@ -32,6 +31,7 @@ from crowdbot.core.sim.diagram import Blocks, build_diagram
 from crowdbot.core.sim.plant import RobotPlant
 from crowdbot.core.support.ticks import TICK
 from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.plugin import CameraFrame, Command, Observation, Planner, Reading, RobotState
 
 Array = NDArray[np.float64]
 EASY = "in-d0125-slow-c01-r02"

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from pydrake.systems.analysis import Simulator
 
-from crowdbot.core.interfaces import Command, Observation
 from crowdbot.core.sensing.depth_mm import depth_mm
+from crowdbot.plugin import Command, Observation
 from tests.core.sim.sim_worlds import Rig, rig, scenario
 
 pytestmark = pytest.mark.slow

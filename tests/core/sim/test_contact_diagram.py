@@ -8,8 +8,8 @@ import pytest
 from pydrake.multibody.math import SpatialVelocity
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.interfaces import DifferentialDrive
 from crowdbot.core.sim.control import force
+from crowdbot.plugin import DifferentialDrive
 from tests.core.sim.contact_reference import PERSON_RADIUS, ROBOT_RADIUS, Meeting, contact
 from tests.core.sim.sim_worlds import Rig, constant, person, rig, rows, scenario
 

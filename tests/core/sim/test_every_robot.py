@@ -14,12 +14,12 @@ import pytest
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.geometry.footprint import footprint_of_model
-from crowdbot.core.interfaces import Command, HolonomicDrive, Observation
 from crowdbot.core.robots import build_model
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.support.ticks import TICK
 from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.plugin import Command, HolonomicDrive, Observation
 from tests.core.sim.sim_worlds import Drive, constant, person, registry, rig, rows
 
 pytestmark = pytest.mark.slow

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from crowdbot.core.environments.build import build_environment
-from crowdbot.core.interfaces import EnvironmentParts, Pose
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.sensing.depth_renderer import DepthRenderer
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.control.kinematic import obstacles
 from crowdbot.core.types.sensor import Pinhole
+from crowdbot.plugin import EnvironmentParts, Pose
 from crowdbot.plugins.environments.floor import FloorSpec
 from crowdbot.plugins.environments.floor_build import build
 from tests.core.sim.sim_worlds import registry, scenario

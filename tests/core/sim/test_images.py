@@ -9,12 +9,11 @@ import pytest
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.interfaces import Pose, RobotState
 from crowdbot.core.sensing.depth_mm import depth_mm
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.images import Images, capture, view_size
-from crowdbot.dsl import TiltableMount
+from crowdbot.plugin import Pose, RobotState, TiltableMount
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import RgbdCamera
 

@@ -8,12 +8,12 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 
-from crowdbot.core.interfaces import EnvironmentParts, Pose
 from crowdbot.core.robots import build_model
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.control.differential_drive import wheel_gains
 from crowdbot.core.sim.plant import add_plant, place_robot
 from crowdbot.core.sim.robot_state import RobotStateSystem
+from crowdbot.plugin import EnvironmentParts, Pose
 from crowdbot.plugins.environments.floor import FloorSpec
 from crowdbot.plugins.environments.floor_build import build
 from tests.core.sim.sim_worlds import registry, scenario

@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.environments.build import build_environment
-from crowdbot.core.interfaces import Command, DifferentialDrive, Observation, RobotState
 from crowdbot.core.planning.host import PlannerHost
 from crowdbot.core.robots import read_description
 from crowdbot.core.robots.check import check_model
@@ -25,6 +24,7 @@ from crowdbot.core.sim.control.kinematic import arc
 from crowdbot.core.sim.planner_system import _slew_planar
 from crowdbot.core.support.ticks import TICK
 from crowdbot.errors import InputError, PluginError, SpecError
+from crowdbot.plugin import Command, DifferentialDrive, Observation, RobotState
 from crowdbot.testing.commanded_motion import assert_moves, check_commanded_motion, drive
 from tests.core.robots.test_published import pepper_model, qolo_model
 from tests.core.sim import sim_worlds
@@ -274,7 +274,7 @@ def test_a_root_on_the_floor_changes_nothing() -> None:
 
 
 def test_the_exported_urdf_has_one_root_and_the_sensors() -> None:
-    from crowdbot.dsl import Mount
+    from crowdbot.plugin import Mount
 
     registry = known()
     lidar = registry.find("sensor", "lidar2d").spec(mount=Mount(x=0.1, z=0.3))

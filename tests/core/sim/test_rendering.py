@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from crowdbot.cli import main
 from crowdbot.core.geometry.footprint import footprint_of_model
-from crowdbot.core.interfaces import Pose, RobotModel, RobotState
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.robots import build_model
 from crowdbot.core.sensing.noise import sensor_rng
@@ -20,8 +19,8 @@ from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.person_mesh import leg_obj, trunk_obj
 from crowdbot.core.sim.rendering import Renderer, check_egl
-from crowdbot.dsl import TiltableMount
 from crowdbot.errors import MissingLibraryError
+from crowdbot.plugin import Pose, RobotModel, RobotState, TiltableMount
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import build
 from tests.core.sim.sim_worlds import constant, rig, scenario

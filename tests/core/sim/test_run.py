@@ -9,11 +9,11 @@ import pytest
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.environments.build import build_environment
-from crowdbot.core.interfaces import Task
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.sim.built_run import robot_task
 from crowdbot.core.sim.runner import run
 from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.plugin import Task
 from tests.core.sim.sim_worlds import Drive, Rig, alone, constant, person, rig, scenario
 
 TICK = 1.0 / 128.0

@@ -12,7 +12,6 @@ import pytest
 
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.geometry.footprint import footprint_of_model
-from crowdbot.core.interfaces import EnvironmentParts, Pose, RobotModel
 from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.recording import read_trajectories
 from crowdbot.core.robots import build_model
@@ -24,6 +23,7 @@ from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.sim.start_pose_check import check_start
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError, PluginError
+from crowdbot.plugin import EnvironmentParts, Pose, RobotModel
 from tests.core.sim.sim_worlds import alone, person, registry, scenario
 
 BOX = np.array([[0.3, -0.2], [0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2]])

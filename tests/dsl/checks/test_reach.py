@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from crowdbot.core.crowd.routing.free_space import FreeSpace
-from crowdbot.dsl import Face, Pillar, Place, Solid
 from crowdbot.dsl.checks.reach import Reach, wide_reach_of
 from crowdbot.dsl.spec.outlines import contains, first_crossing, is_convex, signed_area
+from crowdbot.plugin import Face, Pillar, Place, Solid
 
 HEIGHTS = (0.0, 2.5)
 BOX = (0.0, 12.0, 0.0, 8.0)

@@ -12,9 +12,9 @@ from typing import Any, Literal
 
 import pytest
 
-from crowdbot.dsl import MetricInvariants, MetricSpec, PositiveLength, declare_metric
 from crowdbot.dsl.spec.metric_invariants import InvariantOptions
 from crowdbot.errors import PluginError
+from crowdbot.plugin import MetricInvariants, MetricSpec, PositiveLength, declare_metric
 
 
 class GapSpec(MetricSpec):

@@ -25,7 +25,7 @@ from crowdbot.core.crowd.velocity_search.cost_calls import (
     call_prepare,
 )
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl import CostFunctionSpec, Range
+from crowdbot.plugin import CostFunctionSpec, Range
 from crowdbot.plugins.crowd import COSTS
 from tests.examples import costly
 from tests.plugins.crowd import cost_formulas as formulas

@@ -10,9 +10,9 @@ import pytest
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.recorded import read_record
-from crowdbot.dsl import Range
 from crowdbot.dsl.spec.assets import Asset
 from crowdbot.errors import InputError
+from crowdbot.plugin import Range
 from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
 from crowdbot.plugins.crowd.policies.replay import ReplaySpec
 from crowdbot.plugins.crowd.policies.replay_build import build

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from crowdbot.dsl import Rectangle
+from crowdbot.plugin import Rectangle
 from crowdbot.plugins.environments.corridor import CorridorSpec
 from crowdbot.plugins.environments.corridor_build import build
 

@@ -12,8 +12,8 @@ import pytest
 import shapely  # type: ignore[import-untyped,unused-ignore]
 from pydantic import ValidationError
 
-from crowdbot.core.interfaces import EnvironmentParts
 from crowdbot.errors import InputError
+from crowdbot.plugin import EnvironmentParts
 from crowdbot.plugins.environments.floor_plan import FloorPlanSpec
 from crowdbot.plugins.environments.place_build import build
 

@@ -13,8 +13,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crowdbot.core.interfaces import EnvironmentParts
 from crowdbot.errors import InputError
+from crowdbot.plugin import EnvironmentParts
 from crowdbot.plugins.environments.floor_plan import FloorPlanSpec
 from crowdbot.plugins.environments.place_build import build
 

@@ -10,8 +10,7 @@ import pytest
 import shapely  # type: ignore[import-untyped,unused-ignore]
 from pydantic import ValidationError
 
-from crowdbot.core.interfaces import EnvironmentParts
-from crowdbot.dsl import EnvironmentSpec
+from crowdbot.plugin import EnvironmentParts, EnvironmentSpec
 from crowdbot.plugins.environments import COMPONENTS
 from crowdbot.plugins.environments.corridor import CorridorSpec
 from crowdbot.plugins.environments.place_build import build

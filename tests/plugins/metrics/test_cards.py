@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from crowdbot.core.registry.registry import discover
-from crowdbot.dsl import Component, MetricSpec
 from crowdbot.errors import PluginError
+from crowdbot.plugin import Component, MetricSpec
 from tests.paths import ROOT
 
 CARDS = ROOT / "docs/reference/metrics"
@@ -18,7 +18,7 @@ KINDS = sorted(discover(allow=(), entry_points=False).components("metric"))
 
 PLUGIN = """
 from typing import Literal
-from crowdbot.dsl import MetricSpec, declare_metric
+from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.hookspecs import hookimpl
 
 class HeightSpec(MetricSpec):

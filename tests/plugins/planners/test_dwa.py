@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core.interfaces import Pose
 from crowdbot.core.registry.build_reference import load_build
+from crowdbot.plugin import Pose
 from crowdbot.plugins.planners.dwa import DWA, DwaSpec
 from crowdbot.plugins.planners.dwa_build import build
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec

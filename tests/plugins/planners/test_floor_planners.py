@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from crowdbot.core.interfaces import Command, Pose
 from crowdbot.core.registry.build_reference import load_build
+from crowdbot.plugin import Command, Pose
 from crowdbot.plugins.planners import stand_still_build, wall_hug_build
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import build as build_goal_seek

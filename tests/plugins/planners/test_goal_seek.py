@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crowdbot.core.interfaces import Command, Observation, Pose
 from crowdbot.core.registry.build_reference import load_build
+from crowdbot.plugin import Command, Observation, Pose
 from crowdbot.plugins.planners.goal_seek import GOAL_SEEK, GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import GoalSeek, bearing, braking_speed, build
 from tests.plugins.planners.world import LIMITS, World

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core.interfaces import Array, LidarPoints, Pose
+from crowdbot.plugin import Array, LidarPoints, Pose
 from crowdbot.plugins.planners.heading_by_walls_build import (
     BINS,
     HeadingByWalls,

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crowdbot.core.interfaces import Array, Observation, Pose, Reading, RobotLimits, SensorInfo
+from crowdbot.plugin import Array, Observation, Pose, Reading, RobotLimits, SensorInfo
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
 from crowdbot.plugins.planners.lidar_views_build import LidarViews
 from crowdbot.plugins.planners.manoeuvring_build import Manoeuvring

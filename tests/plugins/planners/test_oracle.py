@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core.interfaces import Array, Observation, Pose, Truth
 from crowdbot.core.registry.build_reference import load_build
+from crowdbot.plugin import Array, Observation, Pose, Truth
 from crowdbot.plugins.planners import oracle_rollout_build as rollout
 from crowdbot.plugins.planners.oracle import ORACLE, OracleSpec
 from crowdbot.plugins.planners.oracle_build import build

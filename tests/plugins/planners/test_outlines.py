@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate  # type: ignore[import-untyped]
 from shapely.geometry import LineString, MultiPoint, Point, Polygon  # type: ignore[import-untyped]
 
-from crowdbot.core.interfaces import Array, Pose, RobotBody, RobotLimits
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.plugin import Array, Pose, RobotBody, RobotLimits
 from crowdbot.plugins.planners import dwa_rollout_build as rollout
 from crowdbot.plugins.planners.dwa_evaluate_build import evaluate
 from crowdbot.plugins.planners.dwa_map_build import islands

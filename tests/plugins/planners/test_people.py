@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Pose, Reading, RobotState
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.points import LidarPoints
 from crowdbot.core.sensing.scene import Scene
+from crowdbot.plugin import Pose, Reading, RobotState
 from crowdbot.plugins.planners.people_build import carry, people_in, with_discs
 from tests.plugins.planners.world import lidars
 

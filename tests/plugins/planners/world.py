@@ -13,7 +13,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.sensing.noise import sensor_rng
+from crowdbot.core.sensing.scene import Scene
+from crowdbot.plugin import (
     Command,
     Observation,
     Planner,
@@ -22,10 +24,8 @@ from crowdbot.core.interfaces import (
     RobotLimits,
     RobotState,
     Task,
+    TiltableMount,
 )
-from crowdbot.core.sensing.noise import sensor_rng
-from crowdbot.core.sensing.scene import Scene
-from crowdbot.dsl import TiltableMount
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 from crowdbot.plugins.sensors.lidar2d_build import Lidar2d
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
-from crowdbot.core.interfaces import DifferentialDrive, RobotModel
+from crowdbot.plugin import DifferentialDrive, RobotModel
 from crowdbot.plugins.robots.body_part import Part
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec
 from crowdbot.plugins.robots.turtlebot2_build import build

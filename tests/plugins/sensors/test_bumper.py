@@ -10,10 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from crowdbot.core.interfaces import Pose
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.dsl import Mount
+from crowdbot.plugin import Mount, Pose
 from crowdbot.plugins.sensors.bumper import BUMPER, BumperSpec
 from crowdbot.plugins.sensors.bumper_build import build
 

@@ -10,9 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Pose
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.dsl import Mount
+from crowdbot.plugin import Mount, Pose
 from crowdbot.plugins.sensors.contact_force import ContactForceSpec
 from crowdbot.plugins.sensors.contact_force_build import build
 

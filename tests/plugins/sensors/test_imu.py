@@ -12,12 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Pose, RobotState
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.dsl import TiltableMount
 from crowdbot.errors import SimulationError
+from crowdbot.plugin import Pose, RobotState, TiltableMount
 from crowdbot.plugins.sensors.imu import IMU, ImuSpec
 from crowdbot.plugins.sensors.imu_build import build
 

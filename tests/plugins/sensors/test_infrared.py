@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from crowdbot.core.interfaces import Pose
+from crowdbot.plugin import Pose
 from tests.core.sensing.sensing_worlds import read, scalar, scene_of, sensor
 
 

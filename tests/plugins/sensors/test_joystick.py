@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from crowdbot.core.interfaces import Pose
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.topics import sensor_topics
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.dsl.spec.component_specs import with_driver
+from crowdbot.plugin import Pose
 from crowdbot.plugins.sensors.joystick import JoystickSpec
 from crowdbot.plugins.sensors.joystick_build import build
 from crowdbot.plugins.sensors.wheel_odometry import WheelOdometrySpec

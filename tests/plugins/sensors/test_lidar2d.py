@@ -7,11 +7,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core.interfaces import Pose
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.dsl import TiltableMount
+from crowdbot.plugin import Pose, TiltableMount
 from crowdbot.plugins.sensors.lidar2d import LIDAR2D, Lidar2dSpec
 from crowdbot.plugins.sensors.lidar2d_build import build
 from tests.core.sensing.sensing_worlds import (

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from crowdbot.core.interfaces import Pose, Sensor, SensorInfo
 from crowdbot.core.sensing.points import LidarPoints
+from crowdbot.plugin import Pose, Sensor, SensorInfo
 from tests.core.sensing.sensing_worlds import BASE, ORIGIN, Array, read, scene_of, sensor
 
 LAYERS = {"elevation_min": "-15 deg", "elevation_max": "15 deg", "layers": 4}

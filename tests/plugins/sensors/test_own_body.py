@@ -9,9 +9,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crowdbot.core.interfaces import Pose, Sensor
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.sensing.build import build_sensor
+from crowdbot.plugin import Pose, Sensor
 from tests.core.sensing.sensing_worlds import BASE, REGISTRY, Array, read, scene_of
 from tests.examples import costly
 

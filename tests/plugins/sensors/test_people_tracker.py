@@ -11,11 +11,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from crowdbot.core.interfaces import Pose, RobotState
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.dsl import Mount
+from crowdbot.plugin import Mount, Pose, RobotState
 from crowdbot.plugins.sensors.people_tracker import PEOPLE_TRACKER, PeopleTrackerSpec
 from crowdbot.plugins.sensors.people_tracker_build import build
 

@@ -11,11 +11,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from crowdbot.core.interfaces import Pose, RobotState
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.dsl import TiltableMount
+from crowdbot.plugin import Pose, RobotState, TiltableMount
 from crowdbot.plugins.sensors.rgbd_camera import RGBD_CAMERA, RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import RgbdCamera, build
 

@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from crowdbot.core.geometry.rotation import quaternion, rotation
-from crowdbot.core.interfaces import Pose, RobotState
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.dsl import Mount, TiltableMount
+from crowdbot.plugin import Mount, Pose, RobotState, TiltableMount
 from crowdbot.plugins.sensors.bumper import BumperSpec
 from crowdbot.plugins.sensors.contact_force import ContactForceSpec
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core.interfaces import Pose, Sensor
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.sensing.build import build_sensor
+from crowdbot.plugin import Pose, Sensor
 from crowdbot.plugins.sensors.ultrasound_build import zone_length
 from tests.core.sensing.sensing_worlds import REGISTRY, Array, read, scalar, scene_of, sensor
 

@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Pose, RobotState
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.errors import SimulationError
+from crowdbot.plugin import Pose, RobotState
 from crowdbot.plugins.sensors.wheel_odometry import WHEEL_ODOMETRY, WheelOdometrySpec
 from crowdbot.plugins.sensors.wheel_odometry_build import TRACK, WHEEL_RADIUS, build
 

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import (
     AX,
     AY,
     BX,
@@ -33,7 +34,6 @@ from crowdbot.core.interfaces import (
     wall_table,
     work_table,
 )
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.foe_avoidance import FoeAvoidanceSpec
 from crowdbot.plugins.crowd.cost_functions.force_build import no_base
 

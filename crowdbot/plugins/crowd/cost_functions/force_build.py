@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import (
     BASE,
     EXCESS,
     GRADIENT,
@@ -21,7 +22,6 @@ from crowdbot.core.interfaces import (
     Pointer,
     declared_kernel,
 )
-from crowdbot.core.support.compile import array_kernel
 
 #: No force is larger, m/s^2: a target has to stay finite when squared.
 _LARGEST = 1e9

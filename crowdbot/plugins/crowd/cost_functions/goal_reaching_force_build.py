@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.plugin import (
     PREPARE,
     PVX,
     PVY,

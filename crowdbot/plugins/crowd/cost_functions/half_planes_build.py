@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.interfaces import Pointer
 from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import Pointer
 
 _PARALLEL = 1e-10
 

@@ -8,7 +8,8 @@ import numpy as np
 from numba import float32
 
 from crowdbot.core.crowd.contact.geometry import single_angle
-from crowdbot.core.interfaces import (
+from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import (
     BASE,
     EXCESS,
     FASTEST,
@@ -27,7 +28,6 @@ from crowdbot.core.interfaces import (
     list_obstacles,
     work_table,
 )
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.karamouzas import KaramouzasSpec
 
 _ALPHA, _BETA, _GAMMA, _DELTA, _T_MAX = range(2, 7)  # entries of params

@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge
 from pydantic import Field
 
-from crowdbot.dsl import Component, CostFunctionSpec, PositiveLength, Range
+from crowdbot.plugin import Component, CostFunctionSpec, PositiveLength, Range
 
 
 class MoussaidSpec(CostFunctionSpec):

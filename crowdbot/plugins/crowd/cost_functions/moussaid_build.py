@@ -11,7 +11,8 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import (
     BASE,
     EXCESS,
     PREFERRED,
@@ -25,7 +26,6 @@ from crowdbot.core.interfaces import (
     first_contact,
     list_approaching,
 )
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.moussaid import MoussaidSpec
 
 _D_MAX = 2  # entry of params

@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge
 from pydantic import Field
 
-from crowdbot.dsl import Component, CostFunctionSpec, PositiveDuration, Range
+from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, Range
 
 
 class OrcaSpec(CostFunctionSpec):

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import (
     BASE,
     D2,
     EXCESS,
@@ -36,7 +37,6 @@ from crowdbot.core.interfaces import (
     near_table,
     wall_table,
 )
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.half_planes_build import best_velocity, put, violation
 from crowdbot.plugins.crowd.cost_functions.orca import OrcaSpec
 

@@ -11,7 +11,13 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le
 from pydantic import Field
 
-from crowdbot.dsl import Component, CostFunctionSpec, NonNegativeDuration, PositiveDuration, Range
+from crowdbot.plugin import (
+    Component,
+    CostFunctionSpec,
+    NonNegativeDuration,
+    PositiveDuration,
+    Range,
+)
 
 
 class ParisSpec(CostFunctionSpec):

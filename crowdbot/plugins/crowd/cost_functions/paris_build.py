@@ -7,7 +7,8 @@ import math
 import numpy as np
 from numba import float32
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import (
     AX,
     AY,
     BASE,
@@ -44,7 +45,6 @@ from crowdbot.core.interfaces import (
     wall_table,
     work_table,
 )
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.paris import ParisSpec
 
 _W_A, _W_B, _T_MAX = range(2, 5)  # entries of params

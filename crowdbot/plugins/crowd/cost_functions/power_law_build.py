@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import (
     D2,
     NVX,
     NVY,
@@ -27,7 +28,6 @@ from crowdbot.core.interfaces import (
     near_table,
     wall_table,
 )
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.force_build import (
     aim,
     from_target,

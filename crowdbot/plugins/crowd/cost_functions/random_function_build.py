@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from crowdbot.core.crowd.velocity_search.minstd import draw
-from crowdbot.core.interfaces import (
+from crowdbot.plugin import (
     BASE,
     EXCESS,
     GRADIENT,

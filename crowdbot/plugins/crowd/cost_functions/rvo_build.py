@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import (
     ASKED_RADIUS,
     ASKED_X,
     ASKED_Y,
@@ -26,7 +27,6 @@ from crowdbot.core.interfaces import (
     list_approaching,
     soonest_disc,
 )
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 
 _W = 2  # entry of params

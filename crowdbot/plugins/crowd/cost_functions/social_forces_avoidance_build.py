@@ -10,7 +10,8 @@ import math
 import numpy as np
 
 from crowdbot.core.crowd.contact.geometry import opposite_taken_for_parallel
-from crowdbot.core.interfaces import (
+from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import (
     AX,
     AY,
     BX,
@@ -39,7 +40,6 @@ from crowdbot.core.interfaces import (
     near_table,
     wall_table,
 )
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.force_build import (
     aim,
     from_target,

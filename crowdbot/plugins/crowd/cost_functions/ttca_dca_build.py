@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.plugin import (
     BASE,
     EXCESS,
     LOWER_BOUND,

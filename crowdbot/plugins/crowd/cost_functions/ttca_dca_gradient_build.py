@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.interfaces import (
+from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import (
     GRADIENT,
     PREFERRED,
     PVX,
@@ -17,7 +18,6 @@ from crowdbot.core.interfaces import (
     declared_kernel,
     work_table,
 )
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
     INV_DCA2,
     INV_TTCA2,

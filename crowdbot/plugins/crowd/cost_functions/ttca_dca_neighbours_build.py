@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 
 from crowdbot.core.crowd.contact.geometry import opposite_taken_for_parallel
-from crowdbot.core.interfaces import (
+from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import (
     D2,
     DESCENDS,
     FASTEST,
@@ -35,7 +36,6 @@ from crowdbot.core.interfaces import (
     wall_table,
     work_table,
 )
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
     CLOSEST,
     INV_DCA2,

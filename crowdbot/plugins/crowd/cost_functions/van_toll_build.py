@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.plugin import (
     BASE,
     EXCESS,
     FASTEST,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from crowdbot.core.interfaces import NX, NY, RADIUS, WALL_D2, Pointer, in_range, wall_table
 from crowdbot.core.support.compile import array_kernel
+from crowdbot.plugin import NX, NY, RADIUS, WALL_D2, Pointer, in_range, wall_table
 
 #: Points that are nearer to each other are one, m.
 SAME = 1e-9

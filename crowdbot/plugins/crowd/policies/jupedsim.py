@@ -11,7 +11,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from crowdbot.dsl import (
+from crowdbot.plugin import (
     Component,
     CrowdPolicySpec,
     NonNegativeSteeringStiffness,

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.interfaces import Array
+from crowdbot.plugin import Array
 
 #: Walls are slits this wide, m.
 SLIT = 0.002

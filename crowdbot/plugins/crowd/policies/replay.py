@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from crowdbot.dsl import (
+from crowdbot.plugin import (
     Asset,
     Component,
     CrowdPolicySpec,

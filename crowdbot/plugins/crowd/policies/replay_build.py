@@ -7,16 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from crowdbot.core.interfaces import (
+from crowdbot.plugin import (
     Agents,
     Array,
     CrowdPolicy,
     CrowdView,
+    InputError,
     RecordedCrowd,
     desired_acceleration,
     read_record,
 )
-from crowdbot.errors import InputError
 from crowdbot.plugins.crowd.policies.replay import ReplaySpec
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
 from crowdbot.plugins.crowd.policies.velocity_space_build import build as velocity_space

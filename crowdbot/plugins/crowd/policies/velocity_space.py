@@ -11,7 +11,7 @@ from typing import Annotated, ClassVar, Literal
 from annotated_types import Ge, Le
 from pydantic import Field
 
-from crowdbot.dsl import (
+from crowdbot.plugin import (
     Component,
     CrowdPolicySpec,
     NonNegativeDuration,

@@ -16,8 +16,8 @@ from crowdbot.core.crowd.velocity_search.gradient import Descent
 from crowdbot.core.crowd.velocity_search.optimum import Optimum
 from crowdbot.core.crowd.velocity_search.sampling import Sampler
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
-from crowdbot.core.interfaces import Agents, Array, CompiledCost, CrowdView, NumpyCost, kernel
 from crowdbot.core.types.candidates import VelocityCandidates
+from crowdbot.plugin import Agents, Array, CompiledCost, CrowdView, NumpyCost, kernel
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
 
 _BASES = ("zero", "current_velocity")

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 
-from crowdbot.dsl import (
+from crowdbot.plugin import (
     Component,
     CostFunctionSpec,
     CrowdPolicySpec,
@@ -16,8 +16,8 @@ from crowdbot.dsl import (
     PlannerSpec,
     RobotSpec,
     SensorSpec,
+    hookimpl,
 )
-from crowdbot.hookspecs import hookimpl
 
 from crowdbot_acme.cart import CART
 from crowdbot_acme.drift import DRIFT

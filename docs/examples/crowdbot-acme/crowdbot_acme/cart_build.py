@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.resources import files
 
-from crowdbot.core.interfaces import DifferentialDrive, RobotLimits, RobotModel
+from crowdbot.plugin import DifferentialDrive, RobotLimits, RobotModel
 
 from crowdbot_acme.cart import CartSpec
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from crowdbot.dsl import Component, CrowdPolicySpec, NonNegativeSpeed, PositiveLength
+from crowdbot.plugin import Component, CrowdPolicySpec, NonNegativeSpeed, PositiveLength
 from pydantic import Field
 
 

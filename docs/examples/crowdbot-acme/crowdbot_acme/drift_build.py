@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from crowdbot.core.interfaces import Agents, CrowdView
 from crowdbot.errors import InputError
+from crowdbot.plugin import Agents, CrowdView
 from numpy.typing import NDArray
 
 from crowdbot_acme.drift import DriftSpec

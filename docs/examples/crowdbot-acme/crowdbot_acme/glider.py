@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from crowdbot.dsl import (
+from crowdbot.plugin import (
     Component,
     PositiveAcceleration,
     PositiveAngularSpeed,

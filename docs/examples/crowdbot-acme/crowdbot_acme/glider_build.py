@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from crowdbot.core.interfaces import HolonomicDrive, RobotLimits, RobotModel
+from crowdbot.plugin import HolonomicDrive, RobotLimits, RobotModel
 
 from crowdbot_acme.glider import GliderSpec
 

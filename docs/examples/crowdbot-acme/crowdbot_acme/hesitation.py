@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Gt, Le
-from crowdbot.dsl import MetricSpec, declare_metric
+from crowdbot.plugin import MetricSpec, declare_metric
 from pydantic import Field
 
 #: What `acme.swerve` logs: 0 for no brake, 1 for standing.

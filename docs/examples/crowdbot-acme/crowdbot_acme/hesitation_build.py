@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from crowdbot.core.interfaces import References, Score, ScoreFactory, Trajectories
+from crowdbot.plugin import References, Score, ScoreFactory, Trajectories
 
 from crowdbot_acme.hesitation import HESITATION, SIGNAL, HesitationSpec
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from crowdbot.dsl import Component, EnvironmentSpec, PositiveLength
+from crowdbot.plugin import Component, EnvironmentSpec, PositiveLength
 from pydantic import Field, model_validator
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from crowdbot.core.interfaces import EnvironmentParts
+from crowdbot.plugin import EnvironmentParts
 from numpy.typing import NDArray
 
 from crowdbot_acme.office import OfficeSpec

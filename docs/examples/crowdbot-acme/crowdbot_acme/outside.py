@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import MaxLen
-from crowdbot.dsl import Component, PlannerSpec, PositiveDuration
+from crowdbot.plugin import Component, PlannerSpec, PositiveDuration
 from pydantic import Field
 
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.interfaces import (
+from crowdbot.plugin import (
     Command,
     NoValidCommand,
     Observation,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from crowdbot.dsl import Component, CostFunctionSpec, PositiveDuration, PositiveLength, Range
+from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, PositiveLength, Range
 from pydantic import Field
 
 

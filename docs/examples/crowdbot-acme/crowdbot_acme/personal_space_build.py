@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
-from crowdbot.core.interfaces import (
+from crowdbot.plugin import (
     BASE,
     D2,
     EXCESS,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from crowdbot.core.interfaces import AgentView, Neighbours, NumpyCost
+from crowdbot.plugin import AgentView, Neighbours, NumpyCost
 from numpy.typing import NDArray
 
 from crowdbot_acme.personal_space import PersonalSpaceNumpySpec

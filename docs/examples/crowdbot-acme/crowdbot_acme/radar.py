@@ -5,7 +5,14 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Gt, Le
-from crowdbot.dsl import Component, Mount, PositiveFrequency, PositiveLength, Quantity, SensorSpec
+from crowdbot.plugin import (
+    Component,
+    Mount,
+    PositiveFrequency,
+    PositiveLength,
+    Quantity,
+    SensorSpec,
+)
 from pydantic import Field
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from crowdbot.core.interfaces import Pose, Scene, SensorInfo, mount_pose, sensor_pose_in_world
+from crowdbot.plugin import Pose, Scene, SensorInfo, mount_pose, sensor_pose_in_world
 from numpy.typing import NDArray
 
 from crowdbot_acme.radar import RadarSpec

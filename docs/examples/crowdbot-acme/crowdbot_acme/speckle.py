@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from crowdbot.dsl import Component, NoiseSpec
+from crowdbot.plugin import Component, NoiseSpec
 from pydantic import Field
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from crowdbot.dsl import Component, PlannerSpec, PositiveFrequency, PositiveLength
+from crowdbot.plugin import Component, PlannerSpec, PositiveFrequency, PositiveLength
 from pydantic import Field
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from crowdbot.core.interfaces import NoValidCommand, Observation, Pose, RobotLimits, Task
+from crowdbot.plugin import NoValidCommand, Observation, Pose, RobotLimits, Task
 
 from crowdbot_acme.json_process import ProcessError
 from crowdbot_acme.outside import OutsideSpec

@@ -7,8 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge
 from pydantic import Field
 
-from crowdbot.dsl import Component, CostFunctionSpec, PositiveLength
-from crowdbot.hookspecs import hookimpl
+from crowdbot.plugin import Component, CostFunctionSpec, PositiveLength, hookimpl
 
 
 class ElbowRoomSpec(CostFunctionSpec):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
-from crowdbot.core.interfaces import (
+from crowdbot.plugin import (
     BASE,
     D2,
     EXCESS,

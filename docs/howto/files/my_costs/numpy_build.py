@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crowdbot.core.interfaces import AgentView, Array, Neighbours, NumpyCost
+from crowdbot.plugin import AgentView, Array, Neighbours, NumpyCost
 from my_costs import ElbowRoomSpec
 
 AHEAD = 0.5  # s

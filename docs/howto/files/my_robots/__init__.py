@@ -6,8 +6,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from crowdbot.dsl import Component, PositiveMass, PositiveSpeed, RobotSpec
-from crowdbot.hookspecs import hookimpl
+from crowdbot.plugin import Component, PositiveMass, PositiveSpeed, RobotSpec, hookimpl
 
 
 class TrolleySpec(RobotSpec):

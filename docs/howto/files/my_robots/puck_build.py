@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from crowdbot.core.interfaces import HolonomicDrive, RobotLimits, RobotModel
+from crowdbot.plugin import HolonomicDrive, RobotLimits, RobotModel
 from my_robots import PuckSpec
 
 RADIUS, HEIGHT = 0.2, 0.3

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from crowdbot.core.interfaces import Command, Observation, RobotLimits, SensorInfo, Task
+from crowdbot import Command, Observation, RobotLimits, SensorInfo, Task
 
 
 class Strafe:

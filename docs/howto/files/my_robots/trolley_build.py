@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from importlib.resources import files
 
-from crowdbot.core.interfaces import RobotLimits, RobotModel, read_description
+from crowdbot.plugin import RobotLimits, RobotModel, read_description
 from my_robots import TrolleySpec
 
 

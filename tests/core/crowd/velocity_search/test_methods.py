@@ -16,7 +16,7 @@ from crowdbot.core.crowd.velocity_search.gradient import STEP, Descent
 from crowdbot.core.crowd.velocity_search.minstd import between, following
 from crowdbot.core.crowd.velocity_search.sampling import Sampler
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
-from crowdbot.dsl import CostFunctionSpec, Range
+from crowdbot.plugin import CostFunctionSpec, Range
 from crowdbot.plugins.crowd.cost_functions.random_function import RandomFunctionSpec
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec

@@ -13,7 +13,7 @@ from crowdbot.core.crowd.velocity_search.agent_costs import LOWER_BOUNDS
 from crowdbot.core.crowd.velocity_search.candidates import CURRENT, MAXIMUM_SPEED, Sampling, fan
 from crowdbot.core.crowd.velocity_search.sampling import Sampler
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
-from crowdbot.dsl import CostFunctionSpec, Range
+from crowdbot.plugin import CostFunctionSpec, Range
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec

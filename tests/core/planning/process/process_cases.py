@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.interfaces import Observation, Pose, Reading, RobotLimits, SensorInfo, Task
 from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.planning.host import PlannerHost
 from crowdbot.core.planning.process.process_planner import ProcessPlanner
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
 from crowdbot.core.registry.registry import discover
+from crowdbot.plugin import Observation, Pose, Reading, RobotLimits, SensorInfo, Task
 
 LIMITS = RobotLimits(v_min=-0.2, v_max=0.65, w_max=3.14, a_max=1.0, alpha_max=2.0)
 ZONE = np.array([[45.0, -5.0], [50.0, -5.0], [50.0, 5.0], [45.0, 5.0]])

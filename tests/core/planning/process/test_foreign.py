@@ -93,7 +93,7 @@ def test_a_python_with_nothing_but_its_library(bare: Path) -> None:
 
 def test_arrays_and_images_in_both_kinds_of_python(tmp_path: Path) -> None:
     """What a planner sees is the same, whatever Python it is in."""
-    from crowdbot.core.interfaces import Observation, Pinhole, Reading, SensorInfo
+    from crowdbot.plugin import Observation, Pinhole, Reading, SensorInfo
 
     (tmp_path / "mine.py").write_text(
         "class Mine:\n"

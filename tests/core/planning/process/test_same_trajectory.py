@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crowdbot.core.interfaces import RobotBody
 from crowdbot.core.planning.choice import PlannerPlace
 from crowdbot.core.planning.host import PlannerHost
 from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sim.simulate import simulate
+from crowdbot.plugin import RobotBody
 from tests.core.planning.process.process_cases import LIMITS, REGISTRY, TASK, observation
 from tests.core.planning.process.test_foreign import BARE, EXAMPLES
 

@@ -1,4 +1,4 @@
-from crowdbot.hookspecs import hookimpl
+from crowdbot.plugin import hookimpl
 from crowdbot_careful.waiter import WAITER
 
 CROWDBOT_API = 1

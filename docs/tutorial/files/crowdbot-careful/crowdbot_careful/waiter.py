@@ -2,7 +2,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from crowdbot.dsl import Component, PlannerSpec, PositiveLength
+from crowdbot.plugin import Component, PlannerSpec, PositiveLength
 
 
 class WaiterSpec(PlannerSpec):

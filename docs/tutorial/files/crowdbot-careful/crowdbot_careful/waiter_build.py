@@ -1,7 +1,7 @@
 import math
 from collections.abc import Mapping
 
-from crowdbot.core.interfaces import Command, Observation, RobotLimits, SensorInfo, Task
+from crowdbot.plugin import Command, Observation, RobotLimits, SensorInfo, Task
 from crowdbot_careful.waiter import WaiterSpec
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import inspect
 
-from crowdbot.core.interfaces import build_functions as builds
 from crowdbot.dsl.spec.component_specs import CATEGORIES
+from crowdbot.plugin import build_functions as builds
 from crowdbot.plugins.crowd.cost_functions.goal_reaching_force import GoalReachingForceSpec
 from crowdbot.plugins.crowd.cost_functions.goal_reaching_force_build import build as build_cost
 from crowdbot.plugins.crowd.policies.replay import ReplaySpec

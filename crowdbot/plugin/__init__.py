@@ -1,0 +1,442 @@
+"""The one module that plugins import: specs and components, contracts, values and tools.
+
+Specs and components describe what documents say; they need no numpy, and a module of specs
+imports nothing else. The contracts of build functions speak numpy: SI units, float64, read-only
+inputs, new outputs; world frame x along the corridor, y left, z up, yaw counter-clockwise
+(REP-103). docs/reference/author_surface.md has a line on each name. Names are imported when they
+are first used; nothing of core imports this module.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from crowdbot.lazy import lazy_names
+from crowdbot.plugin.homes import HOMES
+
+if TYPE_CHECKING:
+    from crowdbot.core.crowd.agents import LOOP, PORTAL, REMOVE, STOP, Agents
+    from crowdbot.core.crowd.contact.geometry import (
+        nearest_on_segment,
+        time_to_disc,
+        time_to_segment,
+    )
+    from crowdbot.core.crowd.desired_acceleration import desired_acceleration
+    from crowdbot.core.crowd.engine import CrowdEngine, PolicyFactory
+    from crowdbot.core.crowd.from_spec import policy_of
+    from crowdbot.core.crowd.policy import (
+        CONTACT_STIFFNESS,
+        AcceleratingPolicy,
+        CrowdPolicy,
+        CrowdView,
+        VelocityPolicy,
+    )
+    from crowdbot.core.crowd.recorded import RecordedCrowd, read_record
+    from crowdbot.core.crowd.velocity_search.collision import (
+        first_collision,
+        first_contact,
+        list_approaching,
+        list_obstacles,
+        soonest_disc,
+    )
+    from crowdbot.core.crowd.velocity_search.cost import (
+        AGENT_SIZE,
+        ASKED_RADIUS,
+        ASKED_X,
+        ASKED_Y,
+        AX,
+        AY,
+        BASE,
+        BX,
+        BY,
+        D2,
+        DESCENDS,
+        EXCESS,
+        FASTEST,
+        FROM_SURFACE,
+        GRADIENT,
+        GX,
+        GY,
+        LOWER_BOUND,
+        MAX_ACCELERATION,
+        MAX_SPEED,
+        NEAR_COLUMNS,
+        NPX,
+        NPY,
+        NVX,
+        NVY,
+        NX,
+        NY,
+        OPTIMUM,
+        PARITY,
+        PREFERRED,
+        PREPARE,
+        PVX,
+        PVY,
+        PX,
+        PY,
+        RADIUS,
+        RANDOM,
+        RANGE,
+        REACH,
+        RELAXATION,
+        RX,
+        RY,
+        STATIC,
+        TIME_STEP,
+        VX,
+        VY,
+        WALL_COLUMNS,
+        WALL_D2,
+        WEIGHT,
+        WORK_COLUMNS,
+        AgentView,
+        CompiledCost,
+        Neighbours,
+        NumpyCost,
+        Pointer,
+        in_range,
+        near_table,
+        wall_table,
+        work_rows,
+        work_table,
+    )
+    from crowdbot.core.crowd.world import CrowdWorld
+    from crowdbot.core.environments.place_parts import place_parts
+    from crowdbot.core.geometry.footprint import Footprint
+    from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Task, Truth
+    from crowdbot.core.recording.reader import (
+        RecordingInfo,
+        read_scans,
+        read_trajectories,
+        recording_info,
+    )
+    from crowdbot.core.robots.description import Description, read_description
+    from crowdbot.core.robots.published import PublishedWheel, read_published
+    from crowdbot.core.scoring.metric import Metric, References
+    from crowdbot.core.scoring.score_factory import ScoreFactory
+    from crowdbot.core.sensing.mount import (
+        mount_pose,
+        mount_tilt,
+        sensor_pose_in_world,
+        sensor_rotation_in_world,
+    )
+    from crowdbot.core.sensing.points import LidarPoints
+    from crowdbot.core.sensing.range_model import RangeModel
+    from crowdbot.core.sensing.scene import Scene
+    from crowdbot.core.sensing.sensor import DepthCamera, NoiseGenerator, Sensor, SensorWithMemory
+    from crowdbot.core.support.compile import declared_kernel, kernel
+    from crowdbot.core.trajectories.commands import Commands
+    from crowdbot.core.trajectories.preprocess import (
+        duration,
+        forward_speed,
+        path_length,
+        time_weights,
+        travel_time,
+        truncate_at_arrival,
+        yaw_rate,
+    )
+    from crowdbot.core.trajectories.questionnaires import Questionnaires
+    from crowdbot.core.trajectories.trajectories import (
+        AgentTracks,
+        ContactEvents,
+        RobotTrack,
+        Trajectories,
+        Trips,
+    )
+    from crowdbot.core.types.arrays import Array, Indices, Mask
+    from crowdbot.core.types.environment import EnvironmentParts
+    from crowdbot.core.types.motion import Command, Pose
+    from crowdbot.core.types.robot import (
+        DifferentialDrive,
+        HolonomicDrive,
+        RobotBody,
+        RobotLimits,
+        RobotModel,
+        RobotState,
+    )
+    from crowdbot.core.types.score import Score
+    from crowdbot.core.types.sensor import CameraFrame, Pinhole, Reading, SensorInfo
+    from crowdbot.dsl.spec import outlines
+    from crowdbot.dsl.spec.assets import Asset
+    from crowdbot.dsl.spec.component import Component
+    from crowdbot.dsl.spec.component_specs import (
+        CostFunctionSpec,
+        CrowdPolicySpec,
+        EnvironmentSpec,
+        MetricSpec,
+        NoiseSpec,
+        PlannerRole,
+        PlannerSpec,
+        RobotSpec,
+        SensorSpec,
+    )
+    from crowdbot.dsl.spec.metric_component import (
+        Better,
+        MetricComponent,
+        MetricVariant,
+        declare_metric,
+    )
+    from crowdbot.dsl.spec.metric_invariants import MetricInvariants
+    from crowdbot.dsl.spec.place import Face, Heights, Pillar, Place, Solid
+    from crowdbot.dsl.spec.quantities import (
+        Angle,
+        Length,
+        NonNegativeDamping,
+        NonNegativeDuration,
+        NonNegativeLength,
+        NonNegativeSpeed,
+        NonNegativeSteeringStiffness,
+        PositiveAcceleration,
+        PositiveAngle,
+        PositiveAngularAcceleration,
+        PositiveAngularSpeed,
+        PositiveDensity,
+        PositiveDuration,
+        PositiveForce,
+        PositiveFrequency,
+        PositiveLength,
+        PositiveMass,
+        PositiveSpeed,
+        PositiveStiffness,
+        Quantity,
+        Speed,
+    )
+    from crowdbot.dsl.spec.range_sensor import MOST_RAYS, Incidence, RangeSensorSpec
+    from crowdbot.dsl.spec.spec import ComponentSpec, Mount, Range, Rectangle, Spec, TiltableMount
+    from crowdbot.errors import InputError, PluginError, SimulationError
+    from crowdbot.hookspecs import hookimpl
+    from crowdbot.plugin.build_functions import (
+        BuildCost,
+        BuildEnvironment,
+        BuildMetric,
+        BuildNoise,
+        BuildPlanner,
+        BuildPolicy,
+        BuildRangeSensor,
+        BuildRobot,
+        BuildSensor,
+    )
+
+__all__ = [
+    "AGENT_SIZE",
+    "ASKED_RADIUS",
+    "ASKED_X",
+    "ASKED_Y",
+    "AX",
+    "AY",
+    "BASE",
+    "BX",
+    "BY",
+    "CONTACT_STIFFNESS",
+    "D2",
+    "DESCENDS",
+    "EXCESS",
+    "FASTEST",
+    "FROM_SURFACE",
+    "GRADIENT",
+    "GX",
+    "GY",
+    "LOOP",
+    "LOWER_BOUND",
+    "MAX_ACCELERATION",
+    "MAX_SPEED",
+    "MOST_RAYS",
+    "NEAR_COLUMNS",
+    "NPX",
+    "NPY",
+    "NVX",
+    "NVY",
+    "NX",
+    "NY",
+    "OPTIMUM",
+    "PARITY",
+    "PORTAL",
+    "PREFERRED",
+    "PREPARE",
+    "PVX",
+    "PVY",
+    "PX",
+    "PY",
+    "RADIUS",
+    "RANDOM",
+    "RANGE",
+    "REACH",
+    "RELAXATION",
+    "REMOVE",
+    "RX",
+    "RY",
+    "STATIC",
+    "STOP",
+    "TIME_STEP",
+    "VX",
+    "VY",
+    "WALL_COLUMNS",
+    "WALL_D2",
+    "WEIGHT",
+    "WORK_COLUMNS",
+    "AcceleratingPolicy",
+    "AgentTracks",
+    "AgentView",
+    "Agents",
+    "Angle",
+    "Array",
+    "Asset",
+    "Better",
+    "BuildCost",
+    "BuildEnvironment",
+    "BuildMetric",
+    "BuildNoise",
+    "BuildPlanner",
+    "BuildPolicy",
+    "BuildRangeSensor",
+    "BuildRobot",
+    "BuildSensor",
+    "CameraFrame",
+    "Command",
+    "Commands",
+    "CompiledCost",
+    "Component",
+    "ComponentSpec",
+    "ContactEvents",
+    "CostFunctionSpec",
+    "CrowdEngine",
+    "CrowdPolicy",
+    "CrowdPolicySpec",
+    "CrowdView",
+    "CrowdWorld",
+    "DepthCamera",
+    "Description",
+    "DifferentialDrive",
+    "EnvironmentParts",
+    "EnvironmentSpec",
+    "Face",
+    "Footprint",
+    "Heights",
+    "HolonomicDrive",
+    "Incidence",
+    "Indices",
+    "InputError",
+    "Length",
+    "LidarPoints",
+    "Mask",
+    "Metric",
+    "MetricComponent",
+    "MetricInvariants",
+    "MetricSpec",
+    "MetricVariant",
+    "Mount",
+    "Neighbours",
+    "NoValidCommand",
+    "NoiseGenerator",
+    "NoiseSpec",
+    "NonNegativeDamping",
+    "NonNegativeDuration",
+    "NonNegativeLength",
+    "NonNegativeSpeed",
+    "NonNegativeSteeringStiffness",
+    "NumpyCost",
+    "Observation",
+    "Pillar",
+    "Pinhole",
+    "Place",
+    "Planner",
+    "PlannerRole",
+    "PlannerSpec",
+    "PluginError",
+    "Pointer",
+    "PolicyFactory",
+    "Pose",
+    "PositiveAcceleration",
+    "PositiveAngle",
+    "PositiveAngularAcceleration",
+    "PositiveAngularSpeed",
+    "PositiveDensity",
+    "PositiveDuration",
+    "PositiveForce",
+    "PositiveFrequency",
+    "PositiveLength",
+    "PositiveMass",
+    "PositiveSpeed",
+    "PositiveStiffness",
+    "PublishedWheel",
+    "Quantity",
+    "Questionnaires",
+    "Range",
+    "RangeModel",
+    "RangeSensorSpec",
+    "Reading",
+    "RecordedCrowd",
+    "RecordingInfo",
+    "Rectangle",
+    "References",
+    "RobotBody",
+    "RobotLimits",
+    "RobotModel",
+    "RobotSpec",
+    "RobotState",
+    "RobotTrack",
+    "Scene",
+    "Score",
+    "ScoreFactory",
+    "Sensor",
+    "SensorInfo",
+    "SensorSpec",
+    "SensorWithMemory",
+    "SimulationError",
+    "Solid",
+    "Spec",
+    "Speed",
+    "Task",
+    "TiltableMount",
+    "Trajectories",
+    "Trips",
+    "Truth",
+    "VelocityPolicy",
+    "declare_metric",
+    "declared_kernel",
+    "desired_acceleration",
+    "duration",
+    "first_collision",
+    "first_contact",
+    "forward_speed",
+    "hookimpl",
+    "in_range",
+    "kernel",
+    "list_approaching",
+    "list_obstacles",
+    "mount_pose",
+    "mount_tilt",
+    "near_table",
+    "nearest_on_segment",
+    "outlines",
+    "path_length",
+    "place_parts",
+    "policy_of",
+    "read_description",
+    "read_published",
+    "read_record",
+    "read_scans",
+    "read_trajectories",
+    "recording_info",
+    "sensor_pose_in_world",
+    "sensor_rotation_in_world",
+    "soonest_disc",
+    "time_to_disc",
+    "time_to_segment",
+    "time_weights",
+    "travel_time",
+    "truncate_at_arrival",
+    "wall_table",
+    "work_rows",
+    "work_table",
+    "yaw_rate",
+]
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lazy_names(__name__, HOMES)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,84 @@
+"""Names of `crowdbot.plugin`, by the modules that they come from."""
+
+from __future__ import annotations
+
+HOMES = {
+    "crowdbot.core.crowd.agents": "LOOP PORTAL REMOVE STOP Agents",
+    "crowdbot.core.crowd.contact.geometry": "nearest_on_segment time_to_disc time_to_segment",
+    "crowdbot.core.crowd.desired_acceleration": "desired_acceleration",
+    "crowdbot.core.crowd.engine": "CrowdEngine PolicyFactory",
+    "crowdbot.core.crowd.from_spec": "policy_of",
+    "crowdbot.core.crowd.policy": (
+        "CONTACT_STIFFNESS AcceleratingPolicy CrowdPolicy CrowdView VelocityPolicy"
+    ),
+    "crowdbot.core.crowd.recorded": "RecordedCrowd read_record",
+    "crowdbot.core.crowd.velocity_search.collision": (
+        "first_collision first_contact list_approaching list_obstacles soonest_disc"
+    ),
+    "crowdbot.core.crowd.velocity_search.cost": (
+        "AGENT_SIZE ASKED_RADIUS ASKED_X ASKED_Y AX AY BASE BX BY D2 DESCENDS EXCESS FASTEST "
+        "FROM_SURFACE GRADIENT GX GY LOWER_BOUND MAX_ACCELERATION MAX_SPEED NEAR_COLUMNS NPX NPY "
+        "NVX NVY NX NY OPTIMUM PARITY PREFERRED PREPARE PVX PVY PX PY RADIUS RANDOM RANGE REACH "
+        "RELAXATION RX RY STATIC TIME_STEP VX VY WALL_COLUMNS WALL_D2 WEIGHT WORK_COLUMNS "
+        "AgentView CompiledCost Neighbours NumpyCost Pointer in_range near_table wall_table "
+        "work_rows work_table"
+    ),
+    "crowdbot.core.crowd.world": "CrowdWorld",
+    "crowdbot.core.environments.place_parts": "place_parts",
+    "crowdbot.core.geometry.footprint": "Footprint",
+    "crowdbot.core.planning.planner": "NoValidCommand Observation Planner Task Truth",
+    "crowdbot.core.recording.reader": "RecordingInfo read_scans read_trajectories recording_info",
+    "crowdbot.core.robots.description": "Description read_description",
+    "crowdbot.core.robots.published": "PublishedWheel read_published",
+    "crowdbot.core.scoring.metric": "Metric References",
+    "crowdbot.core.scoring.score_factory": "ScoreFactory",
+    "crowdbot.core.sensing.mount": (
+        "mount_pose mount_tilt sensor_pose_in_world sensor_rotation_in_world"
+    ),
+    "crowdbot.core.sensing.points": "LidarPoints",
+    "crowdbot.core.sensing.range_model": "RangeModel",
+    "crowdbot.core.sensing.scene": "Scene",
+    "crowdbot.core.sensing.sensor": "DepthCamera NoiseGenerator Sensor SensorWithMemory",
+    "crowdbot.core.support.compile": "declared_kernel kernel",
+    "crowdbot.core.trajectories.commands": "Commands",
+    "crowdbot.core.trajectories.preprocess": (
+        "duration forward_speed path_length time_weights travel_time truncate_at_arrival yaw_rate"
+    ),
+    "crowdbot.core.trajectories.questionnaires": "Questionnaires",
+    "crowdbot.core.trajectories.trajectories": (
+        "AgentTracks ContactEvents RobotTrack Trajectories Trips"
+    ),
+    "crowdbot.core.types.arrays": "Array Indices Mask",
+    "crowdbot.core.types.environment": "EnvironmentParts",
+    "crowdbot.core.types.motion": "Command Pose",
+    "crowdbot.core.types.robot": (
+        "DifferentialDrive HolonomicDrive RobotBody RobotLimits RobotModel RobotState"
+    ),
+    "crowdbot.core.types.score": "Score",
+    "crowdbot.core.types.sensor": "CameraFrame Pinhole Reading SensorInfo",
+    "crowdbot.dsl.spec": "outlines",
+    "crowdbot.dsl.spec.assets": "Asset",
+    "crowdbot.dsl.spec.component": "Component",
+    "crowdbot.dsl.spec.component_specs": (
+        "CostFunctionSpec CrowdPolicySpec EnvironmentSpec MetricSpec NoiseSpec PlannerRole "
+        "PlannerSpec RobotSpec SensorSpec"
+    ),
+    "crowdbot.dsl.spec.metric_component": "Better MetricComponent MetricVariant declare_metric",
+    "crowdbot.dsl.spec.metric_invariants": "MetricInvariants",
+    "crowdbot.dsl.spec.place": "Face Heights Pillar Place Solid",
+    "crowdbot.dsl.spec.quantities": (
+        "Angle Length NonNegativeDamping NonNegativeDuration NonNegativeLength NonNegativeSpeed "
+        "NonNegativeSteeringStiffness PositiveAcceleration PositiveAngle "
+        "PositiveAngularAcceleration PositiveAngularSpeed PositiveDensity PositiveDuration "
+        "PositiveForce PositiveFrequency PositiveLength PositiveMass PositiveSpeed "
+        "PositiveStiffness Quantity Speed"
+    ),
+    "crowdbot.dsl.spec.range_sensor": "MOST_RAYS Incidence RangeSensorSpec",
+    "crowdbot.dsl.spec.spec": "ComponentSpec Mount Range Rectangle Spec TiltableMount",
+    "crowdbot.errors": "InputError PluginError SimulationError",
+    "crowdbot.hookspecs": "hookimpl",
+    "crowdbot.plugin.build_functions": (
+        "BuildCost BuildEnvironment BuildMetric BuildNoise BuildPlanner BuildPolicy "
+        "BuildRangeSensor BuildRobot BuildSensor"
+    ),
+}
