@@ -16,7 +16,7 @@ from crowdbot.core.scenarios.named_crowds import open_crowd
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.dsl.identity.canonical import content_hash
-from crowdbot.dsl.scenario.robot_response import HumanResponse
+from crowdbot.dsl.scenario.robot_response import RobotResponse
 from crowdbot.dsl.scenario.scenario import Crowd
 from crowdbot.dsl.suite.expand import Expansion
 
@@ -95,7 +95,7 @@ def test_people_are_the_calibrated_crowd(suite: Expansion) -> None:
         for name in ("radius", "avoided_radius"):
             assert getattr(crowd.body, name) == getattr(part.body, name)
         assert crowd.goal_point == "ahead"
-        assert isinstance(crowd.robot_response, HumanResponse)
+        assert isinstance(crowd.robot_response, RobotResponse)
         assert crowd.body.max_acceleration <= crowd.robot_response.total_acceleration
 
 

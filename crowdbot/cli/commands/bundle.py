@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
-from crowdbot.core.support.plural import plural
+from crowdbot.core.support.text import plural
 from crowdbot.errors import UsageError
 
 

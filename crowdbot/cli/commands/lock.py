@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
-from crowdbot.core.support.plural import plural
+from crowdbot.core.support.text import plural
 
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry

@@ -18,7 +18,7 @@ from urllib.parse import quote
 import typer
 
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
-from crowdbot.core.support.plural import plural
+from crowdbot.core.support.text import plural
 from crowdbot.errors import InputError, UnknownNameError
 
 if TYPE_CHECKING:

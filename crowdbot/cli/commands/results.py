@@ -12,7 +12,7 @@ from typer.core import TyperGroup
 
 from crowdbot.cli.output.results_lines import line_of, print_lines
 from crowdbot.core.scoring.four_scores import MAIN_SCORES
-from crowdbot.core.support.plural import plural
+from crowdbot.core.support.text import plural
 
 if TYPE_CHECKING:
     from crowdbot.core.results.results import Results

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from crowdbot.core.support.name_lines import in_lines
+from crowdbot.core.support.text import wrap_name
 
 if TYPE_CHECKING:
     from crowdbot.core.statistics.groups import GroupSummary
@@ -129,7 +129,7 @@ def _narrow(line: dict[str, Any]) -> dict[str, Any]:
 
 def _broken(line: dict[str, Any]) -> dict[str, Any]:
     """A line whose names are broken between their words."""
-    return {n: in_lines(v, _NAME_WIDTH) if isinstance(v, str) else v for n, v in line.items()}
+    return {n: wrap_name(v, _NAME_WIDTH) if isinstance(v, str) else v for n, v in line.items()}
 
 
 def _shown(value: Any) -> str:

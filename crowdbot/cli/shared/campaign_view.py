@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from crowdbot.core.runs.outcome import ENDINGS, PLANNER_FAILED
-from crowdbot.core.support.plural import plural
+from crowdbot.core.support.text import plural
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

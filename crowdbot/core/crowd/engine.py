@@ -20,7 +20,6 @@ from crowdbot.core.crowd.periodic_boundary import images
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdPolicy, CrowdView
 from crowdbot.core.crowd.portals import draw_goal, enter
 from crowdbot.core.crowd.response.evasion import evade_robots
-from crowdbot.core.crowd.response.parameters import Human
 from crowdbot.core.crowd.routes import head_for
 from crowdbot.core.crowd.routing.router import Router
 from crowdbot.core.crowd.routing.waypoints import squeeze
@@ -97,10 +96,9 @@ class CrowdEngine:
         self._ticks_per_decision = ticks(world.decision_rate)
         self._people = AgentParameters.of(agents, np.array(strength, np.float64)[agents.policy])
         self._place = WorldParameters.of(world)
-        response = world.response
         dt = self._ticks_per_decision * TICK
         self._steering = parts_of(world.steering)
-        self._evades = response.by_decision(dt) if isinstance(response, Human) else None
+        self._evades = world.response.by_decision(dt)
         self._router = (
             None
             if world.routing is None
@@ -282,7 +280,7 @@ class CrowdEngine:
 
     def _evade(self, flat: Array, rows: Array, robots: Array, outlines: Array) -> None:
         """Those who have noticed robots change what they want, whatever their policy is."""
-        if self._evades is None or not len(robots):
+        if not len(robots):
             return
         people, now = self._people, float(flat[s.TICK]) * TICK
         evade_robots(
@@ -330,11 +328,8 @@ def _alike(outline: Array, robots: int) -> Array:
 
 
 def _who_plans(agents: Agents, world: CrowdWorld) -> NDArray[np.bool_]:
-    """Whose policy is shown the robots: who notices late has other things in mind."""
-    response = world.response
-    if not isinstance(response, Human):
-        return ~agents.ignores_robot
-    return ~(agents.ignores_robot | agents.late) & response.shown_to_policies
+    """(N,) True for agents whose policy is shown the robots; people who notice late are not."""
+    return ~(agents.ignores_robot | agents.late) & world.response.shown_to_policies
 
 
 def _groups(

@@ -18,8 +18,6 @@ from crowdbot.core.crowd.contact.robot_contact import (
 from crowdbot.core.crowd.parameters import AgentParameters, WorldParameters
 from crowdbot.core.crowd.periodic_boundary import wrap
 from crowdbot.core.crowd.portals import entry_fraction, leave, try_to_re_enter, try_to_start
-from crowdbot.core.crowd.response.keep_off import keep_off
-from crowdbot.core.crowd.response.parameters import KEEP_OFF, KIND
 from crowdbot.core.crowd.response.standing import stop_short
 from crowdbot.core.crowd.routes import arrive, goal_fraction, next_goal, stays
 from crowdbot.core.crowd.state import (
@@ -134,8 +132,6 @@ def _advance(
     ax, ay = 0.0, 0.0
     if agents[i, BESIDE] != 0.0:
         ax, ay = stop_short(agents, i, people.radius, robots, outlines, world.response)
-    elif world.response[KIND] == KEEP_OFF and people.heeds_robot[i]:
-        ax, ay = keep_off(agents, i, people.radius, robots, outlines, world.response)
     ax += agents[i, PUSH_X] + reaction[i, 0] / people.mass[i]
     ay += agents[i, PUSH_Y] + reaction[i, 1] / people.mass[i]
     _move(agents, i, people.max_speed[i], ax, ay, dt)

@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot.core.crowd.agents import PORTAL, Agents
 from crowdbot.core.crowd.groups import Cohesion
 from crowdbot.core.crowd.periodic_boundary import Box
-from crowdbot.core.crowd.response.parameters import Human, Response
+from crowdbot.core.crowd.response.parameters import Human
 from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.types.arrays import Array
@@ -56,7 +56,7 @@ class CrowdWorld:
     out: Array = field(default_factory=lambda: np.zeros((0, 4)))
     exit_point: Literal["random", "offset"] = "random"
     goal_point: Literal["random", "ahead"] = "random"
-    response: Response = field(default_factory=Human)
+    response: Human = field(default_factory=Human)
     cohesion: Cohesion | None = field(default_factory=Cohesion)
     steering: Steering = field(default_factory=Steering)
     robot_visible: bool = True

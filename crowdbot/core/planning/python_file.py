@@ -14,8 +14,8 @@ from typing import Any, cast
 
 from crowdbot.core.planning.planner import Planner
 from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
-from crowdbot.core.support.near_files import near_files
 from crowdbot.core.support.source_digest import imported_names
+from crowdbot.core.support.text_files import suggest_files
 from crowdbot.errors import CrowdbotError, InputError, PlannerError, did_you_mean, nearest
 
 _METHODS = ("reset", "step")
@@ -35,7 +35,7 @@ def planner_class(path: Path, name: str) -> type[Any]:
         PlannerError: the file cannot be imported, or raises when it is asked for the class.
     """
     if not path.is_file():
-        raise InputError(f"{path}: no such file{near_files(path)}")
+        raise InputError(f"{path}: no such file{suggest_files(path)}")
     module = _import(path)
     # Modules and metaclasses may run code when they are asked for a name.
     with call_of_class(path, name)("cannot be loaded"):

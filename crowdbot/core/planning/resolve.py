@@ -30,8 +30,8 @@ from crowdbot.core.planning.registered import build_of_kind, find_kind, spec_of_
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.registry.plugin import BUILTIN
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.support.near_files import near_files
 from crowdbot.core.support.source_digest import source_digest
+from crowdbot.core.support.text_files import suggest_files
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.component_specs import PlannerRole, PlannerSpec
@@ -256,7 +256,7 @@ def _from_class(
     path: Path, name: str, parameters: Mapping[str, Any], place: PlannerPlace
 ) -> PlannerChoice:
     if not path.is_file():
-        raise InputError(f"{path}: no such file{near_files(path)}")
+        raise InputError(f"{path}: no such file{suggest_files(path)}")
     in_process = place.in_process is True
     build: Callable[[], Planner]
     if in_process:

@@ -8,7 +8,7 @@ import crowdbot.core.report.provenance as provenance
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.results.rows import RunRow
 from crowdbot.core.scoring.four_scores import is_main
-from crowdbot.core.support.plural import plural
+from crowdbot.core.support.text import plural
 
 _SOFTWARE = ("crowdbot", "drake", "numpy", "python")
 

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 from crowdbot.core.runs.run_directory import write_json
-from crowdbot.core.support.plain_text import plain_text
+from crowdbot.core.support.text_files import read_text
 
 SUFFIX = ".failure.json"
 
@@ -43,7 +43,7 @@ def write_failure(run: Path, failure: Failure) -> None:
 def read_failure(file: Path) -> Failure | None:
     """What `write_failure` wrote; None for anything else."""
     try:
-        content = json.loads(plain_text(file))
+        content = json.loads(read_text(file))
         content.setdefault("axes", {})  # records of earlier versions have none
         return Failure(**{f.name: content[f.name] for f in fields(Failure)})
     except (OSError, ValueError, KeyError, TypeError, AttributeError):

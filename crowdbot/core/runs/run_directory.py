@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.support.atomic_write import atomic_write
-from crowdbot.core.support.plain_text import plain_text
 from crowdbot.core.support.strict_json import parse_json
+from crowdbot.core.support.text_files import read_text
 from crowdbot.errors import InputError
 
 RECORD, RECORDING, SCENARIO, SCORES, REPLAY = (
@@ -40,7 +40,7 @@ def checked_record(directory: Path) -> dict[str, Any]:
     """
     file = directory / RECORD
     try:
-        record = parse_json(plain_text(file))
+        record = parse_json(read_text(file))
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror or error}") from None
     except ValueError as error:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.support.gc_throttle import seldom_collected
-from crowdbot.core.support.near_files import near_files
+from crowdbot.core.support.text_files import suggest_files
 from crowdbot.dsl.scenario.lock import LockFiles
 from crowdbot.dsl.scenario.scenario import Locked, Scenario
 from crowdbot.dsl.suite.expand import Expanding, Expansion, expand_document, load_document
@@ -238,7 +238,7 @@ def _find(spec: str, roots: dict[str, list[Path]], registry: Registry) -> tuple[
         return path, spec
     why = registry.why_absent(spec) if ":" in spec else ""
     if not why and not nearest(spec, packaged):
-        why = near_files(path).removeprefix("; ")
+        why = suggest_files(path).removeprefix("; ")
     raise UnknownNameError("suite", spec, packaged, why)
 
 

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main, main_first
 from crowdbot.core.support.atomic_write import atomic_write
-from crowdbot.core.support.name_lines import in_lines
-from crowdbot.core.support.plain_text import plain_text
+from crowdbot.core.support.text import wrap_name
+from crowdbot.core.support.text_files import read_text
 from crowdbot.core.types.score import Score
 from crowdbot.errors import InputError, hidden_character
 
@@ -108,7 +108,7 @@ def read_scores_csv(path: str | os.PathLike[str]) -> list[RunScore]:
     """
     path = Path(path)
     try:
-        text = plain_text(path)
+        text = read_text(path)
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
@@ -240,7 +240,7 @@ def scores_table(scores: Sequence[Score]) -> Table:
             style = "" if s.status == "ok" else "dim"
             names = [*head, s.variant]
             if not whole:
-                names[0] = in_lines(names[0], _NAME_WIDTH)
+                names[0] = wrap_name(names[0], _NAME_WIDTH)
             cells = (*names, verdict(s), _SIGNS[s.better])
             table.add_row(*map(Text, cells), style=style)
             shown = s.metric

@@ -19,7 +19,7 @@ from crowdbot.core.statistics.estimate import NOTHING, Estimate
 from crowdbot.core.statistics.signed_rank import least_p
 from crowdbot.core.statistics.summary import headline_names
 from crowdbot.core.statistics.table import MISSING, Name, Table
-from crowdbot.core.support.plural import plural
+from crowdbot.core.support.text import plural
 
 #: The score that decides, the first of these that the runs have: older ones lack the first.
 PRIMARY = (four_scores.PRIMARY.metric, "success_no_collision", "success")

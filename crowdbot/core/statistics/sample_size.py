@@ -17,7 +17,7 @@ from crowdbot.core.scoring.four_scores import is_main
 from crowdbot.core.statistics.comparison import Comparison, reach
 from crowdbot.core.statistics.signed_rank import least_p
 from crowdbot.core.statistics.summary import Summary
-from crowdbot.core.support.plural import plural
+from crowdbot.core.support.text import plural
 
 #: Nobody simulates more draws than this: a difference that needs them counts as none.
 MOST_DRAWS = 100_000

@@ -1,4 +1,4 @@
-"""How people take robots: behaviour, not contact; chosen by ``kind``, `human` if none is named.
+"""The field ``crowd.robot_response``: how people behave towards robots, contact apart.
 
 Sources of the numbers: docs/reference/crowd.md.
 """
@@ -6,10 +6,10 @@ Sources of the numbers: docs/reference/crowd.md.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Gt, Le, Lt
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from crowdbot.dsl.spec.quantities import (
     NonNegativeDuration,
@@ -26,17 +26,15 @@ from crowdbot.dsl.spec.spec import Spec
 
 
 class RobotResponse(Spec):
-    """How people respond to the robot: their behaviour, not contact.
+    """People notice a robot, react after a while, and evade it no faster than legs can.
 
-    People who yield see it and keep clear of it, in the way that `kind` says. People who ignore it
+    They look ahead, step aside in time and brake; some notice late. People who ignore the robot
     walk as if it were not there, until they touch it. People who are distracted ignore a robot that
     moves, but stop short of one that stands, as of anything that stands in their way.
     """
 
     category: ClassVar[str] = "robot response"
-    #: The kind of a response that names none.
-    usual: ClassVar[str] = "human"
-    kind: str = Field(description="Name of the response.")
+    kind: Literal["human"] = Field(default="human", description="Name of the response.")
     reaction: Literal["yield", "ignore", "mixed", "distracted"] = Field(
         default="yield",
         description="Who takes notice of the robot: all, nobody, or some; with `distracted`, "
@@ -50,45 +48,12 @@ class RobotResponse(Spec):
     margin: NonNegativeLength = Field(
         default=0.25,
         description="Perceived radius minus real radius of the robot, m, of the disc that crowd "
-        "policies are shown; and how far around the outline `keep_off` acts.",
+        "policies are shown.",
     )
     velocity: Literal["visible", "hidden"] = Field(
         default="visible", description="Whether people see how the robot moves."
     )
 
-    @model_validator(mode="after")
-    def _fraction_of_a_mixture(self) -> RobotResponse:
-        some = self.reaction in ("mixed", "distracted")
-        if some != (self.ignoring_fraction is not None):
-            raise ValueError("reaction 'mixed' or 'distracted' and ignoring_fraction go together")
-        return self
-
-    @property
-    def all_stop_short(self) -> bool:
-        """Whether those who ignore a robot that moves stop short of one that stands."""
-        return self.reaction == "distracted"
-
-    @property
-    def ignoring(self) -> float:
-        """Fraction of people who ignore the robot."""
-        if self.ignoring_fraction is not None:
-            return self.ignoring_fraction
-        return 1.0 if self.reaction == "ignore" else 0.0
-
-    @property
-    def late(self) -> float:
-        """Fraction of those who do not ignore the robot who notice it late."""
-        return 0.0
-
-
-class HumanResponse(RobotResponse):
-    """People notice a robot, react after a while, and evade it no faster than legs can.
-
-    They look ahead, step aside in time and brake. Some notice late. Nobody is thrown aside, and
-    nobody who takes notice of the robot walks into it while it stands.
-    """
-
-    kind: Literal["human"] = Field(default="human", description="Name of the response.")
     late_fraction: Annotated[float, Ge(0), Le(1)] = Field(
         default=0.4,
         description="Fraction who notice late, of those who do not ignore the robot; the least "
@@ -152,50 +117,31 @@ class HumanResponse(RobotResponse):
     )
 
     @model_validator(mode="after")
-    def _standing_is_slower(self) -> HumanResponse:
+    def _fraction_of_a_mixture(self) -> RobotResponse:
+        some = self.reaction in ("mixed", "distracted")
+        if some != (self.ignoring_fraction is not None):
+            raise ValueError("reaction 'mixed' or 'distracted' and ignoring_fraction go together")
+        return self
+
+    @model_validator(mode="after")
+    def _standing_is_slower(self) -> RobotResponse:
         if not self.standing_speed < self.moving_speed:
             raise ValueError("standing_speed must be smaller than moving_speed")
         return self
 
     @property
+    def all_stop_short(self) -> bool:
+        """True if those who ignore a robot that moves stop short of one that stands."""
+        return self.reaction == "distracted"
+
+    @property
+    def ignoring(self) -> float:
+        """Fraction of people who ignore the robot."""
+        if self.ignoring_fraction is not None:
+            return self.ignoring_fraction
+        return 1.0 if self.reaction == "ignore" else 0.0
+
+    @property
     def late(self) -> float:
         """Fraction of those who do not ignore the robot who notice it late."""
         return self.late_fraction
-
-
-class KeepOffResponse(RobotResponse):
-    """A force within `margin` of the outline: the response before 2026-11-22, for comparison.
-
-    `stiffness × overlap` drives people out of the margin, without a limit. It throws them
-    aside at 8 to 10 m/s² and lets a blind robot through; see decision 0017.
-    """
-
-    kind: Literal["keep_off"] = Field(default="keep_off", description="Name of the response.")
-    stiffness_moving: NonNegativeSteeringStiffness = Field(
-        default=62.5, description="Steering stiffness beside a moving robot, 1/s^2."
-    )
-    stiffness_stopped: NonNegativeSteeringStiffness = Field(
-        default=125.0, description="Steering stiffness beside a stopped robot, 1/s^2."
-    )
-    slow_speed: PositiveSpeed = Field(
-        default=0.2, description="Below this robot speed the stiffness rises linearly, m/s."
-    )
-
-    @model_validator(mode="after")
-    def _acts_on_who_takes_notice(self) -> KeepOffResponse:
-        if self.all_stop_short:
-            raise ValueError("keep_off has no reaction 'distracted'; choose 'mixed'")
-        return self
-
-
-def _usual(value: Any) -> Any:
-    return {"kind": RobotResponse.usual, **value} if isinstance(value, dict) else value
-
-
-#: One of the responses; of the usual kind where none is named.
-RobotResponseChoice = Annotated[
-    Annotated[HumanResponse | KeepOffResponse, Field(discriminator="kind")],
-    BeforeValidator(_usual),
-]
-
-__all__ = ["HumanResponse", "KeepOffResponse", "RobotResponse", "RobotResponseChoice"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -63,6 +63,12 @@ def world(**changes: object) -> CrowdWorld:
 def straight(position: Array, speed: float | Array = 1.2, **changes: object) -> CrowdEngine:
     """People who walk straight on through everything."""
     return CrowdEngine(agents_of(position, speed), world(**changes), lambda _: Straight())
+
+
+def unmoved(at: tuple[float, float], speed: float) -> CrowdEngine:
+    """One person who walks straight on and ignores robots."""
+    agents = replace(agents_of(np.array([at]), speed), ignores_robot=np.array([True]))
+    return CrowdEngine(agents, world(), lambda _: Straight())
 
 
 def walkers(agents: Agents, **changes: object) -> CrowdEngine:

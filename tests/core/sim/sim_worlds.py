@@ -14,7 +14,6 @@ from pydrake.systems.analysis import Simulator
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.response.parameters import KeepOff, Response
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.host import PlannerHost
 from crowdbot.core.population.realise import realise
@@ -214,10 +213,6 @@ def rig(
     return Rig(blocks, simulator, memory, log)
 
 
-#: People who do nothing about robots, though they see them.
-UNMOVED = KeepOff(0.0, 0.0)
-
-
 class _Straight:
     contact_stiffness = 0.0
 
@@ -226,22 +221,17 @@ class _Straight:
 
 
 def person(
-    x: float,
-    y: float = 0.0,
-    speed: float = 1.2,
-    response: Response = UNMOVED,
-    *,
-    stiffness: float = 30000.0,
+    x: float, y: float = 0.0, speed: float = 1.2, *, stiffness: float = 30000.0
 ) -> CrowdEngine:
     """One person who walks straight in -x along y = 0, come what may."""
     agents = Agents.of(
         id=np.zeros(1, np.int64), x=np.array([x]), y=np.array([y]),
         preferred_speed=np.array([speed]), radius=np.array([0.33]), max_speed=np.array([3.0]),
-        max_acceleration=np.array([5.0]), mass=np.array([75.0]),
+        max_acceleration=np.array([5.0]), mass=np.array([75.0]), ignores_robot=np.array([True]),
     )  # fmt: skip
     world = CrowdWorld(
         walls=np.zeros((0, 4)), entrance=np.array([50.0, 51.0, -5.0, 5.0]),
-        out=np.array([-1.0, 0.0, y - 0.33, y + 0.33]), response=response,
+        out=np.array([-1.0, 0.0, y - 0.33, y + 0.33]),
         robot_visible=True, stiffness=stiffness, dissipation=0.3, goal_key=1, decision_rate=16.0,
     )  # fmt: skip
     return CrowdEngine(agents, world, lambda _: _Straight())

@@ -15,7 +15,6 @@ from hypothesis import strategies as st
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.response.parameters import KeepOff
 from tests.core.sim.contact_reference import PERSON_RADIUS, ROBOT_RADIUS, Array, Meeting, contact
 from tests.examples import costly
 
@@ -48,9 +47,7 @@ class Collision:
             x=0.0, y=0.0, radius=PERSON_RADIUS, mass=m.person_mass, max_speed=10.0,
             preferred_speed=1.0, max_acceleration=5.0, routes=[[(-90.0, 0.0)]], ignores_robot=True,
         )  # fmt: skip
-        world = CrowdWorld(
-            response=KeepOff(0.0, 0.0), stiffness=m.stiffness, dissipation=m.dissipation
-        )
+        world = CrowdWorld(stiffness=m.stiffness, dissipation=m.dissipation)
         self.engine = CrowdEngine(agents, world, _Coasting())
         self.flat = self.engine.initial_state()
         self.header, (self.person,) = s.view(self.flat)

@@ -51,7 +51,6 @@ SEMANTIC = [
     ("crowd.costs.second", {"kind": "rvo"}),
     ("crowd.seed", {"root": 1}),
     ("crowd.robot_response", {"velocity": "hidden"}),
-    ("crowd.robot_response", {"kind": "keep_off"}),
     ("crowd.robot_response", {"late_fraction": 0.41}),
     ("crowd", None),
     ("robots", {}),

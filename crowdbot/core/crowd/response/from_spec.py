@@ -1,14 +1,13 @@
-"""What a world takes as a response, from the field ``crowd.robot_response``."""
+"""The response of a world, made from the field ``crowd.robot_response``."""
 
 from __future__ import annotations
 
 from dataclasses import fields
 
-from crowdbot.core.crowd.response.parameters import Human, KeepOff, Response
-from crowdbot.dsl.scenario.robot_response import KeepOffResponse, RobotResponse
+from crowdbot.core.crowd.response.parameters import Human
+from crowdbot.dsl.scenario.robot_response import RobotResponse
 
 
-def response_of(spec: RobotResponse) -> Response:
-    """The response that a spec describes; units are those of its fields."""
-    made = KeepOff if isinstance(spec, KeepOffResponse) else Human
-    return made(**{f.name: getattr(spec, f.name) for f in fields(made)})
+def response_of(spec: RobotResponse) -> Human:
+    """Return the response that a spec describes; units are those of its fields."""
+    return Human(**{f.name: getattr(spec, f.name) for f in fields(Human)})

@@ -1,9 +1,9 @@
-"""What of a response to robots can be chosen, as objects and as the arrays that kernels take."""
+"""Parameters of the response to robots, as an object and as the arrays that kernels take."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -70,40 +70,13 @@ class Human:
     def by_tick(self) -> Array:
         """What `crowdbot.core.crowd.step.tick` takes."""
         near = self.braking, self.standing_gap, self.standing_stiffness
-        return np.array([STANDING, self.standing_speed, self.moving_speed, *near])
+        return np.array([self.standing_speed, self.moving_speed, *near])
 
-
-@dataclass(frozen=True, slots=True)
-class KeepOff:
-    """A one-sided steering force near the outline: the response before 2026-11-22.
-
-    Attributes:
-        stiffness_moving, stiffness_stopped: beside a moving and beside a stopped robot, 1/s^2.
-        slow_speed: speed of the robot below which the first rises linearly to the second, m/s.
-    """
-
-    stiffness_moving: float = 62.5
-    stiffness_stopped: float = 125.0
-    slow_speed: float = 0.2
-
-    @property
-    def by_tick(self) -> Array:
-        """What `crowdbot.core.crowd.step.tick` takes."""
-        return np.array([KEEP_OFF, *astuple(self)])
-
-
-Response = Human | KeepOff
-
-#: Entry of both arrays of `by_tick`: which response it is.
-KIND = 0
-#: Values of that entry.
-STANDING, KEEP_OFF = 0.0, 1.0
 
 # Entries of `Human.by_decision`.
 (
     SIGHT, VIEW_COSINE, LATE_TIME, LATE_GAP, REACTION_TIME, HORIZON, CLEARANCE, LATERAL, BRAKING,
     TOTAL, STOP_GAP, DECISION, LATE_TIME_STANDING, SEEN_STANDING, SEEN_MOVING, ALL_STOP,
 ) = range(16)  # fmt: skip
-# Entries of `Human.by_tick` and of `KeepOff.by_tick`.
-STANDING_SPEED, MOVING_SPEED, LEAST_BRAKING, STANDING_GAP, STANDING_STIFFNESS = range(1, 6)
-STIFFNESS_MOVING, STIFFNESS_STOPPED, SLOW_SPEED = range(1, 4)
+# Entries of `Human.by_tick`.
+STANDING_SPEED, MOVING_SPEED, LEAST_BRAKING, STANDING_GAP, STANDING_STIFFNESS = range(5)

@@ -12,13 +12,10 @@ from hypothesis import strategies as st
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS, push_apart
-from crowdbot.core.crowd.response.keep_off import keep_off
-from crowdbot.core.crowd.response.parameters import KeepOff
 from tests.core.crowd.crowd_reference import Array, agents_of
-from tests.core.crowd.crowd_worlds import TICKS, rows, straight, walkers
+from tests.core.crowd.crowd_worlds import TICKS, rows, unmoved, walkers
 
 DT = 1.0 / TICKS
-DISC = np.zeros((1, 0, 2))
 NO_WALLS, NO_DISCS = np.zeros((0, 4)), np.zeros((0, 3))
 
 
@@ -92,7 +89,7 @@ def _robot(x: float, y: float, vx: float = 0.0, vy: float = 0.0) -> Array:
 
 def test_impulses_balance_and_people_take_theirs() -> None:
     """A robot at rest, run over by a person: momentum lost by one is what the other got."""
-    engine = straight(np.array([[10.0, 0.1]]), 1.2, response=KeepOff(0.0, 0.0))
+    engine = unmoved((10.0, 0.1), 1.2)
     flat = engine.initial_state()
     before = rows(flat)[0, s.VX : s.VY + 1].copy()
     robot = _robot(10.6, 0.0)
@@ -118,7 +115,7 @@ def _touch(engine: CrowdEngine, robot: Array, ticks: int) -> Array:
 
 def test_the_book_of_one_contact() -> None:
     """An immovable robot and a person who walks into it and bounces off."""
-    engine = straight(np.array([[10.0, 0.0]]), 1.0, response=KeepOff(0.0, 0.0))
+    engine = unmoved((10.0, 0.0), 1.0)
     flat = engine.initial_state()
     x0, (vx, vy) = rows(flat)[0, s.X], rows(flat)[0, s.VX : s.VY + 1]
     reach = 0.33 + 0.178
@@ -138,7 +135,7 @@ def test_the_book_of_one_contact() -> None:
 
 def test_one_contact_is_counted_once_while_bodies_stay_close() -> None:
     """Gaps below the release gap do not end a contact."""
-    engine = straight(np.array([[10.0, 0.0]]), 1e-9, response=KeepOff(0.0, 0.0))
+    engine = unmoved((10.0, 0.0), 1e-9)
     flat = engine.initial_state()
     reach = 0.33 + 0.178
     for k in range(64):
@@ -152,7 +149,7 @@ def test_one_contact_is_counted_once_while_bodies_stay_close() -> None:
 
 
 def test_forces_never_pull() -> None:
-    engine = straight(np.array([[10.0, 0.0]]), 1e-9, response=KeepOff(0.0, 0.0))
+    engine = unmoved((10.0, 0.0), 1e-9)
     flat = engine.initial_state()
     rows(flat)[0, s.VX] = -6.0  # apart, fast enough to turn the damping over
     engine.advance(flat, _robot(10.5, 0.0))
@@ -163,63 +160,3 @@ def test_coincident_centres_are_finite() -> None:
     engine = walkers(agents_of(np.array([[10.0, 0.0], [10.0, 0.0], [20.0, -5.0]])))
     flat = _touch(engine, _robot(10.0, 0.0), TICKS)
     assert np.all(np.isfinite(flat))
-
-
-@pytest.mark.parametrize(
-    ("speed", "stiffness"), [(0.0, 125.0), (0.1, 93.75), (0.2, 62.5), (0.6, 62.5)]
-)
-def test_people_keep_off_the_robot(speed: float, stiffness: float) -> None:
-    people = _people([(0.5, 0.0)])
-    robots = _robot(0.0, 0.0, speed)
-    ax, ay = _kept_off(people, robots)
-    assert (ax, ay) == pytest.approx((stiffness * (0.428 + 0.33 - 0.5), 0.0))
-    far = _people([(0.76, 0.0)])
-    assert _kept_off(far, robots) == (0.0, 0.0)
-
-
-WHEELCHAIR = np.array([[[0.55, 0.305], [-0.55, 0.305], [-0.55, -0.305], [0.55, -0.305]]])
-CAPSULE = np.array([[[0.051, 0.0], [-0.515, 0.0], [math.nan, math.nan]]])
-
-
-@given(
-    st.sampled_from([(WHEELCHAIR, 0.0), (CAPSULE, 0.4)]),
-    st.floats(-math.pi, math.pi),
-    st.floats(-math.pi, math.pi),
-    st.floats(0.01, 1.5),
-)
-@settings(deadline=None, max_examples=100)
-def test_people_keep_off_the_outline(
-    shape: tuple[Array, float], yaw: float, side: float, away: float
-) -> None:
-    """Against the nearest of many points of the outline: straight away from it, by its depth."""
-    outlines, rounding = shape
-    corners = outlines[0][~np.isnan(outlines[0][:, 0])]
-    extent = float(np.hypot(*corners.T).max())
-    c, s_ = math.cos(yaw), math.sin(yaw)
-    ends = np.roll(corners, -1, axis=0)
-    share = np.linspace(0.0, 1.0, 4001)[:, np.newaxis, np.newaxis]
-    points = (corners + share * (ends - corners)).reshape(-1, 2) @ np.array([[c, s_], [-s_, c]])
-    at = (extent + away) * np.array([math.cos(side), math.sin(side)])
-    robots = np.array([[0.0, 0.0, 1.0, 0.0, rounding, extent + rounding + 0.25, yaw, 0.0]])
-    found = np.array(_kept_off(_people([(at[0], at[1])]), robots, outlines))
-    offset = at - points[np.argmin(np.hypot(*(at - points).T))]
-    gap = float(np.hypot(*offset))
-    depth = max(0.0, 0.25 + rounding + 0.33 - gap)
-    assert found == pytest.approx(62.5 * depth * offset / gap, abs=0.1)
-
-
-def test_beside_a_wheelchair_there_is_more_room_than_ahead() -> None:
-    """Half a metre beside its side nobody is driven away, as a disc around it would."""
-    robots = np.array([[0.0, 0.0, 1.0, 0.0, 0.0, math.hypot(0.55, 0.305) + 0.25, 0.0, 0.0]])
-    beside, ahead = _people([(0.0, 0.305 + 0.59)]), _people([(0.55 + 0.5, 0.0)])
-    assert math.hypot(0.0, 0.895) < robots[0, 5] + 0.33
-    assert _kept_off(beside, robots, WHEELCHAIR) == (0.0, 0.0)
-    assert _kept_off(ahead, robots, WHEELCHAIR) == pytest.approx((62.5 * 0.08, 0.0))
-    inside = _people([(0.0, 0.2)])
-    assert _kept_off(inside, robots, WHEELCHAIR) == pytest.approx((0.0, 62.5 * (0.58 + 0.105)))
-
-
-def _kept_off(people: Array, robots: Array, outlines: Array = DISC) -> tuple[float, float]:
-    response = KeepOff().by_tick
-    ax, ay = keep_off(people, 0, np.array([0.33]), robots, outlines, response)
-    return ax, ay

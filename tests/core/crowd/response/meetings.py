@@ -9,7 +9,7 @@ import numpy as np
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.robot_contact import DISC
-from crowdbot.core.crowd.response.parameters import Human, Response
+from crowdbot.core.crowd.response.parameters import Human
 from crowdbot.core.support.ticks import TICK
 from tests.core.crowd.crowd_reference import Array
 
@@ -55,7 +55,7 @@ class Meeting:
         robots: Sequence[Sequence[float]],
         late: bool | Sequence[bool] = False,
         outline: Array = DISC,
-        response: Response | None = None,
+        response: Human | None = None,
     ) -> None:
         at, v = np.array(people), np.array(velocities)
         speed = np.hypot(v[:, 0], v[:, 1])

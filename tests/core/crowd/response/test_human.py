@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.response.parameters import Human, KeepOff
+from crowdbot.core.crowd.response.parameters import Human
 from tests.core.crowd.crowd_reference import Array
 from tests.core.crowd.response.meetings import BODY, PERSON, Meeting, Place, robot
 from tests.examples import costly
@@ -130,12 +130,11 @@ def test_no_place_direction_or_side_is_preferred(
 
 
 # --------------------------------------------------------------------- far and absent
-@pytest.mark.parametrize("response", [Human(), KeepOff()])
 @pytest.mark.parametrize("late", [False, True])
-def test_a_robot_far_away_changes_nobody_by_a_bit(response: Human | KeepOff, late: bool) -> None:
+def test_a_robot_far_away_changes_nobody_by_a_bit(late: bool) -> None:
     people, v = [(0.0, 0.0), (0.4, 1.0)], [(1.2, 0.0), (0.5, 0.4)]
-    alone = Meeting(people, v, [], late, response=response).run(5.0)
-    watched = Meeting(people, v, [robot(3.0, 40.0)], late, response=response).run(5.0)
+    alone = Meeting(people, v, [], late).run(5.0)
+    watched = Meeting(people, v, [robot(3.0, 40.0)], late).run(5.0)
     assert watched.state == alone.state
 
 

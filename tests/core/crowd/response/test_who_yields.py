@@ -9,13 +9,13 @@ from pydantic import ValidationError
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.response.parameters import Human, KeepOff, Response
+from crowdbot.core.crowd.response.parameters import Human
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sim.build_crowd import build_crowd
-from crowdbot.dsl.scenario.robot_response import HumanResponse, KeepOffResponse
+from crowdbot.dsl.scenario.robot_response import RobotResponse
 from tests.core.crowd.crowd_reference import Array
 from tests.core.crowd.crowd_worlds import TICKS, Straight, rows, walkers
 
@@ -30,7 +30,7 @@ def _stream(ignores: object) -> Agents:
     )  # fmt: skip
 
 
-def _touched(ignores: object, response: Response | None = None) -> NDArray[np.bool_]:
+def _touched(ignores: object, response: Human | None = None) -> NDArray[np.bool_]:
     engine = walkers(_stream(ignores), response=response or Human())
     flat = engine.initial_state()
     for _ in range(25 * TICKS):
@@ -85,11 +85,10 @@ class Spy(Straight):
     [
         (Human(), [False, False, False]),
         (Human(shown_to_policies=True), [False, True, False]),
-        (KeepOff(), [False, True, True]),
     ],
 )
 def test_policies_are_shown_the_robot_for_those_who_plan_around_it(
-    response: Response, shown: list[bool]
+    response: Human, shown: list[bool]
 ) -> None:
     """Of somebody who ignores it, somebody attentive and somebody late."""
     spy = Spy()
@@ -122,7 +121,6 @@ def test_people_who_ignore_the_robot_walk_as_without_it() -> None:
         ("{reaction: ignore}", 1.0, 0.0),
         ("{reaction: mixed, ignoring_fraction: 0.4}", 0.4, 0.24),
         ("{reaction: distracted, ignoring_fraction: 0.4}", 0.4, 0.24),
-        ("{kind: keep_off, reaction: mixed, ignoring_fraction: 0.4}", 0.4, 0.0),
     ],
 )
 def test_the_scenario_says_it(words: str, ignoring: float, late: float) -> None:
@@ -152,9 +150,4 @@ def test_the_scenario_says_it(words: str, ignoring: float, late: float) -> None:
 )
 def test_what_makes_no_sense_is_refused(given: dict[str, object]) -> None:
     with pytest.raises(ValidationError):
-        HumanResponse(**given)  # type: ignore[arg-type]
-
-
-def test_keep_off_knows_nobody_who_is_distracted() -> None:
-    with pytest.raises(ValidationError, match="choose 'mixed'"):
-        KeepOffResponse(reaction="distracted", ignoring_fraction=0.1)
+        RobotResponse(**given)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Names in narrow columns are broken between their words, and nothing of them is lost."""
+"""Names in narrow columns break between their words and lose nothing."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crowdbot.core.support.name_lines import in_lines
+from crowdbot.core.support.text import wrap_name
 
 
 @pytest.mark.parametrize(
@@ -21,9 +21,9 @@ from crowdbot.core.support.name_lines import in_lines
     ],
 )
 def test_broken_after_marks(name: str, lines: list[str]) -> None:
-    assert in_lines(name, 13).splitlines() == lines
+    assert wrap_name(name, 13).splitlines() == lines
 
 
 @given(st.text(alphabet="ab_+-/ ", max_size=40), st.integers(1, 20))
 def test_nothing_is_lost(name: str, width: int) -> None:
-    assert "".join(in_lines(name, width).split()) == "".join(name.split())
+    assert "".join(wrap_name(name, width).split()) == "".join(name.split())

@@ -1,4 +1,4 @@
-"""Long names in several lines, for narrow columns: broken between words, not within them."""
+"""Words and names for output: counted nouns, long names in narrow columns."""
 
 from __future__ import annotations
 
@@ -7,12 +7,17 @@ import re
 _PART = re.compile(r"[^_+-]*[_+-]|[^_+-]+")
 
 
-def in_lines(name: str, width: int) -> str:
-    """A name that is broken at blanks, and where that does not do, after ``_``, ``-`` and ``+``.
+def plural(count: int, noun: str) -> str:
+    """Return a count and its noun, such as ``1 pair`` and ``2 pairs``."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def wrap_name(name: str, width: int) -> str:
+    """Break a name at blanks, and within words longer than a line after ``_``, ``-`` and ``+``.
 
     Args:
-        name: a line.
-        width: no line is longer, unless a word alone is.
+        name: a single line.
+        width: largest length of a line; only a part that cannot be broken is longer.
     """
     lines = [""]
     for word in name.split():
