@@ -36,7 +36,7 @@ from crowdbot.core.campaign.worker_process import worker_environment
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.recording import RecordingWriter
-from crowdbot.core.recording.container import McapFile
+from crowdbot.core.recording.container.mcap_file import McapFile
 from crowdbot.core.robots import build_model
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.scenarios.lock import population

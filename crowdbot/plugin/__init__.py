@@ -105,7 +105,7 @@ if TYPE_CHECKING:
     from crowdbot.core.environments.place_parts import place_parts
     from crowdbot.core.geometry.footprint import Footprint
     from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Task, Truth
-    from crowdbot.core.recording.reader import (
+    from crowdbot.core.recording.reading.recording import (
         RecordingInfo,
         read_scans,
         read_trajectories,

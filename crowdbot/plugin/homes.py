@@ -27,7 +27,9 @@ HOMES = {
     "crowdbot.core.environments.place_parts": "place_parts",
     "crowdbot.core.geometry.footprint": "Footprint",
     "crowdbot.core.planning.planner": "NoValidCommand Observation Planner Task Truth",
-    "crowdbot.core.recording.reader": "RecordingInfo read_scans read_trajectories recording_info",
+    "crowdbot.core.recording.reading.recording": (
+        "RecordingInfo read_scans read_trajectories recording_info"
+    ),
     "crowdbot.core.robots.description": "Description read_description",
     "crowdbot.core.robots.published": "PublishedWheel read_published",
     "crowdbot.core.scoring.metric": "Metric References",

@@ -19,7 +19,7 @@ from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 from crowdbot.cli import main
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import read_commands, read_trajectories
-from crowdbot.core.recording.records import MAX_CHUNK
+from crowdbot.core.recording.container.records import MAX_CHUNK
 from crowdbot.core.scoring.scores_csv import COLUMNS, read_scores_csv, write_scores_csv
 from crowdbot.core.trajectories.trajectories import Trajectories
 from tests.cli.test_evaluate_command import CROWD_ALONE, CROWDED, DRIVER, ROBOT_ALONE, T, record

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from crowdbot import cli
-from crowdbot.core.recording.records import Records
+from crowdbot.core.recording.container.records import Records
 from crowdbot.core.recording.topics import Topic
 from tests.cli.simulate_cases import ID, limit
 from tests.cli.test_serve import _free_port

@@ -9,7 +9,7 @@ import pytest
 from crowdbot.cli.commands.info import _show
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.results_lines import print_table
-from crowdbot.core.recording.contents import RecordingContents, TopicContents
+from crowdbot.core.recording.reading.contents import RecordingContents, TopicContents
 
 LINE: dict[str, Any] = {
     "planner": "dwa", "metric": "contacts_per_km", "variant": "at_fault", "unit": "1/km",

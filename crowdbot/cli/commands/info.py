@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from crowdbot.core.recording.contents import RecordingContents
+    from crowdbot.core.recording.reading.contents import RecordingContents
 
 
 def info(
@@ -22,7 +22,7 @@ def info(
 
     Example: crowdbot info runs/challenge-2020/in-d0125-slow-c01-r02/dwa/seed-0/run.mcap
     """
-    from crowdbot.core.recording.contents import contents
+    from crowdbot.core.recording.reading.contents import contents
     from crowdbot.core.runs.run_directory import RECORDING
 
     path = file / RECORDING if file.is_dir() else file
@@ -42,7 +42,7 @@ def info(
 
 
 def _about(path: Path, found: RecordingContents) -> dict[str, Any]:
-    from crowdbot.core.recording.reader import recording_info
+    from crowdbot.core.recording.reading.recording import recording_info
 
     about: dict[str, Any] = {
         "file": str(path),

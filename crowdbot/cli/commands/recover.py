@@ -22,7 +22,7 @@ def recover(
 
     Example: crowdbot recover runs/challenge-2020/in-d0125-slow-c01-r02/dwa/seed-0.partial
     """
-    from crowdbot.core.recording.recover import recover as recover_it
+    from crowdbot.core.recording.reading.recover import recover as recover_it
     from crowdbot.core.runs.run_directory import RECORDING
     from crowdbot.errors import InputError
 

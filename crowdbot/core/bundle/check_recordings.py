@@ -11,7 +11,7 @@ from pathlib import Path
 from crowdbot.core.bundle.archive import Archive
 from crowdbot.core.bundle.check_run import ClaimedRun
 from crowdbot.core.bundle.pack import read_json
-from crowdbot.core.recording.attachments import attached
+from crowdbot.core.recording.container.attachments import attached
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.read_and_score import RecordedRun, read_recorded

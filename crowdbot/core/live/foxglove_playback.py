@@ -10,8 +10,8 @@ from typing import Any, cast
 
 from mcap.reader import SeekingReader
 
-from crowdbot.core.recording.contents import contents
-from crowdbot.core.recording.records import Record, Records
+from crowdbot.core.recording.container.records import Record, Records
+from crowdbot.core.recording.reading.contents import contents
 from crowdbot.errors import InputError
 
 #: So far back a search looks for the latest message of each topic, s; topics with fewer messages

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from crowdbot.core.realism.tracks import NothingToCompareError, Tracks, tracks_of
-from crowdbot.core.recording.fleet import fleet_names, read_fleet
+from crowdbot.core.recording.reading.people_of_fleet import fleet_names, read_fleet
 from crowdbot.core.trajectories.bag_tables import people_topics
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError

@@ -1,9 +1,9 @@
 """Recordings: MCAP files of ROS 2 messages, and the state bit by bit beside them."""
 
-from crowdbot.core.recording.commands import read_commands
-from crowdbot.core.recording.fleet import FleetMember, fleet_names, read_fleet
 from crowdbot.core.recording.header import AgentsHeader, RecordingHeader, RobotHeader
-from crowdbot.core.recording.reader import (
+from crowdbot.core.recording.reading.commands import read_commands
+from crowdbot.core.recording.reading.people_of_fleet import FleetMember, fleet_names, read_fleet
+from crowdbot.core.recording.reading.recording import (
     RecordingInfo,
     WholeRecording,
     holds_run,

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import crowdbot.core.recording.messages as ros
 import crowdbot.core.recording.template as template
 from crowdbot.core.geometry.optical_frame import optical
-from crowdbot.core.recording.images import Grid, grid_of, thinned
+from crowdbot.core.recording.reading.images import Grid, grid_of, thinned
 from crowdbot.core.recording.template import Template
 from crowdbot.core.types.sensor import CameraFrame, Pinhole, SensorInfo
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from crowdbot.core.recording.chunk import Piece
-from crowdbot.core.recording.container import McapFile
+from crowdbot.core.recording.container.chunk import Piece
+from crowdbot.core.recording.container.mcap_file import McapFile
 from crowdbot.core.recording.topics import Topic
 
 #: Topics that robots write to together.

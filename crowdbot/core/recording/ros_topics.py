@@ -9,11 +9,11 @@ import crowdbot.core.recording.markers as markers
 import crowdbot.core.recording.messages as ros
 import crowdbot.core.recording.scenery as scenery
 import crowdbot.core.recording.template as template
-from crowdbot.core.recording.chunk import Piece
+from crowdbot.core.recording.container.chunk import Piece
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.namespace import in_namespace
 from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
-from crowdbot.core.recording.scans import REPLAY_RATE, Thinning
+from crowdbot.core.recording.reading.scans import REPLAY_RATE, Thinning
 from crowdbot.core.recording.template import Template
 from crowdbot.core.recording.topics import Topic, is_odometry, usual_names
 from crowdbot.core.recording.viewers import ARROWS_TYPE, PEOPLE_RATE, PeopleArrows, RobotWay

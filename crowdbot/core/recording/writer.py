@@ -21,14 +21,14 @@ from numpy.typing import NDArray
 
 import crowdbot.core.recording.messages as ros
 from crowdbot.core.recording.camera import CameraMessages
-from crowdbot.core.recording.candidates import Choosers
-from crowdbot.core.recording.container import McapFile
+from crowdbot.core.recording.container.mcap_file import McapFile
 from crowdbot.core.recording.header import RecordingHeader, tilts_message, with_frames
-from crowdbot.core.recording.images import REPLAY_IMAGE_RATE, REPLAY_IMAGE_WIDTH
+from crowdbot.core.recording.motion.candidates import Choosers
+from crowdbot.core.recording.motion.states import SeriesRows, StateSample, StatesWriter
 from crowdbot.core.recording.namespace import NamespacedFile
+from crowdbot.core.recording.reading.images import REPLAY_IMAGE_RATE, REPLAY_IMAGE_WIDTH
+from crowdbot.core.recording.reading.scans import REPLAY_RATE, Thinning, whole_centimetres
 from crowdbot.core.recording.ros_topics import ToolTopics
-from crowdbot.core.recording.scans import REPLAY_RATE, Thinning, whole_centimetres
-from crowdbot.core.recording.states import SeriesRows, StateSample, StatesWriter
 from crowdbot.core.recording.template import trip, whole_trip
 from crowdbot.core.recording.topics import (
     Topic,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.geometry.footprint import body_side
-from crowdbot.core.recording.scans import CENTIMETRE
+from crowdbot.core.recording.reading.scans import CENTIMETRE
 from crowdbot.core.replay.encode_images import encode_images
 from crowdbot.core.replay.encode_robot import encode_robots
 from crowdbot.core.replay.encode_scans import encode_scans

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.recording.images import ReplayImages
+from crowdbot.core.recording.reading.images import ReplayImages
 from crowdbot.core.replay.pack import deflate
 
 #: Of base64, for all images of a run: beyond, every second one is left out, and so on.

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.recording.scans import CENTIMETRE, REPLAY_RATE, ReplayScan
+from crowdbot.core.recording.reading.scans import CENTIMETRE, REPLAY_RATE, ReplayScan
 from crowdbot.core.replay.encode_contacts import number
 from crowdbot.core.replay.pack import ABSENT, pack_motion, pack_readings, quantise
 from crowdbot.core.types.arrays import Array

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.recording.images import ReplayImages
-from crowdbot.core.recording.scans import ReplayScan
+from crowdbot.core.recording.reading.images import ReplayImages
+from crowdbot.core.recording.reading.scans import ReplayScan
 from crowdbot.core.replay.other_track import OtherTrack, Seen
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array

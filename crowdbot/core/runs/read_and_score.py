@@ -14,8 +14,8 @@ from crowdbot.core.recording import (
     read_run,
     read_whole,
 )
-from crowdbot.core.recording.images import ImageCollector
-from crowdbot.core.recording.scans import ReplayScan
+from crowdbot.core.recording.reading.images import ImageCollector
+from crowdbot.core.recording.reading.scans import ReplayScan
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs.identity import CROWD_ALONE, ROBOT_ALONE

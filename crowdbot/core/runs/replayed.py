@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.environments.build import build_environment
-from crowdbot.core.recording.images import (
+from crowdbot.core.recording.reading.images import (
     REPLAY_IMAGE_RATE,
     REPLAY_IMAGE_WIDTH,
     ImageCollector,
     ReplayImages,
 )
-from crowdbot.core.recording.scans import REPLAY_RATE
+from crowdbot.core.recording.reading.scans import REPLAY_RATE
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.replay import OtherTrack, Scenery, ShownRun
 from crowdbot.core.robots import build_robot

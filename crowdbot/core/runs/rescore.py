@@ -10,8 +10,8 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from crowdbot.core.recording import fleet_names, read_fleet
-from crowdbot.core.recording.commands import read_commands
-from crowdbot.core.recording.reader import WholeRecording, holds_run, read_whole
+from crowdbot.core.recording.reading.commands import read_commands
+from crowdbot.core.recording.reading.recording import WholeRecording, holds_run, read_whole
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.runs.identity import CROWD_ALONE, ROBOT_ALONE
 from crowdbot.core.runs.read_and_score import references_by_robot, score_robots

@@ -63,7 +63,9 @@ def attach_files(folder: Path, record: Mapping[str, Any]) -> None:
         folder: of a run, with its recording.
         record: as it will be written, but for the sizes of files.
     """
-    from crowdbot.core.recording.attachments import attach  # numpy, which listing does without
+    from crowdbot.core.recording.container.attachments import (
+        attach,  # numpy, which listing does without
+    )
 
     plain = {k: v for k, v in record.items() if k != "files"}
     document = (json.dumps(plain, indent=2, ensure_ascii=False) + "\n").encode()

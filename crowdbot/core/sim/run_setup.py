@@ -19,7 +19,7 @@ from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter
-from crowdbot.core.recording.candidates import Choosers
+from crowdbot.core.recording.motion.candidates import Choosers
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry

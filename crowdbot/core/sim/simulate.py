@@ -12,8 +12,8 @@ from crowdbot.core.crowd.compile_ahead import crowd_compiled_ahead
 from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.planning.given_planner import GivenPlanner, choose_planner
 from crowdbot.core.planning.watchdog import STEP_LIMIT
-from crowdbot.core.recording.images import ImageCollector, ReplayImages
-from crowdbot.core.recording.scans import REPLAY_RATE
+from crowdbot.core.recording.reading.images import ImageCollector, ReplayImages
+from crowdbot.core.recording.reading.scans import REPLAY_RATE
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.replay import write_replay

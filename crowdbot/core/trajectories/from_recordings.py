@@ -34,7 +34,7 @@ GoalTime = float | Literal["derived"] | None
 TableColumns = Mapping[str, ColumnNames]
 _COLUMNS = {"robot": own.ROBOT, "agents": own.AGENT, "trips": own.TRIP, "contacts": own.CONTACT}
 #: Recordings lie a floor above; their reader is named as text, like whatever is built.
-_above = lazy_names(__name__, {"crowdbot.core.recording.reader": "read_trajectories"})
+_above = lazy_names(__name__, {"crowdbot.core.recording.reading.recording": "read_trajectories"})
 _Run = TypeVar("_Run", bound="FromRecordings")
 
 
@@ -427,7 +427,7 @@ class FromRecordings:
 
     @classmethod
     def from_mcap(cls, path: Path | str, *, robot: str | None = None) -> Self:
-        """Read a recording; see `crowdbot.core.recording.reader.read_trajectories`.
+        """Read a recording; see `crowdbot.core.recording.reading.recording.read_trajectories`.
 
         Args:
             path: ``run.mcap`` of a run.

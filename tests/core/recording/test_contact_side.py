@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from crowdbot.core.geometry.footprint import body_side
 from crowdbot.core.recording import RecordingWriter, read_trajectories, recording_info, typestore
 from crowdbot.core.recording import messages as ros
-from crowdbot.core.recording.container import McapFile
+from crowdbot.core.recording.container.mcap_file import McapFile
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError

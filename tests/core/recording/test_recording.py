@@ -21,8 +21,8 @@ from crowdbot.core.recording import (
     read_trajectories,
     recording_info,
 )
-from crowdbot.core.recording.records import Records
-from crowdbot.core.recording.scans import REPLAY_RATE, Thinning
+from crowdbot.core.recording.container.records import Records
+from crowdbot.core.recording.reading.scans import REPLAY_RATE, Thinning
 from crowdbot.core.recording.viewers import PEOPLE_RATE
 from crowdbot.core.replay import ShownRun, write_replay
 from crowdbot.core.runs.provenance import trajectory_hash

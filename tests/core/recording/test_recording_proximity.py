@@ -19,7 +19,7 @@ from crowdbot.core.recording import (
     read_scans,
     read_trajectories,
 )
-from crowdbot.core.recording.reader import recording_info
+from crowdbot.core.recording.reading.recording import recording_info
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.dsl.spec.component_specs import SensorSpec

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.recording.images import ReplayImages
+from crowdbot.core.recording.reading.images import ReplayImages
 from crowdbot.core.replay import ReplayScan, Scenery, ShownRun
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score

@@ -15,7 +15,7 @@ from crowdbot.core.live.serve import LiveServe, serve_runs
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.planning.planner import Observation
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
-from crowdbot.core.recording.records import Record, Records
+from crowdbot.core.recording.container.records import Record, Records
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.run import Recorded, Request
 from crowdbot.core.sim.built_run import build_run

@@ -19,11 +19,11 @@ from rosbags.interfaces import (
 )
 
 import crowdbot.core.recording.messages as ros
+from crowdbot.core.recording.container.records import Records
 from crowdbot.core.recording.export.extras import OFTEN, Extra, extras
 from crowdbot.core.recording.export.stamps import moved
 from crowdbot.core.recording.header import RecordingHeader
-from crowdbot.core.recording.reader import read_trajectories, recording_info
-from crowdbot.core.recording.records import Records
+from crowdbot.core.recording.reading.recording import read_trajectories, recording_info
 from crowdbot.core.recording.scenery import BASE
 from crowdbot.core.recording.topics import Topic, sensor_topics, usual_names
 from crowdbot.errors import InputError

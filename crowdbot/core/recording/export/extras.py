@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import crowdbot.core.recording.messages as ros
-from crowdbot.core.recording.chunk import Piece
+from crowdbot.core.recording.container.chunk import Piece
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.ros_topics import ToolTopics
 from crowdbot.core.recording.topics import Topic

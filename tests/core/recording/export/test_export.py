@@ -13,9 +13,9 @@ from ruamel.yaml import YAML
 
 from crowdbot import cli
 from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording.container.records import Records
 from crowdbot.core.recording.export.stamps import moved
 from crowdbot.core.recording.export.tables import geojson, tables, trajnet
-from crowdbot.core.recording.records import Records
 from crowdbot.core.trajectories.trajectories import Trajectories
 from tests.core.recording.recording_cases import WALLS, bits, random_run, write_run
 

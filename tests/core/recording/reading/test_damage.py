@@ -26,8 +26,8 @@ from crowdbot.core.recording import (
     read_whole,
     recording_info,
 )
-from crowdbot.core.recording import records as records_module
-from crowdbot.core.recording.records import MAX_CHUNK
+from crowdbot.core.recording.container import records as records_module
+from crowdbot.core.recording.container.records import MAX_CHUNK
 from crowdbot.errors import InputError
 from tests.core.recording.recording_cases import (
     bits,

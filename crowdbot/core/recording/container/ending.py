@@ -21,7 +21,7 @@ from mcap.records import (
 )
 from mcap.writer import MCAP0_MAGIC
 
-from crowdbot.core.recording.chunk import serialised
+from crowdbot.core.recording.container.chunk import serialised
 
 _END_OF_DATA = serialised([DataEnd(data_section_crc=0)])
 #: Bytes between the data and the summary.

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from crowdbot.core.recording.assemble import Collected
+from crowdbot.core.recording.container.records import Record, Records, decode
 from crowdbot.core.recording.header import RecordingHeader
-from crowdbot.core.recording.records import Record, Records, decode
-from crowdbot.core.recording.scan_reader import ScanCollector, cones, lidars
-from crowdbot.core.recording.scans import ReplayScan
+from crowdbot.core.recording.reading.assemble import Collected
+from crowdbot.core.recording.reading.scan_collector import ScanCollector, cones, lidars
+from crowdbot.core.recording.reading.scans import ReplayScan
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.support.immutable import immutable
 from crowdbot.core.trajectories.trajectories import AgentTracks, Trajectories, Trips

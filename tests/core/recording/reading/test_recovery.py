@@ -12,9 +12,9 @@ from mcap.reader import make_reader
 
 from crowdbot import cli
 from crowdbot.core.recording import RecordingWriter, read_trajectories, recording_info
-from crowdbot.core.recording.contents import contents
-from crowdbot.core.recording.records import Records
-from crowdbot.core.recording.recover import recover
+from crowdbot.core.recording.container.records import Records
+from crowdbot.core.recording.reading.contents import contents
+from crowdbot.core.recording.reading.recover import recover
 from crowdbot.errors import InputError
 from tests.core.recording.recording_cases import (
     bits,

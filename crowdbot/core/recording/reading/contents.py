@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.recording.records import Record, Records, decode
+from crowdbot.core.recording.container.records import Record, Records, decode
 from crowdbot.core.recording.topics import Topic
 
 #: Status of a recording that was cut off, once it was recovered.

@@ -20,13 +20,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.recording.candidates import (
+from crowdbot.core.recording.motion.candidates import (
     CandidateTable,
     Choosers,
     candidate_table,
 )
-from crowdbot.core.recording.motion_bytes import EXACT, carry, mark_exact
-from crowdbot.core.recording.motion_prediction import (
+from crowdbot.core.recording.motion.difference_bytes import EXACT, carry, mark_exact
+from crowdbot.core.recording.motion.prediction import (
     SPEEDS,
     accelerate,
     acceleration,

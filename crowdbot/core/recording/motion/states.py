@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import crowdbot.core.recording.messages as ros
-from crowdbot.core.recording.candidates import Choosers, GoalChanges, GoalsReader
+from crowdbot.core.recording.motion.candidates import Choosers, GoalChanges, GoalsReader
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
 if TYPE_CHECKING:
-    from crowdbot.core.recording.motion_codec import MotionCodec
+    from crowdbot.core.recording.motion.codec import MotionCodec
 
 
 class StateSample(NamedTuple):
@@ -123,7 +123,7 @@ class StatesReader:
         return States(t, robot, agents, told, jump)
 
     def _of_message(self, message: Any) -> States:
-        from crowdbot.core.recording.motion_codec import Packed  # like `_codec`
+        from crowdbot.core.recording.motion.codec import Packed  # like `_codec`
 
         if message.first != self._read:
             raise InputError(f"sample {self._read} is missing")
@@ -194,6 +194,6 @@ def series(messages: Iterable[Any]) -> dict[str, Array]:
 
 def _codec(people: int, choosers: Sequence[Choosers]) -> MotionCodec:
     """The codec; its module imports numba, which who only looks for runs does without."""
-    from crowdbot.core.recording.motion_codec import MotionCodec
+    from crowdbot.core.recording.motion.codec import MotionCodec
 
     return MotionCodec(people, choosers)

@@ -15,8 +15,8 @@ from typing import Any
 from mcap.records import Channel, ChunkIndex, Header, Schema, Statistics
 from mcap.writer import MCAP0_MAGIC
 
-from crowdbot.core.recording.chunk import OpenChunk, Piece, serialised
-from crowdbot.core.recording.ending import FileIndex, ending
+from crowdbot.core.recording.container.chunk import OpenChunk, Piece, serialised
+from crowdbot.core.recording.container.ending import FileIndex, ending
 from crowdbot.core.recording.messages import definition, to_cdr
 from crowdbot.errors import InputError
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crowdbot.core.recording.motion_bytes import EXACT, carry, mark_exact
+from crowdbot.core.recording.motion.difference_bytes import EXACT, carry, mark_exact
 
 
 def test_differences_lie_byte_by_byte_without_those_that_are_nothing() -> None:

@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from crowdbot.core.recording.candidates import Choosers
-from crowdbot.core.recording.motion_codec import GAINS, MotionCodec, Packed
+from crowdbot.core.recording.motion.candidates import Choosers
+from crowdbot.core.recording.motion.codec import GAINS, MotionCodec, Packed
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.candidates import VelocityCandidates
 

@@ -10,7 +10,7 @@ from mcap.records import Channel, Chunk, ChunkIndex, Footer, Message, MessageInd
 from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import Writer
 
-from crowdbot.core.recording.container import CHUNK_SIZE, McapFile
+from crowdbot.core.recording.container.mcap_file import CHUNK_SIZE, McapFile
 from crowdbot.core.recording.messages import clock, definition, to_cdr
 
 CLOCK = "rosgraph_msgs/msg/Clock"

@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from crowdbot.core.recording.assemble import Collected
-from crowdbot.core.recording.fleet import among
+from crowdbot.core.recording.container.records import Record, Records, decode
 from crowdbot.core.recording.header import RecordingHeader, with_tilts
-from crowdbot.core.recording.records import Record, Records, decode
-from crowdbot.core.recording.scan_reader import Choice, ScanCollector, cones, lidars
-from crowdbot.core.recording.scans import ReplayScan
+from crowdbot.core.recording.reading.assemble import Collected
+from crowdbot.core.recording.reading.people_of_fleet import among
+from crowdbot.core.recording.reading.scan_collector import Choice, ScanCollector, cones, lidars
+from crowdbot.core.recording.reading.scans import ReplayScan
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError, UnknownNameError

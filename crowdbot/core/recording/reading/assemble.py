@@ -8,9 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar
 
+from crowdbot.core.recording.container.records import Record, decode
 from crowdbot.core.recording.header import RecordingHeader, RobotHeader, with_tilts
-from crowdbot.core.recording.records import Record, decode
-from crowdbot.core.recording.states import States, StatesReader, series
+from crowdbot.core.recording.motion.states import States, StatesReader, series
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 import crowdbot.core.recording.messages as ros
+from crowdbot.core.recording.container.records import Record, decode
 from crowdbot.core.recording.header import RecordingHeader
-from crowdbot.core.recording.records import Record, decode
-from crowdbot.core.recording.scans import ReplayScan, Thinning
+from crowdbot.core.recording.reading.scans import ReplayScan, Thinning
 from crowdbot.core.recording.topics import is_cone, is_scan, range_topic, scan_topic
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import SensorInfo

@@ -11,7 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from crowdbot.core.recording import RecordingHeader, RecordingWriter, RobotHeader
-from crowdbot.core.recording.reader import read_run, read_scans, recording_info
+from crowdbot.core.recording.reading.recording import read_run, read_scans, recording_info
 from crowdbot.core.recording.scenery import static_frames
 from crowdbot.core.replay.encode_scans import encode_scans
 from crowdbot.core.sensing.points import LidarPoints

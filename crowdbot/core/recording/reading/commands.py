@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 import crowdbot.core.recording.messages as ros
+from crowdbot.core.recording.container.records import Record, Records
 from crowdbot.core.recording.header import RecordingHeader
-from crowdbot.core.recording.records import Record, Records
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.types.arrays import Array

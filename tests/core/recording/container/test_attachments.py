@@ -10,9 +10,9 @@ from mcap.exceptions import EndOfFile
 from mcap.reader import SeekingReader, make_reader
 
 from crowdbot.core.recording import read_trajectories
-from crowdbot.core.recording.attachments import attach, attached
-from crowdbot.core.recording.contents import contents
-from crowdbot.core.recording.records import Records
+from crowdbot.core.recording.container.attachments import attach, attached
+from crowdbot.core.recording.container.records import Records
+from crowdbot.core.recording.reading.contents import contents
 from crowdbot.errors import InputError
 from tests.core.recording.recording_cases import bits, random_run, write_run
 

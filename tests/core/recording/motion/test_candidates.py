@@ -19,7 +19,7 @@ from crowdbot.core.recording import (
     RecordingWriter,
     read_trajectories,
 )
-from crowdbot.core.recording.candidates import (
+from crowdbot.core.recording.motion.candidates import (
     MOST_CANDIDATES,
     Choosers,
     GoalChanges,

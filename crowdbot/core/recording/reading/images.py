@@ -9,8 +9,8 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.recording.records import Record, decode
-from crowdbot.core.recording.scans import Thinning
+from crowdbot.core.recording.container.records import Record, decode
+from crowdbot.core.recording.reading.scans import Thinning
 from crowdbot.errors import InputError
 
 #: As many images per second as the replay page holds, Hz, and as wide, in pixels.

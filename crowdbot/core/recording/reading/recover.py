@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import crowdbot.core.recording.messages as ros
-from crowdbot.core.recording.container import McapFile
-from crowdbot.core.recording.contents import RECOVERED
-from crowdbot.core.recording.records import Record, Records
+from crowdbot.core.recording.container.mcap_file import McapFile
+from crowdbot.core.recording.container.records import Record, Records
+from crowdbot.core.recording.reading.contents import RECOVERED
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.support.atomic_write import atomic_path
 from crowdbot.errors import InputError

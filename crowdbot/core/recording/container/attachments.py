@@ -16,8 +16,8 @@ from mcap.exceptions import McapError
 from mcap.reader import SeekingReader
 from mcap.records import Attachment, AttachmentIndex
 
-from crowdbot.core.recording.chunk import serialised
-from crowdbot.core.recording.ending import END_OF_DATA_SIZE, FileIndex, ending
+from crowdbot.core.recording.container.chunk import serialised
+from crowdbot.core.recording.container.ending import END_OF_DATA_SIZE, FileIndex, ending
 from crowdbot.errors import InputError
 
 #: Bytes before the content of a record: what it is, and its length.
