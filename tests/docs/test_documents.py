@@ -191,6 +191,12 @@ def test_the_page_of_all_fields_is_fresh() -> None:
     assert read("reference/scenario.md") == text, "run scripts/write_reference.py"
 
 
+def test_the_table_of_endings_is_fresh() -> None:
+    script = runpy.run_path(str(ROOT / "scripts" / "write_endings.py"))
+    text = read("reference/run_directory.md")
+    assert script["page"](text) == text, "run scripts/write_endings.py"
+
+
 def test_decisions_are_numbered_and_whole() -> None:
     decisions = sorted((ROOT / "docs" / "decisions").glob("*.md"))
     numbers = [int(d.name[:4]) for d in decisions]

@@ -201,16 +201,15 @@ def _only(found: Results, planners: list[str] | None, status: str | None) -> Res
     Raises:
         UnknownNameError: no run has such a planner or status.
     """
-    from crowdbot.core.runs.outcome import ENDINGS
+    from crowdbot.core.types.ending import ATTEMPTED, Ending
     from crowdbot.errors import UnknownNameError
 
     labels = {r.planner for r in found.runs} | {f.planner for f in found.failures}
     for name in planners or ():
         if name not in labels:
             raise UnknownNameError("planner", name, labels)
-    statuses = (*ENDINGS, "failed")
-    if status is not None and status not in statuses:
-        raise UnknownNameError("status", status, statuses)
+    if status is not None and status not in ATTEMPTED:
+        raise UnknownNameError("status", status, ATTEMPTED)
     runs = tuple(
         r
         for r in found.runs
@@ -224,7 +223,7 @@ def _only(found: Results, planners: list[str] | None, status: str | None) -> Res
         failures=tuple(
             f
             for f in found.failures
-            if (not planners or f.planner in planners) and status in (None, "failed")
+            if (not planners or f.planner in planners) and status in (None, Ending.NO_RUN)
         ),
     )
 

@@ -113,7 +113,7 @@ def serve(
         )  # fmt: skip
         run = _serve(what, how, manner, listen)
     print_run(run, as_json=as_json)
-    if run.status == "planner_failed":
+    if run.failed:
         raise typer.Exit(3)
 
 

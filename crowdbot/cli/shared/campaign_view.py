@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from crowdbot.core.runs.outcome import ENDINGS, PLANNER_FAILED
 from crowdbot.core.support.text import plural
+from crowdbot.core.types.ending import ATTEMPTED, has_failed
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from crowdbot.core.campaign.job import Done, Job
     from crowdbot.core.campaign.plan import Plan
     from crowdbot.core.campaign.run import Listener, State
-
-_COLUMNS = (*ENDINGS, "failed")
 
 
 @contextmanager
@@ -46,7 +44,7 @@ def show(plan: Plan) -> Iterator[Listener]:
 
 def _only_failures(state: State, job: Job | None, done: Done | None) -> None:
     """With ``--quiet``: what went wrong."""
-    if job is not None and done is not None and (done.error or done.status == PLANNER_FAILED):
+    if job is not None and done is not None and (done.error or has_failed(done.status)):
         _say(_line(state, job, done))
 
 
@@ -93,14 +91,14 @@ def _table(state: State) -> RenderableType:
     from rich.text import Text
 
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
-    for name in ("planner", "done", "", *_COLUMNS):
+    for name in ("planner", "done", "", *ATTEMPTED):
         table.add_column(name)
     counts = _counts(state)
     for label in state.plan.labels:
         total = sum(r.label == label for r in state.plan.runs)
         done = sum(counts[label].values())
         bar = ProgressBar(total=total, completed=done, width=20)
-        cells = [Text(str(counts[label][c])) for c in _COLUMNS]
+        cells = [Text(str(counts[label][c])) for c in ATTEMPTED]
         table.add_row(Text(label), f"{done}/{total}", bar, *cells)
     lines = [_busy(b.job, b.progress) for b in state.busy]
     return Group(table, *map(Text, lines), Text(_rate(state)))
@@ -138,7 +136,7 @@ def _counts(state: State) -> dict[str, Counter[str]]:
 def _summary(state: State) -> None:
     for label, counts in _counts(state).items():
         total = sum(r.label == label for r in state.plan.runs)
-        found = ", ".join(f"{counts[c]} {c}" for c in _COLUMNS if counts[c])
+        found = ", ".join(f"{counts[c]} {c}" for c in ATTEMPTED if counts[c])
         _say(f"{label}: {sum(counts.values())} of {total}: {found}")
 
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from crowdbot.core.registry.plugin_errors import UserInterrupt
+from crowdbot.core.types.ending import Ending
 
 if TYPE_CHECKING:
     from crowdbot.core.runs.run import Run
@@ -81,7 +82,7 @@ def end_hung_process() -> None:
 def print_run(run: Run, *, as_json: bool) -> None:
     """Scores on stdout, as a table or as JSON; what went wrong on stderr, last, to be seen."""
     _print_result(run, as_json=as_json)
-    if run.record["status"] == "planner_failed":
+    if run.failed:
         sys.stdout.flush()
         print(f"error: {run.record['reason']}", file=sys.stderr)
 
@@ -130,12 +131,8 @@ def _summary(run: Run) -> str:
     from crowdbot.core.runs.provenance import remarks
 
     record = run.record
-    ending = {
-        "arrived": "arrived after {:.1f} s",
-        "timeout": "did not arrive within {:.1f} s",
-        "toppled": "toppled at {:.1f} s",
-        "planner_failed": "planner failed at {:.1f} s",
-    }[record["status"]].format(record["goal_time"] or record["sim_time"])
+    when = record["goal_time"] or record["sim_time"]
+    ending = Ending(run.status).sentence.format(t=when)
     speed = f"{record['real_time_factor']:.1f} times real time"
     note = "; was complete already, --force runs it again" if run.reused else f" ({speed})"
     who = f"{record['scenario']} · {record['planner']['name']} · seed {record['seed']}"

@@ -15,6 +15,7 @@ from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_model import record_problems
 from crowdbot.core.scoring.fleet_scores import AT
+from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.spec.metric_component import MetricComponent
 
@@ -112,16 +113,16 @@ def _directory(run: ClaimedRun, manifest: Manifest) -> str:
 
 def _ending_problems(run: ClaimedRun) -> Iterator[str]:
     """Where status, time of arrival and success contradict each other."""
-    if run.record["status"] == "arrived" and run.record["goal_time"] is None:
+    if run.record["status"] == Ending.ARRIVED and run.record["goal_time"] is None:
         yield "its status is 'arrived', but it has no time of arrival"
     alone = not run.record.get("robots")
     for key in ("goal_time", "toppled_time"):
         time = run.record.get(key)
         if time is not None and time > run.record["sim_time"]:
             yield f"its {key} is {time:g} s, but it ended after {run.record['sim_time']:g} s"
-    if run.record["status"] != "arrived" and alone and run.record["goal_time"] is not None:
+    if run.record["status"] != Ending.ARRIVED and alone and run.record["goal_time"] is not None:
         yield f"its status is '{run.record['status']}', but it has a time of arrival"
-    if run.record["status"] == "toppled" and alone and run.record.get("toppled_time") is None:
+    if run.record["status"] == Ending.TOPPLED and alone and run.record.get("toppled_time") is None:
         yield "its status is 'toppled', but it has no toppled_time"
     arrived = arrivals(run.record)
     for score in run.scores:

@@ -24,6 +24,7 @@ from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import CROWD_ALONE, ROBOT_ALONE
 from crowdbot.core.runs.read_and_score import score_robots
 from crowdbot.core.scoring.metric import References
+from crowdbot.core.types.ending import has_failed
 from crowdbot.errors import InputError
 
 SUFFIX = ".cbz"
@@ -59,7 +60,7 @@ class LeaderboardEntry:
     @property
     def failed(self) -> int:
         """Runs in which the planner failed."""
-        return sum(run.record.get("status") == "planner_failed" for run in self.runs)
+        return sum(has_failed(str(run.record.get("status"))) for run in self.runs)
 
 
 def load_entries(folder: Path, registry: Registry) -> tuple[list[LeaderboardEntry], dict[str, str]]:

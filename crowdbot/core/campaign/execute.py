@@ -23,6 +23,7 @@ from crowdbot.core.runs.run import Request
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.scenarios.with_crowds import with_crowds
 from crowdbot.core.sim.references import make_reference
+from crowdbot.core.types.ending import has_failed
 from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import CrowdbotError, InputError, PlannerError, SimulationError
 
@@ -121,7 +122,7 @@ def _request(job: Job) -> Request:
     if job.retry_failed and job.kind == "run" and not job.force:
         with suppress(KeyError, TypeError):
             status = (files.read_record(request.directory) or {})["status"]
-            return replace(request, force=status == "planner_failed")
+            return replace(request, force=has_failed(status))
     return request
 
 

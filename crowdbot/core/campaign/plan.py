@@ -29,9 +29,9 @@ from crowdbot.core.runs.identity import (
     reusable_record,
     run_identity,
 )
-from crowdbot.core.runs.outcome import PLANNER_FAILED
 from crowdbot.core.runs.run import Request
 from crowdbot.core.sim.preflight import preflight
+from crowdbot.core.types.ending import has_failed
 from crowdbot.errors import InputError
 
 
@@ -183,7 +183,7 @@ class _PlanBuilder:
         record = reusable_record(request, key, compared=bool(references))
         if record is not None:
             self._learn(request, record, prepared)
-            failed = self._campaign.retry_failed and record["status"] == PLANNER_FAILED
+            failed = self._campaign.retry_failed and has_failed(record["status"])
             if failed or self._campaign.force:
                 record = None
         if record is None and not self._can_run(entry, request):

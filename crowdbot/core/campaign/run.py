@@ -15,7 +15,7 @@ from crowdbot.core.campaign.worker_pool import Busy, WorkerPool
 from crowdbot.core.results.failure import Failure, forget_failure, write_failure
 from crowdbot.core.results.store import Store, index
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.runs.outcome import PLANNER_FAILED
+from crowdbot.core.types.ending import Ending, has_failed
 from crowdbot.errors import PluginError, SimulationError
 
 _LOOK = 0.25
@@ -63,7 +63,7 @@ class State:
         codes = {d.exit_code for d in self.failures.values()}
         if codes - {PluginError.exit_code}:
             return SimulationError.exit_code
-        failed = codes or PLANNER_FAILED in self.statuses.values()
+        failed = codes or any(map(has_failed, self.statuses.values()))
         return PluginError.exit_code if failed else 0
 
 
@@ -156,7 +156,7 @@ class _Campaign:
     def _fail(self, job: Job, done: Done) -> list[tuple[Job, Done]]:
         self.state.failures[job.key] = done
         if job.kind == "run":
-            self.state.statuses[job.key] = "failed"
+            self.state.statuses[job.key] = Ending.NO_RUN
             write_failure(self._out / job.directory, _failure(job, done, self._axes[job.key]))
             self._store.add_failure(job.directory)
         ended = [(job, done)]

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
-from typing import Any, cast
+from typing import Any
 
 from crowdbot.core.live.door import Door
 from crowdbot.core.live.planner import LivePlanner, Manner, status
@@ -20,6 +20,7 @@ from crowdbot.core.runs.identity import prepare
 from crowdbot.core.runs.run import Request, Run
 from crowdbot.core.scenarios.one_robot import check_one_robot
 from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.types.ending import Ending
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError, Interrupted
 
@@ -119,7 +120,7 @@ def _serve_one(service: LiveServe, scenario: Scenario) -> Run | None:
     try:
         prepared = prepare(scenario, request.registry, references=request.references)
         run = make_run(request, prepared, builts={built.name: built})
-        state = cast(State, run.status)
+        state = Ending(run.status)
     except Interrupted:
         if session.interrupted():
             raise

@@ -12,12 +12,11 @@ from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
+from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.motion import Command
 
 Request = Literal["", "reset", "next", "load"]
-State = Literal[
-    "waiting", "running", "paused", "arrived", "timeout", "toppled", "planner_failed", "ended"
-]
+State = Literal["waiting", "running", "paused", "ended"] | Ending
 #: How often a wait looks whether the run was interrupted, s.
 _LOOK = 0.05
 #: A command whose stamp is older than the step that is asked, by more than this, answers another.

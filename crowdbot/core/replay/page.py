@@ -11,6 +11,7 @@ from crowdbot.core.replay.scores import compared
 from crowdbot.core.replay.shown_run import ShownRun
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import render_page
+from crowdbot.core.types.ending import ending_style
 
 _SCRIPTS = (
     "script/element.js", "script/decode.js", "script/motion.js", "script/sensing.js",
@@ -44,6 +45,7 @@ def _render(shown: Sequence[ShownRun], title: str) -> str:
     return render_page(
         __package__,
         scripts=_SCRIPTS,
+        more_style=ending_style(),
         frames=True,
         title=title,
         labels=[one.label or one.title for one in shown],

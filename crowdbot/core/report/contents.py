@@ -10,12 +10,11 @@ from typing import Any
 from crowdbot.core.realism.crowds import lines_of
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.report.cards import cards
-from crowdbot.core.report.encode import FAILED, Attempt, attempts, axes_of, status_of
+from crowdbot.core.report.encode import Attempt, attempts, axes_of, status_of
 from crowdbot.core.report.figures import Figures, figures
 from crowdbot.core.report.series import Series, all_series
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RunRow, named_metrics
-from crowdbot.core.runs.outcome import ENDINGS
 from crowdbot.core.scoring.score_scale import score_scales
 from crowdbot.core.statistics import (
     FloorCheck,
@@ -26,9 +25,8 @@ from crowdbot.core.statistics import (
 )
 from crowdbot.core.statistics.audit import Audit, suspicion
 from crowdbot.core.statistics.crowds import AXIS, CrowdRanks, crowd_ranks
+from crowdbot.core.types.ending import ATTEMPTED
 from crowdbot.errors import InputError
-
-STATUSES = (*ENDINGS, FAILED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,7 +100,7 @@ class Contents:
         """How many attempts ended in which way; default: of all."""
         chosen = self.attempts if attempts is None else attempts
         found = Counter(status_of(a) for a in chosen)
-        return {status: found[status] for status in STATUSES}
+        return {ending: found[ending] for ending in ATTEMPTED}
 
     def is_privileged(self, planner: str) -> bool:
         """Whether a planner was told what no sensor can tell, in any run."""

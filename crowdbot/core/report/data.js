@@ -3,7 +3,6 @@
 let report; // the document
 const OK = 0;
 const ABSENT = 65535;
-const FAILED = ["planner_failed", "failed"];
 const WITHOUT_VALUE = [
   ["censored", "censored"], ["undefined", "undefined"], ["failed", "failed"], ["absent", "not scored"],
 ];

@@ -11,13 +11,11 @@ import numpy as np
 from crowdbot.core.report.packing import deflate, pack
 from crowdbot.core.report.series import Series
 from crowdbot.core.results.results import Results
-from crowdbot.core.results.rows import PLANNER_FAILED, WITHOUT_RUN, FailureRow, RunRow
-from crowdbot.core.runs.outcome import ENDINGS
+from crowdbot.core.results.rows import WITHOUT_RUN, FailureRow, RunRow
+from crowdbot.core.types.ending import ATTEMPTED, Ending, has_failed
 
 #: Code of a score that a run does not have.
 ABSENT = 65535
-#: Status of an attempt that left no run.
-FAILED = "failed"
 #: State of a score with a value.
 OK = ("ok", "")
 #: Of a traceback.
@@ -81,7 +79,7 @@ def _axis(name: str, labels: Mapping[str, set[tuple[str, str]]]) -> dict[str, An
 
 def status_of(attempt: Attempt) -> str:
     """How an attempt ended."""
-    return attempt.status if isinstance(attempt, RunRow) else FAILED
+    return attempt.status if isinstance(attempt, RunRow) else Ending.NO_RUN
 
 
 def encode_runs(
@@ -91,7 +89,7 @@ def encode_runs(
     replays: Mapping[str, str],
 ) -> dict[str, Any]:
     """Columns of runs; ``replays``: run id -> address of its replay page."""
-    scenarios, statuses = Names(), Names(*ENDINGS, FAILED)
+    scenarios, statuses = Names(), Names(*ATTEMPTED)
     reasons = Names("")
     labels = [a.axes for a in tried]
     runs = [a if isinstance(a, RunRow) else None for a in tried]
@@ -114,7 +112,8 @@ def encode_runs(
         },
     }
     names = {"scenarios": scenarios.texts, "statuses": statuses.texts, "reasons": reasons.texts}
-    return {"runs": columns, **names}
+    endings = {ending: {"past": ending.past, "failed": ending.failed} for ending in ATTEMPTED}
+    return {"runs": columns, **names, "endings": endings}
 
 
 def _moment(run: RunRow) -> list[Any] | None:
@@ -163,7 +162,7 @@ def encode_scores(
                 values[s, r] = _number(value)
                 continue
             row = rows.get((attempt.run_id, one.metric, one.variant))
-            if attempt.status == PLANNER_FAILED and (row is None or row.status != "ok"):
+            if has_failed(attempt.status) and (row is None or row.status != "ok"):
                 codes[s, r] = states.setdefault(failed, len(states))
             elif row is not None:
                 codes[s, r] = states.setdefault((row.status, row.reason), len(states))

@@ -25,8 +25,8 @@ function drawFailed() {
 
 function failedText(rows) {
   const count = (status) => rows.filter((row) => row.status === status).length;
-  const parts = [["timeout", "timed out"], ["toppled", "toppled"], ["planner_failed", "ended by a failing planner"], ["failed", "could not be made"]];
-  return `${parts.filter(([s]) => count(s)).map(([s, text]) => `${count(s)} ${text}`).join(", ")}.`;
+  const found = Object.entries(report.endings).filter(([status]) => count(status));
+  return `${found.map(([status, { past }]) => `${count(status)} ${past}`).join(", ")}.`;
 }
 
 function attemptOf(run) {
@@ -42,7 +42,7 @@ function drawFailedRow(row) {
   const why = row.traceback
     ? el("details", {}, el("summary", { text: row.reason }), el("pre", { text: row.traceback }))
     : row.reason;
-  return el("tr", {}, el("td", {}, el("span", { class: `status ${row.status}`, text: words(row.status) })),
+  return el("tr", {}, el("td", {}, el("span", { class: "status", "data-ending": row.status, text: words(row.status) })),
     el("th", { scope: "row", class: "id", text: row.scenario }), el("td", {}, planned(row.planner)),
     numberCell(String(row.seed)), numberCell(row.time === null ? "–" : format(row.time, 1)),
     el("td", { class: "why" }, why), el("td", {}, replayLink(row)));
@@ -82,7 +82,7 @@ function drawWorst() {
   ];
   sortable(byId("worst-table"), columns, shown, (row) => el("tr", {}, numberCell(valueText(row.score, decimals)),
     el("th", { scope: "row", class: "id", text: row.scenario }), el("td", {}, planned(row.planner)), numberCell(String(row.seed)),
-    el("td", {}, el("span", { class: `status ${row.status}`, text: words(row.status) })), el("td", {}, replayLink(row))));
+    el("td", {}, el("span", { class: "status", "data-ending": row.status, text: words(row.status) })), el("td", {}, replayLink(row))));
   byId("worst-more").hidden = rows.length <= worstShown;
   byId("worst-note").textContent = { none: "No direction is better: the largest values first.",
     reference: "Farthest from the reference first." }[series.better] ?? `Worst first: ${ARROWS[series.better][1]}.`;

@@ -9,6 +9,7 @@ from crowdbot.core.report.contents import Contents
 from crowdbot.core.results.rows import RunRow
 from crowdbot.core.scoring.four_scores import is_main
 from crowdbot.core.support.text import plural
+from crowdbot.core.types.ending import ATTEMPTED, Ending
 
 _SOFTWARE = ("crowdbot", "drake", "numpy", "python")
 
@@ -54,12 +55,9 @@ def _seeds(seeds: Sequence[int]) -> str:
 
 def _ended(contents: Contents) -> str:
     counts = contents.counts()
-    words = {
-        "timeout": "ran out of time", "toppled": "ended because the robot toppled",
-        "planner_failed": "ended because the planner failed", "failed": "could not be made",
-    }  # fmt: skip
-    rest = [f"{counts[name]} {text}" for name, text in words.items() if counts[name]]
-    return f"The robot arrived in {counts['arrived']} of them" + (
+    others = [ending for ending in ATTEMPTED if ending != Ending.ARRIVED]
+    rest = [f"{counts[ending]} {ending.past}" for ending in others if counts[ending]]
+    return f"The robot arrived in {counts[Ending.ARRIVED]} of them" + (
         f"; {_and(rest)}." if rest else "."
     )
 

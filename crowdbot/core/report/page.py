@@ -20,6 +20,7 @@ from crowdbot.core.scoring.scores_csv import write_table
 from crowdbot.core.statistics.estimate_text import joined_text
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import render_page
+from crowdbot.core.types.ending import ATTEMPTED, ending_style
 
 _SCRIPTS = (
     "element", "words", "data", "filters", "scale", "table", "cards", "dots", "save",
@@ -58,6 +59,8 @@ def render(contents: Contents) -> str:
     blobs["meta"] = pack_document({**_meta(contents), "states": states})
     return render_page(
         __package__,
+        more_style=ending_style(),
+        endings=ATTEMPTED,
         scripts=[f"{name}.js" for name in _SCRIPTS],
         images="blob:",  # a picture that is saved as PNG is drawn once more
         heading=contents.heading,

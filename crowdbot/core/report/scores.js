@@ -115,7 +115,7 @@ function groupByCategory(table, rows) {
 
 /** How many runs a column is made of, and how many of them failed. */
 function endings(runs) {
-  const failed = runs.filter((run) => FAILED.includes(report.statuses[report.runs.status[run]])).length;
+  const failed = runs.filter((run) => report.endings[report.statuses[report.runs.status[run]]]?.failed).length;
   return el("small", { text: plural(runs.length, "run") }, failed ? ` · ${failed} failed` : "");
 }
 

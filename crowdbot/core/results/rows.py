@@ -6,8 +6,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-#: Status of a run whose planner failed.
-PLANNER_FAILED = "planner_failed"
 #: What is known of an attempt that left no run: its robot did not arrive.
 WITHOUT_RUN: Mapping[str, float] = {
     "success": 0.0,
@@ -28,8 +26,7 @@ class RunRow:
             where they are not the defaults.
         axes: axis of the suite -> label, such as ``{"flow": "counter", "density": "d0250"}``,
             in the suite's order; ``draw`` among them where a condition has several.
-        status: ``arrived``, ``timeout``, ``toppled`` or ``planner_failed``; ``reason`` says why
-            it ended.
+        status: the word of an `Ending`; ``reason`` says why it ended.
         goal_time: s, None when the robot did not arrive.
         sim_time, wall_time: s.
         privileged: the planner was told what no sensor can tell.

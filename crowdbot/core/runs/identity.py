@@ -14,10 +14,10 @@ from crowdbot.core.planning.choice import IN_PROCESS, MEMORY
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.runs.outcome import PLANNER_FAILED
 from crowdbot.core.runs.record_model import record_problems
 from crowdbot.core.runs.run import Recorded, Request
 from crowdbot.core.scenarios.lock import Population, population
+from crowdbot.core.types.ending import has_failed
 from crowdbot.dsl.identity.canonical import content_hash
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError
@@ -85,7 +85,7 @@ class Reference:
     def complete(self) -> bool:
         """Whether it is there and no planner failed in it, which may have a passing cause."""
         record = files.read_record(self.directory) or {}
-        return self.finished and record.get("status") != PLANNER_FAILED
+        return self.finished and not has_failed(str(record.get("status")))
 
 
 def prepare(

@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-ARRIVED, TIMEOUT, TOPPLED, PLANNER_FAILED, INTERRUPTED = (
-    "arrived", "timeout", "toppled", "planner_failed", "interrupted",
-)  # fmt: skip
-#: How a complete run may have ended, in the order in which tables show it.
-ENDINGS = (ARRIVED, TIMEOUT, TOPPLED, PLANNER_FAILED)
+from crowdbot.core.types.ending import Ending
+
+ARRIVED, TIMEOUT, TOPPLED = Ending.ARRIVED, Ending.TIMEOUT, Ending.TOPPLED
+PLANNER_FAILED, INTERRUPTED = Ending.PLANNER_FAILED, Ending.INTERRUPTED
 
 
 class Progress(NamedTuple):

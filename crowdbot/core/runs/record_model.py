@@ -6,11 +6,22 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from annotated_types import Ge, Le, Len
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+
+from crowdbot.core.types.ending import COMPLETE, Ending
 
 Hash = Annotated[str, Field(min_length=1, max_length=200)]
 Count = Annotated[int, Ge(0), Le(2**63 - 1)]
 Seconds = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+
+
+def _complete(ending: Ending) -> Ending:
+    if not ending.complete:
+        raise ValueError(f"a complete run ends as {', '.join(COMPLETE)}")
+    return ending
+
+
+Status = Annotated[Ending, Field(strict=False), AfterValidator(_complete)]
 
 
 class _Part(BaseModel):
@@ -51,7 +62,7 @@ class RobotPart(_Part):
     """One of several robots."""
 
     planner: PlannerPart
-    status: Literal["arrived", "timeout", "toppled", "planner_failed"]
+    status: Status
     reason: str
     goal_time: Seconds | None
     sim_time: Seconds
@@ -82,7 +93,7 @@ class RecordModel(_Part):
     plugins: list[PluginPart]
     pinned: bool
     privileged: bool
-    status: Literal["arrived", "timeout", "toppled", "planner_failed"]
+    status: Status
     goal_time: Seconds | None
     metrics: dict[str, MetricPart]
     references: dict[str, str]

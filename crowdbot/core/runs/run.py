@@ -20,6 +20,7 @@ from crowdbot.core.scoring.metric import References
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.support.arguments import path_of
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.ending import has_failed
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.suite.axis_words import AxisWords
 from crowdbot.dsl.text.path_names import path_problem
@@ -80,8 +81,13 @@ class Run:
 
     @property
     def status(self) -> str:
-        """``arrived``, ``timeout``, ``toppled`` or ``planner_failed``."""
+        """How it ended: ``arrived``, ``timeout``, …, a word of the table of endings."""
         return str(self.record["status"])
+
+    @property
+    def failed(self) -> bool:
+        """True if it counts as failed: its planner did something wrong."""
+        return has_failed(self.status)
 
     @cached_property
     def scores(self) -> Scores:

@@ -32,6 +32,7 @@ from crowdbot.core.sim.wall_contact import WallContacts, wall_force
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.robot import RobotState
 
 _ROUNDING = 1e-9  # m; of the distance to the goal zone
@@ -130,7 +131,7 @@ class MetricLogger(LeafSystem):
         if self._forces is not None and self.walls.near:
             self.walls.feel(wall_force(self._forces.Eval(context)))
 
-    def fate_without_arrival(self) -> tuple[str, str]:
+    def fate_without_arrival(self) -> tuple[Ending, str]:
         """Status of a robot that has not arrived, and why, if no planner is to blame."""
         if self.toppled_time is not None:
             return TOPPLED, f"toppled at {self.toppled_time:.1f} s"

@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.results.results import Results
-from crowdbot.core.results.rows import PLANNER_FAILED, FailureRow, RunRow
+from crowdbot.core.results.rows import FailureRow, RunRow
 from crowdbot.core.results.tables import axes_of
 from crowdbot.core.statistics.clusters import Floats
 from crowdbot.core.statistics.estimate import Counts, Estimate
 from crowdbot.core.statistics.summary import bounds_of_mean, headline_names
 from crowdbot.core.statistics.summary_estimator import mean_of_rows
 from crowdbot.core.statistics.table import MISSING, OK, Key, Name, Table, counts_of
+from crowdbot.core.types.ending import has_failed
 from crowdbot.errors import UnknownNameError
 
 #: Labels of a group, and planner -> (n,) its rows of the table.
@@ -72,7 +73,7 @@ def by_group(
     failed = Counter(
         tuple(_label(one, axis) for axis in by)
         for one in _tried(table, results)
-        if isinstance(one, FailureRow) or one.status == PLANNER_FAILED
+        if isinstance(one, FailureRow) or has_failed(one.status)
     )
     return [
         _summary(table, name, dict(zip(by, group, strict=True)), rows, failed[group])

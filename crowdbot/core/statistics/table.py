@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.results.results import Results
-from crowdbot.core.results.rows import PLANNER_FAILED, WITHOUT_RUN, RunRow, ScoreRow
+from crowdbot.core.results.rows import WITHOUT_RUN, RunRow, ScoreRow
 from crowdbot.core.scoring.score_scale import UNKNOWN, ScoreScale
 from crowdbot.core.statistics.clusters import Clusters, Floats
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts
+from crowdbot.core.types.ending import has_failed
 from crowdbot.dsl.suite.matrix import DRAW
 
 #: Suite, scenario, seed: what runs are paired by.
@@ -145,7 +146,7 @@ class Table:
         ]
         outcome = np.array([kind for kind, _, _ in found], dtype=np.int8)
         low, high = np.array([bounds for *_, bounds in found], dtype=np.float64).reshape(-1, 2).T
-        failed = [lost or (run is not None and run.status == PLANNER_FAILED) for run, lost in tried]
+        failed = [lost or (run is not None and has_failed(run.status)) for run, lost in tried]
         reasons = Counter(why for _, why, _ in found if why)
         return Column(
             outcome, low.copy(), high.copy(), np.array(failed, np.bool_),
@@ -202,8 +203,8 @@ def _read(run: RunRow | None, score: ScoreRow | None) -> _Read:
     if run is None:
         return MISSING, "", nothing
     has_value = score is not None and score.status == "ok" and score.value is not None
-    if run.status == PLANNER_FAILED and not has_value:
-        return FAILED, PLANNER_FAILED, nothing
+    if has_failed(run.status) and not has_value:
+        return FAILED, run.status, nothing
     if score is None:
         return UNDEFINED, "not_scored", nothing
     if score.status == "censored":

@@ -9,6 +9,7 @@ import pytest
 
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.live.simulation_interfaces import simulation_services
+from crowdbot.core.types.ending import Ending
 
 
 def _call(session: LiveSession, name: str, values: dict[str, Any] | None = None) -> dict[str, Any]:
@@ -54,7 +55,7 @@ def test_what_is_not_possible_is_told() -> None:
     assert _code(_call(session, "/step_simulation", {"steps": 1})) == 3
     session.pause(True)
     assert _code(_call(session, "/step_simulation", {"steps": -1})) == 4
-    session.finish("timeout")
+    session.finish(Ending.TIMEOUT)
     assert _code(_call(session, "/step_simulation", {"steps": 1})) == 4
 
 

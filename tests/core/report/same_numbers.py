@@ -14,8 +14,9 @@ from crowdbot.core.bundle.entries import LeaderboardEntry
 from crowdbot.core.bundle.manifest import BundledRun, Edition, Manifest
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.results.results import Results
-from crowdbot.core.results.rows import PLANNER_FAILED, RunRow, ScoreRow
+from crowdbot.core.results.rows import RunRow, ScoreRow
 from crowdbot.core.scoring.score_factory import ScoreFactory
+from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.spec.metric_invariants import MetricInvariants
 from crowdbot.plugin import MetricComponent
@@ -42,7 +43,7 @@ def random_results(seed: int, planners: int, scenarios: int, draws: int, missing
     for p in range(planners):
         for s in range(scenarios):
             failed = rng.random() < missing / 3
-            status = PLANNER_FAILED if failed else rng.choice(["arrived", "timeout"])
+            status = Ending.PLANNER_FAILED if failed else rng.choice(["arrived", "timeout"])
             axes = {"half": "low" if s % 2 else "high", "part": "rest" if s > 3 else "first"}
             one = run(
                 f"planner{p}", f"s{s}", f"d{s % draws}", status=str(status), axes=axes,

@@ -1,0 +1,90 @@
+"""How a run can end, in one table: words, order, texts, colours, and what counts as a failure."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+
+class Ending(StrEnum):
+    """How a run, or the attempt to make one, ended: the word that ``run.json`` has.
+
+    Tables show endings in this order; the ending of a run of several robots is the last one that
+    one of its robots has.
+
+    Attributes:
+        past: what such runs did, to follow their number.
+        sentence: one such run in a line; ``{t}`` is when it ended, s.
+        colour: in pages, as CSS.
+        failed: statistics rank such a run below all others, commands end with exit code 3, and
+            ``campaign --retry-failed`` repeats it.
+        complete: such a run has a ``run.json``.
+    """
+
+    past: str
+    sentence: str
+    colour: str
+    failed: bool
+    complete: bool
+
+    def __new__(  # noqa: D102
+        cls,
+        word: str,
+        past: str = "",
+        sentence: str = "",
+        colour: str = "",
+        failed: bool = False,
+        complete: bool = True,
+    ) -> Ending:
+        self = str.__new__(cls, word)
+        self._value_ = word
+        self.past, self.sentence, self.colour = past, sentence, colour
+        self.failed, self.complete = failed, complete
+        return self
+
+    ARRIVED = (
+        "arrived", "arrived", "arrived after {t:.1f} s", "light-dark(#2a7f4f, #4cc77f)",
+    )  # fmt: skip
+    TIMEOUT = (
+        "timeout", "ran out of time", "did not arrive within {t:.1f} s",
+        "light-dark(#c98a00, #e3b341)",
+    )  # fmt: skip
+    TOPPLED = (
+        "toppled", "ended because the robot toppled", "toppled at {t:.1f} s",
+        "light-dark(#8a4fa3, #c690de)",
+    )  # fmt: skip
+    PLANNER_FAILED = (
+        "planner_failed", "ended because the planner failed", "planner failed at {t:.1f} s",
+        "light-dark(#b3261e, #ff7a6e)", True,
+    )  # fmt: skip
+    INTERRUPTED = (
+        "interrupted", "were interrupted", "interrupted at {t:.1f} s",
+        "light-dark(#62676e, #a0a7af)", False, False,
+    )  # fmt: skip
+    NO_RUN = (
+        "failed", "could not be made", "could not be made", "light-dark(#22262b, #e8e6e1)",
+        True, False,
+    )  # fmt: skip
+
+    @property
+    def heading(self) -> str:
+        """The heading of a column."""
+        return self.name.lower().replace("_", " ")
+
+
+#: How a complete run may have ended.
+COMPLETE = tuple(ending for ending in Ending if ending.complete)
+#: The same, and the attempt that left no run: what tables of attempts count.
+ATTEMPTED = (*COMPLETE, Ending.NO_RUN)
+
+
+_FAILED = frozenset(ending for ending in Ending if ending.failed)
+
+
+def has_failed(status: str) -> bool:
+    """Return True if a run with this status counts as failed; an unknown word does not."""
+    return status in _FAILED
+
+
+def ending_style() -> str:
+    """CSS that gives each element with ``data-ending`` the colour of its ending."""
+    return "\n".join(f'[data-ending="{e}"] {{ --ending: {e.colour}; }}' for e in Ending)

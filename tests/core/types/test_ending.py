@@ -1,0 +1,39 @@
+"""The table of endings: what commands, pages, statistics and records read of it."""
+
+from __future__ import annotations
+
+import copy
+import json
+
+import pytest
+
+from crowdbot.core.types.ending import ATTEMPTED, COMPLETE, Ending, ending_style, has_failed
+
+
+def test_an_ending_is_the_word_that_files_have() -> None:
+    assert json.loads(json.dumps([Ending.TOPPLED])) == ["toppled"]
+    counts: dict[str, int] = {Ending.TOPPLED: 1}
+    assert counts["toppled"] == 1
+    assert type(str(Ending.TOPPLED)) is str
+    assert copy.deepcopy(Ending.TOPPLED) is Ending.TOPPLED  # pickled like this for processes
+
+
+def test_the_words_of_files_that_exist_stay() -> None:
+    assert COMPLETE == ("arrived", "timeout", "toppled", "planner_failed")
+    assert (*COMPLETE, "failed") == ATTEMPTED
+
+
+@pytest.mark.parametrize(
+    ("word", "failed"),
+    [("planner_failed", True), ("failed", True), ("toppled", False), ("?", False)],
+)
+def test_what_counts_as_failed(word: str, *, failed: bool) -> None:
+    assert has_failed(word) == failed
+
+
+@pytest.mark.parametrize("ending", Ending)
+def test_each_has_its_texts_and_a_colour_of_its_own(ending: Ending) -> None:
+    assert ending.past
+    assert "{" not in ending.sentence.format(t=1.0)
+    assert len({one.colour for one in Ending}) == len(Ending)
+    assert f'[data-ending="{ending}"] {{ --ending: {ending.colour}; }}' in ending_style()
