@@ -46,7 +46,9 @@ _SAID = {
     "CONTACT_STIFFNESS": "Push between overlapping people where a policy does not say, 1/s².",
     "CrowdPolicy": "A `VelocityPolicy` or an `AcceleratingPolicy`.",
     "PolicyFactory": "Makes the policy of some agents.",
-    "Pointer": "What a compiled cost function is handed instead of an array; indexed like one.",
+    "Pointer": "Pointer to float64, which a compiled cost function gets in place of an array.",
+    "as_record": "The record at a pointer, or at the beginning of an array, in place.",
+    "as_rows": "The records at a pointer, or in a contiguous array, in place.",
     "Array": "float64 array.",
     "Indices": "int64 array.",
     "Mask": "bool array.",
@@ -56,24 +58,8 @@ _TOGETHER: Mapping[str, str] = {
     "BASE EXCESS GRADIENT LOWER_BOUND OPTIMUM PREPARE": (
         "Signatures of the functions of a `CompiledCost`."
     ),
-    "PX PY VX VY RADIUS PREFERRED FASTEST TIME_STEP GX GY PVX PVY MAX_SPEED MAX_ACCELERATION "
-    "RELAXATION WEIGHT PARITY RANDOM DESCENDS ASKED_X ASKED_Y ASKED_RADIUS AGENT_SIZE": (
-        "Entries of the vector `agent`: position, velocity, radius, preferred speed, greatest "
-        "speed that is searched, time between decisions; goal, preferred velocity, largest speed "
-        "and acceleration, relaxation time; weight, parity with the original, random numbers, "
-        "whether the search descends; centre and radius of the disc of velocities that holds all "
-        "that are searched; and how many there are."
-    ),
-    "D2 RX RY NVX NVY REACH NPX NPY STATIC NEAR_COLUMNS": (
-        "Columns of `near`: squared distance, relative position, velocity, sum of radii, preferred "
-        "velocity, 1 for a pillar; and how many there are."
-    ),
-    "AX AY BX BY NX NY WALL_D2 WALL_COLUMNS": (
-        "Columns of `walls`: both ends and the nearest point, relative; squared distance; and how "
-        "many there are."
-    ),
-    "RANGE FROM_SURFACE": "First two entries of `params`.",
-    "WORK_COLUMNS": "Columns of `work`.",
+    "WORK_COLUMNS": "Numbers in a row of `work`.",
+    "COST_PARAMS": "The record of `CostParams`, for functions without parameters of their own.",
 }
 #: Heading -> beginnings of the modules, below crowdbot.core, from which its names come.
 _GROUPS: Mapping[str, tuple[str, ...]] = {

@@ -13,15 +13,14 @@ HOMES = {
     ),
     "crowdbot.core.crowd.recorded": "RecordedCrowd read_record",
     "crowdbot.core.crowd.velocity_search.collision": (
-        "first_collision first_contact list_approaching list_obstacles soonest_disc"
+        "CollisionHeader first_collision first_contact list_approaching list_obstacles soonest_disc"
     ),
     "crowdbot.core.crowd.velocity_search.cost": (
-        "AGENT_SIZE ASKED_RADIUS ASKED_X ASKED_Y AX AY BASE BX BY D2 DESCENDS EXCESS FASTEST "
-        "FROM_SURFACE GRADIENT GX GY LOWER_BOUND MAX_ACCELERATION MAX_SPEED NEAR_COLUMNS NPX NPY "
-        "NVX NVY NX NY OPTIMUM PARITY PREFERRED PREPARE PVX PVY PX PY RADIUS RANDOM RANGE REACH "
-        "RELAXATION RX RY STATIC TIME_STEP VX VY WALL_COLUMNS WALL_D2 WEIGHT WORK_COLUMNS "
-        "AgentView CompiledCost Neighbours NumpyCost Pointer in_range near_table wall_table "
-        "work_rows work_table"
+        "BASE EXCESS GRADIENT LOWER_BOUND OPTIMUM PREPARE AgentView CompiledCost Neighbours "
+        "NumpyCost Pointer in_range work_rows"
+    ),
+    "crowdbot.core.crowd.velocity_search.records": (
+        "COST_PARAMS WORK_COLUMNS AgentRecord CostParams NeighbourRecord WallRecord"
     ),
     "crowdbot.core.crowd.world": "CrowdWorld",
     "crowdbot.core.environments.place_parts": "place_parts",
@@ -42,6 +41,7 @@ HOMES = {
     "crowdbot.core.sensing.scene": "Scene",
     "crowdbot.core.sensing.sensor": "DepthCamera NoiseGenerator Sensor SensorWithMemory",
     "crowdbot.core.support.compile": "declared_kernel kernel",
+    "crowdbot.core.support.records": "RecordType Rows as_record as_rows record_type record_values",
     "crowdbot.core.trajectories.commands": "Commands",
     "crowdbot.core.trajectories.preprocess": (
         "duration forward_speed path_length time_weights travel_time truncate_at_arrival yaw_rate"

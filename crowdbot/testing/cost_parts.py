@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -17,12 +18,14 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
     base_cost,
     in_preferred_frame,
 )
-from crowdbot.core.crowd.velocity_search.cost import MAX_SPEED, PREFERRED, CompiledCost
+from crowdbot.core.crowd.velocity_search.cost import CompiledCost
 from crowdbot.core.crowd.velocity_search.cost_calls import call_excess, call_lower_bound
 from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
+from crowdbot.core.crowd.velocity_search.records import AgentRecord
 from crowdbot.core.crowd.velocity_search.surroundings import describe
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
 from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array
 
 #: Shares of the true excess that are tried as budgets.
@@ -43,7 +46,7 @@ def bases_of(cost: CompiledCost, view: CrowdView, velocities: Array) -> Array:
 
 
 def stops_at_budget(cost: CompiledCost, view: CrowdView, velocities: Array) -> str:
-    """What is wrong with the excess under a budget; empty if nothing is."""
+    """Return what is wrong with the excess under a budget, or an empty text."""
     costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
     for i in range(len(view.agents)):
         only = replace(view, decides=np.arange(len(view.agents)) == i)
@@ -56,7 +59,7 @@ def stops_at_budget(cost: CompiledCost, view: CrowdView, velocities: Array) -> s
 
 
 def above_lower_bound(cost: CompiledCost, view: CrowdView, velocities: Array) -> str:
-    """What is wrong with the lower bound of the excess; empty if nothing is."""
+    """Return what is wrong with the lower bound of the excess, or an empty text."""
     costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
     for i in range(len(view.agents)):
         only = replace(view, decides=np.arange(len(view.agents)) == i)
@@ -73,7 +76,7 @@ def above_lower_bound(cost: CompiledCost, view: CrowdView, velocities: Array) ->
 
 
 def forgets_work(cost: CompiledCost, view: CrowdView, velocities: Array) -> bool:
-    """Whether costs are the same whatever another agent left in ``work``."""
+    """Return True if costs do not depend on what another agent left in ``work``."""
     costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
     evaluator = Evaluator(costs)
     first = evaluator.total(view, velocities)  # gives ``work`` its size
@@ -84,7 +87,7 @@ def forgets_work(cost: CompiledCost, view: CrowdView, velocities: Array) -> bool
     return np.array_equal(first, found[0]) and np.array_equal(found[0], found[1])
 
 
-def _budgets(costs: WeightedCosts, agent: Array, velocities: Array) -> str:
+def _budgets(costs: WeightedCosts, agent: Rows[AgentRecord], velocities: Array) -> str:
     for ux, uy in velocities.tolist():
         true = _excess(ux, uy, math.inf, agent, costs.functions)
         if not math.isfinite(true):
@@ -99,31 +102,38 @@ def _budgets(costs: WeightedCosts, agent: Array, velocities: Array) -> str:
     return ""
 
 
-def _each_agent(costs: WeightedCosts, view: CrowdView) -> list[tuple[int, Array]]:
-    """Row and ``agent`` vector of everybody who decides."""
+def _each_agent(costs: WeightedCosts, view: CrowdView) -> list[tuple[int, Rows[AgentRecord]]]:
+    """Numbers and records, of one row each, of the agents that decide."""
     around = costs.surroundings(view)
     found = []
-    for b in range(len(around.table)):
+    for b in range(around.table.shape[0]):
         i = describe(around, b)
         if i >= 0:
-            found.append((i, around.agent.copy()))
+            found.append((i, copy(around.deciding)))
     return found
 
 
 @array_kernel
 def _fill_bases(
-    agent: Array, functions: Functions, weights: Array, velocities: Array, out: Array
+    deciding: Rows[AgentRecord],
+    functions: Functions,
+    weights: Array,
+    velocities: Array,
+    out: Array,
 ) -> None:
+    agent = deciding[0]
     for s in range(len(velocities)):
         along, across = in_preferred_frame(velocities[s, 0], velocities[s, 1], agent)
-        out[s] = base_cost(along, across, agent[PREFERRED], agent[MAX_SPEED], functions, weights)
+        out[s] = base_cost(along, across, agent.preferred, agent.max_speed, functions, weights)
 
 
 @array_kernel
-def _excess(ux: float, uy: float, budget: float, agent: Array, functions: Functions) -> float:
+def _excess(
+    ux: float, uy: float, budget: float, agent: Rows[AgentRecord], functions: Functions
+) -> float:
     return float(
         call_excess(
-            functions[0, EXCESSES], ux, uy, budget, agent.ctypes.data, functions[0, WORK],
+            functions[0, EXCESSES], ux, uy, budget, agent[0], functions[0, WORK],
             functions[0, PARAMS],
         )
     )  # fmt: skip
@@ -131,9 +141,9 @@ def _excess(ux: float, uy: float, budget: float, agent: Array, functions: Functi
 
 @array_kernel
 def _fill_lower_bounds(
-    ux: Array, uy: Array, agent: Array, functions: Functions, out: Array
+    ux: Array, uy: Array, agent: Rows[AgentRecord], functions: Functions, out: Array
 ) -> None:
     call_lower_bound(
-        functions[0, LOWER_BOUNDS], len(ux), ux.ctypes.data, uy.ctypes.data, agent.ctypes.data,
-        functions[0, WORK], functions[0, PARAMS], out.ctypes.data,
+        functions[0, LOWER_BOUNDS], len(ux), ux, uy, agent[0], functions[0, WORK],
+        functions[0, PARAMS], out,
     )  # fmt: skip

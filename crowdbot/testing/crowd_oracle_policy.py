@@ -22,7 +22,7 @@ from crowdbot.plugins.crowd.cost_functions.power_law import PowerLawSpec
 from crowdbot.plugins.crowd.cost_functions.random_function import RandomFunctionSpec
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 from crowdbot.plugins.crowd.cost_functions.social_forces_avoidance import SocialForcesAvoidanceSpec
-from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
+from crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca import TtcaDcaSpec
 from crowdbot.plugins.crowd.cost_functions.van_toll import VanTollSpec
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
 

@@ -13,7 +13,9 @@ from crowdbot import hookspecs
 from crowdbot.cli import command_names
 from crowdbot.cli.app.typer_app import load
 from crowdbot.core.crowd.build import build_cost
+from crowdbot.core.crowd.velocity_search.records import AGENT, COST_PARAMS, NEIGHBOUR, WALL
 from crowdbot.core.registry.registry import discover
+from crowdbot.core.support.records import RecordType
 from tests.docs.doc_pages import read, section
 
 COMMANDS, PLUGINS = read("reference/commands.md"), read("reference/plugins.md")
@@ -111,17 +113,15 @@ def test_cost_functions_have_the_described_arguments(kind: str) -> None:
         assert f"`{name}({arguments})`" in text
 
 
-def test_entries_of_the_cost_arrays_are_described() -> None:
-    from crowdbot.core.crowd.velocity_search import cost
-
+@pytest.mark.parametrize(
+    ("argument", "record"),
+    [("agent", AGENT), ("near", NEIGHBOUR), ("walls", WALL), ("params", COST_PARAMS)],
+)
+def test_fields_of_the_cost_records_are_described(argument: str, record: RecordType[Any]) -> None:
     text = section(PLUGINS, "### Cost functions")
-    named = re.findall(r"`([A-Z][A-Z0-9_]+)`", text)
-    assert all(hasattr(cost, name) for name in named)
-    for row, first, size in (("agent", "PX", cost.AGENT_SIZE), ("near", "D2", cost.NEAR_COLUMNS)):
-        (entries,) = re.findall(rf"^\| `{row}` \|.*?((?:`[A-Z0-9_]+`(?:, )?)+)", text, re.M)
-        names = re.findall(r"`([A-Z0-9_]+)`", entries)
-        assert names[0] == first
-        assert [getattr(cost, n) for n in names] == list(range(size))
+    (row,) = re.findall(rf"^\| `{argument}` \| (.*) \|$", text, re.M)
+    (names,) = re.findall(r"(?:`[a-z0-9_]+`(?:, )?)+", row.split(". ")[0])
+    assert re.findall(r"`(\w+)`", names) == list(record.names)
 
 
 def test_every_quantity_is_listed_with_its_unit() -> None:

@@ -23,7 +23,6 @@ from crowdbot.core.crowd.velocity_search.cost import (
     CompiledCost,
     Neighbours,
     NumpyCost,
-    work_table,
 )
 from crowdbot.core.types.arrays import Array
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
@@ -162,7 +161,7 @@ def _no_base(ux: float, uy: float, preferred: float, max_speed: float, params: A
 def _count(
     agent: Any, near: Any, near_count: int, walls: Any, wall_count: int, params: Any, work: Any
 ) -> int:
-    work_table(work)[0, 0] = 0.0
+    work[0] = 0.0
     return 1
 
 
@@ -179,9 +178,8 @@ def _impatient(ux: float, uy: float, budget: float, agent: Any, work: Any, param
 
 @njit(EXCESS, cache=True, error_model="numpy")
 def _counting(ux: float, uy: float, budget: float, agent: Any, work: Any, params: Any) -> float:
-    table = work_table(work)
-    table[0, 0] += 1.0
-    return float(table[0, 0])
+    work[0] += 1.0
+    return float(work[0])
 
 
 @njit(PREPARE, cache=True, error_model="numpy")
@@ -195,7 +193,7 @@ def _writes_nothing(
 def _what_is_there(
     ux: float, uy: float, budget: float, agent: Any, work: Any, params: Any
 ) -> float:
-    return float(work_table(work)[0, 0])
+    return float(work[0])
 
 
 @njit(EXCESS, cache=True, error_model="numpy")

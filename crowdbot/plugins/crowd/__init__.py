@@ -11,7 +11,7 @@ from crowdbot.plugins.crowd.cost_functions.power_law import POWER_LAW
 from crowdbot.plugins.crowd.cost_functions.random_function import RANDOM_FUNCTION
 from crowdbot.plugins.crowd.cost_functions.rvo import RVO
 from crowdbot.plugins.crowd.cost_functions.social_forces_avoidance import SOCIAL_FORCES_AVOIDANCE
-from crowdbot.plugins.crowd.cost_functions.ttca_dca import TTCA_DCA
+from crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca import TTCA_DCA
 from crowdbot.plugins.crowd.cost_functions.van_toll import VAN_TOLL
 from crowdbot.plugins.crowd.policies.jupedsim import JUPEDSIM
 from crowdbot.plugins.crowd.policies.replay import REPLAY

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd.policy import Agents, CrowdView
 from crowdbot.plugin import CostFunctionSpec
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
-from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
+from crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca import TtcaDcaSpec
 
 Array = NDArray[np.float64]
 

@@ -24,6 +24,8 @@ from crowdbot.core.crowd.velocity_search.cost_calls import (
     call_optimum,
     call_prepare,
 )
+from crowdbot.core.crowd.velocity_search.records import AGENT, NEIGHBOUR, WALL, WORK_COLUMNS
+from crowdbot.core.support.records import RecordType, rows_of
 from crowdbot.core.types.arrays import Array
 from crowdbot.plugin import CostFunctionSpec, Range
 from crowdbot.plugins.crowd import COSTS
@@ -40,7 +42,7 @@ FORMULAS = [k for k in KINDS if k != "random_function"]
 @njit(cache=True)
 def _evaluate(
     at: Array,
-    scene: tuple[Array, Array, Array],
+    scene: Any,
     counts: Array,
     params: Array,
     work: Array,
@@ -49,14 +51,12 @@ def _evaluate(
 ) -> tuple[float, int]:
     """Base plus excess of one candidate, and what ``prepare`` returned."""
     agent, near, walls = scene
-    a, p, w = agent.ctypes.data, params.ctypes.data, work.ctypes.data
-    items = call_prepare(
-        at[1], a, near.ctypes.data, counts[0], walls.ctypes.data, counts[1], p, w
-    )  # fmt: skip
-    s = agent[5]
-    px, py = (agent[10] / s, agent[11] / s) if s > 0.0 else (1.0, 0.0)
+    a, p, w = agent[0], params, work
+    items = call_prepare(at[1], a, near, counts[0], walls, counts[1], p, w)
+    s = a.preferred
+    px, py = (a.pvx / s, a.pvy / s) if s > 0.0 else (1.0, 0.0)
     cost = 0.0 if s == 0.0 else call_base(
-        at[0], u[0] * px + u[1] * py, u[1] * px - u[0] * py, s, agent[12], p
+        at[0], u[0] * px + u[1] * py, u[1] * px - u[0] * py, s, a.max_speed, p
     )  # fmt: skip
     if items > 0 and cost <= budget:
         cost += call_excess(at[2], u[0], u[1], budget - cost, a, w, p)
@@ -67,22 +67,23 @@ def _evaluate(
 def _solve(
     at: int,
     best: bool,
-    scene: tuple[Array, Array, Array],
+    scene: Any,
     params: Array,
     work: Array,
     u: Array,
     out: Array,
 ) -> int:
     """Gradient or optimum, after `_evaluate`."""
-    a, p, w, o = scene[0].ctypes.data, params.ctypes.data, work.ctypes.data, out.ctypes.data
+    a, p, w, o = scene[0][0], params, work, out
     if best:
         return int(call_optimum(at, a, w, p, o))
     return int(call_gradient(at, u[0], u[1], a, w, p, o))
 
 
 def compiled(spec: CostFunctionSpec) -> CompiledCost:
-    module = f"crowdbot.plugins.crowd.cost_functions.{spec.kind}_build"
-    build = importlib.import_module(module).build
+    (found,) = (c for c in COSTS if c.spec is type(spec))
+    module, name = found.build.split(":")
+    build = getattr(importlib.import_module(module), name)
     return build(spec)  # type: ignore[no-any-return]
 
 
@@ -98,7 +99,7 @@ class Probe:
         self.scene = (_agent(s, seed), _near(s), _walls(s))
         self.counts = np.array([len(s.others), len(s.walls)])
         rows = c.work_rows(len(s.others) + len(s.walls))
-        self.work = np.full((rows + 1, c.WORK_COLUMNS), np.nan)  # nothing may rely on zeros
+        self.work = np.full((rows + 1, WORK_COLUMNS), np.nan)  # nothing may rely on zeros
 
     def __call__(self, u: complex, budget: float = math.inf) -> float:
         value, self.items = _evaluate(
@@ -124,38 +125,46 @@ class Probe:
         return self._solve(address_of(self.cost.optimum, c.OPTIMUM), True, 0j)
 
 
-def _agent(s: Scene, seed: int) -> Array:
-    agent, fastest = np.full(c.AGENT_SIZE, np.nan), max(s.s_max, abs(s.v), 4.0)
+def _agent(s: Scene, seed: int) -> Any:
+    agent, fastest = _unknown(1, AGENT), max(s.s_max, abs(s.v), 4.0)
     given = {
-        c.PX: s.p.real, c.PY: s.p.imag, c.VX: s.v.real, c.VY: s.v.imag, c.RADIUS: s.r,
-        c.PREFERRED: s.s, c.FASTEST: fastest, c.TIME_STEP: s.dt,
-        c.ASKED_X: 0.0, c.ASKED_Y: 0.0, c.ASKED_RADIUS: fastest,
-        c.GX: s.goal.real, c.GY: s.goal.imag, c.PVX: s.v_pref.real, c.PVY: s.v_pref.imag,
-        c.MAX_SPEED: s.s_max, c.MAX_ACCELERATION: 5.0, c.RELAXATION: s.tau, c.WEIGHT: s.mass,
-        c.PARITY: float(s.parity), c.RANDOM: float(seed),
+        "px": s.p.real, "py": s.p.imag, "vx": s.v.real, "vy": s.v.imag, "radius": s.r,
+        "preferred": s.s, "fastest": fastest, "time_step": s.dt,
+        "asked_x": 0.0, "asked_y": 0.0, "asked_radius": fastest,
+        "gx": s.goal.real, "gy": s.goal.imag, "pvx": s.v_pref.real, "pvy": s.v_pref.imag,
+        "max_speed": s.s_max, "max_acceleration": 5.0, "relaxation": s.tau, "weight": s.mass,
+        "parity": float(s.parity), "random": float(seed),
     }  # fmt: skip
-    for place, value in given.items():
-        agent[place] = value
+    for name, value in given.items():
+        agent[name] = value
     return agent
 
 
-def _near(s: Scene) -> Array:
-    near = np.full((max(1, len(s.others)), c.NEAR_COLUMNS), np.nan)
-    for row, o in zip(near, s.others, strict=False):
+def _unknown(count: int, record: RecordType[Any]) -> Any:
+    """Records of NaN, at least one."""
+    rows: Any = rows_of(max(1, count), record)
+    for name in record.names:
+        rows[name] = np.nan
+    return rows
+
+
+def _near(s: Scene) -> Any:
+    near = _unknown(len(s.others), NEIGHBOUR)
+    for j, o in enumerate(s.others):
         d = o.p - s.p
-        row[:] = [
+        near[j] = (
             d.real**2 + d.imag**2, d.real, d.imag, o.v.real, o.v.imag, s.r + o.r,
             o.v_pref.real, o.v_pref.imag, float(o.fixed),
-        ]  # fmt: skip
+        )  # fmt: skip
     return near
 
 
-def _walls(s: Scene) -> Array:
-    walls = np.full((max(1, len(s.walls)), c.WALL_COLUMNS), np.nan)
-    for row, (a, b) in zip(walls, s.walls, strict=False):
+def _walls(s: Scene) -> Any:
+    walls = _unknown(len(s.walls), WALL)
+    for k, (a, b) in enumerate(s.walls):
         n = formulas.nearest(s.p, a, b) - s.p
         a, b = a - s.p, b - s.p
-        row[:] = [a.real, a.imag, b.real, b.imag, n.real, n.imag, n.real**2 + n.imag**2]
+        walls[k] = (a.real, a.imag, b.real, b.imag, n.real, n.imag, n.real**2 + n.imag**2)
     return walls
 
 

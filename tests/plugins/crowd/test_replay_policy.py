@@ -13,7 +13,7 @@ from crowdbot.core.crowd.recorded import read_record
 from crowdbot.dsl.spec.assets import Asset
 from crowdbot.errors import InputError
 from crowdbot.plugin import Range
-from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
+from crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca import TtcaDcaSpec
 from crowdbot.plugins.crowd.policies.replay import ReplaySpec
 from crowdbot.plugins.crowd.policies.replay_build import build
 from tests.core.crowd.crowd_reference import Array

@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from crowdbot.core.crowd.velocity_search import cost as c
 from crowdbot.core.crowd.velocity_search.cost_calls import address_of, call_prepare
+from crowdbot.core.crowd.velocity_search.records import AGENT, NEIGHBOUR, WALL, WORK_COLUMNS
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.records import rows_of
 from crowdbot.core.types.arrays import Array
-from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
-from crowdbot.plugins.crowd.cost_functions.ttca_dca_build import build
-from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import TOTAL, WEIGHT
+from crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca import TtcaDcaSpec
+from crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca_build import build
 
 
 @kernel
-def _prepare(at: int, agent: Array, near: Array, walls: Array, params: Array, work: Array) -> int:
+def _prepare(at: int, agent: Any, near: Any, walls: Any, params: Array, work: Array) -> int:
     return int(
         call_prepare(
-            at, agent.ctypes.data, near.ctypes.data, near.shape[0], walls.ctypes.data, 0,
-            params.ctypes.data, work.ctypes.data,
+            at, agent[0], near, near.shape[0], walls, 0, params, work
         )
     )  # fmt: skip
 
@@ -28,28 +30,29 @@ def _prepare(at: int, agent: Array, near: Array, walls: Array, params: Array, wo
 @pytest.mark.parametrize("descends", [False, True])
 def test_all_who_are_ahead_heaviest_first(count: int, descends: bool) -> None:
     rng = np.random.default_rng(count)
-    near = np.zeros((count, c.NEAR_COLUMNS))
+    near: Any = rows_of(count, NEIGHBOUR)
     at = rng.uniform(-1.5, 1.5, (count, 2)).round(1)  # some are as far as others
-    near[:, [c.RX, c.RY]], near[:, c.D2], near[:, c.REACH] = at, (at**2).sum(axis=1), 0.2
-    near[:, c.NVX] = np.arange(count)  # who is who
-    agent, work = np.zeros(c.AGENT_SIZE), np.full((c.work_rows(count) + 1, c.WORK_COLUMNS), np.nan)
-    agent[c.VX], agent[c.FASTEST], agent[c.DESCENDS] = 1.0, 9.0, descends
+    near["rx"], near["ry"] = at.T
+    near["d2"], near["reach"], near["nvx"] = (at**2).sum(axis=1), 0.2, np.arange(count)
+    agent: Any = rows_of(1, AGENT)
+    work = np.full((c.work_rows(count) + 1, WORK_COLUMNS), np.nan)
+    agent["vx"], agent["fastest"], agent["descends"] = 1.0, 9.0, descends
     cost = build(TtcaDcaSpec.model_validate({"range": 1.0}))
 
     kept = _prepare(
-        address_of(cost.prepare, c.PREPARE), agent, near, np.zeros((0, 7)), cost.params, work
+        address_of(cost.prepare, c.PREPARE), agent, near, rows_of(0, WALL), cost.params, work
     )
 
-    expected = np.flatnonzero((at[:, 0] >= 0.0) & (near[:, c.D2] < 1.0))
-    distance = np.sqrt(near[expected, c.D2]).clip(1e-6)
+    expected = np.flatnonzero((at[:, 0] >= 0.0) & (near["d2"] < 1.0))
+    distance = np.sqrt(near["d2"][expected]).clip(1e-6)
     weight = 1.0 / np.maximum((distance - 0.2) * (distance - 0.2), 1e-12)
     order = slice(None) if descends else np.argsort(-weight, kind="stable")
-    assert kept == work[0, 0] == len(expected)
-    assert work[0, TOTAL] == sum(weight.tolist())
-    table = work[1 : kept + 1]
-    assert np.array_equal(table[:, 4], expected[order])
-    assert np.array_equal(table[:, WEIGHT], weight[order])
-    assert np.array_equal(table[:, :2], at[expected][order])
-    shrink = ((distance - 0.2) / distance)[order, np.newaxis]
-    assert np.array_equal(table[:, 2:4], table[:, :2] * shrink)
+    assert kept == len(expected)
+    assert work[0, :2].tolist() == [kept, sum(weight.tolist())]
+    dx, dy, qx, qy, who, _, weights, _ = work[1 : kept + 1].T
+    assert np.array_equal(who, expected[order])
+    assert np.array_equal(weights, weight[order])
+    assert np.array_equal(np.column_stack([dx, dy]), at[expected][order])
+    shrink = ((distance - 0.2) / distance)[order]
+    assert np.array_equal([qx, qy], [dx * shrink, dy * shrink])
     assert np.isnan(work[-1]).all()  # nothing past its rows

@@ -5,23 +5,24 @@ from __future__ import annotations
 import math
 
 from crowdbot.core.crowd.steering.parameters import LaneKeeping
-from crowdbot.core.crowd.steering.sorted_discs import REACH, Around, first_within
-from crowdbot.core.crowd.velocity_search.neighbours import VX, VY, X, Y
+from crowdbot.core.crowd.steering.sorted_discs import REACH, SortedDiscs, first_within
+from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 #: Who moves slower than this along one's heading, or against it, stands, m/s.
 _STANDS = 0.2
 
 
-def keep_lane(part: LaneKeeping, near: Around, wanted: Array) -> None:
+def keep_lane(part: LaneKeeping, near: SortedDiscs, wanted: Array) -> None:
     """Add everybody's step aside to accelerations (N, 2), m/s^2, in place."""
     _keep_all(*near, part.strength, part.reach, part.half_width, part.follow, wanted)
 
 
 @kernel
 def _keep_all(
-    discs: Array, row: Indices, heading: Array, decides: Mask,
+    discs: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask,
     strength: float, reach: float, half_width: float, follow: float, wanted: Array,
 ) -> None:  # fmt: skip
     for i in range(wanted.shape[0]):
@@ -35,19 +36,25 @@ def _keep_all(
 
 @kernel
 def aside_of(
-    discs: Array, a: int, hx: float, hy: float, reach: float, half_width: float, follow: float
+    discs: Rows[DiscRecord],
+    a: int,
+    hx: float,
+    hy: float,
+    reach: float,
+    half_width: float,
+    follow: float,
 ) -> float:
     """How much row a is drawn to its left, -1 to 1."""
     away, towards, comers, all_ = 0.0, 0.0, 0.0, 0.0
     for b in range(first_within(discs, a, REACH), discs.shape[0]):
-        dx, dy = discs[b, X] - discs[a, X], discs[b, Y] - discs[a, Y]
+        dx, dy = discs[b].x - discs[a].x, discs[b].y - discs[a].y
         if dx > REACH:
             break
         along, left = dx * hx + dy * hy, dy * hx - dx * hy
         if b == a or along <= 0.0 or along > REACH or abs(left) >= half_width:
             continue
         weight = math.exp(-along / reach)
-        pace = discs[b, VX] * hx + discs[b, VY] * hy
+        pace = discs[b].vx * hx + discs[b].vy * hy
         share = left / half_width
         all_ += weight
         if pace < -_STANDS:

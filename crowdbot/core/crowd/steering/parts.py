@@ -10,14 +10,14 @@ from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.core.crowd.steering.lanes import keep_lane
 from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.crowd.steering.personal_space import push_away
-from crowdbot.core.crowd.steering.sorted_discs import Around, around
+from crowdbot.core.crowd.steering.sorted_discs import SortedDiscs, sorted_discs
 from crowdbot.core.crowd.steering.time_gap import limit_speed
 from crowdbot.core.crowd.steering.wall_push import push_off_walls
 from crowdbot.core.crowd.steering.wander import wander
 from crowdbot.core.types.arrays import Array
 
 #: Changes accelerations in place: view, neighbours, the policy's relaxation time (s), (N, 2).
-Part = Callable[[CrowdView, Around, float, Array], None]
+Part = Callable[[CrowdView, SortedDiscs, float, Array], None]
 
 
 def parts_of(steering: Steering) -> list[Part]:
@@ -46,7 +46,7 @@ def steer(parts: list[Part], view: CrowdView, relaxation: float, wanted: Array) 
             time between decisions.
         wanted: (N, 2) what the policy wants, m/s^2; left as it is.
     """
-    near, changed = around(view), np.array(wanted)
+    near, changed = sorted_discs(view), np.array(wanted)
     for part in parts:
         part(view, near, max(relaxation, view.dt), changed)
     size = np.hypot(changed[:, 0], changed[:, 1])

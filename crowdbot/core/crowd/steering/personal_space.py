@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 
 from crowdbot.core.crowd.steering.parameters import PersonalSpace
-from crowdbot.core.crowd.steering.sorted_discs import REACH, Around, first_within
-from crowdbot.core.crowd.velocity_search.neighbours import DISC_RADIUS, VX, VY, X, Y
+from crowdbot.core.crowd.steering.sorted_discs import REACH, SortedDiscs, first_within
+from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 #: Nobody is pushed harder by one other, m/s^2.
@@ -16,14 +17,14 @@ HARDEST = 8.0
 _THROUGH = 0.05
 
 
-def push_away(part: PersonalSpace, near: Around, wanted: Array) -> None:
+def push_away(part: PersonalSpace, near: SortedDiscs, wanted: Array) -> None:
     """Add the pushes of all others to accelerations (N, 2), m/s^2, in place."""
     _push_all(*near, part.strength, part.reach, part.anticipation, part.behind, wanted)
 
 
 @kernel
 def _push_all(
-    discs: Array, row: Indices, heading: Array, decides: Mask,
+    discs: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask,
     strength: float, reach: float, anticipation: float, behind: float, wanted: Array,
 ) -> None:  # fmt: skip
     for i in range(wanted.shape[0]):
@@ -31,9 +32,9 @@ def _push_all(
             continue
         a = int(row[i])
         for b in range(first_within(discs, a, REACH), discs.shape[0]):
-            if discs[b, X] - discs[a, X] > REACH:
+            if discs[b].x - discs[a].x > REACH:
                 break
-            if b == a or abs(discs[b, Y] - discs[a, Y]) > REACH:
+            if b == a or abs(discs[b].y - discs[a].y) > REACH:
                 continue
             px, py = push_by(
                 discs, a, b, heading[i, 0], heading[i, 1], strength, reach, anticipation, behind
@@ -44,7 +45,7 @@ def _push_all(
 
 @kernel
 def push_by(
-    discs: Array,
+    discs: Rows[DiscRecord],
     a: int,
     b: int,
     hx: float,
@@ -55,9 +56,9 @@ def push_by(
     behind: float,
 ) -> tuple[float, float]:
     """What row b pushes row a by, m/s^2; none where it would be below 1 % of ``strength``."""
-    dx, dy = discs[b, X] - discs[a, X], discs[b, Y] - discs[a, Y]
-    qx = dx + (discs[b, VX] - discs[a, VX]) * anticipation
-    qy = dy + (discs[b, VY] - discs[a, VY]) * anticipation
+    dx, dy = discs[b].x - discs[a].x, discs[b].y - discs[a].y
+    qx = dx + (discs[b].vx - discs[a].vx) * anticipation
+    qy = dy + (discs[b].vy - discs[a].vy) * anticipation
     distance = math.sqrt(qx * qx + qy * qy)
     if qx * dx + qy * dy < 0.0:  # they would walk through each other
         qx, qy = dx, dy
@@ -65,7 +66,7 @@ def push_by(
         distance, size = _THROUGH * now, now
     else:
         size = distance
-    gap = distance - discs[a, DISC_RADIUS] - discs[b, DISC_RADIUS]
+    gap = distance - discs[a].radius - discs[b].radius
     if size == 0.0 or gap > 4.6 * reach:
         return 0.0, 0.0
     nx, ny = qx / size, qy / size

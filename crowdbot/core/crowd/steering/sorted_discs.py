@@ -1,20 +1,20 @@
-"""What steering parts are given: everybody's disc and heading, sorted along x."""
+"""Discs and headings of all people, sorted along x, for the steering parts."""
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.core.crowd.velocity_search.neighbour_discs import (
-    DISC_COLUMNS,
     most_discs,
     write_discs,
 )
-from crowdbot.core.crowd.velocity_search.neighbours import INDEX, X
+from crowdbot.core.crowd.velocity_search.neighbours import DISC, DiscRecord
 from crowdbot.core.support.compile import array_kernel, kernel
+from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 #: Centres that are farther apart do not matter to any part, m.
@@ -23,48 +23,47 @@ REACH = 3.0
 _SLOW = 0.3
 
 
-class Around(NamedTuple):
-    """Everybody at one decision; world frame, SI units.
+class SortedDiscs(NamedTuple):
+    """All discs at one decision; world frame, SI units.
 
     Attributes:
-        discs: (D, `DISC_COLUMNS`) people, images across a border, robots and pillars, by x; see
-            `crowdbot.core.crowd.velocity_search.neighbours`.
-        row: (N,) row of each person in ``discs``, -1 for who is absent.
+        discs: (D,) people, images across a border, robots and pillars, by x.
+        row: (N,) row of each person in ``discs``, -1 for absent ones.
         heading: (N, 2) unit vectors between the ways to the goal and of walking.
-        decides: (N,) who is steered.
+        decides: (N,) True for people who are steered.
     """
 
-    discs: Array
+    discs: Rows[DiscRecord]
     row: Indices
     heading: Array
     decides: Mask
 
 
-def around(view: CrowdView) -> Around:
-    """What parts are given at the decision that a view shows."""
+def sorted_discs(view: CrowdView) -> SortedDiscs:
+    """The discs at the decision that a view shows."""
     agents, boundary = view.agents, view.periodic_boundary
     fixed = len(view.robot) + len(view.pillars)
     room = most_discs(len(view.position), fixed, boundary is not None)
-    discs = np.zeros((room, DISC_COLUMNS))
+    discs: Any = np.zeros(room, DISC)
     box = np.array(boundary if boundary is not None else (0.0, 0.0, 0.0, 0.0))
     count = write_discs(
         view.position, view.velocity, view.goal, agents.avoided_radius, agents.preferred_speed,
         view.present, view.robot, view.pillars, box, view.diagonal, REACH, discs,
     )  # fmt: skip
     discs = discs[:count]
-    discs = discs[np.argsort(discs[:, X], kind="stable")]
+    discs = discs[np.argsort(discs["x"], kind="stable")]
     row = np.full(len(view.position), -1, np.int64)
-    of = discs[:, INDEX].astype(np.int64)
+    of = discs["index"].astype(np.int64)
     row[of[of >= 0]] = np.flatnonzero(of >= 0)
     heading = np.zeros_like(view.position)
     _face(view.position, view.velocity, view.goal, heading)
     decides = view.present if view.decides is None else view.present & view.decides
-    return Around(discs, row, heading, decides)
+    return SortedDiscs(discs, row, heading, decides)
 
 
 @array_kernel
 def _face(position: Array, velocity: Array, goal: Array, heading: Array) -> None:
-    """Half where one wants to go and half where one walks."""
+    """Write headings: half towards the goal and half along the velocity."""
     for i in range(position.shape[0]):
         gx, gy = goal[i, 0] - position[i, 0], goal[i, 1] - position[i, 1]
         away, speed = math.hypot(gx, gy), math.hypot(velocity[i, 0], velocity[i, 1])
@@ -79,9 +78,9 @@ def _face(position: Array, velocity: Array, goal: Array, heading: Array) -> None
 
 
 @kernel
-def first_within(discs: Array, a: int, reach: float) -> int:
+def first_within(discs: Rows[DiscRecord], a: int, reach: float) -> int:
     """First row whose x is within ``reach`` (m) of that of row a."""
-    low = discs[a, X] - reach
-    while a > 0 and discs[a - 1, X] >= low:
+    low = discs[a].x - reach
+    while a > 0 and discs[a - 1].x >= low:
         a -= 1
     return a

@@ -10,9 +10,10 @@ import math
 
 from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.core.crowd.steering.parameters import TimeGap
-from crowdbot.core.crowd.steering.sorted_discs import REACH, Around, first_within
-from crowdbot.core.crowd.velocity_search.neighbours import VX, VY, X, Y
+from crowdbot.core.crowd.steering.sorted_discs import REACH, SortedDiscs, first_within
+from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 #: Who moves faster than this against one's heading comes towards one, m/s.
@@ -20,7 +21,7 @@ _ONCOMING = 0.2
 
 
 def limit_speed(
-    part: TimeGap, view: CrowdView, near: Around, relaxation: float, wanted: Array
+    part: TimeGap, view: CrowdView, near: SortedDiscs, relaxation: float, wanted: Array
 ) -> None:
     """Shorten, in place, the velocities that accelerations lead to within ``relaxation``.
 
@@ -36,7 +37,7 @@ def limit_speed(
 
 @kernel
 def _limit(
-    discs: Array, row: Indices, heading: Array, decides: Mask, velocity: Array,
+    discs: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask, velocity: Array,
     time: float, oncoming_time: float, room: float, half_width: float, relaxation: float,
     wanted: Array,
 ) -> None:  # fmt: skip
@@ -58,7 +59,7 @@ def _limit(
 
 @kernel
 def allowed_speed(
-    discs: Array,
+    discs: Rows[DiscRecord],
     a: int,
     hx: float,
     hy: float,
@@ -70,19 +71,19 @@ def allowed_speed(
     """Largest speed that the discs ahead of row a allow, m/s; inf with a free way.
 
     Args:
-        discs: (D, `DISC_COLUMNS`) sorted by x.
+        discs: (D,) sorted by x.
         hx, hy: unit vector of the way faced.
         time to half_width: see `TimeGap`.
     """
     fastest = math.inf
     for b in range(first_within(discs, a, REACH), discs.shape[0]):
-        dx, dy = discs[b, X] - discs[a, X], discs[b, Y] - discs[a, Y]
+        dx, dy = discs[b].x - discs[a].x, discs[b].y - discs[a].y
         if dx > REACH:
             break
         along = dx * hx + dy * hy
         if b == a or along <= 0.0 or along > REACH or abs(dx * hy - dy * hx) >= half_width:
             continue
-        comes = discs[b, VX] * hx + discs[b, VY] * hy < -_ONCOMING
+        comes = discs[b].vx * hx + discs[b].vy * hy < -_ONCOMING
         fastest = min(fastest, max(0.0, (along - room) / (oncoming_time if comes else time)))
     return fastest
 

@@ -7,7 +7,7 @@ import math
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.core.crowd.steering.parameters import WallPush
-from crowdbot.core.crowd.steering.sorted_discs import Around
+from crowdbot.core.crowd.steering.sorted_discs import SortedDiscs
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Mask
 
@@ -17,7 +17,7 @@ HARDEST = 8.0
 _LEAST = 4.6  # e-folds: 1 %
 
 
-def push_off_walls(part: WallPush, view: CrowdView, near: Around, wanted: Array) -> None:
+def push_off_walls(part: WallPush, view: CrowdView, near: SortedDiscs, wanted: Array) -> None:
     """Add the pushes of all walls to accelerations (N, 2), m/s^2, in place."""
     _push_all(
         near.decides, view.position, view.agents.avoided_radius, view.walls,

@@ -13,7 +13,7 @@ import numpy as np
 
 from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.core.crowd.steering.parameters import Wander
-from crowdbot.core.crowd.steering.sorted_discs import Around
+from crowdbot.core.crowd.steering.sorted_discs import SortedDiscs
 from crowdbot.core.crowd.velocity_search.counter_rng import WANDER, uniform
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices, Mask
@@ -22,7 +22,7 @@ from crowdbot.core.types.arrays import Array, Indices, Mask
 E_FOLD = 0.93929
 
 
-def wander(part: Wander, view: CrowdView, near: Around, wanted: Array) -> None:
+def wander(part: Wander, view: CrowdView, near: SortedDiscs, wanted: Array) -> None:
     """Add everybody's random acceleration to accelerations (N, 2), m/s^2, in place."""
     knots = view.t * E_FOLD / part.time
     _wander(near.decides, view.agents.id, knots, part.deviation, np.uint64(part.key), wanted)

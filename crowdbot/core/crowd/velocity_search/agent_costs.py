@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd.velocity_search.cost import MAX_SPEED, PREFERRED, PVX, PVY, PX, PY
 from crowdbot.core.crowd.velocity_search.cost_calls import call_base, call_excess, call_prepare
 from crowdbot.core.crowd.velocity_search.neighbours import gather, gather_walls
+from crowdbot.core.crowd.velocity_search.records import AgentRecord
 from crowdbot.core.crowd.velocity_search.surroundings import Surroundings
 from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
@@ -27,13 +27,13 @@ class AgentCosts(NamedTuple):
     """The cost functions of one agent, prepared for its decision.
 
     Attributes:
-        agent: (`AGENT_SIZE`,) the agent; see `crowdbot.core.crowd.velocity_search.cost`.
+        agent: the agent.
         functions: (K, `FUNCTION_COLUMNS`) addresses.
         weights: (K,) of the functions.
         active: (T,) numbers of the functions that have an excess here.
     """
 
-    agent: Array
+    agent: AgentRecord
     functions: Functions
     weights: Array
     active: Indices
@@ -43,21 +43,21 @@ class AgentCosts(NamedTuple):
 def prepare(
     around: Surroundings, b: int, functions: Functions, weights: Array, active: Indices
 ) -> int:
-    """Prepare all functions for the agent in row b of the table, whom `describe` has described.
+    """Prepare all functions for the agent in row b of the table, after `describe`.
 
     Returns:
         how many have an excess; their numbers are in ``active`` (K,).
     """
-    agent, near, found = around.agent, around.near, around.found
+    agent, near, found = around.deciding[0], around.near, around.found
     near_count = gather(
         around.table, around.starts, around.low, around.height, b, around.reach, near
     )
-    wall_count = gather_walls(around.walls, agent[PX], agent[PY], around.reach, found)
+    wall_count = gather_walls(around.walls, agent.px, agent.py, around.reach, found)
     terms = 0
     for k in range(weights.shape[0]):
         items = call_prepare(
-            functions[k, PREPARES], agent.ctypes.data, near.ctypes.data, near_count,
-            found.ctypes.data, wall_count, functions[k, PARAMS], functions[k, WORK],
+            functions[k, PREPARES], agent, near, near_count, found, wall_count,
+            functions[k, PARAMS], functions[k, WORK],
         )  # fmt: skip
         if items > 0 and weights[k] != 0.0:
             active[terms] = k
@@ -66,12 +66,12 @@ def prepare(
 
 
 @kernel
-def in_preferred_frame(ux: float, uy: float, agent: Array) -> tuple[float, float]:
+def in_preferred_frame(ux: float, uy: float, agent: AgentRecord) -> tuple[float, float]:
     """A velocity in the world frame as seen along the preferred velocity, m/s."""
-    preferred = agent[PREFERRED]
+    preferred = agent.preferred
     return (
-        (ux * agent[PVX] + uy * agent[PVY]) / preferred,
-        (uy * agent[PVX] - ux * agent[PVY]) / preferred,
+        (ux * agent.pvx + uy * agent.pvy) / preferred,
+        (uy * agent.pvx - ux * agent.pvy) / preferred,
     )
 
 
@@ -100,7 +100,7 @@ def excess_of(costs: AgentCosts, k: int, ux: float, uy: float, budget: float) ->
     functions = costs.functions
     return float(
         call_excess(
-            functions[k, EXCESSES], ux, uy, budget, costs.agent.ctypes.data, functions[k, WORK],
+            functions[k, EXCESSES], ux, uy, budget, costs.agent, functions[k, WORK],
             functions[k, PARAMS],
         )
     )  # fmt: skip
@@ -112,7 +112,7 @@ def cost_of(costs: AgentCosts, k: int, ux: float, uy: float) -> float:
     agent, functions = costs.agent, costs.functions
     along, across = in_preferred_frame(ux, uy, agent)
     cost = call_base(
-        functions[k, BASES], along, across, agent[PREFERRED], agent[MAX_SPEED],
+        functions[k, BASES], along, across, agent.preferred, agent.max_speed,
         functions[k, PARAMS],
     )  # fmt: skip
     for term in range(costs.active.shape[0]):

@@ -7,7 +7,7 @@ from typing import NoReturn
 import numpy as np
 
 from crowdbot.core.crowd.policy import CrowdView
-from crowdbot.core.crowd.velocity_search.cost import BROKEN, CompiledCost
+from crowdbot.core.crowd.velocity_search.cost import CompiledCost
 from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
 from crowdbot.core.crowd.velocity_search.surroundings import Surroundings
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
@@ -23,7 +23,7 @@ def check_numbers(costs: WeightedCosts, view: CrowdView, around: Surroundings) -
     Raises:
         PluginError: one did; with its name, where that can be found out.
     """
-    if around.agent[BROKEN] != 0.0:
+    if around.deciding["broken"][0] != 0.0:
         report_broken(costs, view, "a cost")
 
 
@@ -42,7 +42,7 @@ def report_broken(costs: WeightedCosts, view: CrowdView, what: str) -> NoReturn:
 
 
 def _is_broken(costs: WeightedCosts, cost: CompiledCost, view: CrowdView) -> bool:
-    """Whether one function alone returns NaN for somebody."""
+    """Return True if one function alone returns NaN for an agent."""
     alone = WeightedCosts(
         [cost], costs.agents, relaxation_time=costs.relaxation_time, parity=costs.parity
     )

@@ -12,24 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crowdbot.core.crowd.velocity_search.cost import (
-    ASKED_RADIUS,
-    ASKED_X,
-    ASKED_Y,
-    FASTEST,
-    MAX_ACCELERATION,
-    MAX_SPEED,
-    PARITY,
-    PREFERRED,
-    PVX,
-    PVY,
-    RANDOM,
-    TIME_STEP,
-    VX,
-    VY,
-    Pointer,
-)
 from crowdbot.core.crowd.velocity_search.minstd import between, following
+from crowdbot.core.crowd.velocity_search.records import AgentRecord
 from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array
 
@@ -108,17 +92,17 @@ def fan(speeds: int, angles: int, opening: float, *, include_base: bool = True) 
 
 
 @kernel
-def radius_of(agent: Pointer, kind: int) -> float:
+def radius_of(agent: AgentRecord, kind: int) -> float:
     """Radius R of an agent's fan, m/s."""
     if kind == PREFERRED_SPEED:
-        return float(agent[PREFERRED])
+        return float(agent.preferred)
     if kind == MAXIMUM_SPEED:
-        return float(agent[MAX_SPEED])
-    return float(min(2.0 * agent[MAX_SPEED], agent[MAX_ACCELERATION] * agent[TIME_STEP]))
+        return float(agent.max_speed)
+    return float(min(2.0 * agent.max_speed, agent.max_acceleration * agent.time_step))
 
 
 @kernel
-def direction_of(agent: Pointer, kind: int) -> tuple[float, float]:
+def direction_of(agent: AgentRecord, kind: int) -> tuple[float, float]:
     """Base direction of an agent's fan, of length 1.
 
     Somebody at rest has no direction: the preferred one is taken instead. The original takes the
@@ -126,17 +110,17 @@ def direction_of(agent: Pointer, kind: int) -> tuple[float, float]:
     """
     if kind == UNIT:
         return 1.0, 0.0
-    x, y = agent[PVX], agent[PVY]
+    x, y = agent.pvx, agent.pvy
     if kind == ALONG_CURRENT:
-        still = agent[VX] == 0.0 and agent[VY] == 0.0
-        if not still or agent[PARITY] != 0.0:
-            x, y = agent[VX], agent[VY]
+        still = agent.vx == 0.0 and agent.vy == 0.0
+        if not still or agent.parity != 0.0:
+            x, y = agent.vx, agent.vy
     length = math.sqrt(x * x + y * y)
     return (x / length, y / length) if length > 0.0 else (0.0, 0.0)
 
 
 @kernel
-def frame_of(agent: Array, options: FanOptions, frame: Array) -> float:
+def frame_of(agent: AgentRecord, options: FanOptions, frame: Array) -> float:
     """Where an agent's candidates are; notes it in ``agent``, too; returns the radius.
 
     Args:
@@ -144,29 +128,29 @@ def frame_of(agent: Array, options: FanOptions, frame: Array) -> float:
     """
     scale = radius_of(agent, options.radius)
     ex, ey = direction_of(agent, options.direction)
-    frame[0], frame[1] = (agent[VX], agent[VY]) if options.base == CURRENT else (0.0, 0.0)
+    frame[0], frame[1] = (agent.vx, agent.vy) if options.base == CURRENT else (0.0, 0.0)
     frame[2], frame[3] = scale * ex, scale * ey
     fastest = scale if options.base == ZERO else scale + math.hypot(frame[0], frame[1])
-    agent[FASTEST] = (1.0 + 1e-9) * fastest
-    agent[ASKED_X], agent[ASKED_Y] = frame[0], frame[1]
+    agent.fastest = (1.0 + 1e-9) * fastest
+    agent.asked_x, agent.asked_y = frame[0], frame[1]
     # Under parity candidates are rounded to single precision.
-    agent[ASKED_RADIUS] = scale + (1e-9 if agent[PARITY] == 0.0 else 1e-6) * fastest
+    agent.asked_radius = scale + (1e-9 if agent.parity == 0.0 else 1e-6) * fastest
     return scale
 
 
 @kernel
-def draw_candidates(agent: Pointer, half: float, radius: float, drawn: Array) -> None:
+def draw_candidates(agent: AgentRecord, half: float, radius: float, drawn: Array) -> None:
     """Fill ``drawn`` (S, 2) with random candidates of the unit fan; advances the generator.
 
     Angle, then length: uniform in length, not in area, as in the original.
     """
-    state, fraction = int(agent[RANDOM]), 1.0 / radius
+    state, fraction = int(agent.random), 1.0 / radius
     for s in range(drawn.shape[0]):
         state = following(state)
         drawn[s, 0] = between(state, -half, half)
         state = following(state)
         drawn[s, 1] = between(state, 0.0, radius) * fraction
-    agent[RANDOM] = float(state)
+    agent.random = float(state)
     for s in range(drawn.shape[0]):  # apart from the draws, so that it runs on several at once
         cosine, sine = turn(drawn[s, 0])
         length = drawn[s, 1]

@@ -5,35 +5,59 @@ from __future__ import annotations
 import math
 
 from crowdbot.core.crowd.contact.geometry import crossing_time, time_to_disc, time_to_segment
-from crowdbot.core.crowd.velocity_search.cost import (
-    AX,
-    AY,
-    BX,
-    BY,
-    D2,
-    FROM_SURFACE,
-    NVX,
-    NVY,
-    PARITY,
-    RADIUS,
-    RANGE,
-    REACH,
-    RX,
-    RY,
-    WALL_D2,
-    Pointer,
-    near_table,
-    wall_table,
-    work_table,
+from crowdbot.core.crowd.velocity_search.cost import Pointer
+from crowdbot.core.crowd.velocity_search.records import (
+    COST_PARAMS,
+    WORK_COLUMNS,
+    AgentRecord,
+    NeighbourRecord,
+    WallRecord,
 )
 from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.records import Rows, as_record, as_rows, record_type
 
-# Entries of row 0 of ``work``: discs, wall segments after them, and how many of both touch the
-# agent already (they are not listed).
-DISCS, SEGMENTS, TOUCHED = range(3)
-# Columns of a disc: relative position, velocity, squared distance minus squared sum of radii. A
-# segment has both ends in columns 0 to 3. Then the time before which nothing can happen.
-_EARLIEST = 5
+
+class CollisionHeader:
+    """Row 0 of ``work``: counts of discs, of wall segments after them, of both that touch already.
+
+    What touches the agent is not listed.
+    """
+
+    discs: float
+    segments: float
+    touched: float
+
+
+class DiscRow:
+    """A disc in ``work``: relative position, velocity, gap and time.
+
+    Attributes:
+        gap2: squared distance minus squared sum of radii, m^2.
+        earliest: time before which nothing can happen, s.
+    """
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    gap2: float
+    earliest: float
+
+
+class SegmentRow:
+    """A wall segment in ``work``, after the discs: both ends; ``earliest`` as of `DiscRow`."""
+
+    ax: float
+    ay: float
+    bx: float
+    by: float
+    unused: float
+    earliest: float
+
+
+_HEADER = record_type(CollisionHeader)
+_DISC = record_type(DiscRow, WORK_COLUMNS)
+_SEGMENT = record_type(SegmentRow, WORK_COLUMNS)
 _SAFE = 1.0 - 1e-12
 #: Discs that are sorted by that time; all others come later. To sort hundreds would take longer
 #: than to pass them over.
@@ -44,10 +68,10 @@ _FEW = 3
 
 @array_kernel
 def list_obstacles(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
@@ -55,7 +79,7 @@ def list_obstacles(
 ) -> int:
     """Write everything within range to ``work``; return how many rows that are.
 
-    Uses columns 0 to 5 and the first three entries of row 0; the others are the caller's.
+    Uses the first six columns and the first three entries of row 0; the others are the caller's.
 
     Args:
         fastest: the largest speed that `first_collision` is going to be asked for, m/s.
@@ -67,10 +91,10 @@ def list_obstacles(
 
 @array_kernel
 def list_approaching(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
@@ -88,11 +112,12 @@ def list_approaching(
         ux, uy, spread: all velocities that `first_collision` is going to be asked for lie in this
             disc, m/s.
     """
-    near, walls, work = near_table(near), wall_table(walls), work_table(work)
-    range_, surface, touched, discs = params[RANGE], params[FROM_SURFACE], 0, 0
-    most = horizon if agent[PARITY] == 0.0 else math.inf
+    own, header = as_record(params, COST_PARAMS), as_record(work, _HEADER)
+    rows, segments = as_rows(work, _DISC), as_rows(work, _SEGMENT)
+    range_, surface, touched, discs = own.range, own.from_surface, 0, 0
+    most = horizon if agent.parity == 0.0 else math.inf
     for j in range(near_count):
-        d2, reach = near[j, D2], near[j, REACH]
+        d2, reach = near[j].d2, near[j].reach
         limit = range_ + surface * reach
         if d2 >= limit * limit:
             continue
@@ -100,45 +125,45 @@ def list_approaching(
         if gap2 <= 0.0:
             touched += 1
             continue
-        vx, vy, distance = near[j, NVX], near[j, NVY], math.sqrt(d2)
+        vx, vy, distance = near[j].nvx, near[j].nvy, math.sqrt(d2)
         # The distance shrinks at most at this speed; the factor is for rounding.
-        closing = spread + ((ux - vx) * near[j, RX] + (uy - vy) * near[j, RY]) / distance
+        closing = spread + ((ux - vx) * near[j].rx + (uy - vy) * near[j].ry) / distance
         earliest = _SAFE * (distance - reach) / closing if closing > 0.0 else math.inf
         if earliest > most:
             continue
         discs += 1
         row = discs
-        if row > _SORTED and work[_SORTED, _EARLIEST] > earliest:  # that one goes to the end
-            for column in range(6):
-                work[row, column] = work[_SORTED, column]
+        if row > _SORTED and rows[_SORTED].earliest > earliest:  # that one goes to the end
+            rows[row] = rows[_SORTED]
             row = _SORTED
-        while 1 < row <= _SORTED and work[row - 1, _EARLIEST] > earliest:
-            for column in range(6):
-                work[row, column] = work[row - 1, column]
+        while 1 < row <= _SORTED and rows[row - 1].earliest > earliest:
+            rows[row] = rows[row - 1]
             row -= 1
-        work[row, 0], work[row, 1] = near[j, RX], near[j, RY]
-        work[row, 2], work[row, 3], work[row, 4] = vx, vy, gap2
-        work[row, _EARLIEST] = earliest
+        disc = rows[row]
+        disc.x, disc.y, disc.vx, disc.vy = near[j].rx, near[j].ry, vx, vy
+        disc.gap2, disc.earliest = gap2, earliest
     row = discs
-    limit = range_ + surface * agent[RADIUS]
+    limit = range_ + surface * agent.radius
     for s in range(wall_count):
-        d2 = walls[s, WALL_D2]
+        d2 = walls[s].d2
         if d2 > limit * limit:
             continue
-        if d2 <= agent[RADIUS] ** 2:
+        if d2 <= agent.radius**2:
             touched += 1
             continue
         row += 1
-        work[row, 0], work[row, 1] = walls[s, AX], walls[s, AY]
-        work[row, 2], work[row, 3] = walls[s, BX], walls[s, BY]
-        gap, fastest = math.sqrt(d2) - agent[RADIUS], spread + math.hypot(ux, uy)
-        work[row, _EARLIEST] = _SAFE * gap / fastest if fastest > 0.0 else math.inf
-    work[0, DISCS], work[0, SEGMENTS], work[0, TOUCHED] = discs, row - discs, touched
+        segment = segments[row]
+        segment.ax, segment.ay, segment.bx, segment.by = (
+            walls[s].ax, walls[s].ay, walls[s].bx, walls[s].by,
+        )  # fmt: skip
+        gap, fastest = math.sqrt(d2) - agent.radius, spread + math.hypot(ux, uy)
+        segment.earliest = _SAFE * gap / fastest if fastest > 0.0 else math.inf
+    header.discs, header.segments, header.touched = discs, row - discs, touched
     return row
 
 
 @array_kernel
-def first_collision(ux: float, uy: float, until: float, agent: Pointer, work: Pointer) -> float:
+def first_collision(ux: float, uy: float, until: float, agent: AgentRecord, work: Pointer) -> float:
     """Time until a collision with what `list_obstacles` wrote, s; ``inf`` if there is none.
 
     What touches already does not count: see `first_contact`.
@@ -146,28 +171,30 @@ def first_collision(ux: float, uy: float, until: float, agent: Pointer, work: Po
     Args:
         until: a time below which the exact value does not matter; the search stops there.
     """
-    work = work_table(work)
-    first, discs = math.inf, int(work[0, DISCS])
+    header, rows, segments = as_record(work, _HEADER), as_rows(work, _DISC), as_rows(work, _SEGMENT)
+    first, discs = math.inf, int(header.discs)
     for j in range(1, discs + 1):
-        if work[j, _EARLIEST] >= first:
+        disc = rows[j]
+        if disc.earliest >= first:
             if j <= _SORTED:
                 break
             continue
-        t = time_to_disc(work[j, 0], work[j, 1], ux - work[j, 2], uy - work[j, 3], work[j, 4])
+        t = time_to_disc(disc.x, disc.y, ux - disc.vx, uy - disc.vy, disc.gap2)
         if t < first:
             first = t
             if first < until:
                 return first
-    for j in range(discs + 1, discs + 1 + int(work[0, SEGMENTS])):
-        if work[j, _EARLIEST] >= first:
+    for j in range(discs + 1, discs + 1 + int(header.segments)):
+        segment = segments[j]
+        if segment.earliest >= first:
             continue
-        ax, ay, bx, by = work[j, 0], work[j, 1], work[j, 2], work[j, 3]
-        if agent[PARITY] != 0.0:
-            t = crossing_time(ux, uy, agent[RADIUS], ax, ay, bx, by)
+        ax, ay, bx, by = segment.ax, segment.ay, segment.bx, segment.by
+        if agent.parity != 0.0:
+            t = crossing_time(ux, uy, agent.radius, ax, ay, bx, by)
             if t <= 0.0:  # counted from the centre, this may be 0 short of a touch
                 continue
         else:
-            t = time_to_segment(ux, uy, agent[RADIUS], ax, ay, bx, by)
+            t = time_to_segment(ux, uy, agent.radius, ax, ay, bx, by)
         first = min(first, t)
     return first
 
@@ -191,12 +218,12 @@ def soonest_disc(
     Args:
         count, ux, uy: velocities; ``factor * u - v`` is kept, m/s.
     """
-    work = work_table(work)
+    header, rows = as_record(work, _HEADER), as_rows(work, _DISC)
     for c in range(count):
         out[c] = 0.0
-    for j in range(1, min(_FEW, int(work[0, DISCS])) + 1):
-        rx, ry, gap2 = work[j, 0], work[j, 1], work[j, 4]
-        wx, wy, per_gap2 = work[j, 2], work[j, 3], 1.0 / gap2
+    for j in range(1, min(_FEW, int(header.discs)) + 1):
+        rx, ry, gap2 = rows[j].x, rows[j].y, rows[j].gap2
+        wx, wy, per_gap2 = rows[j].vx, rows[j].vy, 1.0 / gap2
         for c in range(count):
             # Rounded as in `first_collision`, so that both agree on who is just missed.
             ox, oy = factor * ux[c] - vx - wx, factor * uy[c] - vy - wy
@@ -208,24 +235,25 @@ def soonest_disc(
 
 
 @array_kernel
-def first_contact(ux: float, uy: float, agent: Pointer, work: Pointer) -> float:
+def first_contact(ux: float, uy: float, agent: AgentRecord, work: Pointer) -> float:
     """As `first_collision`, but 0 where something touches the agent already.
 
     Under parity also 0 beside somebody with exactly the velocity u: the original takes a
     vanishing discriminant for a touch.
     """
-    table = work_table(work)
-    if table[0, TOUCHED] > 0.0:
+    header, rows, segments = as_record(work, _HEADER), as_rows(work, _DISC), as_rows(work, _SEGMENT)
+    if header.touched > 0.0:
         return 0.0
-    if agent[PARITY] != 0.0:
-        discs = int(table[0, DISCS])
+    if agent.parity != 0.0:
+        discs = int(header.discs)
         for j in range(1, discs + 1):
-            if ux == table[j, 2] and uy == table[j, 3]:
+            if ux == rows[j].vx and uy == rows[j].vy:
                 return 0.0
-        if ux == 0.0 and uy == 0.0 and table[0, SEGMENTS] > 0.0:
+        if ux == 0.0 and uy == 0.0 and header.segments > 0.0:
             return 0.0
-        for j in range(discs + 1, discs + 1 + int(table[0, SEGMENTS])):
-            ax, ay, bx, by = table[j, 0], table[j, 1], table[j, 2], table[j, 3]
-            if crossing_time(ux, uy, agent[RADIUS], ax, ay, bx, by) <= 0.0:
+        for j in range(discs + 1, discs + 1 + int(header.segments)):
+            segment = segments[j]
+            ax, ay, bx, by = segment.ax, segment.ay, segment.bx, segment.by
+            if crossing_time(ux, uy, agent.radius, ax, ay, bx, by) <= 0.0:
                 return 0.0
     return first_collision(ux, uy, 0.0, agent, work)

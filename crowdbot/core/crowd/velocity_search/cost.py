@@ -28,9 +28,10 @@ error_model="numpy")``; float64 everywhere, SI units, world frame unless said ot
   known in closed form, for the method ``global``; 0 if it is not known for this agent. Called
   after ``prepare``, also where that returned 0.
 
-Everything but numbers is a pointer to float64: ten thousands of calls per decision would
-otherwise spend most of their time on handing arrays over. Vectors are indexed as they are;
-``near_table``, ``wall_table`` and ``work_table`` give the others rows and columns, free of charge.
+``agent``, ``near[j]`` and ``walls[s]`` are records, whose fields have names; see
+`crowdbot.core.crowd.velocity_search.records`. The other arguments that are not numbers are pointers
+to float64: ten thousands of calls per decision would otherwise spend most of their time on handing
+arrays over. A function names its own with `as_record` and `as_rows`, free of charge.
 Functions that ask for the first collision share `crowdbot.core.crowd.velocity_search.collision`.
 
 `NumpyCost`: one function over all candidates of an agent, for those who need no speed.
@@ -43,49 +44,26 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import carray, njit, types  # type: ignore[attr-defined]
+from numba import njit, types
 from numpy.typing import NDArray
 
+from crowdbot.core.crowd.velocity_search.records import AGENT, COST_PARAMS, NEIGHBOUR, WALL
 from crowdbot.core.registry.plugin_boundary import PluginCall
+from crowdbot.core.support.records import as_record, record_argument, rows_argument
 from crowdbot.core.types.arrays import Array
 
-#: What compiled code is handed instead of an array; indexed like one.
+#: What compiled code is handed instead of an array of float64; indexed like one.
 Pointer = Any
 
 _F, _I = types.float64, types.int64
 _P = types.CPointer(_F)  # type: ignore[no-untyped-call]
+_AGENT = record_argument(AGENT)
 BASE = types.float64(_F, _F, _F, _F, _P)
-PREPARE = types.int64(_P, _P, _I, _P, _I, _P, _P)
-EXCESS = types.float64(_F, _F, _F, _P, _P, _P)
-GRADIENT = types.int64(_F, _F, _P, _P, _P, _P)
-OPTIMUM = types.int64(_P, _P, _P, _P)
-LOWER_BOUND = types.int64(_I, _P, _P, _P, _P, _P, _P)
-
-# Entries of the ``agent`` vector: position, velocity, radius, preferred speed, the greatest speed
-# that the search asks for, time between decisions; goal, preferred velocity, largest speed and
-# acceleration; the policy's relaxation time; the weight (1 unless a case of the original says
-# otherwise, without unit) that divides forces; 1 if the original's defects are wanted; state of
-# the agent's random numbers (see `crowdbot.core.crowd.velocity_search.minstd`), which functions
-# may advance; whether gradients are followed; whether some function returned NaN, which the search
-# notes there for itself; the disc of velocities that holds all that the search asks for.
-(
-    PX, PY, VX, VY, RADIUS, PREFERRED, FASTEST, TIME_STEP,
-    GX, GY, PVX, PVY, MAX_SPEED, MAX_ACCELERATION, RELAXATION, WEIGHT, PARITY, RANDOM,
-    DESCENDS, BROKEN, ASKED_X, ASKED_Y, ASKED_RADIUS,
-) = range(23)  # fmt: skip
-AGENT_SIZE = 23
-# Columns of ``near``, in no particular order: squared centre distance, relative position,
-# velocity, sum of radii; preferred velocity; 1 for a pillar (a disc that never moves).
-D2, RX, RY, NVX, NVY, REACH, NPX, NPY, STATIC = range(9)
-NEAR_COLUMNS = 9
-# Columns of ``walls``: both ends of a segment and its nearest point relative to the agent's
-# position; squared distance of the nearest point. Outlines run counter-clockwise around solids.
-AX, AY, BX, BY, NX, NY, WALL_D2 = range(7)
-WALL_COLUMNS = 7
-# First two entries of every ``params`` vector.
-RANGE, FROM_SURFACE = range(2)
-#: Columns of ``work``.
-WORK_COLUMNS = 8
+PREPARE = types.int64(_AGENT, rows_argument(NEIGHBOUR), _I, rows_argument(WALL), _I, _P, _P)
+EXCESS = types.float64(_F, _F, _F, _AGENT, _P, _P)
+GRADIENT = types.int64(_F, _F, _AGENT, _P, _P, _P)
+OPTIMUM = types.int64(_AGENT, _P, _P, _P)
+LOWER_BOUND = types.int64(_I, _P, _P, _AGENT, _P, _P, _P)
 
 
 def work_rows(others: int) -> int:
@@ -99,7 +77,7 @@ class CompiledCost:
 
     Attributes:
         base, prepare, excess: numba functions of the signatures above.
-        params: (P,), begins with the range (m) and 1.0 if it is measured between surfaces.
+        params: (P,), begins with the fields of `CostParams`.
         weight: factor of the cost, >= 0.
         gradient, optimum, lower_bound: numba functions of the signatures above, or None.
         ordered: excess has to be called for every candidate and in their order, because it draws
@@ -120,7 +98,8 @@ class CompiledCost:
 
     def reach(self, radius: float, largest_radius: float) -> float:
         """Centre distance beyond which no neighbour counts, m."""
-        return _reach(self.params[RANGE], bool(self.params[FROM_SURFACE]), radius, largest_radius)
+        distance, from_surface = self.params[:2]
+        return _reach(distance, bool(from_surface), radius, largest_radius)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -190,36 +169,15 @@ def _reach(distance: float, from_surface: bool, radius: float, largest_radius: f
     return float(distance) + (radius + largest_radius if from_surface else 0.0)
 
 
-# Numba wants a length; it is not checked.
-_ANY = 1
-
-
-@njit(cache=True)
-def near_table(near: Pointer) -> Any:
-    """Neighbours as rows of `NEAR_COLUMNS`."""
-    return carray(near, (_ANY, NEAR_COLUMNS))
-
-
-@njit(cache=True)
-def wall_table(walls: Pointer) -> Any:
-    """Walls as rows of `WALL_COLUMNS`."""
-    return carray(walls, (_ANY, WALL_COLUMNS))
-
-
-@njit(cache=True)
-def work_table(work: Pointer) -> Any:
-    """The scratch table as rows of `WORK_COLUMNS`."""
-    return carray(work, (_ANY, WORK_COLUMNS))
-
-
 @njit(cache=True, inline="always")
 def in_range(d2: float, radii: float, params: Pointer) -> bool:
-    """Whether a squared distance is within a function's range, strictly.
+    """Return True if a squared distance is within a function's range, strictly.
 
     Args:
         d2: squared centre distance to a neighbour, or squared distance to a wall, m^2.
         radii: what is deducted where the range is measured between surfaces: the sum of the
             radii, or the agent's radius for a wall, m.
     """
-    reach = params[RANGE] + params[FROM_SURFACE] * radii
+    own = as_record(params, COST_PARAMS)
+    reach = own.range + own.from_surface * radii
     return bool(d2 < reach * reach)

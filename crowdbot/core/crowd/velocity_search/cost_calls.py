@@ -23,6 +23,7 @@ from crowdbot.core.crowd.velocity_search.cost import (
     OPTIMUM,
     PREPARE,
 )
+from crowdbot.core.support.records import start_of
 
 
 def address_of(function: Any, signature: Any) -> int:
@@ -31,29 +32,41 @@ def address_of(function: Any, signature: Any) -> int:
     return int(result.library.get_pointer_to_function(result.fndesc.llvm_cfunc_wrapper_name))
 
 
-def _call(signature: Any) -> tuple[Any, Any]:
+def _call(signature: Any, *given: Any) -> tuple[Any, Any]:
     """Typing and code of a call: address of the function, then its arguments.
 
-    Pointers are given as integers and become pointers here.
+    Records, arrays and integers become pointers here.
     """
-    given = [types.intp if isinstance(a, types.CPointer) else a for a in signature.args]
+    pointers = types.CPointer | types.Record
+    taken = [types.intp if isinstance(wanted, pointers) else wanted for wanted in signature.args]
+    for k, actual in enumerate(given):
+        if isinstance(actual, types.Record | types.Array):
+            taken[k] = actual
 
     def generate(context: Any, builder: Any, _: Any, values: Any) -> Any:
         wanted = [context.get_value_type(a) for a in signature.args]
         kind = ir.FunctionType(context.get_value_type(signature.return_type), wanted)
         arguments = [
-            builder.inttoptr(value, want) if isinstance(want, ir.PointerType) else value
-            for value, want in zip(values[1:], wanted, strict=True)
+            _pointer(context, builder, how, value, want)
+            if isinstance(want, ir.PointerType)
+            else value
+            for how, value, want in zip(taken, values[1:], wanted, strict=True)
         ]
         return builder.call(builder.inttoptr(values[0], kind.as_pointer()), arguments)
 
-    return signature.return_type(types.intp, *given), generate
+    return signature.return_type(types.intp, *taken), generate
+
+
+def _pointer(context: Any, builder: Any, kind: Any, value: Any, wanted: Any) -> Any:
+    if isinstance(kind, types.Integer):
+        return builder.inttoptr(value, wanted)
+    return builder.bitcast(start_of(context, builder, kind, value), wanted)
 
 
 def _base(
     _: Any, at: Any, ux: Any, uy: Any, preferred: Any, max_speed: Any, params: Any
 ) -> tuple[Any, Any]:
-    return _call(BASE)
+    return _call(BASE, ux, uy, preferred, max_speed, params)
 
 
 def _prepare(
@@ -67,29 +80,29 @@ def _prepare(
     params: Any,
     work: Any,
 ) -> tuple[Any, Any]:
-    return _call(PREPARE)
+    return _call(PREPARE, agent, near, near_count, walls, wall_count, params, work)
 
 
 def _excess(
     _: Any, at: Any, ux: Any, uy: Any, budget: Any, agent: Any, work: Any, params: Any
 ) -> tuple[Any, Any]:
-    return _call(EXCESS)
+    return _call(EXCESS, ux, uy, budget, agent, work, params)
 
 
 def _gradient(
     _: Any, at: Any, ux: Any, uy: Any, agent: Any, work: Any, params: Any, out: Any
 ) -> tuple[Any, Any]:
-    return _call(GRADIENT)
+    return _call(GRADIENT, ux, uy, agent, work, params, out)
 
 
 def _optimum(_: Any, at: Any, agent: Any, work: Any, params: Any, out: Any) -> tuple[Any, Any]:
-    return _call(OPTIMUM)
+    return _call(OPTIMUM, agent, work, params, out)
 
 
 def _lower_bound(
     _: Any, at: Any, count: Any, ux: Any, uy: Any, agent: Any, work: Any, params: Any, out: Any
 ) -> tuple[Any, Any]:
-    return _call(LOWER_BOUND)
+    return _call(LOWER_BOUND, count, ux, uy, agent, work, params, out)
 
 
 call_base: Any = intrinsic(_base)

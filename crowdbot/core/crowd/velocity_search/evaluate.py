@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from crowdbot.core.crowd.policy import CrowdView
@@ -11,45 +13,19 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
     cost_of,
     prepare,
 )
-from crowdbot.core.crowd.velocity_search.cost import (
-    ASKED_RADIUS,
-    AX,
-    BY,
-    D2,
-    FASTEST,
-    GX,
-    GY,
-    MAX_ACCELERATION,
-    MAX_SPEED,
-    NPX,
-    NPY,
-    NVX,
-    NVY,
-    PREFERRED,
-    PVX,
-    PVY,
-    PX,
-    PY,
-    RADIUS,
-    RANDOM,
-    REACH,
-    RELAXATION,
-    RX,
-    RY,
-    STATIC,
-    TIME_STEP,
-    VX,
-    VY,
-    WALL_D2,
-    AgentView,
-    Neighbours,
-    NumpyCost,
+from crowdbot.core.crowd.velocity_search.cost import AgentView, Neighbours, NumpyCost
+from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord, Starts, gather, gather_walls
+from crowdbot.core.crowd.velocity_search.records import AgentRecord, NeighbourRecord, WallRecord
+from crowdbot.core.crowd.velocity_search.surroundings import (
+    SettingsRecord,
+    Surroundings,
+    TraitsRecord,
+    describe,
 )
-from crowdbot.core.crowd.velocity_search.neighbours import Starts, gather, gather_walls
-from crowdbot.core.crowd.velocity_search.surroundings import Surroundings, describe
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.immutable import immutable, immutable_fields
+from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 
@@ -82,19 +58,20 @@ class Evaluator:
         return total
 
     def _add_vectorised(self, around: Surroundings, velocities: Array, total: Array) -> None:
-        agent = around.agent
-        for b in range(len(around.table)):
+        agent = around.deciding
+        for b in range(around.table.shape[0]):
             i = describe(around, b)
             if i < 0:
                 continue
             count = gather(
                 around.table, around.starts, around.low, around.height, b, around.reach, around.near
             )
-            walls = gather_walls(around.walls, agent[PX], agent[PY], around.reach, around.found)
+            px, py, radius = (float(agent[name][0]) for name in ("px", "py", "radius"))
+            walls = gather_walls(around.walls, px, py, around.reach, around.found)
             seen, tried = immutable_fields(_agent_view(agent)), immutable(velocities[i])
             for cost in self.costs.vectorised:
                 others = immutable_fields(
-                    _neighbours(cost, agent, around.near[:count], around.found[:walls])
+                    _neighbours(cost, radius, around.near[:count], around.found[:walls])
                 )
                 found = np.asarray(cost.evaluate(tried, seen, others), np.float64)
                 if found.shape != total[i].shape or np.any(np.isnan(found)):
@@ -107,60 +84,75 @@ class Evaluator:
                     total[i] += cost.weight * found
 
 
-def _agent_view(agent: Array) -> AgentView:
+def _agent_view(deciding: Rows[AgentRecord]) -> AgentView:
+    def pair(x: str, y: str) -> Array:
+        return np.array([deciding[x][0], deciding[y][0]])
+
+    def number(name: str) -> float:
+        return float(deciding[name][0])
+
     return AgentView(
-        position=agent[[PX, PY]],
-        velocity=agent[[VX, VY]],
-        preferred_velocity=agent[[PVX, PVY]],
-        goal=agent[[GX, GY]],
-        radius=float(agent[RADIUS]),
-        preferred_speed=float(agent[PREFERRED]),
-        max_speed=float(agent[MAX_SPEED]),
-        max_acceleration=float(agent[MAX_ACCELERATION]),
-        time_step=float(agent[TIME_STEP]),
-        relaxation_time=float(agent[RELAXATION]),
+        position=pair("px", "py"),
+        velocity=pair("vx", "vy"),
+        preferred_velocity=pair("pvx", "pvy"),
+        goal=pair("gx", "gy"),
+        radius=number("radius"),
+        preferred_speed=number("preferred"),
+        max_speed=number("max_speed"),
+        max_acceleration=number("max_acceleration"),
+        time_step=number("time_step"),
+        relaxation_time=number("relaxation"),
     )
 
 
-def _neighbours(cost: NumpyCost, agent: Array, near: Array, walls: Array) -> Neighbours:
+def _neighbours(
+    cost: NumpyCost, radius: float, near: Rows[NeighbourRecord], walls: Rows[WallRecord]
+) -> Neighbours:
     surface = float(cost.from_surface)
-    near = near[near[:, D2] < (cost.range + surface * near[:, REACH]) ** 2]
-    walls = walls[walls[:, WALL_D2] <= (cost.range + surface * agent[RADIUS]) ** 2]
+    close = near["d2"] < (cost.range + surface * near["reach"]) ** 2
+    beside = walls["d2"] <= (cost.range + surface * radius) ** 2
     return Neighbours(
-        offset=near[:, [RX, RY]],
-        velocity=near[:, [NVX, NVY]],
-        preferred_velocity=near[:, [NPX, NPY]],
-        radius=near[:, REACH] - agent[RADIUS],
-        fixed=near[:, STATIC] != 0.0,
-        walls=walls[:, AX : BY + 1].copy(),
+        offset=_columns(near, close, "rx", "ry"),
+        velocity=_columns(near, close, "nvx", "nvy"),
+        preferred_velocity=_columns(near, close, "npx", "npy"),
+        radius=near["reach"][close] - radius,
+        fixed=near["static"][close] != 0.0,
+        walls=_columns(walls, beside, "ax", "ay", "bx", "by"),
     )
+
+
+def _columns(rows: Rows[Any], chosen: Mask, *names: str) -> Array:
+    """Some fields of the chosen rows, side by side."""
+    return np.column_stack([rows[name][chosen] for name in names])
 
 
 @kernel
 def _evaluate(
-    table: Array, starts: Starts, low: float, height: float, who: Mask, goal: Array, walls: Array,
-    reach: float, traits: Array, settings: Array, random: Array, near: Array, found: Array,
-    agent: Array, functions: Functions, weights: Array,
+    table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
+    walls: Array, reach: float, traits: Rows[TraitsRecord], settings: Rows[SettingsRecord],
+    random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
+    deciding: Rows[AgentRecord], functions: Functions, weights: Array,
     active: Indices, velocities: Array, total: Array,
 ) -> None:  # fmt: skip
     """Add compiled costs of velocities (N, S, 2) to ``total`` (N, S).
 
     Args:
-        table to agent: fields of `Surroundings`.
+        table to deciding: fields of `Surroundings`.
         functions, weights: see `AgentCosts`.
         active: (K,) scratch.
     """
     around = Surroundings(
         table, starts, low, height, who, goal, walls, reach, traits, settings, random, near,
-        found, agent,
+        found, deciding,
     )  # fmt: skip
+    agent = deciding[0]
     for b in range(table.shape[0]):
         i = describe(around, b)
         if i < 0:
             continue
         for s in range(velocities.shape[1]):
             speed = np.hypot(velocities[i, s, 0], velocities[i, s, 1])
-            agent[FASTEST] = agent[ASKED_RADIUS] = max(agent[FASTEST], speed)
+            agent.fastest = agent.asked_radius = max(agent.fastest, speed)
         terms = prepare(around, b, functions, weights, active)
         costs = AgentCosts(agent, functions, weights, active[:terms])
         for s in range(velocities.shape[1]):
@@ -169,4 +161,4 @@ def _evaluate(
                     total[i, s] += weights[k] * cost_of(
                         costs, k, velocities[i, s, 0], velocities[i, s, 1]
                     )
-        random[i] = agent[RANDOM]
+        random[i] = agent.random

@@ -17,21 +17,19 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
     prepare,
 )
 from crowdbot.core.crowd.velocity_search.broken import check_numbers
-from crowdbot.core.crowd.velocity_search.cost import (
-    ASKED_RADIUS,
-    BROKEN,
-    DESCENDS,
-    FASTEST,
-    RANDOM,
-    VX,
-    VY,
-)
 from crowdbot.core.crowd.velocity_search.cost_calls import call_gradient
 from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
-from crowdbot.core.crowd.velocity_search.neighbours import Starts
-from crowdbot.core.crowd.velocity_search.surroundings import Surroundings, describe
+from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord, Starts
+from crowdbot.core.crowd.velocity_search.records import AgentRecord, NeighbourRecord, WallRecord
+from crowdbot.core.crowd.velocity_search.surroundings import (
+    SettingsRecord,
+    Surroundings,
+    TraitsRecord,
+    describe,
+)
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 #: Half the span of central differences, m/s.
@@ -70,29 +68,31 @@ class Descent:
 
 @kernel
 def _descend(
-    table: Array, starts: Starts, low: float, height: float, who: Mask, goal: Array, walls: Array,
-    reach: float, traits: Array, settings: Array, random: Array, near: Array, found: Array,
-    agent: Array, functions: Functions, weights: Array, active: Indices, out: Array,
+    table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
+    walls: Array, reach: float, traits: Rows[TraitsRecord], settings: Rows[SettingsRecord],
+    random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
+    deciding: Rows[AgentRecord], functions: Functions, weights: Array, active: Indices, out: Array,
     result: Array,
 ) -> None:  # fmt: skip
     """Write minus the gradient (N, 2) of the compiled costs to ``result``.
 
     Args:
-        table to agent: fields of `Surroundings`.
+        table to deciding: fields of `Surroundings`.
         functions, weights: see `AgentCosts`.
         active, out: (K,), (2,) scratch.
     """
     around = Surroundings(
         table, starts, low, height, who, goal, walls, reach, traits, settings, random, near,
-        found, agent,
+        found, deciding,
     )  # fmt: skip
+    agent = deciding[0]
     for b in range(table.shape[0]):
         i = describe(around, b)
         if i < 0:
             continue
-        vx, vy, agent[DESCENDS] = agent[VX], agent[VY], 1.0
-        agent[FASTEST] = (1.0 + 1e-9) * math.hypot(vx, vy) + 1.5 * STEP
-        agent[ASKED_RADIUS] = agent[FASTEST]
+        vx, vy, agent.descends = agent.vx, agent.vy, 1.0
+        agent.fastest = (1.0 + 1e-9) * math.hypot(vx, vy) + 1.5 * STEP
+        agent.asked_radius = agent.fastest
         terms = prepare(around, b, functions, weights, active)
         costs = AgentCosts(agent, functions, weights, active[:terms])
         gx = gy = 0.0
@@ -102,18 +102,18 @@ def _descend(
             out[0] = out[1] = 0.0
             if functions[k, GRADIENTS] != 0:
                 call_gradient(
-                    functions[k, GRADIENTS], vx, vy, agent.ctypes.data, functions[k, WORK],
-                    functions[k, PARAMS], out.ctypes.data,
+                    functions[k, GRADIENTS], vx, vy, agent, functions[k, WORK],
+                    functions[k, PARAMS], out,
                 )  # fmt: skip
             else:
                 _differences(costs, k, vx, vy, out)
             if math.isnan(out[0]) or math.isnan(out[1]):
-                agent[BROKEN] = 1.0
+                agent.broken = 1.0
             gx += weights[k] * out[0]
             gy += weights[k] * out[1]
         result[i, 0] = 0.0 if math.isnan(gx) else -gx  # two functions may forbid opposite sides
         result[i, 1] = 0.0 if math.isnan(gy) else -gy
-        random[i] = agent[RANDOM]
+        random[i] = agent.random
 
 
 @kernel

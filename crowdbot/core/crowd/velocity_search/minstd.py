@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd.velocity_search.cost import RANDOM, Pointer
+from crowdbot.core.crowd.velocity_search.records import AgentRecord
 from crowdbot.core.support.compile import array_kernel, inline_kernel
 
 _MODULUS = 2147483647
@@ -38,8 +38,8 @@ def between(state: int, low: float, high: float) -> float:
 
 
 @array_kernel
-def draw(agent: Pointer, low: float, high: float) -> float:
-    """Advance the generator of an ``agent`` vector and return a number in [low, high)."""
-    state = following(int(agent[RANDOM]))
-    agent[RANDOM] = float(state)
+def draw(agent: AgentRecord, low: float, high: float) -> float:
+    """Advance the generator of an agent and return a number in [low, high)."""
+    state = following(int(agent.random))
+    agent.random = float(state)
     return between(state, low, high)

@@ -7,24 +7,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd.velocity_search.neighbours import (
-    DISC_COLUMNS,
-    DISC_RADIUS,
-    INDEX,
-    PILLAR,
-    VX,
-    VY,
-    WANTED_X,
-    WANTED_Y,
-    X,
-    Y,
-)
+from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
 from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array
 
 
 def most_discs(people: int, others: int, periodic: bool) -> int:
-    """How many rows `write_discs` may write."""
+    """Return how many rows `write_discs` may write at most."""
     return people * (9 if periodic else 1) + others
 
 
@@ -41,7 +31,7 @@ def write_discs(
     box: Array,
     diagonal: bool,
     reach: float,
-    discs: Array,
+    discs: Rows[DiscRecord],
 ) -> int:
     """Write all discs; return how many they are.
 
@@ -54,33 +44,34 @@ def write_discs(
         box: x0, x1, y0, y1 of the periodic boundary, m; none if x0 = x1.
         diagonal: see `crowdbot.core.crowd.policy.CrowdView`.
         reach: only images closer than this to the floor, m.
-        discs: (>= `most_discs`, `DISC_COLUMNS`) output.
+        discs: (>= `most_discs`,) output.
     """
     count = 0
     for i in range(position.shape[0]):
         if not present[i]:
             continue
         row = discs[count]
-        row[X], row[Y] = position[i, 0], position[i, 1]
-        row[VX], row[VY] = velocity[i, 0], velocity[i, 1]
-        row[DISC_RADIUS], row[PILLAR], row[INDEX] = radius[i], 0.0, i
+        row.x, row.y = position[i, 0], position[i, 1]
+        row.vx, row.vy = velocity[i, 0], velocity[i, 1]
+        row.radius, row.pillar, row.index = radius[i], 0.0, i
         gx, gy = goal[i, 0] - position[i, 0], goal[i, 1] - position[i, 1]
         away = math.hypot(gx, gy)
         factor = preferred[i] / away if away > radius[i] else 0.0
-        row[WANTED_X], row[WANTED_Y] = factor * gx, factor * gy
+        row.wanted_x, row.wanted_y = factor * gx, factor * gy
         count += 1
     people = count
     for r in range(robots.shape[0]):
-        for column in range(X, DISC_RADIUS + 1):  # slices take seconds to compile
-            discs[count, column] = robots[r, column - X]
-        discs[count, WANTED_X], discs[count, WANTED_Y] = robots[r, 2], robots[r, 3]
-        discs[count, PILLAR], discs[count, INDEX] = 0.0, -1.0
+        disc = discs[count]
+        disc.x, disc.y, disc.radius = robots[r, 0], robots[r, 1], robots[r, 4]
+        disc.vx, disc.vy = robots[r, 2], robots[r, 3]
+        disc.wanted_x, disc.wanted_y = robots[r, 2], robots[r, 3]
+        disc.pillar, disc.index = 0.0, -1.0
         count += 1
     for p in range(pillars.shape[0]):
-        discs[count, :] = 0.0
-        discs[count, X], discs[count, Y] = pillars[p, 0], pillars[p, 1]
-        discs[count, DISC_RADIUS] = pillars[p, 2]
-        discs[count, PILLAR], discs[count, INDEX] = 1.0, -1.0
+        disc = discs[count]
+        disc.x, disc.y, disc.radius = pillars[p, 0], pillars[p, 1], pillars[p, 2]
+        disc.vx = disc.vy = disc.wanted_x = disc.wanted_y = 0.0
+        disc.pillar, disc.index = 1.0, -1.0
         count += 1
     if box[0] < box[1]:
         count = _write_images(discs, people, count, box, diagonal, reach)
@@ -89,7 +80,7 @@ def write_discs(
 
 @array_kernel
 def _write_images(
-    discs: Array, people: int, count: int, box: Array, diagonal: bool, reach: float
+    discs: Rows[DiscRecord], people: int, count: int, box: Array, diagonal: bool, reach: float
 ) -> int:
     """Append people as they appear across a periodic boundary."""
     width, height = box[1] - box[0], box[3] - box[2]
@@ -102,16 +93,16 @@ def _write_images(
             if not math.isfinite(dx + dy):
                 continue
             for i in range(people):
-                x, y = discs[i, X] + dx, discs[i, Y] + dy
+                x, y = discs[i].x + dx, discs[i].y + dy
                 ox = max(0.0, box[0] - x, x - box[1])
                 oy = max(0.0, box[2] - y, y - box[3])
                 if ox * ox + oy * oy >= reach * reach:
                     continue
-                for column in range(DISC_COLUMNS):
-                    discs[count, column] = discs[i, column]
-                discs[count, X], discs[count, Y], discs[count, INDEX] = x, y, -1.0
+                discs[count] = discs[i]
+                image = discs[count]
+                image.x, image.y, image.index = x, y, -1.0
                 count += 1
     return count
 
 
-__all__ = ["DISC_COLUMNS", "most_discs", "write_discs"]
+__all__ = ["most_discs", "write_discs"]

@@ -17,13 +17,19 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
 )
 from crowdbot.core.crowd.velocity_search.broken import check_numbers
 from crowdbot.core.crowd.velocity_search.candidates import EVERYWHERE
-from crowdbot.core.crowd.velocity_search.cost import BROKEN, RANDOM
 from crowdbot.core.crowd.velocity_search.cost_calls import call_optimum
-from crowdbot.core.crowd.velocity_search.neighbours import Starts
+from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord, Starts
+from crowdbot.core.crowd.velocity_search.records import AgentRecord, NeighbourRecord, WallRecord
 from crowdbot.core.crowd.velocity_search.sampling import Sampler
-from crowdbot.core.crowd.velocity_search.surroundings import Surroundings, describe
+from crowdbot.core.crowd.velocity_search.surroundings import (
+    SettingsRecord,
+    Surroundings,
+    TraitsRecord,
+    describe,
+)
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 
@@ -52,35 +58,37 @@ class Optimum:
 
 @kernel
 def _solve(
-    table: Array, starts: Starts, low: float, height: float, who: Mask, goal: Array, walls: Array,
-    reach: float, traits: Array, settings: Array, random: Array, near: Array, found: Array,
-    agent: Array, functions: Functions, weights: Array,
+    table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
+    walls: Array, reach: float, traits: Rows[TraitsRecord], settings: Rows[SettingsRecord],
+    random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
+    deciding: Rows[AgentRecord], functions: Functions, weights: Array,
     active: Indices, out: Array, unknown: Mask, chosen: Array,
 ) -> None:  # fmt: skip
     """Write velocities (N, 2) of least cost to ``chosen``, or say that one is ``unknown`` (N,).
 
     Args:
-        table to agent: fields of `Surroundings`.
+        table to deciding: fields of `Surroundings`.
         functions, weights: see `AgentCosts`; of one function.
         active, out: (1,), (2,) scratch.
     """
     around = Surroundings(
         table, starts, low, height, who, goal, walls, reach, traits, settings, random, near,
-        found, agent,
+        found, deciding,
     )  # fmt: skip
+    agent = deciding[0]
     for b in range(table.shape[0]):
         i = describe(around, b)
         if i < 0:
             continue
         prepare(around, b, functions, weights, active)
         known = call_optimum(
-            functions[0, OPTIMA], agent.ctypes.data, functions[0, WORK], functions[0, PARAMS],
-            out.ctypes.data,
+            functions[0, OPTIMA], agent, functions[0, WORK], functions[0, PARAMS],
+            out,
         )  # fmt: skip
-        random[i] = agent[RANDOM]
+        random[i] = agent.random
         if known == 0:
             unknown[i] = True
         else:
             if math.isnan(out[0]) or math.isnan(out[1]):
-                agent[BROKEN] = 1.0
+                agent.broken = 1.0
             chosen[i, 0], chosen[i, 1] = out[0], out[1]

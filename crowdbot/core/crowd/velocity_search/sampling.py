@@ -30,18 +30,14 @@ from crowdbot.core.crowd.velocity_search.candidates import (
     frame_of,
     radius_of,
 )
-from crowdbot.core.crowd.velocity_search.cost import (
-    AGENT_SIZE,
-    MAX_ACCELERATION,
-    MAX_SPEED,
-    PARITY,
-    PREFERRED,
-    PVX,
-    RANDOM,
-    TIME_STEP,
-)
 from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
-from crowdbot.core.crowd.velocity_search.neighbours import Starts
+from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord, Starts
+from crowdbot.core.crowd.velocity_search.records import (
+    AGENT,
+    AgentRecord,
+    NeighbourRecord,
+    WallRecord,
+)
 from crowdbot.core.crowd.velocity_search.search import (
     arrange,
     in_world,
@@ -52,16 +48,14 @@ from crowdbot.core.crowd.velocity_search.search import (
 )
 from crowdbot.core.crowd.velocity_search.single import polar, single_candidates
 from crowdbot.core.crowd.velocity_search.surroundings import (
-    S_DT,
-    S_PARITY,
-    T_MAX_ACCELERATION,
-    T_MAX_SPEED,
-    T_PREFERRED,
+    SettingsRecord,
     Surroundings,
+    TraitsRecord,
     describe,
 )
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.records import Rows, rows_of
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 
@@ -95,7 +89,7 @@ class Sampler:
         if costs.vectorised:
             return self._choose_slowly(view)
         around = costs.surroundings(view)
-        self._tabulate(around.settings[S_DT], view)
+        self._tabulate(view.dt, view)
         chosen = np.zeros((len(view.position), 2))
         _choose(
             *around, costs.functions, costs.weights, *self._options, costs.ordered,
@@ -134,7 +128,7 @@ class Sampler:
         total = np.zeros((len(costs.agents), len(self._candidates)))
         _tabulate(
             self._candidates, costs.traits, self._options.radius, dt, costs.functions,
-            costs.weights, np.zeros(AGENT_SIZE), total,
+            costs.weights, rows_of(1, AGENT), total,
         )  # fmt: skip
         if np.any(np.isnan(total)):
             report_broken(costs, view, "a base")
@@ -147,19 +141,20 @@ class Sampler:
 @kernel
 def _tabulate(
     candidates: Array,
-    traits: Array,
+    traits: Rows[TraitsRecord],
     radius: int,
     dt: float,
     functions: Functions,
     weights: Array,
-    agent: Array,
+    deciding: Rows[AgentRecord],
     total: Array,
 ) -> None:
+    agent = deciding[0]
     for i in range(total.shape[0]):
-        agent[PREFERRED], agent[MAX_SPEED] = traits[i, T_PREFERRED], traits[i, T_MAX_SPEED]
-        agent[PVX], agent[TIME_STEP] = agent[PREFERRED], dt
-        agent[MAX_ACCELERATION] = traits[i, T_MAX_ACCELERATION]
-        if agent[PREFERRED] <= 0.0:
+        agent.preferred, agent.max_speed = traits[i].preferred, traits[i].max_speed
+        agent.pvx, agent.time_step = agent.preferred, dt
+        agent.max_acceleration = traits[i].max_acceleration
+        if agent.preferred <= 0.0:
             continue  # never asked for
         scale = radius_of(agent, radius)
         for c in range(candidates.shape[0]):
@@ -167,15 +162,16 @@ def _tabulate(
                 scale * candidates[c, 0], scale * candidates[c, 1], agent
             )
             total[i, c] = base_cost(
-                along, across, agent[PREFERRED], agent[MAX_SPEED], functions, weights
+                along, across, agent.preferred, agent.max_speed, functions, weights
             )
 
 
 @kernel
 def _choose(
-    table: Array, starts: Starts, low: float, height: float, who: Mask, goal: Array, walls: Array,
-    reach: float, traits: Array, settings: Array, random: Array, near: Array, found: Array,
-    agent: Array,
+    table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
+    walls: Array, reach: float, traits: Rows[TraitsRecord], settings: Rows[SettingsRecord],
+    random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
+    deciding: Rows[AgentRecord],
     functions: Functions, weights: Array,
     base: int, direction: int, radius: int, half: float, drawn: bool,
     ordered: bool, candidates: Array, regular: Array, tabulated: bool, ranked: Array,
@@ -185,7 +181,7 @@ def _choose(
     """Everybody's choice.
 
     Args:
-        table to agent: fields of `Surroundings`.
+        table to deciding: fields of `Surroundings`.
         functions, weights: see `AgentCosts`.
         base to drawn: fields of `FanOptions`.
         ordered: whether each function is called for all candidates, in their order.
@@ -199,8 +195,9 @@ def _choose(
     """
     around = Surroundings(
         table, starts, low, height, who, goal, walls, reach, traits, settings, random, near,
-        found, agent,
+        found, deciding,
     )  # fmt: skip
+    agent = deciding[0]
     options = FanOptions(base, direction, radius, half, drawn)
     unit = candidates
     for b in range(table.shape[0]):
@@ -211,7 +208,7 @@ def _choose(
         terms = prepare(around, b, functions, weights, active)
         costs = AgentCosts(agent, functions, weights, active[:terms])
         to_draw = drawn
-        if settings[S_PARITY] != 0.0 and not (ordered and drawn):
+        if settings[0].parity != 0.0 and not (ordered and drawn):
             single_candidates(agent, options, regular, world)
             frame[0], frame[1], frame[2], frame[3] = 0.0, 0.0, 1.0, 0.0  # as they are
             unit, to_draw = world, False
@@ -222,15 +219,15 @@ def _choose(
             bound, x, y, index = ranked[row, 0], ranked[row, 1], ranked[row, 2], indices[row]
             if to_draw:
                 draw_candidates(agent, half, scale, unit)
-            if not tabulated or settings[S_PARITY] != 0.0:
+            if not tabulated or settings[0].parity != 0.0:
                 arrange(unit, index, x, y)
             start = first[i]
             if not tabulated:
                 start = set_bounds(frame, unit, agent, functions, weights, bound)
             best, place = search(frame, x, y, bound, index, tabulated, start, costs, tried)
-        random[i] = agent[RANDOM]
+        random[i] = agent.random
         if best == math.inf:
-            if agent[PARITY] == 0.0:
+            if agent.parity == 0.0:
                 continue
             place = least_forbidden(frame, unit, costs)
             if place < 0:
@@ -244,29 +241,31 @@ def _choose(
 
 @kernel
 def _candidates_of(
-    table: Array, starts: Starts, low: float, height: float, who: Mask, goal: Array, walls: Array,
-    reach: float, traits: Array, settings: Array, random: Array, near: Array, found: Array,
-    agent: Array,
+    table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
+    walls: Array, reach: float, traits: Rows[TraitsRecord], settings: Rows[SettingsRecord],
+    random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
+    deciding: Rows[AgentRecord],
     base: int, direction: int, radius: int, half: float, drawn: bool,
     candidates: Array, regular: Array, frame: Array, result: Array,
 ) -> None:  # fmt: skip
     """Everybody's candidates (N, S, 2), m/s; arguments as of `_choose`."""
     around = Surroundings(
         table, starts, low, height, who, goal, walls, reach, traits, settings, random, near,
-        found, agent,
+        found, deciding,
     )  # fmt: skip
+    agent = deciding[0]
     options = FanOptions(base, direction, radius, half, drawn)
     for b in range(table.shape[0]):
         i = describe(around, b)
         if i < 0:
             continue
         scale = frame_of(agent, options, frame)
-        if settings[S_PARITY] != 0.0:
+        if settings[0].parity != 0.0:
             single_candidates(agent, options, regular, result[i])
-            random[i] = agent[RANDOM]
+            random[i] = agent.random
             continue
         if drawn:
             draw_candidates(agent, half, scale, candidates)
-            random[i] = agent[RANDOM]
+            random[i] = agent.random
         for c in range(candidates.shape[0]):
             result[i, c, 0], result[i, c, 1] = in_world(frame, candidates, c)

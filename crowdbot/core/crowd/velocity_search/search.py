@@ -18,8 +18,8 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
     in_preferred_frame,
 )
 from crowdbot.core.crowd.velocity_search.candidates import draw_candidates
-from crowdbot.core.crowd.velocity_search.cost import BROKEN, MAX_SPEED, PREFERRED, PVX, PVY
 from crowdbot.core.crowd.velocity_search.cost_calls import call_lower_bound
+from crowdbot.core.crowd.velocity_search.records import AgentRecord
 from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
@@ -52,14 +52,14 @@ def arrange(candidates: Array, index: Indices, x: Array, y: Array) -> None:
 def set_bounds(
     frame: Array,
     candidates: Array,
-    agent: Array,
+    agent: AgentRecord,
     functions: Functions,
     weights: Array,
     bound: Array,
 ) -> int:
     """Write base costs of all candidates to ``bound`` (S,); return the candidate of the least."""
-    least, preferred, fastest = 0, agent[PREFERRED], agent[MAX_SPEED]
-    cosine, sine = agent[PVX] / preferred, agent[PVY] / preferred
+    least, preferred, fastest = 0, agent.preferred, agent.max_speed
+    cosine, sine = agent.pvx / preferred, agent.pvy / preferred
     # The frame as seen from the preferred velocity.
     x, y = frame[0] * cosine + frame[1] * sine, frame[1] * cosine - frame[0] * sine
     along, across = frame[2] * cosine + frame[3] * sine, frame[3] * cosine - frame[2] * sine
@@ -68,7 +68,7 @@ def set_bounds(
         uy = y + candidates[c, 0] * across + candidates[c, 1] * along
         bound[c] = base_cost(ux, uy, preferred, fastest, functions, weights)
         if math.isnan(bound[c]):
-            agent[BROKEN] = 1.0
+            agent.broken = 1.0
         if bound[c] < bound[least]:
             least = c
     return least
@@ -160,7 +160,7 @@ def cost_within(ux: float, uy: float, base: float, best: float, costs: AgentCost
         budget = (most - cost) / weight
         excess = excess_of(costs, k, ux, uy, budget)
         if math.isnan(excess) and not math.isnan(budget):
-            costs.agent[BROKEN] = 1.0
+            costs.agent.broken = 1.0
         cost += weight * excess
         if cost > best:
             break
@@ -180,9 +180,8 @@ def _rule_out(count: int, best: float, tried: Array, costs: AgentCosts) -> int:
         if functions[k, LOWER_BOUNDS] == 0:
             continue
         call_lower_bound(
-            functions[k, LOWER_BOUNDS], _whole_steps(count, ux.shape[0]), ux.ctypes.data,
-            uy.ctypes.data, costs.agent.ctypes.data, functions[k, WORK], functions[k, PARAMS],
-            out.ctypes.data,
+            functions[k, LOWER_BOUNDS], _whole_steps(count, ux.shape[0]), ux, uy,
+            costs.agent, functions[k, WORK], functions[k, PARAMS], out,
         )  # fmt: skip
         stay = 0
         for c in range(count):  # whoever goes is overwritten by the next
@@ -208,13 +207,13 @@ def try_in_order(
         ux, uy = in_world(frame, candidates, c)
         along, across = in_preferred_frame(ux, uy, agent)
         cost = base_cost(
-            along, across, agent[PREFERRED], agent[MAX_SPEED], costs.functions, costs.weights
+            along, across, agent.preferred, agent.max_speed, costs.functions, costs.weights
         )
         for term in range(costs.active.shape[0]):
             k = costs.active[term]
             cost += costs.weights[k] * excess_of(costs, k, ux, uy, math.inf)
         if math.isnan(cost):
-            agent[BROKEN] = 1.0
+            agent.broken = 1.0
         if cost < best:
             best, place = cost, c
     return best, place

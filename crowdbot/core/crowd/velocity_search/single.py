@@ -18,18 +18,8 @@ from crowdbot.core.crowd.velocity_search.candidates import (
     Sampling,
     radius_of,
 )
-from crowdbot.core.crowd.velocity_search.cost import (
-    GX,
-    GY,
-    PREFERRED,
-    PX,
-    PY,
-    RANDOM,
-    VX,
-    VY,
-    Pointer,
-)
 from crowdbot.core.crowd.velocity_search.minstd import between, following
+from crowdbot.core.crowd.velocity_search.records import AgentRecord
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array
 
@@ -48,7 +38,9 @@ def polar(sampling: Sampling) -> Array:
 
 
 @kernel
-def single_candidates(agent: Pointer, options: FanOptions, regular: Array, world: Array) -> None:
+def single_candidates(
+    agent: AgentRecord, options: FanOptions, regular: Array, world: Array
+) -> None:
     """Fill ``world`` (S, 2) with candidates in the world frame; draws random ones anew.
 
     Args:
@@ -57,10 +49,10 @@ def single_candidates(agent: Pointer, options: FanOptions, regular: Array, world
     base, drawn, half = options.base, options.drawn, options.half
     ex, ey = _direction(agent, options.direction)
     scale = np.float32(radius_of(agent, options.radius))
-    bx = np.float32(agent[VX] if base == CURRENT else 0.0)
-    by = np.float32(agent[VY] if base == CURRENT else 0.0)
+    bx = np.float32(agent.vx if base == CURRENT else 0.0)
+    by = np.float32(agent.vy if base == CURRENT else 0.0)
     rings = 0.0 if drawn else regular[-1, 1]
-    state = int(agent[RANDOM])
+    state = int(agent.random)
     for s in range(world.shape[0]):
         if drawn:
             state = following(state)
@@ -74,19 +66,19 @@ def single_candidates(agent: Pointer, options: FanOptions, regular: Array, world
         x = np.float32(np.float32(cosine * float(ex) - sine * float(ey)) * length)
         y = np.float32(np.float32(sine * float(ex) + cosine * float(ey)) * length)
         world[s, 0], world[s, 1] = float(np.float32(bx + x)), float(np.float32(by + y))
-    agent[RANDOM] = float(state)
+    agent.random = float(state)
 
 
 @kernel
-def _direction(agent: Pointer, kind: int) -> tuple[np.float32, np.float32]:
+def _direction(agent: AgentRecord, kind: int) -> tuple[np.float32, np.float32]:
     if kind == UNIT:
         return np.float32(1.0), np.float32(0.0)
     if kind == ALONG_CURRENT:
-        return _normalised(np.float32(agent[VX]), np.float32(agent[VY]))
+        return _normalised(np.float32(agent.vx), np.float32(agent.vy))
     x, y = _normalised(
-        np.float32(agent[GX]) - np.float32(agent[PX]), np.float32(agent[GY]) - np.float32(agent[PY])
+        np.float32(agent.gx) - np.float32(agent.px), np.float32(agent.gy) - np.float32(agent.py)
     )
-    speed = np.float32(agent[PREFERRED])
+    speed = np.float32(agent.preferred)
     return _normalised(np.float32(x * speed), np.float32(y * speed))
 
 

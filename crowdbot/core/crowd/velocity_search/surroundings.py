@@ -11,72 +11,59 @@ import math
 from typing import NamedTuple
 
 from crowdbot.core.crowd.contact.geometry import is_clearly_shorter
-from crowdbot.core.crowd.velocity_search.cost import (
-    ASKED_RADIUS,
-    ASKED_X,
-    ASKED_Y,
-    DESCENDS,
-    FASTEST,
-    GX,
-    GY,
-    MAX_ACCELERATION,
-    MAX_SPEED,
-    PARITY,
-    PREFERRED,
-    PVX,
-    PVY,
-    PX,
-    PY,
-    RADIUS,
-    RANDOM,
-    RELAXATION,
-    TIME_STEP,
-    VX,
-    VY,
-    WEIGHT,
-)
 from crowdbot.core.crowd.velocity_search.neighbour_discs import write_discs
 from crowdbot.core.crowd.velocity_search.neighbours import (
-    DISC_RADIUS,
-    INDEX,
-    WANTED_X,
-    WANTED_Y,
+    DiscRecord,
     Starts,
-    X,
-    Y,
     sort_discs,
     strip_height,
 )
-from crowdbot.core.crowd.velocity_search.neighbours import VX as DISC_VX
-from crowdbot.core.crowd.velocity_search.neighbours import VY as DISC_VY
+from crowdbot.core.crowd.velocity_search.records import AgentRecord, NeighbourRecord, WallRecord
 from crowdbot.core.support.compile import array_kernel, inline_kernel
+from crowdbot.core.support.records import Rows, record_type
 from crowdbot.core.types.arrays import Array, Mask
 
-# Columns of `Surroundings.traits`; entries of `Surroundings.settings`.
-T_PREFERRED, T_MAX_SPEED, T_MAX_ACCELERATION, T_WEIGHT = range(4)
-S_DT, S_RELAXATION, S_PARITY = range(3)
+
+class TraitsRecord:
+    """What an agent is by nature; fields as of `AgentRecord`."""
+
+    preferred: float
+    max_speed: float
+    max_acceleration: float
+    weight: float
+
+
+class SettingsRecord:
+    """What is the same for all agents; fields as of `AgentRecord`."""
+
+    time_step: float
+    relaxation: float
+    parity: float
+
+
+TRAITS = record_type(TraitsRecord)
+SETTINGS = record_type(SettingsRecord)
 
 
 class Surroundings(NamedTuple):
     """Everybody and everything at one decision.
 
     Attributes:
-        table: (B, `DISC_COLUMNS`) all discs, as `neighbours.sort_discs` sorts them into strips.
+        table: (B,) all discs, as `neighbours.sort_discs` sorts them into strips.
         starts: (strips + 1, 2) of the same function.
         low, height: lower border of the first strip, and height of a strip, m.
         who: (N,) whose choice is wanted.
         goal: (N, 2), m.
         walls: (S, 4) both ends of segments, m.
         reach: largest centre distance at which a neighbour may count, m.
-        traits: (N, 4) preferred speed, largest speed and acceleration, weight; see ``T_...``.
-        settings: (3,) time between decisions and relaxation time (s), 1 for parity; ``S_...``.
+        traits: (N,) what the agents are by nature.
+        settings: (1,) what is the same for all.
         random: (N,) states of the agents' random numbers, changed in place.
-        near, found: (>= B, `NEAR_COLUMNS`), (>= S, `WALL_COLUMNS`) scratch for one agent's
-            neighbours.
-        agent: (`AGENT_SIZE`,) scratch: the agent that is decided for.
+        near, found: (>= B,), (>= S,) scratch for one agent's neighbours and walls.
+        deciding: (1,) scratch: the agent that decides.
     """
 
-    table: Array
+    table: Rows[DiscRecord]
     starts: Starts
     low: float
     height: float
@@ -84,19 +71,19 @@ class Surroundings(NamedTuple):
     goal: Array
     walls: Array
     reach: float
-    traits: Array
-    settings: Array
+    traits: Rows[TraitsRecord]
+    settings: Rows[SettingsRecord]
     random: Array
-    near: Array
-    found: Array
-    agent: Array
+    near: Rows[NeighbourRecord]
+    found: Rows[WallRecord]
+    deciding: Rows[AgentRecord]
 
 
 @array_kernel
 def sort_surroundings(
     position: Array, velocity: Array, goal: Array, radius: Array, preferred: Array, present: Mask,
     robots: Array, pillars: Array, box: Array, diagonal: bool, reach: float,
-    discs: Array, table: Array,
+    discs: Rows[DiscRecord], table: Rows[DiscRecord],
 ) -> tuple[int, float, float, Starts]:  # fmt: skip
     """Write all discs to ``table``, sorted into strips.
 
@@ -118,27 +105,28 @@ def sort_surroundings(
 
 @inline_kernel
 def describe(around: Surroundings, b: int) -> int:
-    """Write the ``agent`` vector of whoever is in row b of the table; return the agent's number.
+    """Write the record of the agent in row b of the table; return the agent's number.
 
     Returns -1, and writes nothing, for a disc that decides nothing: it is not an agent, its choice
     is not wanted, or it has arrived.
     """
-    table, traits, settings, agent = around.table, around.traits, around.settings, around.agent
-    i = int(table[b, INDEX])
-    if i < 0 or not around.who[i] or (table[b, WANTED_X] == 0.0 and table[b, WANTED_Y] == 0.0):
+    disc, settings, agent = around.table[b], around.settings[0], around.deciding[0]
+    i = int(disc.index)
+    if i < 0 or not around.who[i] or (disc.wanted_x == 0.0 and disc.wanted_y == 0.0):
         return -1
-    agent[PX], agent[PY] = table[b, X], table[b, Y]
-    agent[VX], agent[VY] = table[b, DISC_VX], table[b, DISC_VY]
-    agent[RADIUS], agent[PREFERRED] = table[b, DISC_RADIUS], traits[i, T_PREFERRED]
-    agent[TIME_STEP], agent[RELAXATION] = settings[S_DT], settings[S_RELAXATION]
-    agent[GX], agent[GY] = around.goal[i, 0], around.goal[i, 1]
-    agent[PVX], agent[PVY] = table[b, WANTED_X], table[b, WANTED_Y]
-    agent[MAX_SPEED], agent[WEIGHT] = traits[i, T_MAX_SPEED], traits[i, T_WEIGHT]
-    agent[MAX_ACCELERATION] = traits[i, T_MAX_ACCELERATION]
-    agent[PARITY], agent[RANDOM] = settings[S_PARITY], around.random[i]
-    agent[DESCENDS] = 0.0
-    agent[FASTEST] = agent[MAX_SPEED]
-    if not is_clearly_shorter(agent[VX], agent[VY], agent[MAX_SPEED]):
-        agent[FASTEST] = max(agent[MAX_SPEED], math.hypot(agent[VX], agent[VY]))
-    agent[ASKED_X], agent[ASKED_Y], agent[ASKED_RADIUS] = 0.0, 0.0, agent[FASTEST]
+    traits = around.traits[i]
+    agent.px, agent.py = disc.x, disc.y
+    agent.vx, agent.vy = disc.vx, disc.vy
+    agent.radius, agent.preferred = disc.radius, traits.preferred
+    agent.time_step, agent.relaxation = settings.time_step, settings.relaxation
+    agent.gx, agent.gy = around.goal[i, 0], around.goal[i, 1]
+    agent.pvx, agent.pvy = disc.wanted_x, disc.wanted_y
+    agent.max_speed, agent.weight = traits.max_speed, traits.weight
+    agent.max_acceleration = traits.max_acceleration
+    agent.parity, agent.random = settings.parity, around.random[i]
+    agent.descends = 0.0
+    agent.fastest = agent.max_speed
+    if not is_clearly_shorter(agent.vx, agent.vy, agent.max_speed):
+        agent.fastest = max(agent.max_speed, math.hypot(agent.vx, agent.vy))
+    agent.asked_x, agent.asked_y, agent.asked_radius = 0.0, 0.0, agent.fastest
     return i

@@ -22,29 +22,28 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
     WORK,
 )
 from crowdbot.core.crowd.velocity_search.cost import (
-    AGENT_SIZE,
     BASE,
-    BROKEN,
     EXCESS,
     GRADIENT,
     LOWER_BOUND,
-    NEAR_COLUMNS,
     OPTIMUM,
     PREPARE,
-    WALL_COLUMNS,
-    WORK_COLUMNS,
     CompiledCost,
     NumpyCost,
     work_rows,
 )
 from crowdbot.core.crowd.velocity_search.cost_calls import address_of
 from crowdbot.core.crowd.velocity_search.minstd import seeds
-from crowdbot.core.crowd.velocity_search.neighbour_discs import DISC_COLUMNS, most_discs
+from crowdbot.core.crowd.velocity_search.neighbour_discs import most_discs
+from crowdbot.core.crowd.velocity_search.neighbours import DISC
+from crowdbot.core.crowd.velocity_search.records import AGENT, NEIGHBOUR, WALL, WORK_COLUMNS
 from crowdbot.core.crowd.velocity_search.surroundings import (
-    S_DT,
+    SETTINGS,
+    TRAITS,
     Surroundings,
     sort_surroundings,
 )
+from crowdbot.core.support.records import rows_of
 from crowdbot.core.types.arrays import Array
 
 _Addresses = NDArray[np.intp]
@@ -67,7 +66,7 @@ class WeightedCosts:
     Args:
         relaxation_time: the policy's, s.
         parity: do as the original engine does, defects included; for comparisons only.
-        weight: (N,) see ``WEIGHT`` in `crowdbot.core.crowd.velocity_search.cost`; 1 by default.
+        weight: (N,) see `AgentRecord`; 1 by default.
     """
 
     def __init__(
@@ -102,14 +101,16 @@ class WeightedCosts:
         # Scratch of compiled loops: the functions whose excess may differ from zero.
         self.active = np.zeros(len(self.compiled), np.int64)
         ones = np.ones(len(agents)) if weight is None else weight
-        self.traits = np.column_stack(
-            [agents.preferred_speed, agents.max_speed, agents.max_acceleration, ones]
-        )
+        self.traits = rows_of(len(agents), TRAITS)
+        self.traits["preferred"][:] = agents.preferred_speed
+        self.traits["max_speed"][:] = agents.max_speed
+        self.traits["max_acceleration"][:] = agents.max_acceleration
+        self.traits["weight"][:] = ones
         self.random = seeds(agents.id)
-        self._settings = np.array([0.0, relaxation_time, float(parity)])
-        self._agent = np.zeros(AGENT_SIZE)
+        self._settings, self._deciding = rows_of(1, SETTINGS), rows_of(1, AGENT)
+        self._settings["relaxation"][:], self._settings["parity"][:] = relaxation_time, parity
         self._largest_seen, self._reach = math.nan, 0.0
-        self._discs, self._found = np.zeros((0, DISC_COLUMNS)), np.zeros((0, WALL_COLUMNS))
+        self._discs, self._found = rows_of(0, DISC), rows_of(0, WALL)
         self._make_room(1, 0)
 
     def reach(self, view: CrowdView) -> float:
@@ -141,20 +142,18 @@ class WeightedCosts:
             _NO_BOX if boundary is None else np.array(boundary), view.diagonal, reach,
             self._discs, self._table,
         )  # fmt: skip
-        self._settings[S_DT], self._agent[BROKEN] = view.dt, 0.0
+        self._settings["time_step"][:], self._deciding["broken"][:] = view.dt, 0.0
         return Surroundings(
             self._table[:count], starts, low, height,
             view.present if view.decides is None else view.present & view.decides,
             view.goal, view.walls, reach, self.traits, self._settings, self.random, self._near,
-            self._found, self._agent,
+            self._found, self._deciding,
         )  # fmt: skip
 
     def _make_room(self, discs: int, walls: int) -> None:
-        if len(self._discs) < discs or len(self._found) < walls:
-            self._discs = np.zeros((discs, DISC_COLUMNS))
-            self._table = np.zeros((discs, DISC_COLUMNS))
-            self._near = np.zeros((discs, NEAR_COLUMNS))
-            self._found = np.zeros((walls, WALL_COLUMNS))
+        if self._discs.shape[0] < discs or self._found.shape[0] < walls:
+            self._discs, self._table = rows_of(discs, DISC), rows_of(discs, DISC)
+            self._near, self._found = rows_of(discs, NEIGHBOUR), rows_of(walls, WALL)
             self.work = np.zeros((len(self.compiled), work_rows(discs + walls), WORK_COLUMNS))
             self.functions[:, WORK] = _layers(self.work)
 

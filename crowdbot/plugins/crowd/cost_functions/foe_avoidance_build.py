@@ -4,84 +4,105 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
-    AX,
-    AY,
-    BX,
-    BY,
-    D2,
+    COST_PARAMS,
     EXCESS,
     GRADIENT,
-    NVX,
-    NVY,
-    PARITY,
     PREPARE,
-    RADIUS,
-    REACH,
-    RX,
-    RY,
-    WALL_D2,
+    WORK_COLUMNS,
+    AgentRecord,
     CompiledCost,
+    NeighbourRecord,
     Pointer,
+    Rows,
+    WallRecord,
+    as_record,
+    as_rows,
     declared_kernel,
     in_range,
-    near_table,
     nearest_on_segment,
+    record_type,
+    record_values,
     time_to_segment,
-    wall_table,
-    work_table,
 )
 from crowdbot.plugins.crowd.cost_functions.foe_avoidance import FoeAvoidanceSpec
 from crowdbot.plugins.crowd.cost_functions.force_build import no_base
 
-_DISCS, _WALLS = 0, 1  # entries of row 0 of work
 _AHEAD = 0.1  # m; who is less far ahead is not seen
 _CLOSING = -0.01  # m/s; who closes in slower is not seen
 _SHARPEST_TURN = 0.1  # rad
 _SINGLE = 1e-7  # what single precision takes for equal
 
 
+class _Header:
+    """Row 0 of ``work``: how many rows of each follow."""
+
+    discs: float
+    walls: float
+
+
+class _Disc:
+    """Row of a neighbour: offset, velocity, sum of radii."""
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    reach: float
+
+
+class _Wall:
+    """Row of a wall: both ends."""
+
+    ax: float
+    ay: float
+    bx: float
+    by: float
+
+
+_HEADER = record_type(_Header)
+_DISC, _WALL = record_type(_Disc, WORK_COLUMNS), record_type(_Wall, WORK_COLUMNS)
+
+
 @declared_kernel(PREPARE)
 def _prepare(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
 ) -> int:
     """Neighbours as offset, velocity, sum of radii; then walls (none in the original) as ends."""
-    near, segments, table = near_table(near), wall_table(walls), work_table(work)
+    header, discs, found = as_record(work, _HEADER), as_rows(work, _DISC), as_rows(work, _WALL)
     row = 0
     for j in range(near_count):
-        if in_range(near[j, D2], near[j, REACH], params):
+        if in_range(near[j].d2, near[j].reach, params):
             row += 1
-            table[row, 0], table[row, 1] = near[j, RX], near[j, RY]
-            table[row, 2], table[row, 3] = near[j, NVX], near[j, NVY]
-            table[row, 4] = near[j, REACH]
-    table[0, _DISCS] = row
-    for s in range(0 if agent[PARITY] != 0.0 else wall_count):
-        d2, radius = segments[s, WALL_D2], agent[RADIUS]
+            disc, other = discs[row], near[j]
+            disc.x, disc.y, disc.reach = other.rx, other.ry, other.reach
+            disc.vx, disc.vy = other.nvx, other.nvy
+    header.discs = row
+    for s in range(0 if agent.parity != 0.0 else wall_count):
+        d2, radius = walls[s].d2, agent.radius
         if d2 > radius * radius and in_range(d2, radius, params):
             row += 1
-            table[row, 0], table[row, 1] = segments[s, AX], segments[s, AY]
-            table[row, 2], table[row, 3] = segments[s, BX], segments[s, BY]
-    table[0, _WALLS] = row - table[0, _DISCS]
+            wall, near_by = found[row], walls[s]
+            wall.ax, wall.ay, wall.bx, wall.by = near_by.ax, near_by.ay, near_by.bx, near_by.by
+    header.walls = row - header.discs
     return row
 
 
 @array_kernel
 def _obstacle(row: int, ux: float, uy: float, radius: float, work: Pointer) -> tuple[float, ...]:
     """Offset, relative velocity and reach: of a neighbour, or of the wall point hit first."""
-    table = work_table(work)
-    if row <= int(table[0, _DISCS]):
-        wx, wy = table[row, 2] - ux, table[row, 3] - uy
-        return table[row, 0], table[row, 1], wx, wy, table[row, 4]
-    ax, ay, bx, by = table[row, 0], table[row, 1], table[row, 2], table[row, 3]
+    if row <= int(as_record(work, _HEADER).discs):
+        disc = as_rows(work, _DISC)[row]
+        return disc.x, disc.y, disc.vx - ux, disc.vy - uy, disc.reach
+    wall = as_rows(work, _WALL)[row]
+    ax, ay, bx, by = wall.ax, wall.ay, wall.bx, wall.by
     t = time_to_segment(ux, uy, radius, ax, ay, bx, by)
     if t == math.inf:
         return 0.0, 0.0, 0.0, 0.0, radius  # not ahead: not seen
@@ -90,9 +111,9 @@ def _obstacle(row: int, ux: float, uy: float, radius: float, work: Pointer) -> t
 
 
 @array_kernel
-def _terms(row: int, ux: float, uy: float, agent: Pointer, work: Pointer) -> tuple[float, ...]:
+def _terms(row: int, ux: float, uy: float, agent: AgentRecord, work: Pointer) -> tuple[float, ...]:
     """Focus, bearing, spread, importance times proximity, closing speed of one obstacle."""
-    x, y, wx, wy, reach = _obstacle(row, ux, uy, agent[RADIUS], work)
+    x, y, wx, wy, reach = _obstacle(row, ux, uy, agent.radius, work)
     speed = math.hypot(ux, uy)
     hx, hy = ux / speed, uy / speed
     ahead, right = x * hx + y * hy, x * hy - y * hx
@@ -108,12 +129,12 @@ def _terms(row: int, ux: float, uy: float, agent: Pointer, work: Pointer) -> tup
 
 @declared_kernel(EXCESS)
 def _excess(
-    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+    ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
-    cost, table = 0.0, work_table(work)
+    cost, header = 0.0, as_record(work, _HEADER)
     if ux == 0.0 and uy == 0.0:
         return cost
-    for row in range(1, 1 + int(table[0, _DISCS] + table[0, _WALLS])):
+    for row in range(1, 1 + int(header.discs + header.walls)):
         cost += _terms(row, ux, uy, agent, work)[3]
         if cost > budget:
             break
@@ -122,17 +143,17 @@ def _excess(
 
 @declared_kernel(GRADIENT)
 def _gradient(
-    ux: float, uy: float, agent: Pointer, work: Pointer, params: Pointer, out: Pointer
+    ux: float, uy: float, agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer
 ) -> int:
     """The model's own rule for turning and braking, which is not the cost's exact gradient."""
     out[0] = out[1] = 0.0
-    speed, table = math.hypot(ux, uy), work_table(work)
+    speed, header = math.hypot(ux, uy), as_record(work, _HEADER)
     if speed == 0.0:
         return 1
     turn = pace = 0.0
-    for row in range(1, 1 + int(table[0, _DISCS] + table[0, _WALLS])):
+    for row in range(1, 1 + int(header.discs + header.walls)):
         focus, bearing, spread, weight, closing = _terms(row, ux, uy, agent, work)
-        if agent[PARITY] != 0.0 and abs(bearing - focus) <= _SINGLE:
+        if agent.parity != 0.0 and abs(bearing - focus) <= _SINGLE:
             weight = 0.0  # the original goes straight on
         elif bearing < focus:
             weight = -weight
@@ -153,6 +174,10 @@ def build(spec: FoeAvoidanceSpec) -> CompiledCost:
         prepare=_prepare,
         excess=_excess,
         gradient=_gradient,
-        params=np.array([spec.range.value, 1.0 if spec.range.measure == "surface" else 0.0]),
+        params=record_values(
+            COST_PARAMS,
+            range=spec.range.value,
+            from_surface=1.0 if spec.range.measure == "surface" else 0.0,
+        ),
         weight=spec.weight,
     )

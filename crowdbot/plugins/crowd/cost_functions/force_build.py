@@ -14,27 +14,36 @@ from crowdbot.plugin import (
     EXCESS,
     GRADIENT,
     OPTIMUM,
-    PARITY,
-    TIME_STEP,
-    VX,
-    VY,
-    WEIGHT,
+    AgentRecord,
     Pointer,
+    as_record,
     declared_kernel,
+    record_type,
 )
 
 #: No force is larger, m/s^2: a target has to stay finite when squared.
 _LARGEST = 1e9
 
 
+class _Target:
+    """``work``: the target velocity."""
+
+    vx: float
+    vy: float
+
+
+_TARGET = record_type(_Target)
+
+
 @array_kernel
-def aim(fx: float, fy: float, agent: Pointer, work: Pointer) -> int:
+def aim(fx: float, fy: float, agent: AgentRecord, work: Pointer) -> int:
     """Write the target velocity of a force per mass (m/s^2)."""
     size = math.hypot(fx, fy)
     if size > _LARGEST:
         fx, fy = fx / size * _LARGEST, fy / size * _LARGEST
-    time = agent[TIME_STEP] / (agent[WEIGHT] if agent[PARITY] != 0.0 else 1.0)
-    work[0], work[1] = agent[VX] + fx * time, agent[VY] + fy * time
+    time = agent.time_step / (agent.weight if agent.parity != 0.0 else 1.0)
+    aimed = as_record(work, _TARGET)
+    aimed.vx, aimed.vy = agent.vx + fx * time, agent.vy + fy * time
     return 1
 
 
@@ -46,23 +55,26 @@ def no_base(ux: float, uy: float, preferred: float, max_speed: float, params: Po
 
 @declared_kernel(EXCESS)
 def from_target(
-    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+    ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
     """The whole cost."""
-    return float(0.5 * ((ux - work[0]) ** 2 + (uy - work[1]) ** 2) / agent[TIME_STEP])
+    aimed = as_record(work, _TARGET)
+    return float(0.5 * ((ux - aimed.vx) ** 2 + (uy - aimed.vy) ** 2) / agent.time_step)
 
 
 @declared_kernel(GRADIENT)
 def to_target(
-    ux: float, uy: float, agent: Pointer, work: Pointer, params: Pointer, out: Pointer
+    ux: float, uy: float, agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer
 ) -> int:
     """Its gradient; at the present velocity minus the force per mass."""
-    out[0], out[1] = (ux - work[0]) / agent[TIME_STEP], (uy - work[1]) / agent[TIME_STEP]
+    aimed = as_record(work, _TARGET)
+    out[0], out[1] = (ux - aimed.vx) / agent.time_step, (uy - aimed.vy) / agent.time_step
     return 1
 
 
 @declared_kernel(OPTIMUM)
-def target(agent: Pointer, work: Pointer, params: Pointer, out: Pointer) -> int:
+def target(agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer) -> int:
     """The velocity of least cost."""
-    out[0], out[1] = work[0], work[1]
+    aimed = as_record(work, _TARGET)
+    out[0], out[1] = aimed.vx, aimed.vy
     return 1

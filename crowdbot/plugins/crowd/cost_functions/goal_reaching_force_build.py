@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from crowdbot.plugin import (
+    COST_PARAMS,
     PREPARE,
-    PVX,
-    PVY,
-    RELAXATION,
-    TIME_STEP,
-    VX,
-    VY,
+    AgentRecord,
     CompiledCost,
+    NeighbourRecord,
     Pointer,
+    Rows,
+    WallRecord,
     declared_kernel,
+    record_values,
 )
 from crowdbot.plugins.crowd.cost_functions.force_build import (
     aim,
@@ -28,16 +26,16 @@ from crowdbot.plugins.crowd.cost_functions.goal_reaching_force import GoalReachi
 
 @declared_kernel(PREPARE)
 def _prepare(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
 ) -> int:
-    time = max(agent[RELAXATION], agent[TIME_STEP])
-    return int(aim((agent[PVX] - agent[VX]) / time, (agent[PVY] - agent[VY]) / time, agent, work))
+    time = max(agent.relaxation, agent.time_step)
+    return int(aim((agent.pvx - agent.vx) / time, (agent.pvy - agent.vy) / time, agent, work))
 
 
 def build(spec: GoalReachingForceSpec) -> CompiledCost:
@@ -48,6 +46,6 @@ def build(spec: GoalReachingForceSpec) -> CompiledCost:
         excess=from_target,
         gradient=to_target,
         optimum=target,
-        params=np.array([spec.range.value, 0.0]),
+        params=record_values(COST_PARAMS, range=spec.range.value, from_surface=0.0),
         weight=spec.weight,
     )

@@ -12,7 +12,9 @@ from __future__ import annotations
 import math
 
 from crowdbot.core.support.compile import array_kernel
-from crowdbot.plugin import Pointer
+from crowdbot.plugin import (
+    Pointer,
+)
 
 _PARALLEL = 1e-10
 

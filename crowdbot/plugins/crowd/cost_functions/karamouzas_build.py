@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import float32
 
 from crowdbot.core.crowd.contact.geometry import single_angle
@@ -12,38 +11,58 @@ from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     BASE,
     EXCESS,
-    FASTEST,
-    MAX_SPEED,
-    PARITY,
-    PREFERRED,
     PREPARE,
-    PVX,
-    PVY,
-    VX,
-    VY,
+    AgentRecord,
+    CollisionHeader,
     CompiledCost,
+    CostParams,
+    NeighbourRecord,
     Pointer,
+    Rows,
+    WallRecord,
+    as_record,
     declared_kernel,
     first_collision,
     list_obstacles,
-    work_table,
+    record_type,
+    record_values,
 )
 from crowdbot.plugins.crowd.cost_functions.karamouzas import KaramouzasSpec
 
-_ALPHA, _BETA, _GAMMA, _DELTA, _T_MAX = range(2, 7)  # entries of params
-_TURN, _SLOWEST, _FASTEST = range(3, 6)  # entries of row 0 of work
 _SOON, _MEDIUM, _LATE = 2.5, 6.0, 8.0  # s, fixed by the model
 _SLACK = 0.05  # rad and m/s
 #: Candidates lie exactly on the limits; rounding must not decide there.
 _TOLERANCE = 1e-9
 
 
+class _Params(CostParams):
+    """Parameters; units are those of the spec."""
+
+    alpha: float
+    beta: float
+    gamma: float
+    delta: float
+    t_max: float
+
+
+class _Header(CollisionHeader):
+    """Row 0 of ``work``: also the largest turn (rad), slowest and fastest speed (m/s)."""
+
+    turn: float
+    slowest: float
+    fastest: float
+
+
+_PARAMS, _HEADER = record_type(_Params), record_type(_Header)
+
+
 @declared_kernel(BASE)
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
+    own = as_record(params, _PARAMS)
     speed = math.hypot(ux, uy)
     ahead = ux / speed if speed > 0.0 else 0.0
     deviation = math.hypot(ux - preferred, uy) / (2.0 * max_speed)
-    return float(params[_ALPHA] * (1.0 - 0.5 * ahead) + params[_GAMMA] * deviation)
+    return float(own.alpha * (1.0 - 0.5 * ahead) + own.gamma * deviation)
 
 
 @array_kernel
@@ -67,62 +86,70 @@ def _allowed(t: float, preferred: float, max_speed: float, parity: bool) -> tupl
 
 @declared_kernel(PREPARE)
 def _prepare(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
 ) -> int:
     """Row 0: allowed deviation and speeds. Then the obstacles."""
-    fastest = max(agent[FASTEST], agent[PREFERRED])
+    fastest = max(agent.fastest, agent.preferred)
     list_obstacles(agent, near, near_count, walls, wall_count, params, work, fastest)
-    t = first_collision(agent[PVX], agent[PVY], 0.0, agent, work)
-    parity = agent[PARITY] != 0.0
-    turn, low, high = _allowed(t, agent[PREFERRED], agent[MAX_SPEED], parity)
+    t = first_collision(agent.pvx, agent.pvy, 0.0, agent, work)
+    parity = agent.parity != 0.0
+    turn, low, high = _allowed(t, agent.preferred, agent.max_speed, parity)
     slack = 0.0 if parity else _TOLERANCE
-    table = work_table(work)
-    table[0, _TURN] = turn + slack
-    table[0, _SLOWEST], table[0, _FASTEST] = low - slack, high + slack
+    header = as_record(work, _HEADER)
+    header.turn, header.slowest, header.fastest = turn + slack, low - slack, high + slack
     return 1
 
 
 @declared_kernel(EXCESS)
 def _excess(
-    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+    ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
-    table = work_table(work)
+    own = as_record(params, _PARAMS)
+    header = as_record(work, _HEADER)
     speed = math.hypot(ux, uy)
-    if not table[0, _SLOWEST] <= speed <= table[0, _FASTEST]:
+    if not header.slowest <= speed <= header.fastest:
         return math.inf
     if speed > 0.0:
-        px, py = agent[PVX], agent[PVY]
-        if agent[PARITY] != 0.0:  # candidates lie exactly on the limit: rounding decides
-            off = single_angle(ux, uy, px, py) > float32(table[0, _TURN])
+        px, py = agent.pvx, agent.pvy
+        if agent.parity != 0.0:  # candidates lie exactly on the limit: rounding decides
+            off = bool(single_angle(ux, uy, px, py) > float32(header.turn))
         else:
-            off = math.atan2(abs(px * uy - py * ux), px * ux + py * uy) > table[0, _TURN]
+            off = math.atan2(abs(px * uy - py * ux), px * ux + py * uy) > header.turn
         if off:
             return math.inf
-    elif table[0, _TURN] < 0.0:
+    elif header.turn < 0.0:
         return math.inf
-    cost = params[_BETA] * abs(speed - math.hypot(agent[VX], agent[VY])) / agent[MAX_SPEED]
-    if cost > budget or params[_DELTA] == 0.0:
+    cost = own.beta * abs(speed - math.hypot(agent.vx, agent.vy)) / agent.max_speed
+    if cost > budget or own.delta == 0.0:
         return float(cost)
     # Earlier than this is too expensive.
-    until = params[_T_MAX] * (1.0 - (budget - cost) / params[_DELTA])
+    until = own.t_max * (1.0 - (budget - cost) / own.delta)
     t = first_collision(ux, uy, until, agent, work)
-    return float(cost + params[_DELTA] * max(0.0, 1.0 - t / params[_T_MAX]))
+    return float(cost + own.delta * max(0.0, 1.0 - t / own.t_max))
 
 
 def build(spec: KaramouzasSpec) -> CompiledCost:
     """Compiled functions with this spec's parameters."""
     surface = 1.0 if spec.range.measure == "surface" else 0.0
-    weights = [spec.alpha, spec.beta, spec.gamma, spec.delta]
     return CompiledCost(
         base=_base,
         prepare=_prepare,
         excess=_excess,
-        params=np.array([spec.range.value, surface, *weights, spec.t_max]),
+        params=record_values(
+            _PARAMS,
+            range=spec.range.value,
+            from_surface=surface,
+            alpha=spec.alpha,
+            beta=spec.beta,
+            gamma=spec.gamma,
+            delta=spec.delta,
+            t_max=spec.t_max,
+        ),
         weight=spec.weight,
     )

@@ -9,26 +9,35 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     BASE,
     EXCESS,
-    PREFERRED,
     PREPARE,
-    PVX,
-    PVY,
-    RELAXATION,
+    AgentRecord,
     CompiledCost,
+    CostParams,
+    NeighbourRecord,
     Pointer,
+    Rows,
+    WallRecord,
+    as_record,
     declared_kernel,
     first_contact,
     list_approaching,
+    record_type,
+    record_values,
 )
 from crowdbot.plugins.crowd.cost_functions.moussaid import MoussaidSpec
 
-_D_MAX = 2  # entry of params
+
+class _Params(CostParams):
+    """Parameters; units are those of the spec."""
+
+    d_max: float
+
+
+_PARAMS = record_type(_Params)
 
 
 @array_kernel
@@ -39,23 +48,25 @@ def _least_course(ahead: float, d_max: float) -> float:
 
 @declared_kernel(BASE)
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
+    own = as_record(params, _PARAMS)
     speed = math.hypot(ux, uy)
-    return float(_least_course(ux / speed if speed > 0.0 else 0.0, params[_D_MAX]))
+    return float(_least_course(ux / speed if speed > 0.0 else 0.0, own.d_max))
 
 
 @declared_kernel(PREPARE)
 def _prepare(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
 ) -> int:
+    own = as_record(params, _PARAMS)
     # All are asked for at the preferred speed; what comes after d_max costs nothing.
-    speed = agent[PREFERRED]
-    horizon = (1.0 + 1e-9) * params[_D_MAX] / speed if speed > 0.0 else math.inf
+    speed = agent.preferred
+    horizon = (1.0 + 1e-9) * own.d_max / speed if speed > 0.0 else math.inf
     list_approaching(
         agent, near, near_count, walls, wall_count, params, work, 0.0, 0.0, speed, horizon
     )
@@ -64,19 +75,20 @@ def _prepare(
 
 @declared_kernel(EXCESS)
 def _excess(
-    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+    ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
-    speed, preferred, d_max = math.hypot(ux, uy), agent[PREFERRED], params[_D_MAX]
+    own = as_record(params, _PARAMS)
+    speed, preferred, d_max = math.hypot(ux, uy), agent.preferred, own.d_max
     ahead, scale = 0.0, 0.0
     if speed > 0.0:
         scale = preferred / speed
         if preferred > 0.0:
-            ahead = (ux * agent[PVX] + uy * agent[PVY]) / (speed * preferred)
+            ahead = (ux * agent.pvx + uy * agent.pvy) / (speed * preferred)
     t = first_contact(ux * scale, uy * scale, agent, work)
     free = min(d_max, t * preferred) if preferred > 0.0 else d_max
     course = d_max * d_max + free * free - 2.0 * d_max * free * ahead + 1.0
     least = _least_course(ahead, d_max)
-    safe = preferred if free >= preferred * agent[RELAXATION] else free / agent[RELAXATION]
+    safe = preferred if free >= preferred * agent.relaxation else free / agent.relaxation
     if safe <= 0.0:
         return math.inf if speed > 0.0 else max(0.0, course - least)
     slower = (safe - speed) / safe
@@ -90,6 +102,8 @@ def build(spec: MoussaidSpec) -> CompiledCost:
         base=_base,
         prepare=_prepare,
         excess=_excess,
-        params=np.array([spec.range.value, surface, spec.d_max]),
+        params=record_values(
+            _PARAMS, range=spec.range.value, from_surface=surface, d_max=spec.d_max
+        ),
         weight=spec.weight,
     )

@@ -4,44 +4,44 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     BASE,
-    D2,
     EXCESS,
-    MAX_SPEED,
-    NVX,
-    NVY,
-    NX,
-    NY,
     OPTIMUM,
-    PARITY,
     PREPARE,
-    PVX,
-    PVY,
-    RADIUS,
-    REACH,
-    RX,
-    RY,
-    STATIC,
-    TIME_STEP,
-    VX,
-    VY,
-    WALL_D2,
+    AgentRecord,
     CompiledCost,
+    CostParams,
+    NeighbourRecord,
     Pointer,
+    Rows,
+    WallRecord,
+    as_record,
     declared_kernel,
     in_range,
-    near_table,
-    wall_table,
+    record_type,
+    record_values,
 )
 from crowdbot.plugins.crowd.cost_functions.half_planes_build import best_velocity, put, violation
 from crowdbot.plugins.crowd.cost_functions.orca import OrcaSpec
 
-_HORIZON, _LIMIT = 2, 3  # entries of params
 _BRAKING = 0.5  # s in which the gap to a wall may be used up
+
+
+class _Params(CostParams):
+    """Parameters.
+
+    Attributes:
+        horizon: time for which discs apart are kept apart, s.
+        limit: 1 if the optimum is not faster than preferred.
+    """
+
+    horizon: float
+    limit: float
+
+
+_PARAMS = record_type(_Params)
 
 
 @declared_kernel(BASE)
@@ -88,20 +88,25 @@ def _change(
 
 @array_kernel
 def _put_walls(
-    agent: Pointer, walls: Pointer, wall_count: int, params: Pointer, work: Pointer, count: int
+    agent: AgentRecord,
+    walls: Rows[WallRecord],
+    wall_count: int,
+    params: Pointer,
+    work: Pointer,
+    count: int,
 ) -> int:
     """Two half-planes for each wall: braking, and going round its nearest point."""
-    walls = wall_table(walls)
-    vx, vy, radius = agent[VX], agent[VY], agent[RADIUS]
+    own = as_record(params, _PARAMS)
+    vx, vy, radius = agent.vx, agent.vy, agent.radius
     for s in range(wall_count):
-        d2, rx, ry = walls[s, WALL_D2], walls[s, NX], walls[s, NY]
+        d2, rx, ry = walls[s].d2, walls[s].nx, walls[s].ny
         if d2 == 0.0 or not in_range(d2, radius, params):
             continue
         distance = math.sqrt(d2)
         put(work, count, -rx / distance, -ry / distance, (radius - distance) / _BRAKING)
         count += 1
         if distance > radius:
-            nx, ny, way = _change(rx, ry, vx, vy, radius, params[_HORIZON], 1.0, False)
+            nx, ny, way = _change(rx, ry, vx, vy, radius, own.horizon, 1.0, False)
             put(work, count, nx, ny, nx * vx + ny * vy + way)
             count += 1
     return count
@@ -109,28 +114,29 @@ def _put_walls(
 
 @declared_kernel(PREPARE)
 def _prepare(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
 ) -> int:
     """Row 0: number of half-planes; these follow."""
-    near, count = near_table(near), 0
-    vx, vy, horizon, dt = agent[VX], agent[VY], params[_HORIZON], agent[TIME_STEP]
-    parity = agent[PARITY] != 0.0
+    own = as_record(params, _PARAMS)
+    count = 0
+    vx, vy, horizon, dt = agent.vx, agent.vy, own.horizon, agent.time_step
+    parity = agent.parity != 0.0
     for j in range(near_count):
-        if not in_range(near[j, D2], near[j, REACH], params):
+        if not in_range(near[j].d2, near[j].reach, params):
             continue
-        wx, wy = vx - near[j, NVX], vy - near[j, NVY]
+        wx, wy = vx - near[j].nvx, vy - near[j].nvy
         nx, ny, way = _change(
-            near[j, RX], near[j, RY], wx, wy, near[j, REACH], horizon, dt, parity
+            near[j].rx, near[j].ry, wx, wy, near[j].reach, horizon, dt, parity
         )  # fmt: skip
         if nx == 0.0 and ny == 0.0:
             continue
-        share = 1.0 if near[j, STATIC] != 0.0 else 0.5  # people do half of it each
+        share = 1.0 if near[j].static != 0.0 else 0.5  # people do half of it each
         c = nx * (vx + share * way * nx) + ny * (vy + share * way * ny)
         put(work, count, nx, ny, c)
         count += 1
@@ -142,10 +148,10 @@ def _prepare(
 
 @declared_kernel(EXCESS)
 def _excess(
-    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+    ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
-    most, worst = 2.0 * agent[MAX_SPEED], 0.0
-    wanted = math.hypot(ux - agent[PVX], uy - agent[PVY])
+    most, worst = 2.0 * agent.max_speed, 0.0
+    wanted = math.hypot(ux - agent.pvx, uy - agent.pvy)
     base = min(wanted, most)
     for k in range(int(work[0])):
         worst = max(worst, violation(work, k, ux, uy))
@@ -155,11 +161,12 @@ def _excess(
 
 
 @declared_kernel(OPTIMUM)
-def _optimum(agent: Pointer, work: Pointer, params: Pointer, out: Pointer) -> int:
-    fastest = agent[MAX_SPEED]
-    if params[_LIMIT] != 0.0:
-        fastest = min(fastest, math.hypot(agent[PVX], agent[PVY]))
-    out[0], out[1] = best_velocity(work, int(work[0]), fastest, agent[PVX], agent[PVY])
+def _optimum(agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer) -> int:
+    own = as_record(params, _PARAMS)
+    fastest = agent.max_speed
+    if own.limit != 0.0:
+        fastest = min(fastest, math.hypot(agent.pvx, agent.pvy))
+    out[0], out[1] = best_velocity(work, int(work[0]), fastest, agent.pvx, agent.pvy)
     return 1
 
 
@@ -171,8 +178,12 @@ def build(spec: OrcaSpec) -> CompiledCost:
         prepare=_prepare,
         excess=_excess,
         optimum=_optimum,
-        params=np.array(
-            [spec.range.value, surface, spec.time_horizon, float(spec.limit == "preferred_speed")]
+        params=record_values(
+            _PARAMS,
+            range=spec.range.value,
+            from_surface=surface,
+            horizon=spec.time_horizon,
+            limit=float(spec.limit == "preferred_speed"),
         ),
         weight=spec.weight,
     )

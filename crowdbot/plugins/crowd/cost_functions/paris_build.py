@@ -3,52 +3,34 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
-import numpy as np
 from numba import float32
 
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
-    AX,
-    AY,
     BASE,
-    BX,
-    BY,
-    D2,
     EXCESS,
-    GX,
-    GY,
-    NVX,
-    NVY,
-    PARITY,
-    PREFERRED,
     PREPARE,
-    PVX,
-    PVY,
-    PX,
-    PY,
-    RADIUS,
-    REACH,
-    RX,
-    RY,
-    STATIC,
-    VX,
-    VY,
-    WALL_D2,
+    WORK_COLUMNS,
+    AgentRecord,
     CompiledCost,
+    CostParams,
+    NeighbourRecord,
     Pointer,
+    Rows,
+    WallRecord,
+    as_record,
+    as_rows,
     declared_kernel,
     in_range,
-    near_table,
+    record_type,
+    record_values,
     time_to_disc,
     time_to_segment,
-    wall_table,
-    work_table,
 )
 from crowdbot.plugins.crowd.cost_functions.paris import ParisSpec
 
-_W_A, _W_B, _T_MAX = range(2, 5)  # entries of params
-_PEOPLE, _PILLARS, _WALLS = range(3)  # entries of row 0 of work
 _BRAKING = 0.5  # s of way that has to be free before a wall or a pillar
 #: The original's infinity: one blocking neighbour still is finite, and less than none to choose.
 _LARGEST = 3.4028234663852886e38
@@ -56,45 +38,87 @@ _OFFSET = 1e-3  # keeps the excess positive under parity
 _PARALLEL = 1e-5  # m/s; lines whose cross product is below this do not cross
 
 
+class _Params(CostParams):
+    """Parameters; units are those of the spec."""
+
+    w_a: float
+    w_b: float
+    t_max: float
+
+
+class _Header:
+    """Row 0 of ``work``: how many rows of each follow."""
+
+    people: float
+    pillars: float
+    walls: float
+
+
+class _Disc:
+    """Row of a person or a pillar: offset, velocity, sum of radii."""
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    reach: float
+
+
+class _Wall:
+    """Row of a wall: both ends, squared distance."""
+
+    ax: float
+    ay: float
+    bx: float
+    by: float
+    d2: float
+
+
+_PARAMS, _HEADER = record_type(_Params), record_type(_Header)
+_DISC, _WALL = record_type(_Disc, WORK_COLUMNS), record_type(_Wall, WORK_COLUMNS)
+
+
 @declared_kernel(BASE)
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
+    own = as_record(params, _PARAMS)
     speed = math.hypot(ux, uy)
     ahead = ux / speed if speed > 0.0 else 0.0
-    course = 500.0 * (1.0 - params[_W_A]) * (1.0 - ahead)
+    course = 500.0 * (1.0 - own.w_a) * (1.0 - ahead)
     return float(course + 0.001 * math.hypot(ux - preferred, uy))
 
 
 @declared_kernel(PREPARE)
 def _prepare(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
 ) -> int:
     """People, then pillars: offset, velocity, reach. Then walls (none in the original): ends."""
-    near, segments, table = near_table(near), wall_table(walls), work_table(work)
+    header, discs, found = as_record(work, _HEADER), as_rows(work, _DISC), as_rows(work, _WALL)
     row = 0
     for fixed in range(2):
         for j in range(near_count):
-            if near[j, STATIC] != fixed or not in_range(near[j, D2], near[j, REACH], params):
+            if near[j].static != fixed or not in_range(near[j].d2, near[j].reach, params):
                 continue
             row += 1
-            table[row, 0], table[row, 1] = near[j, RX], near[j, RY]
-            table[row, 2], table[row, 3] = near[j, NVX], near[j, NVY]
-            table[row, 4] = near[j, REACH]
-        table[0, fixed] = row
-    table[0, _PILLARS] -= table[0, _PEOPLE]
+            disc, other = discs[row], near[j]
+            disc.x, disc.y, disc.reach = other.rx, other.ry, other.reach
+            disc.vx, disc.vy = other.nvx, other.nvy
+        if fixed == 0:
+            header.people = row
+    header.pillars = row - header.people
     before = row
-    for s in range(0 if agent[PARITY] != 0.0 else wall_count):
-        if in_range(segments[s, WALL_D2], agent[RADIUS], params):
+    for s in range(0 if agent.parity != 0.0 else wall_count):
+        if in_range(walls[s].d2, agent.radius, params):
             row += 1
-            table[row, 0], table[row, 1] = segments[s, AX], segments[s, AY]
-            table[row, 2], table[row, 3] = segments[s, BX], segments[s, BY]
-            table[row, 4] = segments[s, WALL_D2]
-    table[0, _WALLS] = row - before
+            wall, near_by = found[row], walls[s]
+            wall.ax, wall.ay, wall.bx, wall.by = near_by.ax, near_by.ay, near_by.bx, near_by.by
+            wall.d2 = near_by.d2
+    header.walls = row - before
     return 1
 
 
@@ -117,19 +141,19 @@ def _ratio(a: float, b: float) -> float:
 
 @array_kernel
 def _window(
-    row: int, ex: float, ey: float, agent: Pointer, work: Pointer, t_max: float
+    row: int, ex: float, ey: float, agent: AgentRecord, work: Pointer, t_max: float
 ) -> tuple[float, float, float]:
     """When neighbour `row` reaches the crossing, and the speeds between which it is met there."""
-    table, parity = work_table(work), agent[PARITY] != 0.0
-    rx, ry, vx, vy = table[row, 0], table[row, 1], table[row, 2], table[row, 3]
-    reach, cross = table[row, 4], ex * vy - ey * vx
+    disc, parity = as_rows(work, _DISC)[row], agent.parity != 0.0
+    rx, ry, vx, vy = disc.x, disc.y, disc.vx, disc.vy
+    reach, cross = disc.reach, ex * vy - ey * vx
     if abs(cross) < _PARALLEL:
         if _time(rx, ry, ex - vx, ey - vy, reach, parity) > t_max:
             return t_max, 0.0, math.inf
         return 0.0, _LARGEST if parity else math.inf, 0.0
     along = (rx * vy - ry * vx) / cross
     cx, cy = ex * along, ey * along
-    if _time(cx, cy, agent[VX], agent[VY], reach, parity) >= t_max:
+    if _time(cx, cy, agent.vx, agent.vy, reach, parity) >= t_max:
         return t_max, 0.0, math.inf
     t1 = min(t_max, _time(cx - rx, cy - ry, vx, vy, reach, parity))
     t2 = t1 + reach / math.hypot(vx, vy)
@@ -138,19 +162,20 @@ def _window(
 
 
 @array_kernel
-def _free_way(row: int, ex: float, ey: float, agent: Pointer, work: Pointer) -> float:
+def _free_way(row: int, ex: float, ey: float, agent: AgentRecord, work: Pointer) -> float:
     """Way in direction e before pillar or wall `row` is touched, m."""
-    table, radius = work_table(work), agent[RADIUS]
-    if row <= int(table[0, _PEOPLE] + table[0, _PILLARS]):
-        return float(_time(table[row, 0], table[row, 1], ex, ey, table[row, 4], False))
-    if table[row, 4] <= radius * radius:
+    header, radius = as_record(work, _HEADER), agent.radius
+    if row <= int(header.people + header.pillars):
+        disc = as_rows(work, _DISC)[row]
+        return float(_time(disc.x, disc.y, ex, ey, disc.reach, False))
+    wall = as_rows(work, _WALL)[row]
+    if wall.d2 <= radius * radius:
         return 0.0
-    ax, ay, bx, by = table[row, 0], table[row, 1], table[row, 2], table[row, 3]
-    return float(time_to_segment(ex, ey, radius, ax, ay, bx, by))
+    return float(time_to_segment(ex, ey, radius, wall.ax, wall.ay, wall.bx, wall.by))
 
 
 @array_kernel
-def _single_unit(x: float, y: float) -> tuple[float, float]:
+def _single_unit(x: Any, y: Any) -> tuple[float, float]:
     """Unit vector in single precision; zero where that knows no length."""
     a, b = float32(x), float32(y)
     size = float32(math.sqrt(float32(a * a) + float32(b * b)))
@@ -160,7 +185,7 @@ def _single_unit(x: float, y: float) -> tuple[float, float]:
 
 
 @array_kernel
-def _rounding(ux: float, uy: float, agent: Pointer) -> float:
+def _rounding(ux: float, uy: float, agent: AgentRecord) -> float:
     """Error of 1 - cos(u, v_preferred) in the original's single precision.
 
     It decides between candidates that differ by less than a few millionths of the cost.
@@ -169,36 +194,37 @@ def _rounding(ux: float, uy: float, agent: Pointer) -> float:
     if ex == 0.0 and ey == 0.0:
         return 0.0
     gx, gy = _single_unit(
-        float32(agent[GX]) - float32(agent[PX]), float32(agent[GY]) - float32(agent[PY])
+        float32(agent.gx) - float32(agent.px), float32(agent.gy) - float32(agent.py)
     )
-    preferred = float32(agent[PREFERRED])
+    preferred = float32(agent.preferred)
     x, y, px, py = float32(ex), float32(ey), float32(gx) * preferred, float32(gy) * preferred
     size, wanted = float32(math.sqrt(x * x + y * y)), float32(math.sqrt(px * px + py * py))
     single = float32(float32(1.0) - float32((x * px + y * py) / (size * wanted)))
-    exact = (ux * agent[PVX] + uy * agent[PVY]) / (math.hypot(ux, uy) * agent[PREFERRED])
+    exact = (ux * agent.pvx + uy * agent.pvy) / (math.hypot(ux, uy) * agent.preferred)
     return float(float(single) - (1.0 - exact))
 
 
 @declared_kernel(EXCESS)
 def _excess(
-    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+    ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
-    table, speed, preferred = work_table(work), math.hypot(ux, uy), agent[PREFERRED]
+    own = as_record(params, _PARAMS)
+    header, speed, preferred = as_record(work, _HEADER), math.hypot(ux, uy), agent.preferred
     if speed == 0.0:
-        return _OFFSET if agent[PARITY] != 0.0 else 0.0
-    ex, ey, t_max = ux / speed, uy / speed, params[_T_MAX]
-    people, risk, misfit = int(table[0, _PEOPLE]), 0.0, 0.0
-    if agent[PARITY] != 0.0 and preferred > 0.0:
-        misfit = _OFFSET + 500.0 * (1.0 - params[_W_A]) * _rounding(ux, uy, agent)
+        return _OFFSET if agent.parity != 0.0 else 0.0
+    ex, ey, t_max = ux / speed, uy / speed, own.t_max
+    people, risk, misfit = int(header.people), 0.0, 0.0
+    if agent.parity != 0.0 and preferred > 0.0:
+        misfit = _OFFSET + 500.0 * (1.0 - own.w_a) * _rounding(ux, uy, agent)
         ex, ey = _single_unit(ux, uy)
-    total = people + int(table[0, _PILLARS] + table[0, _WALLS])
+    total = people + int(header.pillars + header.walls)
     for row in range(1, total + 1):
         if row <= people:
             t1, s1, s2 = _window(row, ex, ey, agent, work, t_max)
             slower = max(0.0, 1.0 - _ratio(s1, preferred))
             choice = min(slower, max(0.0, _ratio(s2 - preferred, preferred)))
-            if choice > 0.0 and t1 < t_max + params[_W_B]:
-                risk += choice * (1.0 - t1 / (t_max + params[_W_B]))
+            if choice > 0.0 and t1 < t_max + own.w_b:
+                risk += choice * (1.0 - t1 / (t_max + own.w_b))
             misfit += max(0.0, _ratio(s1 - speed, preferred), _ratio(speed - s2, preferred))
         else:
             free = _free_way(row, ex, ey, agent, work)
@@ -208,7 +234,7 @@ def _excess(
             return misfit
     if misfit > _LARGEST:
         return math.inf
-    return float(misfit + (1000.0 * params[_W_A] * risk / total if total > 0 else 0.0))
+    return float(misfit + (1000.0 * own.w_a * risk / total if total > 0 else 0.0))
 
 
 def build(spec: ParisSpec) -> CompiledCost:
@@ -218,6 +244,13 @@ def build(spec: ParisSpec) -> CompiledCost:
         base=_base,
         prepare=_prepare,
         excess=_excess,
-        params=np.array([spec.range.value, surface, spec.w_a, spec.w_b, spec.t_max]),
+        params=record_values(
+            _PARAMS,
+            range=spec.range.value,
+            from_surface=surface,
+            w_a=spec.w_a,
+            w_b=spec.w_b,
+            t_max=spec.t_max,
+        ),
         weight=spec.weight,
     )

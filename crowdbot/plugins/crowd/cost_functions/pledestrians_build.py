@@ -8,59 +8,72 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from crowdbot.plugin import (
-    ASKED_RADIUS,
-    ASKED_X,
-    ASKED_Y,
     BASE,
     EXCESS,
-    GX,
-    GY,
     PREPARE,
-    PX,
-    PY,
+    AgentRecord,
     CompiledCost,
+    CostParams,
+    NeighbourRecord,
     Pointer,
+    Rows,
+    WallRecord,
+    as_record,
     declared_kernel,
     first_collision,
     list_approaching,
+    record_type,
+    record_values,
 )
 from crowdbot.plugins.crowd.cost_functions.pledestrians import PledestriansSpec
 
-_W_A, _W_B, _T_MIN, _T_MAX, _COST_OF_WAY = range(2, 7)  # entries of params
+
+class _Params(CostParams):
+    """Parameters; units are those of the spec."""
+
+    w_a: float
+    w_b: float
+    t_min: float
+    t_max: float
+    cost_of_way: float
+
+
+_PARAMS = record_type(_Params)
 
 
 @declared_kernel(BASE)
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
-    return float(params[_T_MAX] * (params[_W_A] + params[_W_B] * (ux * ux + uy * uy)))
+    own = as_record(params, _PARAMS)
+    return float(own.t_max * (own.w_a + own.w_b * (ux * ux + uy * uy)))
 
 
 @declared_kernel(PREPARE)
 def _prepare(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
 ) -> int:
+    own = as_record(params, _PARAMS)
     list_approaching(
         agent, near, near_count, walls, wall_count, params, work,
-        agent[ASKED_X], agent[ASKED_Y], agent[ASKED_RADIUS], params[_T_MIN],
+        agent.asked_x, agent.asked_y, agent.asked_radius, own.t_min,
     )  # fmt: skip
     return 1
 
 
 @declared_kernel(EXCESS)
 def _excess(
-    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+    ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
-    t_max, t_min = params[_T_MAX], params[_T_MIN]
-    left = math.hypot(agent[GX] - agent[PX] - t_max * ux, agent[GY] - agent[PY] - t_max * uy)
-    cost = float(params[_COST_OF_WAY] * left)
+    own = as_record(params, _PARAMS)
+    t_max, t_min = own.t_max, own.t_min
+    left = math.hypot(agent.gx - agent.px - t_max * ux, agent.gy - agent.py - t_max * uy)
+    cost = float(own.cost_of_way * left)
     if cost > budget:
         return cost
     return math.inf if first_collision(ux, uy, t_min, agent, work) < t_min else cost
@@ -69,13 +82,19 @@ def _excess(
 def build(spec: PledestriansSpec) -> CompiledCost:
     """Compiled functions with this spec's parameters."""
     surface = 1.0 if spec.range.measure == "surface" else 0.0
-    way = 2.0 * math.sqrt(spec.w_a * spec.w_b)
     return CompiledCost(
         base=_base,
         prepare=_prepare,
         excess=_excess,
-        params=np.array(
-            [spec.range.value, surface, spec.w_a, spec.w_b, spec.t_min, spec.t_max, way]
+        params=record_values(
+            _PARAMS,
+            range=spec.range.value,
+            from_surface=surface,
+            w_a=spec.w_a,
+            w_b=spec.w_b,
+            t_min=spec.t_min,
+            t_max=spec.t_max,
+            cost_of_way=2.0 * math.sqrt(spec.w_a * spec.w_b),
         ),
         weight=spec.weight,
     )

@@ -4,29 +4,21 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
-    D2,
-    NVX,
-    NVY,
-    NX,
-    NY,
-    PARITY,
     PREPARE,
-    RADIUS,
-    REACH,
-    RX,
-    RY,
-    VX,
-    VY,
+    AgentRecord,
     CompiledCost,
+    CostParams,
+    NeighbourRecord,
     Pointer,
+    Rows,
+    WallRecord,
+    as_record,
     declared_kernel,
     in_range,
-    near_table,
-    wall_table,
+    record_type,
+    record_values,
 )
 from crowdbot.plugins.crowd.cost_functions.force_build import (
     aim,
@@ -38,8 +30,17 @@ from crowdbot.plugins.crowd.cost_functions.force_build import (
 from crowdbot.plugins.crowd.cost_functions.power_law import PowerLawSpec
 from crowdbot.plugins.crowd.cost_functions.wall_points_build import counts
 
-_K, _TAU0 = range(2, 4)  # entries of params
 _SOONEST = 0.001  # s; collisions sooner than this exert no force
+
+
+class _Params(CostParams):
+    """Parameters; units are those of the spec."""
+
+    k: float
+    tau0: float
+
+
+_PARAMS = record_type(_Params)
 
 
 @array_kernel
@@ -47,6 +48,7 @@ def _repulsion(
     rx: float, ry: float, wx: float, wy: float, reach: float, params: Pointer
 ) -> tuple[float, float]:
     """Force per mass by a disc at (rx, ry) that is approached with velocity w."""
+    own = as_record(params, _PARAMS)
     speed2, approach = wx * wx + wy * wy, rx * wx + ry * wy
     gap2 = rx * rx + ry * ry - reach * reach
     root2 = approach * approach - speed2 * gap2
@@ -54,10 +56,10 @@ def _repulsion(
         return 0.0, 0.0
     root = math.sqrt(root2)
     t = gap2 / (approach + root)  # (approach - root) / speed2 without cancellation
-    if not _SOONEST <= t <= params[_TAU0]:
+    if not _SOONEST <= t <= own.tau0:
         return 0.0, 0.0
-    decay = params[_K] * math.exp(-t / params[_TAU0])
-    size = decay * (2.0 / t + 1.0 / params[_TAU0]) / (speed2 * t * t)
+    decay = own.k * math.exp(-t / own.tau0)
+    size = decay * (2.0 / t + 1.0 / own.tau0) / (speed2 * t * t)
     fx = -size * (wx + (speed2 * rx - approach * wx) / root)
     fy = -size * (wy + (speed2 * ry - approach * wy) / root)
     return fx, fy
@@ -65,25 +67,24 @@ def _repulsion(
 
 @declared_kernel(PREPARE)
 def _prepare(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
 ) -> int:
     """Sum of forces; a wall is its nearest point, which the original has none of."""
-    near, segments = near_table(near), wall_table(walls)
-    vx, vy, fx, fy = agent[VX], agent[VY], 0.0, 0.0
+    vx, vy, fx, fy = agent.vx, agent.vy, 0.0, 0.0
     for j in range(near_count):
-        if in_range(near[j, D2], near[j, REACH], params):
-            wx, wy = vx - near[j, NVX], vy - near[j, NVY]
-            ax, ay = _repulsion(near[j, RX], near[j, RY], wx, wy, near[j, REACH], params)
+        if in_range(near[j].d2, near[j].reach, params):
+            wx, wy = vx - near[j].nvx, vy - near[j].nvy
+            ax, ay = _repulsion(near[j].rx, near[j].ry, wx, wy, near[j].reach, params)
             fx, fy = fx + ax, fy + ay
-    for s in range(0 if agent[PARITY] != 0.0 else wall_count):
+    for s in range(0 if agent.parity != 0.0 else wall_count):
         if counts(s, agent, walls, params):
-            ax, ay = _repulsion(segments[s, NX], segments[s, NY], vx, vy, agent[RADIUS], params)
+            ax, ay = _repulsion(walls[s].nx, walls[s].ny, vx, vy, agent.radius, params)
             fx, fy = fx + ax, fy + ay
     return int(aim(fx, fy, agent, work))
 
@@ -97,6 +98,8 @@ def build(spec: PowerLawSpec) -> CompiledCost:
         excess=from_target,
         gradient=to_target,
         optimum=target,
-        params=np.array([spec.range.value, surface, spec.k, spec.tau0]),
+        params=record_values(
+            _PARAMS, range=spec.range.value, from_surface=surface, k=spec.k, tau0=spec.tau0
+        ),
         weight=spec.weight,
     )

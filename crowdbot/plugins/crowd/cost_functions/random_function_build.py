@@ -5,17 +5,21 @@ The original draws between -1 and 1; adding 1 to every candidate changes no choi
 
 from __future__ import annotations
 
-import numpy as np
-
 from crowdbot.core.crowd.velocity_search.minstd import draw
 from crowdbot.plugin import (
     BASE,
+    COST_PARAMS,
     EXCESS,
     GRADIENT,
     PREPARE,
+    AgentRecord,
     CompiledCost,
+    NeighbourRecord,
     Pointer,
+    Rows,
+    WallRecord,
     declared_kernel,
+    record_values,
 )
 from crowdbot.plugins.crowd.cost_functions.random_function import RandomFunctionSpec
 
@@ -27,10 +31,10 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Poin
 
 @declared_kernel(PREPARE)
 def _prepare(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
@@ -40,14 +44,14 @@ def _prepare(
 
 @declared_kernel(EXCESS)
 def _excess(
-    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+    ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
     return float(draw(agent, -1.0, 1.0) + 1.0)
 
 
 @declared_kernel(GRADIENT)
 def _gradient(
-    ux: float, uy: float, agent: Pointer, work: Pointer, params: Pointer, out: Pointer
+    ux: float, uy: float, agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer
 ) -> int:
     out[1] = draw(agent, -1.0, 1.0)  # y first, as in the original
     out[0] = draw(agent, -1.0, 1.0)
@@ -61,7 +65,7 @@ def build(spec: RandomFunctionSpec) -> CompiledCost:
         prepare=_prepare,
         excess=_excess,
         gradient=_gradient,
-        params=np.array([spec.range.value, 0.0]),
+        params=record_values(COST_PARAMS, range=spec.range.value, from_surface=0.0),
         weight=spec.weight,
         ordered=True,
     )

@@ -8,31 +8,39 @@ import numpy as np
 
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
-    ASKED_RADIUS,
-    ASKED_X,
-    ASKED_Y,
     BASE,
     EXCESS,
-    FASTEST,
     LOWER_BOUND,
-    MAX_SPEED,
-    PARITY,
     PREPARE,
-    VX,
-    VY,
+    AgentRecord,
     CompiledCost,
+    CostParams,
+    NeighbourRecord,
     Pointer,
+    Rows,
+    WallRecord,
+    as_record,
     declared_kernel,
     first_collision,
     list_approaching,
+    record_type,
+    record_values,
     soonest_disc,
 )
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 
-_W = 2  # entry of params
 #: Later than any collision but one that never comes, s.
 _EVER = 1e300
 _ROUNDING = 1.0 + 1e-6
+
+
+class _Params(CostParams):
+    """Parameters; units are those of the spec."""
+
+    w: float
+
+
+_PARAMS = record_type(_Params)
 
 
 @array_kernel
@@ -53,33 +61,34 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Poin
 
 @declared_kernel(PREPARE)
 def _prepare(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
 ) -> int:
     # Of 2u - v.
-    ux, uy = 2.0 * agent[ASKED_X] - agent[VX], 2.0 * agent[ASKED_Y] - agent[VY]
+    ux, uy = 2.0 * agent.asked_x - agent.vx, 2.0 * agent.asked_y - agent.vy
     # The second term is for rounding, where the sum of two sides does as well as the length.
-    spread = 2.0 * agent[ASKED_RADIUS] + 1e-9 * (agent[FASTEST] + abs(ux) + abs(uy))
+    spread = 2.0 * agent.asked_radius + 1e-9 * (agent.fastest + abs(ux) + abs(uy))
     items = list_approaching(
         agent, near, near_count, walls, wall_count, params, work, ux, uy, spread, _EVER
     )
-    return max(items, 1) if agent[PARITY] != 0.0 else items
+    return max(items, 1) if agent.parity != 0.0 else items
 
 
 @declared_kernel(EXCESS)
 def _excess(
-    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+    ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
-    if agent[PARITY] != 0.0 and _too_fast(ux, uy, agent[MAX_SPEED]):
+    own = as_record(params, _PARAMS)
+    if agent.parity != 0.0 and _too_fast(ux, uy, agent.max_speed):
         return math.inf
-    too_soon = params[_W] / budget if budget > 0.0 else math.inf
-    vx, vy = 2.0 * ux - agent[VX], 2.0 * uy - agent[VY]
-    return float(params[_W] / first_collision(vx, vy, too_soon, agent, work))
+    too_soon = own.w / budget if budget > 0.0 else math.inf
+    vx, vy = 2.0 * ux - agent.vx, 2.0 * uy - agent.vy
+    return float(own.w / first_collision(vx, vy, too_soon, agent, work))
 
 
 @declared_kernel(LOWER_BOUND)
@@ -87,15 +96,16 @@ def _lower_bound(
     count: int,
     ux: Pointer,
     uy: Pointer,
-    agent: Pointer,
+    agent: AgentRecord,
     work: Pointer,
     params: Pointer,
     out: Pointer,
 ) -> int:
     """Without walls."""
-    soonest_disc(count, ux, uy, 2.0, agent[VX], agent[VY], work, out)
+    own = as_record(params, _PARAMS)
+    soonest_disc(count, ux, uy, 2.0, agent.vx, agent.vy, work, out)
     for c in range(count):
-        out[c] *= params[_W]
+        out[c] *= own.w
     return 1
 
 
@@ -107,6 +117,6 @@ def build(spec: RvoSpec) -> CompiledCost:
         prepare=_prepare,
         excess=_excess,
         lower_bound=_lower_bound,
-        params=np.array([spec.range.value, surface, spec.w]),
+        params=record_values(_PARAMS, range=spec.range.value, from_surface=surface, w=spec.w),
         weight=spec.weight,
     )

@@ -8,24 +8,34 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from crowdbot.plugin import (
     BASE,
     EXCESS,
-    FASTEST,
     PREPARE,
-    VX,
-    VY,
+    AgentRecord,
     CompiledCost,
+    CostParams,
+    NeighbourRecord,
     Pointer,
+    Rows,
+    WallRecord,
+    as_record,
     declared_kernel,
     first_contact,
     list_obstacles,
+    record_type,
+    record_values,
 )
 from crowdbot.plugins.crowd.cost_functions.van_toll import VanTollSpec
 
-_MAX_DISTANCE = 2  # entry of params
+
+class _Params(CostParams):
+    """Parameters; units are those of the spec."""
+
+    max_distance: float
+
+
+_PARAMS = record_type(_Params)
 
 
 @declared_kernel(BASE)
@@ -39,24 +49,25 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Poin
 
 @declared_kernel(PREPARE)
 def _prepare(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
 ) -> int:
-    fastest = agent[FASTEST]
+    fastest = agent.fastest
     list_obstacles(agent, near, near_count, walls, wall_count, params, work, fastest)
     return 1
 
 
 @declared_kernel(EXCESS)
 def _excess(
-    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+    ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
-    vx, vy, way = agent[VX], agent[VY], params[_MAX_DISTANCE]
+    own = as_record(params, _PARAMS)
+    vx, vy, way = agent.vx, agent.vy, own.max_distance
     speed = math.hypot(ux, uy)
     if speed == 0.0:
         return float(way)
@@ -75,6 +86,11 @@ def build(spec: VanTollSpec) -> CompiledCost:
         base=_base,
         prepare=_prepare,
         excess=_excess,
-        params=np.array([spec.range.value, surface, spec.max_distance]),
+        params=record_values(
+            _PARAMS,
+            range=spec.range.value,
+            from_surface=surface,
+            max_distance=spec.max_distance,
+        ),
         weight=spec.weight,
     )

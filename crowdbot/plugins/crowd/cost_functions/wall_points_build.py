@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 from crowdbot.core.support.compile import array_kernel
-from crowdbot.plugin import NX, NY, RADIUS, WALL_D2, Pointer, in_range, wall_table
+from crowdbot.plugin import (
+    AgentRecord,
+    Pointer,
+    Rows,
+    WallRecord,
+    in_range,
+)
 
 #: Points that are nearer to each other are one, m.
 SAME = 1e-9
 
 
 @array_kernel
-def counts(s: int, agent: Pointer, walls: Pointer, params: Pointer) -> bool:
-    """Whether wall s is in range and its nearest point is not that of a wall before it."""
-    walls = wall_table(walls)
-    if not in_range(walls[s, WALL_D2], agent[RADIUS], params):
+def counts(s: int, agent: AgentRecord, walls: Rows[WallRecord], params: Pointer) -> bool:
+    """Return True if wall s is in range, and its nearest point not that of a wall before it."""
+    if not in_range(walls[s].d2, agent.radius, params):
         return False
     for earlier in range(s):
-        dx, dy = walls[s, NX] - walls[earlier, NX], walls[s, NY] - walls[earlier, NY]
+        dx, dy = walls[s].nx - walls[earlier].nx, walls[s].ny - walls[earlier].ny
         if abs(dx) <= SAME and abs(dy) <= SAME:
             return False
     return True

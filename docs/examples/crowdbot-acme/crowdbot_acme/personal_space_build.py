@@ -3,84 +3,126 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
-import numpy as np
 from crowdbot.plugin import (
     BASE,
-    D2,
     EXCESS,
     GRADIENT,
-    NVX,
-    NVY,
     PREPARE,
-    PVX,
-    PVY,
-    REACH,
-    RX,
-    RY,
+    WORK_COLUMNS,
+    AgentRecord,
     CompiledCost,
+    CostParams,
+    NeighbourRecord,
+    Pointer,
+    Rows,
+    WallRecord,
+    as_record,
+    as_rows,
     in_range,
-    near_table,
-    work_table,
+    record_type,
+    record_values,
 )
 from numba import njit
 
 from crowdbot_acme.personal_space import PersonalSpaceSpec
 
-_AHEAD, _FADE = 2, 3  # entries of params after the range
+
+class _Params(CostParams):
+    """Parameters, which begin with the range; units are those of the spec."""
+
+    ahead: float
+    fade: float
+
+
+class _Header:
+    """Row 0 of ``work``, which is not cleared between agents."""
+
+    count: float
+
+
+class _Other:
+    """A neighbour in ``work``: relative position, velocity, sum of the radii."""
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    reach: float
+
+
+_PARAMS, _HEADER = record_type(_Params), record_type(_Header)
+_OTHER = record_type(_Other, WORK_COLUMNS)
 
 
 @njit(BASE, cache=True, error_model="numpy")
-def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Any) -> float:
+def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     return math.hypot(ux - preferred, uy)
 
 
 @njit(PREPARE, cache=True, error_model="numpy")
 def _prepare(
-    agent: Any, near: Any, near_count: int, walls: Any, wall_count: int, params: Any, work: Any
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
+    near_count: int,
+    walls: Rows[WallRecord],
+    wall_count: int,
+    params: Pointer,
+    work: Pointer,
 ) -> int:
-    near, work = near_table(near), work_table(work)
-    items = 0
+    others, items = as_rows(work, _OTHER), 0
     for i in range(near_count):
-        if in_range(near[i, D2], near[i, REACH], params):
+        if in_range(near[i].d2, near[i].reach, params):
             items += 1
-            work[items, 0], work[items, 1] = near[i, RX], near[i, RY]
-            work[items, 2], work[items, 3] = near[i, NVX], near[i, NVY]
-            work[items, 4] = near[i, REACH]
-    work[0, 0] = items  # row 0 is not cleared between agents
+            other = others[items]
+            other.x, other.y, other.reach = near[i].rx, near[i].ry, near[i].reach
+            other.vx, other.vy = near[i].nvx, near[i].nvy
+    as_record(work, _HEADER).count = items
     return items
 
 
 @njit(cache=True, error_model="numpy")
-def _gap(ux: float, uy: float, row: Any, ahead: float) -> tuple[float, float, float]:
+def _gap(ux: float, uy: float, other: _Other, ahead: float) -> tuple[float, float, float]:
     """Where a neighbour will be (m), and the gap between the surfaces then (m)."""
-    x = row[0] + (row[2] - ux) * ahead
-    y = row[1] + (row[3] - uy) * ahead
-    return x, y, math.hypot(x, y) - row[4]
+    x = other.x + (other.vx - ux) * ahead
+    y = other.y + (other.vy - uy) * ahead
+    return x, y, math.hypot(x, y) - other.reach
 
 
 @njit(EXCESS, cache=True, error_model="numpy")
-def _excess(ux: float, uy: float, budget: float, agent: Any, work: Any, params: Any) -> float:
-    work, cost = work_table(work), 0.0
-    for i in range(1, 1 + int(work[0, 0])):
-        _, _, gap = _gap(ux, uy, work[i], params[_AHEAD])
-        cost += math.exp(-gap / params[_FADE])
+def _excess(
+    ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
+) -> float:
+    own, header, others = (
+        as_record(params, _PARAMS),
+        as_record(work, _HEADER),
+        as_rows(work, _OTHER),
+    )
+    cost = 0.0
+    for i in range(1, 1 + int(header.count)):
+        _, _, gap = _gap(ux, uy, others[i], own.ahead)
+        cost += math.exp(-gap / own.fade)
         if cost > budget:  # cannot win any more
             break
     return cost
 
 
 @njit(GRADIENT, cache=True, error_model="numpy")
-def _gradient(ux: float, uy: float, agent: Any, work: Any, params: Any, out: Any) -> int:
-    dx, dy = ux - agent[PVX], uy - agent[PVY]
+def _gradient(
+    ux: float, uy: float, agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer
+) -> int:
+    own, header, others = (
+        as_record(params, _PARAMS),
+        as_record(work, _HEADER),
+        as_rows(work, _OTHER),
+    )
+    dx, dy = ux - agent.pvx, uy - agent.pvy
     off = max(math.hypot(dx, dy), 1e-9)
     gx, gy = dx / off, dy / off
-    work = work_table(work)
-    for i in range(1, 1 + int(work[0, 0])):
-        x, y, gap = _gap(ux, uy, work[i], params[_AHEAD])
+    for i in range(1, 1 + int(header.count)):
+        x, y, gap = _gap(ux, uy, others[i], own.ahead)
         away = max(math.hypot(x, y), 1e-9)
-        slope = math.exp(-gap / params[_FADE]) / params[_FADE] * params[_AHEAD] / away
+        slope = math.exp(-gap / own.fade) / own.fade * own.ahead / away
         gx, gy = gx + slope * x, gy + slope * y
     out[0], out[1] = gx, gy
     return 1
@@ -94,6 +136,12 @@ def build(spec: PersonalSpaceSpec) -> CompiledCost:
         prepare=_prepare,
         excess=_excess,
         gradient=_gradient,
-        params=np.array([spec.range.value, surface, spec.ahead, spec.fade]),
+        params=record_values(
+            _PARAMS,
+            range=spec.range.value,
+            from_surface=surface,
+            ahead=spec.ahead,
+            fade=spec.fade,
+        ),
         weight=spec.weight,
     )

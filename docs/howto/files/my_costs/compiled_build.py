@@ -2,27 +2,45 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
 
 from crowdbot.plugin import (
     BASE,
-    D2,
+    COST_PARAMS,
     EXCESS,
-    NVX,
-    NVY,
     PREPARE,
-    REACH,
-    RX,
-    RY,
+    WORK_COLUMNS,
+    AgentRecord,
     CompiledCost,
+    NeighbourRecord,
     Pointer,
+    Rows,
+    WallRecord,
+    as_record,
+    as_rows,
     in_range,
-    near_table,
-    work_table,
+    record_type,
+    record_values,
 )
 from my_costs import QuickElbowRoomSpec
 from my_costs.numpy_build import AHEAD
+
+
+class Header:
+    """Row 0 of ``work``."""
+
+    count: float
+
+
+class Place:
+    """Where a neighbour is going to be, and how near one may come to it; the other rows, m."""
+
+    x: float
+    y: float
+    reach: float
+
+
+HEADER, PLACE = record_type(Header), record_type(Place, WORK_COLUMNS)
 
 
 @njit(BASE, cache=True, error_model="numpy")
@@ -32,32 +50,36 @@ def base(ux: float, uy: float, preferred: float, max_speed: float, params: Point
 
 @njit(PREPARE, cache=True, error_model="numpy")
 def prepare(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
 ) -> int:
-    others, table, items = near_table(near), work_table(work), 0
+    header, places = as_record(work, HEADER), as_rows(work, PLACE)
+    items = 0
     for k in range(near_count):
-        if in_range(others[k, D2], others[k, REACH], params):
+        other = near[k]
+        if in_range(other.d2, other.reach, params):
             items += 1
-            table[items, 0] = others[k, RX] + AHEAD * others[k, NVX]
-            table[items, 1] = others[k, RY] + AHEAD * others[k, NVY]
-            table[items, 2] = others[k, REACH]
-    table[0, 0] = items
+            place = places[items]
+            place.x = other.rx + AHEAD * other.nvx
+            place.y = other.ry + AHEAD * other.nvy
+            place.reach = other.reach
+    header.count = items
     return items
 
 
 @njit(EXCESS, cache=True, error_model="numpy")
 def excess(
-    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+    ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
-    table, total = work_table(work), 0.0
-    for k in range(1, int(table[0, 0]) + 1):
-        gap = math.hypot(table[k, 0] - AHEAD * ux, table[k, 1] - AHEAD * uy) - table[k, 2]
+    header, places, total = as_record(work, HEADER), as_rows(work, PLACE), 0.0
+    for k in range(1, int(header.count) + 1):
+        place = places[k]
+        gap = math.hypot(place.x - AHEAD * ux, place.y - AHEAD * uy) - place.reach
         total += math.exp(-max(gap, 0.0))
         if total > budget:
             break
@@ -69,6 +91,6 @@ def build(spec: QuickElbowRoomSpec) -> CompiledCost:
         base=base,
         prepare=prepare,
         excess=excess,
-        params=np.array([spec.range, 0.0]),
+        params=record_values(COST_PARAMS, range=spec.range, from_surface=0.0),
         weight=spec.weight,
     )

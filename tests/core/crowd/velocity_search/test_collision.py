@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from hypothesis import given
@@ -10,28 +11,22 @@ from hypothesis import strategies as st
 from numba import njit
 
 from crowdbot.core.crowd.velocity_search.collision import (
-    DISCS,
     first_collision,
     list_approaching,
     list_obstacles,
 )
-from crowdbot.core.crowd.velocity_search.cost import (
-    AGENT_SIZE,
-    D2,
-    EXCESS,
-    NEAR_COLUMNS,
-    NVX,
-    NVY,
-    PREPARE,
-    RADIUS,
-    REACH,
-    RX,
-    RY,
-    WALL_COLUMNS,
-    WORK_COLUMNS,
-    Pointer,
-)
+from crowdbot.core.crowd.velocity_search.cost import EXCESS, PREPARE, Pointer
 from crowdbot.core.crowd.velocity_search.cost_calls import address_of, call_excess, call_prepare
+from crowdbot.core.crowd.velocity_search.records import (
+    AGENT,
+    NEIGHBOUR,
+    WALL,
+    WORK_COLUMNS,
+    AgentRecord,
+    NeighbourRecord,
+    WallRecord,
+)
+from crowdbot.core.support.records import Rows, rows_of
 from crowdbot.core.types.arrays import Array
 
 _FAR = 100.0  # m
@@ -40,10 +35,10 @@ _RADIUS = 0.3  # m
 
 @njit(PREPARE, cache=True, error_model="numpy")
 def _some(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
@@ -56,10 +51,10 @@ def _some(
 
 @njit(PREPARE, cache=True, error_model="numpy")
 def _all(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
@@ -70,7 +65,7 @@ def _all(
 
 @njit(EXCESS, cache=True, error_model="numpy")
 def _time(
-    ux: float, uy: float, _budget: float, agent: Pointer, work: Pointer, _params: Pointer
+    ux: float, uy: float, _budget: float, agent: AgentRecord, work: Pointer, _params: Pointer
 ) -> float:
     return float(first_collision(ux, uy, 0.0, agent, work))
 
@@ -78,39 +73,36 @@ def _time(
 @njit(cache=True)
 def _ask(
     functions: Array,
-    scene: tuple[Array, Array, Array],
+    scene: Any,
     params: Array,
     work: Array,
     asked: Array,
     times: Array,
 ) -> None:
     agent, near, walls = scene
-    a, p, w = agent.ctypes.data, params.ctypes.data, work.ctypes.data
-    call_prepare(functions[0], a, near.ctypes.data, len(near), walls.ctypes.data, 0, p, w)
+    call_prepare(functions[0], agent[0], near, len(near), walls, 0, params, work)
     for k in range(len(asked)):
-        times[k] = call_excess(functions[1], asked[k, 0], asked[k, 1], 0.0, a, w, p)
+        times[k] = call_excess(functions[1], asked[k, 0], asked[k, 1], 0.0, agent[0], work, params)
 
 
-def first_collisions(
-    prepare: object, near: Array, params: Array, asked: Array
-) -> tuple[Array, int]:
+def first_collisions(prepare: object, near: Any, params: Array, asked: Array) -> tuple[Array, int]:
     """Times of the first collision at velocities (K, 2), s; and how many discs were listed."""
-    agent, work = np.zeros(AGENT_SIZE), np.zeros((len(near) + 1, WORK_COLUMNS))
-    agent[RADIUS] = _RADIUS
-    times, walls = np.zeros(len(asked)), np.zeros((1, WALL_COLUMNS))
+    agent, work = rows_of(1, AGENT), np.zeros((len(near) + 1, WORK_COLUMNS))
+    agent["radius"][:] = _RADIUS
+    times, walls = np.zeros(len(asked)), rows_of(1, WALL)
     functions = np.array([address_of(prepare, PREPARE), address_of(_time, EXCESS)])
     _ask(functions, (agent, near, walls), params, work, asked, times)
-    return times, int(work[0, DISCS])
+    return times, int(work[0, 0])
 
 
-def neighbours(rng: np.random.Generator, count: int) -> Array:
+def neighbours(rng: np.random.Generator, count: int) -> Any:
     """Discs at most 30 m away that touch nobody yet."""
-    near = np.zeros((count, NEAR_COLUMNS))
+    near: Any = rows_of(count, NEIGHBOUR)
     distance, angle = rng.uniform(1.0, 30.0, count), rng.uniform(0.0, 2.0 * math.pi, count)
-    near[:, RX], near[:, RY] = distance * np.cos(angle), distance * np.sin(angle)
-    near[:, [NVX, NVY]] = rng.normal(0.0, 1.0, (count, 2))
-    near[:, D2] = near[:, RX] ** 2 + near[:, RY] ** 2
-    near[:, REACH] = 2.0 * _RADIUS
+    near["rx"], near["ry"] = distance * np.cos(angle), distance * np.sin(angle)
+    near["nvx"], near["nvy"] = rng.normal(0.0, 1.0, (count, 2)).T
+    near["d2"] = near["rx"] ** 2 + near["ry"] ** 2
+    near["reach"] = 2.0 * _RADIUS
     return near
 
 
@@ -142,7 +134,7 @@ def test_the_order_of_neighbours_changes_no_time() -> None:
     near, asked = neighbours(rng, 120), rng.normal(0.0, 1.0, (200, 2))
     params = np.array([_FAR, 0.0, 0.0, 0.0, 10.0, math.inf])
     times, _ = first_collisions(_all, near, params, asked)
-    alone = [first_collisions(_all, one[None], params, asked)[0] for one in near]
+    alone = [first_collisions(_all, one, params, asked)[0] for one in near.reshape(-1, 1)]
     np.testing.assert_array_equal(times, np.min(alone, axis=0))
     for _ in range(5):
         again, _ = first_collisions(_all, rng.permutation(near), params, asked)
@@ -151,7 +143,7 @@ def test_the_order_of_neighbours_changes_no_time() -> None:
 
 def test_a_narrow_disc_of_velocities_leaves_most_out() -> None:
     near = neighbours(np.random.default_rng(3), 150)
-    near[:, [NVX, NVY]] = (1.3, 0.0)  # all walk as the agent does
+    near["nvx"], near["nvy"] = 1.3, 0.0  # all walk as the agent does
     params = np.array([_FAR, 0.0, 1.3, 0.0, 0.01, 100.0])
     _, listed = first_collisions(_some, near, params, np.array([[1.3, 0.0]]))
     assert 0 < listed < 15

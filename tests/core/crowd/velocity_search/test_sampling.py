@@ -15,7 +15,7 @@ from crowdbot.core.crowd.velocity_search.sampling import Sampler
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
 from crowdbot.plugin import CostFunctionSpec, Range
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
-from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
+from crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca import TtcaDcaSpec
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
 from crowdbot.plugins.crowd.policies.velocity_space_build import VelocitySpace
 from tests.core.crowd.crowd_reference import Array, agents_of, choice_costs

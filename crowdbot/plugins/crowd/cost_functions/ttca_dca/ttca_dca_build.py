@@ -11,29 +11,27 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from crowdbot.plugin import (
     BASE,
     EXCESS,
     LOWER_BOUND,
+    AgentRecord,
     CompiledCost,
     Pointer,
+    as_record,
+    as_rows,
     declared_kernel,
-    work_table,
+    record_values,
 )
-from crowdbot.plugins.crowd.cost_functions.ttca_dca import TtcaDcaSpec
-from crowdbot.plugins.crowd.cost_functions.ttca_dca_gradient_build import gradient
-from crowdbot.plugins.crowd.cost_functions.ttca_dca_neighbours_build import prepare
-from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
-    INV_DCA2,
-    INV_TTCA2,
+from crowdbot.plugins.crowd.cost_functions.ttca_dca.gradient_build import gradient
+from crowdbot.plugins.crowd.cost_functions.ttca_dca.neighbours_build import prepare
+from crowdbot.plugins.crowd.cost_functions.ttca_dca.records_build import (
+    HEADER,
     NEGLIGIBLE,
-    SIGMA_ANGLE,
-    SIGMA_SPEED,
-    TOTAL,
-    WEIGHT,
+    NEIGHBOUR,
+    PARAMS,
 )
+from crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca import TtcaDcaSpec
 
 _HEAVIEST = 2  # neighbours in lower bounds
 _TINY = 1e-300
@@ -41,33 +39,35 @@ _TINY = 1e-300
 
 @declared_kernel(BASE)
 def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
+    own = as_record(params, PARAMS)
     angle = abs(math.atan2(uy, ux)) if ux != 0.0 or uy != 0.0 else 0.0
-    slower = (math.sqrt(ux * ux + uy * uy) - preferred) / params[SIGMA_SPEED]
-    ahead = math.exp(-0.5 * (angle / params[SIGMA_ANGLE]) ** 2)
+    slower = (math.sqrt(ux * ux + uy * uy) - preferred) / own.sigma_speed
+    ahead = math.exp(-0.5 * (angle / own.sigma_angle) ** 2)
     return 1.0 - 0.5 * (ahead + math.exp(-0.5 * slower * slower))
 
 
 @declared_kernel(EXCESS)
 def _excess(
-    ux: float, uy: float, budget: float, agent: Pointer, work: Pointer, params: Pointer
+    ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
-    work = work_table(work)
-    cost, most = 0.0, budget * work[0, TOTAL]
-    for j in range(1, int(work[0, 0]) + 1):
-        dx, dy, qx, qy = work[j, 0], work[j, 1], work[j, 2], work[j, 3]
-        wx, wy = work[j, 4] - ux, work[j, 5] - uy
+    own, header = as_record(params, PARAMS), as_record(work, HEADER)
+    rows, cost, most = as_rows(work, NEIGHBOUR), 0.0, budget * header.total
+    for j in range(1, int(header.count) + 1):
+        near = rows[j]
+        dx, dy, qx, qy = near.dx, near.dy, near.qx, near.qy
+        wx, wy = near.vx - ux, near.vy - uy
         across = dx * wy - dy * wx
         wx, wy = wx - dy * across, wy + dx * across
         speed2 = wx * wx + wy * wy
         towards = -(qx * wx + qy * wy)
         t = towards / speed2 if towards > 0.0 and speed2 > 0.0 else 0.0
         cx, cy = qx + t * wx, qy + t * wy
-        exponent = t * t * params[INV_TTCA2] + (cx * cx + cy * cy) * params[INV_DCA2]
+        exponent = t * t * own.inv_ttca2 + (cx * cx + cy * cy) * own.inv_dca2
         if exponent < NEGLIGIBLE:
-            cost += work[j, WEIGHT] * math.exp(-0.5 * exponent)
+            cost += near.weight * math.exp(-0.5 * exponent)
             if cost > most:
                 break
-    return float(cost / work[0, TOTAL])
+    return float(cost / header.total)
 
 
 @declared_kernel(LOWER_BOUND)
@@ -75,7 +75,7 @@ def _lower_bound(
     count: int,
     ux: Pointer,
     uy: Pointer,
-    agent: Pointer,
+    agent: AgentRecord,
     work: Pointer,
     params: Pointer,
     out: Pointer,
@@ -84,13 +84,14 @@ def _lower_bound(
 
     exp(-y) >= 1 - y + y^2 / 2 - y^3 / 6 for y >= 0.
     """
-    work = work_table(work)
-    a, b = params[INV_TTCA2], params[INV_DCA2]
+    own, header, rows = as_record(params, PARAMS), as_record(work, HEADER), as_rows(work, NEIGHBOUR)
+    a, b = own.inv_ttca2, own.inv_dca2
     for c in range(count):
         out[c] = 0.0
-    for j in range(1, min(_HEAVIEST, int(work[0, 0])) + 1):
-        dx, dy, qx, qy = work[j, 0], work[j, 1], work[j, 2], work[j, 3]
-        vx, vy, weight = work[j, 4], work[j, 5], work[j, WEIGHT] / work[0, TOTAL]
+    for j in range(1, min(_HEAVIEST, int(header.count)) + 1):
+        near = rows[j]
+        dx, dy, qx, qy = near.dx, near.dy, near.qx, near.qy
+        vx, vy, weight = near.vx, near.vy, near.weight / header.total
         for c in range(count):
             wx, wy = vx - ux[c], vy - uy[c]
             across = dx * wy - dy * wx
@@ -108,21 +109,22 @@ def _lower_bound(
 
 def build(spec: TtcaDcaSpec) -> CompiledCost:
     """Compile-time functions with this spec's parameters."""
-    params = [
-        spec.range.value,
-        1.0 if spec.range.measure == "surface" else 0.0,
-        1.0 / spec.sigma_ttca**2,
-        1.0 / spec.sigma_dca**2,
-        spec.sigma_angle_goal,
-        spec.sigma_speed_goal,
-        float(spec.walls),
-    ]
+    params = record_values(
+        PARAMS,
+        range=spec.range.value,
+        from_surface=1.0 if spec.range.measure == "surface" else 0.0,
+        inv_ttca2=1.0 / spec.sigma_ttca**2,
+        inv_dca2=1.0 / spec.sigma_dca**2,
+        sigma_angle=spec.sigma_angle_goal,
+        sigma_speed=spec.sigma_speed_goal,
+        walls=float(spec.walls),
+    )
     return CompiledCost(
         base=_base,
         prepare=prepare,
         excess=_excess,
         gradient=gradient,
         lower_bound=_lower_bound,
-        params=np.array(params),
+        params=params,
         weight=spec.weight,
     )

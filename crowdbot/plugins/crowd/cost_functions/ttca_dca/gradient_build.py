@@ -11,20 +11,17 @@ import math
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     GRADIENT,
-    PREFERRED,
-    PVX,
-    PVY,
+    AgentRecord,
     Pointer,
+    as_record,
+    as_rows,
     declared_kernel,
-    work_table,
 )
-from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
-    INV_DCA2,
-    INV_TTCA2,
+from crowdbot.plugins.crowd.cost_functions.ttca_dca.records_build import (
+    HEADER,
     NEGLIGIBLE,
-    SIGMA_ANGLE,
-    SIGMA_SPEED,
-    WEIGHT,
+    NEIGHBOUR,
+    PARAMS,
 )
 
 _STILL = 1e-3  # relative speeds squared (m^2/s^2), times (s), distances (m) that count as zero
@@ -32,18 +29,19 @@ _STILL = 1e-3  # relative speeds squared (m^2/s^2), times (s), distances (m) tha
 
 @array_kernel
 def _by_neighbours(ux: float, uy: float, work: Pointer, params: Pointer) -> tuple[float, float]:
-    work = work_table(work)
-    by_time, by_distance = params[INV_TTCA2], params[INV_DCA2]
+    own, header, rows = as_record(params, PARAMS), as_record(work, HEADER), as_rows(work, NEIGHBOUR)
+    by_time, by_distance = own.inv_ttca2, own.inv_dca2
     turning = speeding = total = 0.0
-    for j in range(1, int(work[0, 0]) + 1):
-        dx, dy, qx, qy = work[j, 0], work[j, 1], work[j, 2], work[j, 3]
-        wx, wy = work[j, 4] - ux, work[j, 5] - uy
+    for j in range(1, int(header.count) + 1):
+        near = rows[j]
+        dx, dy, qx, qy = near.dx, near.dy, near.qx, near.qy
+        wx, wy = near.vx - ux, near.vy - uy
         across = dx * wy - dy * wx
         wx, wy = wx - dy * across, wy + dx * across
         speed2 = wx * wx + wy * wy
         if speed2 <= _STILL:
             continue
-        total += work[j, WEIGHT]
+        total += near.weight
         t = max(0.0, -(qx * wx + qy * wy) / speed2)
         cx, cy = qx + t * wx, qy + t * wy
         distance2 = cx * cx + cy * cy
@@ -60,7 +58,7 @@ def _by_neighbours(ux: float, uy: float, work: Pointer, params: Pointer) -> tupl
         if distance2 > _STILL * _STILL:  # times the distance, which cancels
             d_turn = cx * (t_turn * wx + t * wy) + cy * (t_turn * wy - t * wx)
             d_speed = cx * (t_speed * wx - t * ex) + cy * (t_speed * wy - t * ey)
-        factor = work[j, WEIGHT] * math.exp(-0.5 * exponent)
+        factor = near.weight * math.exp(-0.5 * exponent)
         turning -= factor * (t_turn * t * by_time + d_turn * by_distance)
         speeding -= factor * (t_speed * t * by_time + d_speed * by_distance)
     if total > 0.0:
@@ -70,21 +68,22 @@ def _by_neighbours(ux: float, uy: float, work: Pointer, params: Pointer) -> tupl
 
 @declared_kernel(GRADIENT)
 def gradient(
-    ux: float, uy: float, agent: Pointer, work: Pointer, params: Pointer, out: Pointer
+    ux: float, uy: float, agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer
 ) -> int:
     """Derivatives along heading and speed, then along x and y."""
+    own = as_record(params, PARAMS)
     turning, speeding = _by_neighbours(ux, uy, work, params)
-    preferred, speed = agent[PREFERRED], math.sqrt(ux * ux + uy * uy)
+    preferred, speed = agent.preferred, math.sqrt(ux * ux + uy * uy)
     angle = 0.0
     if speed > 0.0:
-        across = ux * agent[PVY] - uy * agent[PVX]
-        angle = math.atan2(across, ux * agent[PVX] + uy * agent[PVY])
-    inv = 1.0 / params[SIGMA_ANGLE] ** 2
+        across = ux * agent.pvy - uy * agent.pvx
+        angle = math.atan2(across, ux * agent.pvx + uy * agent.pvy)
+    inv = 1.0 / own.sigma_angle**2
     turning += 0.5 * angle * inv * math.exp(-0.5 * angle * angle * inv)
-    faster, inv = speed - preferred, 1.0 / params[SIGMA_SPEED] ** 2
+    faster, inv = speed - preferred, 1.0 / own.sigma_speed**2
     speeding += 0.5 * faster * inv * math.exp(-0.5 * faster * faster * inv)
     if speed * speed < 0.01:
-        ex, ey, speed = agent[PVX] / preferred, agent[PVY] / preferred, preferred
+        ex, ey, speed = agent.pvx / preferred, agent.pvy / preferred, preferred
     else:
         ex, ey = ux / speed, uy / speed
     a = speed * math.sin(turning)

@@ -1,4 +1,4 @@
-"""The neighbours of TtcaDca: who changes the cost of some candidate, heaviest first.
+"""The neighbours of TtcaDca that change the cost of some candidate, heaviest first.
 
 They are found in passes over columns: square roots and divisions are those of several neighbours
 at once, and no pass has to wait for one of them to know what comes next.
@@ -11,39 +11,23 @@ import math
 from crowdbot.core.crowd.contact.geometry import opposite_taken_for_parallel
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
-    D2,
-    DESCENDS,
-    FASTEST,
-    FROM_SURFACE,
-    NVX,
-    NVY,
-    NX,
-    NY,
-    PARITY,
     PREPARE,
-    RADIUS,
-    RANGE,
-    REACH,
-    RX,
-    RY,
-    VX,
-    VY,
-    WALL_D2,
     WORK_COLUMNS,
+    AgentRecord,
+    NeighbourRecord,
     Pointer,
+    Rows,
+    WallRecord,
+    as_record,
+    as_rows,
     declared_kernel,
-    near_table,
-    wall_table,
-    work_table,
 )
-from crowdbot.plugins.crowd.cost_functions.ttca_dca_params_build import (
+from crowdbot.plugins.crowd.cost_functions.ttca_dca.records_build import (
     CLOSEST,
-    INV_DCA2,
-    INV_TTCA2,
+    HEADER,
     NEGLIGIBLE,
-    TOTAL,
-    WALLS,
-    WEIGHT,
+    NEIGHBOUR,
+    PARAMS,
 )
 
 # Columns after the table: distance, later what makes q of d; gap; how fast it closes at most, later
@@ -77,10 +61,10 @@ def _is_ahead(rx: float, ry: float, vx: float, vy: float, parity: bool) -> bool:
 
 @array_kernel
 def _list(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
@@ -90,22 +74,22 @@ def _list(
     Everybody is written, and overwritten by the next who is not one of these: a branch would
     often be guessed wrong.
     """
-    near, walls = near_table(near), wall_table(walls)
+    own = as_record(params, PARAMS)
     distance, gap, closing, row, _ = _columns(near_count + wall_count)
-    vx, vy, parity = agent[VX], agent[VY], agent[PARITY] != 0.0
-    reach, surface, count = params[RANGE], params[FROM_SURFACE], 0
+    vx, vy, parity = agent.vx, agent.vy, agent.parity != 0.0
+    reach, surface, count = own.range, own.from_surface, 0
     for j in range(near_count):
-        rx, ry, d2, radii = near[j, RX], near[j, RY], near[j, D2], near[j, REACH]
+        rx, ry, d2, radii = near[j].rx, near[j].ry, near[j].d2, near[j].reach
         work[distance + count], work[gap + count] = d2, radii
-        work[closing + count] = near[j, NVX] * rx + near[j, NVY] * ry
+        work[closing + count] = near[j].nvx * rx + near[j].nvy * ry
         work[row + count] = j
         limit = reach + surface * radii
         count += int(_is_ahead(rx, ry, vx, vy, parity) & (d2 < limit * limit))
-    if params[WALLS] != 0.0:
-        limit, radius = reach + surface * agent[RADIUS], agent[RADIUS]
+    if own.walls != 0.0:
+        limit, radius = reach + surface * agent.radius, agent.radius
         for s in range(wall_count):
-            d2 = walls[s, WALL_D2]
-            if d2 < limit * limit and _is_ahead(walls[s, NX], walls[s, NY], vx, vy, parity):
+            d2 = walls[s].d2
+            if d2 < limit * limit and _is_ahead(walls[s].nx, walls[s].ny, vx, vy, parity):
                 work[distance + count], work[gap + count] = d2, radius
                 work[closing + count], work[row + count] = 0.0, near_count + s
                 count += 1
@@ -118,7 +102,8 @@ def _weigh(
 ) -> None:
     """All that columns say of those who are listed."""
     distance, gap, closing, _, weight = _columns(room)
-    a, b, whole = params[INV_TTCA2], params[INV_DCA2], _whole_steps(count)
+    own, whole = as_record(params, PARAMS), _whole_steps(count)
+    a, b = own.inv_ttca2, own.inv_dca2
     for i in range(whole):
         work[distance + i] = max(math.sqrt(work[distance + i]), CLOSEST)
     for i in range(whole):
@@ -146,7 +131,8 @@ def _select(count: int, room: int, work: Pointer) -> int:
         work[weight + kept] = work[weight + i]
         work[shrink + kept], work[row + kept] = work[shrink + i], work[row + i]
         kept += int(work[counts + i])
-    work[0], work[TOTAL] = kept, total
+    header = as_record(work, HEADER)
+    header.count, header.total = kept, total
     return kept
 
 
@@ -161,39 +147,46 @@ def _place(i: int, kept: int, weight: int, work: Pointer) -> int:
 
 @array_kernel
 def _write(
-    kept: int, sort: bool, near: Pointer, near_count: int, walls: Pointer, room: int, work: Pointer
+    kept: int,
+    sort: bool,
+    near: Rows[NeighbourRecord],
+    near_count: int,
+    walls: Rows[WallRecord],
+    room: int,
+    work: Pointer,
 ) -> None:
     """Write the table."""
-    shrink, _, _, row, weight = _columns(room)
-    near, walls, table = near_table(near), wall_table(walls), work_table(work)
+    shrink, _, _, number, weight = _columns(room)
+    rows = as_rows(work, NEIGHBOUR)
     for i in range(_STEP):
         work[weight + kept + i] = -1.0  # heavier than nobody
     for i in range(kept):
-        j = int(work[row + i])
+        j = int(work[number + i])
         if j < near_count:
-            rx, ry, vx, vy = near[j, RX], near[j, RY], near[j, NVX], near[j, NVY]
+            rx, ry, vx, vy = near[j].rx, near[j].ry, near[j].nvx, near[j].nvy
         else:
-            rx, ry, vx, vy = walls[j - near_count, NX], walls[j - near_count, NY], 0.0, 0.0
+            rx, ry, vx, vy = walls[j - near_count].nx, walls[j - near_count].ny, 0.0, 0.0
         k = 1 + (_place(i, kept, weight, work) if sort else i)
-        table[k, 0], table[k, 1] = rx, ry
-        table[k, 2], table[k, 3] = rx * work[shrink + i], ry * work[shrink + i]
-        table[k, 4], table[k, 5], table[k, WEIGHT] = vx, vy, work[weight + i]
+        row = rows[k]
+        row.dx, row.dy, row.vx, row.vy = rx, ry, vx, vy
+        row.qx, row.qy = rx * work[shrink + i], ry * work[shrink + i]
+        row.weight = work[weight + i]
 
 
 @declared_kernel(PREPARE)
 def prepare(
-    agent: Pointer,
-    near: Pointer,
+    agent: AgentRecord,
+    near: Rows[NeighbourRecord],
     near_count: int,
-    walls: Pointer,
+    walls: Rows[WallRecord],
     wall_count: int,
     params: Pointer,
     work: Pointer,
 ) -> int:
     """Row 0: number of neighbours, sum(k). Then d, q, v_j, k, heaviest first."""
-    room, descends = near_count + wall_count, agent[DESCENDS] != 0.0
+    room, descends = near_count + wall_count, agent.descends != 0.0
     count = _list(agent, near, near_count, walls, wall_count, params, work)
-    _weigh(count, room, agent[FASTEST], descends, params, work)
+    _weigh(count, room, agent.fastest, descends, params, work)
     kept = _select(count, room, work)
     _write(kept, not descends, near, near_count, walls, room, work)
     return kept

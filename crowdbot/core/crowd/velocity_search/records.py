@@ -1,0 +1,114 @@
+"""Records that cost functions are called with.
+
+An agent, its neighbours and walls: SI units, positions relative to the agent where said.
+"""
+
+from __future__ import annotations
+
+from crowdbot.core.support.records import record_type
+
+
+class AgentRecord:
+    """The agent that decides.
+
+    Attributes:
+        px, py, vx, vy, radius: position, velocity, radius.
+        preferred: preferred speed, > 0.
+        fastest: greatest speed that the search asks for.
+        time_step: time between decisions.
+        gx, gy, pvx, pvy: goal; preferred velocity.
+        max_speed, max_acceleration: largest ones.
+        relaxation: the policy's relaxation time.
+        weight: divides forces; 1 unless a case of the original says otherwise, without unit.
+        parity: 1 if the original's defects are wanted.
+        random: state of the agent's random numbers, which functions may advance; see
+            `crowdbot.core.crowd.velocity_search.minstd`.
+        descends: 1 if gradients are followed.
+        broken: 1 after a function has returned NaN; the search's own note.
+        asked_x, asked_y, asked_radius: disc of velocities that holds all that the search asks for.
+    """
+
+    px: float
+    py: float
+    vx: float
+    vy: float
+    radius: float
+    preferred: float
+    fastest: float
+    time_step: float
+    gx: float
+    gy: float
+    pvx: float
+    pvy: float
+    max_speed: float
+    max_acceleration: float
+    relaxation: float
+    weight: float
+    parity: float
+    random: float
+    descends: float
+    broken: float
+    asked_x: float
+    asked_y: float
+    asked_radius: float
+
+
+class NeighbourRecord:
+    """A neighbour, in no particular order.
+
+    Attributes:
+        d2: squared distance of the centres.
+        rx, ry: position relative to the agent.
+        nvx, nvy: velocity.
+        reach: sum of the radii.
+        npx, npy: preferred velocity.
+        static: 1 for a pillar, a disc that never moves.
+    """
+
+    d2: float
+    rx: float
+    ry: float
+    nvx: float
+    nvy: float
+    reach: float
+    npx: float
+    npy: float
+    static: float
+
+
+class WallRecord:
+    """A wall segment; outlines run counter-clockwise around solids.
+
+    Attributes:
+        ax, ay, bx, by: both ends relative to the agent.
+        nx, ny: nearest point relative to the agent.
+        d2: its squared distance.
+    """
+
+    ax: float
+    ay: float
+    bx: float
+    by: float
+    nx: float
+    ny: float
+    d2: float
+
+
+class CostParams:
+    """The beginning of every ``params``; a cost function's own record adds fields.
+
+    Attributes:
+        range: of the function, m.
+        from_surface: 1 if it is measured between surfaces.
+    """
+
+    range: float
+    from_surface: float
+
+
+AGENT = record_type(AgentRecord)
+NEIGHBOUR = record_type(NeighbourRecord)
+WALL = record_type(WallRecord)
+COST_PARAMS = record_type(CostParams)
+#: Float64 in a row of ``work``.
+WORK_COLUMNS = 8

@@ -1,0 +1,178 @@
+"""Named columns in compiled code: records whose fields are all float64.
+
+A record is declared as a class, whose annotations name its fields in order, and `record_type` makes
+the numpy dtype that compiled code knows it by. Records lie on plain float64 memory: `as_record`
+and `as_rows` give names to what a pointer or an array holds, free of charge. The type checker sees
+the class, so it finds a wrong name.
+
+A compiled function takes records of one type at each place, always the same: numba numbers types
+anew in every process, and symbols of compiled functions contain these numbers.
+"""
+
+from __future__ import annotations
+
+import inspect
+import operator
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar, cast, overload
+
+import numpy as np
+from numba import types
+from numba.core.datamodel import models
+from numba.core.datamodel.registry import register_default
+from numba.extending import intrinsic, lower_builtin
+from numba.np.numpy_support import from_dtype
+from numpy.typing import NDArray
+
+T = TypeVar("T")
+#: Length of the rows behind a pointer; numba wants one, and does not check it.
+_ANY = 1
+
+
+class RecordType(Generic[T]):
+    """The result of `record_type` for the type checker; at run time it is a numpy dtype."""
+
+    itemsize: int
+    names: tuple[str, ...]
+
+
+class Rows(Protocol[T]):
+    """Records one after another: a numpy array of a record's dtype."""
+
+    @property
+    def shape(self) -> tuple[int]:
+        """Return how many there are."""
+
+    @overload
+    def __getitem__(self, row: int) -> T: ...
+    @overload
+    def __getitem__(self, row: slice) -> Rows[T]: ...
+    @overload
+    def __getitem__(self, row: str) -> NDArray[np.float64]: ...
+
+    def __setitem__(self, row: int, record: T) -> None:
+        """Copy a record."""
+
+
+def rows_of(count: int, record: RecordType[T]) -> Rows[T]:
+    """So many new records of zeros."""
+    return cast(Rows[T], np.zeros(count, cast(Any, record)))
+
+
+def record_type(declared: type[T], columns: int | None = None) -> RecordType[T]:
+    """The dtype of a record with the annotated fields of a class and of its bases.
+
+    Args:
+        columns: float64 from one row to the next, where these are more than the fields.
+    """
+    names = fields_of(declared)
+    width = len(names) if columns is None else columns
+    if len(names) > width:
+        raise TypeError(f"{declared.__name__} has {len(names)} fields, but room for {width}")
+    layout: Any = {
+        "names": names,
+        "formats": [np.float64] * len(names),
+        "offsets": [8 * k for k in range(len(names))],
+        "itemsize": 8 * width,
+    }
+    return cast(RecordType[T], np.dtype(layout, align=True))
+
+
+def fields_of(declared: type) -> list[str]:
+    """Names of a record's fields, in order."""
+    bases = reversed(declared.__mro__)
+    return [name for base in bases for name in inspect.get_annotations(base)]
+
+
+def columns_of(record: RecordType[Any]) -> int:
+    """Return how many float64 a record takes."""
+    return record.itemsize // 8
+
+
+def record_values(record: RecordType[Any], **values: float) -> NDArray[np.float64]:
+    """Values of a record's fields as an array, in the fields' order.
+
+    Raises:
+        TypeError: a value is missing, or there is no such field.
+    """
+    wrong = set(record.names) ^ values.keys()
+    if wrong:
+        raise TypeError(f"missing or unknown fields: {', '.join(sorted(wrong))}")
+    return np.array([values[name] for name in record.names], np.float64)
+
+
+class RecordPointer(types.CPointer):
+    """A pointer to records; an index makes a record of it."""
+
+    @property
+    def mangling_args(self) -> tuple[str, tuple[Any, ...]]:
+        """Name of the type in symbols; numba's own would spell out all fields."""
+        return type(self).__name__, (self.dtype,)
+
+
+register_default(RecordPointer)(models.PointerModel)
+
+
+@lower_builtin(operator.getitem, RecordPointer, types.Integer)  # type: ignore[untyped-decorator, no-untyped-call]
+def _row(_: Any, builder: Any, signature: Any, values: Any) -> Any:  # noqa: ARG001
+    return builder.gep(values[0], [values[1]])
+
+
+def record_argument(record: RecordType[Any]) -> Any:
+    """Numba's type of a record."""
+    return from_dtype(cast(Any, record))
+
+
+def rows_argument(record: RecordType[Any]) -> Any:
+    """Numba's type of a pointer to records."""
+    return RecordPointer(record_argument(record))  # type: ignore[no-untyped-call]
+
+
+def start_of(context: Any, builder: Any, source: Any, value: Any) -> Any:
+    """The LLVM pointer to the memory of a pointer, an array or a record."""
+    if isinstance(source, types.Array):
+        return context.make_array(source)(context, builder, value).data
+    return value
+
+
+def _as_record(_: Any, source: Any, record: Any) -> tuple[Any, Any]:
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        start = start_of(context, builder, signature.args[0], values[0])
+        return builder.bitcast(start, context.get_value_type(record.dtype))
+
+    return record.dtype(source, record), generate
+
+
+def _as_rows(_: Any, source: Any, record: Any) -> tuple[Any, Any]:
+    rows = types.Array(record.dtype, 1, "C")
+
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        size = context.get_constant(types.intp, record.dtype.size)
+        count = context.get_constant(types.intp, _ANY)
+        if isinstance(source, types.Array):
+            given = context.make_array(source)(context, builder, values[0])
+            count = builder.udiv(builder.mul(given.nitems, given.itemsize), size)
+        made = context.make_array(rows)(context, builder)
+        start = start_of(context, builder, signature.args[0], values[0])
+        made.data = builder.bitcast(start, context.get_value_type(record.dtype))
+        made.meminfo, made.parent = made.meminfo.type(None), made.parent.type(None)
+        made.nitems, made.itemsize = count, size
+        one = types.UniTuple(types.intp, 1)  # type: ignore[no-untyped-call]
+        made.shape = context.make_tuple(builder, one, [count])
+        made.strides = context.make_tuple(builder, one, [size])
+        return made._getvalue()
+
+    return rows(source, record), generate
+
+
+if TYPE_CHECKING:
+
+    def as_record(source: Any, record: RecordType[T]) -> T:
+        """The record at a pointer, or at the beginning of an array."""
+
+    def as_rows(source: Any, record: RecordType[T]) -> Rows[T]:
+        """The records at a pointer, or in a contiguous array, which says how many there are.
+
+        The memory is the caller's, and has to outlive them.
+        """
+else:
+    as_record, as_rows = intrinsic(_as_record), intrinsic(_as_rows)

@@ -1,0 +1,1 @@
+"""The cost function of Dutra et al.: time to and distance of closest approach."""
