@@ -109,6 +109,7 @@ class WeightedCosts:
         self.random = seeds(agents.id)
         self._settings, self._deciding = rows_of(1, SETTINGS), rows_of(1, AGENT)
         self._settings["relaxation"][:], self._settings["parity"][:] = relaxation_time, parity
+        self._time_step, self._broken = self._settings["time_step"], self._deciding["broken"]
         self._largest_seen, self._reach = math.nan, 0.0
         self._discs, self._found = rows_of(0, DISC), rows_of(0, WALL)
         self._make_room(1, 0)
@@ -142,7 +143,7 @@ class WeightedCosts:
             _NO_BOX if boundary is None else np.array(boundary), view.diagonal, reach,
             self._discs, self._table,
         )  # fmt: skip
-        self._settings["time_step"][:], self._deciding["broken"][:] = view.dt, 0.0
+        self._time_step[0], self._broken[0] = view.dt, 0.0
         return Surroundings(
             self._table[:count], starts, low, height,
             view.present if view.decides is None else view.present & view.decides,
