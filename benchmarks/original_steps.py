@@ -13,7 +13,7 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS
 from crowdbot.core.crowd.contact.robot_contact import DISC
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration
-from crowdbot.core.crowd.engine import NO_BOOKS, NO_STIFFNESSES
+from crowdbot.core.crowd.engine import NO_STIFFNESSES, NONE
 from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdView
 from crowdbot.core.crowd.step import tick
@@ -80,7 +80,7 @@ def whole_step(
             flat,
             robots,
             DISC[None],
-            NO_BOOKS,
+            NONE,
             NO_STIFFNESSES,
             world.pillars,
             DT,

@@ -70,8 +70,8 @@ class Visits:
         self._peak, self._touches = np.zeros(self.count), np.zeros(self.count)
         self._last = np.full((self.count, 4), np.nan)
 
-    def add(self, people: Array, robot: Array) -> None:
-        """One sample of 16 Hz."""
+    def add(self, people: Array, touch: Array, robot: Array) -> None:
+        """One sample of 16 Hz; ``touch`` (N, T) are contacts with the robot."""
         now = people[:, [s.X, s.Y, s.VX, s.VY]].copy()
         moved = now - self._last
         jumped = ~(np.hypot(moved[:, 0], moved[:, 1]) < 0.5) | (people[:, s.WAITING] != s.PRESENT)
@@ -79,7 +79,7 @@ class Visits:
         beside = (away < NEAR) & ~jumped
         acceleration = np.hypot(moved[:, 2], moved[:, 3]) * TICKS_PER_SECOND / STEP
         self._peak[beside] = np.maximum(self._peak, acceleration)[beside]
-        touches = people[:, s.TOUCHES] + people[:, s.TOUCHING]
+        touches = touch[:, s.TOUCHES] + touch[:, s.TOUCHING]
         self._peak[touches > self._touches] = -math.inf
         ended = (away > GONE) | jumped
         self.peaks += self._peak[ended & (self._peak > 0.0)].tolist()
@@ -114,13 +114,13 @@ class Samples:
     people: list[Array] = field(default_factory=list)
     touching: list[Array] = field(default_factory=list)
 
-    def add(self, people: Array, robot: Array) -> None:
+    def add(self, people: Array, touch: Array, robot: Array) -> None:
         """One sample; who is not there is nowhere."""
         now = people[:, [s.X, s.Y, s.VX, s.VY]].copy()
         now[people[:, s.WAITING] != s.PRESENT] = np.nan
         self.people.append(now)
         self.robot.append(robot[:4].copy())
-        self.touching.append(people[:, s.TOUCHES] + 0.5 * people[:, s.TOUCHING])
+        self.touching.append(touch[:, s.TOUCHES] + 0.5 * touch[:, s.TOUCHING])
 
     def peaks(self) -> list[float]:
         """Of each person who is met: the largest acceleration while nothing touches him, m/s^2."""
@@ -175,7 +175,7 @@ def run(
 ) -> Outcome:
     """One robot among the people of an engine, who are moved off its start first."""
     flat = engine.initial_state()
-    _, people = s.view(flat)
+    (_, people), (felt, touches) = s.view(flat), s.contact_with(flat)
     near = np.hypot(people[:, s.X] - at[0], people[:, s.Y] - at[1]) < 1.0
     people[near, s.WAITING] = s.AT_PORTAL
     robot = np.array([[at[0], at[1], 0.0, 0.0, BODY, BODY + margin, 0.0, 0.0]])
@@ -190,8 +190,8 @@ def run(
             most = ACCELERATION * STEP * TICK
             speed += max(-most, min(most, change))
             robot[0, 2] = speed
-            visits.add(people, robot[0])
-            samples.add(people, robot[0])
+            visits.add(people, touches, robot[0])
+            samples.add(people, touches, robot[0])
             here = people[:, s.WAITING] == s.PRESENT
             walked += float(np.hypot(people[here, s.VX], people[here, s.VY]).sum())
             count += float(here.sum())
@@ -202,7 +202,7 @@ def run(
         gap = min(gap, float(np.min(away - engine.agents.radius[here], initial=9.0)) - BODY)
         if robot[0, 0] > LENGTH:
             break
-    hits = int(flat[s.CONTACTS] + np.sum(people[:, s.TOUCHING]))
+    hits = int(felt[s.CONTACTS] + np.sum(touches[:, s.TOUCHING]))
     return Outcome(hits, (tick + 1) * TICK, gap, visits, walked / count, samples.peaks())
 
 

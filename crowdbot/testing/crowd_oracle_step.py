@@ -88,7 +88,7 @@ class Stepper:
         """States (N, 4) after a step of the engine with given accelerations (N, 2)."""
         case, engine = self.case, self._engine
         present: Mask = np.all(np.isfinite(state), axis=1)
-        flat = np.zeros(s.size(len(state)))
+        flat = s.blank(len(state), robots=0)
         _, rows = s.view(flat)
         rows[:, s.X : s.VY + 1] = np.where(present[:, np.newaxis], state, 0.0)
         rows[:, s.GOAL_X : s.GOAL_Y + 1] = case.goal

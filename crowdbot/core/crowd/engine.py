@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import crowdbot.core.crowd.state as s
 from crowdbot.core.crowd.agents import ONWARD, PORTAL, Agents
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS
-from crowdbot.core.crowd.contact.robot_contact import DISC, FELT, R_W, RVX, RVY, TOUCH
+from crowdbot.core.crowd.contact.robot_contact import DISC, R_W, RVX, RVY
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration, relaxation_time_of
 from crowdbot.core.crowd.groups import groups_of, hold_together
 from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
@@ -28,14 +28,14 @@ from crowdbot.core.crowd.step import tick, ticks_without_robots
 from crowdbot.core.crowd.world import CrowdWorld
 from crowdbot.core.support.immutable import immutable, immutable_fields
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
-from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.arrays import Array, Indices
 
 #: Makes the policy of a set of agents.
 PolicyFactory = Callable[[Agents], CrowdPolicy]
 
 NOBODY, DISCS = np.zeros((0, 8)), np.zeros((0, 0, 2))
+NONE, NO_STIFFNESSES = np.zeros(0, np.int64), np.zeros(0)
 _NOT_SHOWN = np.zeros((0, 5))
-NO_BOOKS, NO_STIFFNESSES = np.zeros((0, 0)), np.zeros(0)
 _SEEN = np.array([0, 1, 2, 3, 5])  # columns of a robot that policies know
 _MOTION = np.isin(np.arange(8), [RVX, RVY, R_W])  # those that say how it moves
 
@@ -110,9 +110,12 @@ class CrowdEngine:
         n = len(agents)
         self._scratch = Scratch(np.zeros((n, 2)), np.zeros((n, PLACED_COLUMNS)), np.arange(n))
 
-    def initial_state(self) -> Array:
-        """Those who start at once walk to their first goal at preferred speed; others wait."""
-        flat = np.zeros(s.size(len(self.agents)))
+    def initial_state(self, robots: int = 1) -> Array:
+        """The state at t = 0, with room for the contacts of some robots.
+
+        Those who start at once walk to their first goal at preferred speed; others wait.
+        """
+        flat = s.blank(len(self.agents), robots)
         _, rows = s.view(flat)
         a = self.agents
         rows[:, s.X], rows[:, s.Y] = a.x, a.y
@@ -166,33 +169,36 @@ class CrowdEngine:
         outline: Array = DISC,
         dt: float = TICK,
         *,
-        books: Array = NO_BOOKS,
-        stiffnesses: Array = NO_STIFFNESSES,
+        numbers: Indices | None = None,
+        stiffnesses: Array | None = None,
     ) -> None:
         """One tick of 1/128 s, in place; decides first when a decision is due.
 
         Args:
-            flat: state vector.
+            flat: state vector, with room for as many robots.
             robots: (R, 8) x, y, vx, vy, physical and perceived radius, heading, yaw rate; the
                 last two may be left out.
             outline: (K, 2) of robots that are not discs, see `robot_contact`; or (R, K, 2) of each
                 of them, those with fewer corners filled up with NaN.
             dt: length of a tick, s. Another one is for studies of contacts: it is the engine's
                 clock too, so that decisions come every so many ticks, not seconds.
-            books: (R, B) what each of several robots feels, see `initial_books`, changed in place.
-                Without them the state itself holds it, which has room for one robot.
-            stiffnesses: (R,) of people against each of the robots that have books, N/m.
+            numbers: (R,) which of the robots of the state they are; None: the first ones.
+            stiffnesses: (R,) of people against each of them, N/m; None: as the world says.
+
+        Raises:
+            ValueError: there are more robots than the state has room for.
         """
+        if len(robots) > flat[s.ROBOTS]:
+            raise ValueError(f"{len(robots)} robots in a state of {flat[s.ROBOTS]:g}")
         if robots.shape[1] < 8:
             robots = np.pad(robots, ((0, 0), (0, 8 - robots.shape[1])))
         outlines = outline if outline.ndim == 3 else _alike(outline, len(robots))
         if int(flat[s.TICK]) % self._ticks_per_decision == 0:
             self._decide(flat, robots, outlines)
-        tick(*self._given(flat, robots, outlines, dt, books, stiffnesses))
-
-    def initial_books(self, robots: int) -> Array:
-        """(R, B) books of several robots that nobody has touched yet; see `advance`."""
-        return np.zeros((robots, len(FELT) + len(TOUCH) * len(self.agents)))
+        numbers = np.arange(len(robots)) if numbers is None else numbers
+        if stiffnesses is None:
+            stiffnesses = np.full(len(robots), self.world.stiffness)
+        tick(*self._given(flat, robots, outlines, dt, numbers, stiffnesses))
 
     def advance_alone(self, flat: Array, most: int) -> int:
         """Ticks without robots, in place, as `advance` makes them one by one.
@@ -212,7 +218,11 @@ class CrowdEngine:
         # What pushes from across a border moves with every tick.
         count = min(most, self._ticks_per_decision - since)
         count = count if self.world.periodic_boundary is None else 1
-        return int(ticks_without_robots(count, *self._given(flat, NOBODY, DISCS, TICK)))
+        return int(
+            ticks_without_robots(
+                count, *self._given(flat, NOBODY, DISCS, TICK, NONE, NO_STIFFNESSES)
+            )
+        )
 
     def _given(
         self,
@@ -220,12 +230,12 @@ class CrowdEngine:
         robots: Array,
         outlines: Array,
         dt: float,
-        books: Array = NO_BOOKS,
-        stiffnesses: Array = NO_STIFFNESSES,
+        numbers: Indices,
+        stiffnesses: Array,
     ) -> tuple[Any, ...]:
         """All that `tick` is given."""
         return (
-            flat, robots, outlines, books, stiffnesses, self._fixed(flat), dt,
+            flat, robots, outlines, numbers, stiffnesses, self._fixed(flat), dt,
             *self._people, *self._place, *self._scratch,
         )  # fmt: skip
 

@@ -73,7 +73,7 @@ class WorldParameters(NamedTuple):
     """Fields of `CrowdWorld`; units are those of `CrowdWorld`.
 
     Attributes:
-        walls, entrance, out, stiffness, dissipation: as there.
+        walls, entrance, out, dissipation: as there.
         keep_offset: whether people come out of the in-portal opposite to where they went in.
         goal_ahead: whether their goal in the out-portal is opposite to where their trip starts.
         boundary: (4,) x0, x1, y0, y1, m, infinite where the world has no border.
@@ -92,7 +92,6 @@ class WorldParameters(NamedTuple):
     boundary: Array
     goals_wrap: bool
     response: Array
-    stiffness: float
     dissipation: float
     goal_key: np.uint64
     solids: Array
@@ -104,7 +103,7 @@ class WorldParameters(NamedTuple):
         return cls(
             w.walls, w.entrance, w.out, w.exit_point == "offset", w.goal_point == "ahead",
             ENDLESS if boundary is None else np.array(boundary, np.float64), not w.parity,
-            w.response.by_tick, w.stiffness, w.dissipation, np.uint64(w.goal_key),
+            w.response.by_tick, w.dissipation, np.uint64(w.goal_key),
             _sides(w.solids),
         )  # fmt: skip
 

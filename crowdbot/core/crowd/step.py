@@ -10,11 +10,7 @@ import numpy as np
 from crowdbot.core.crowd.agents import PORTAL
 from crowdbot.core.crowd.contact.geometry import is_clearly_shorter
 from crowdbot.core.crowd.contact.pedestrian_contact import push_apart
-from crowdbot.core.crowd.contact.robot_contact import (
-    contacts_of_several,
-    corners_of,
-    robot_contact,
-)
+from crowdbot.core.crowd.contact.robot_contact import robot_contacts
 from crowdbot.core.crowd.parameters import AgentParameters, WorldParameters
 from crowdbot.core.crowd.periodic_boundary import wrap
 from crowdbot.core.crowd.portals import entry_fraction, leave, try_to_re_enter, try_to_start
@@ -29,13 +25,16 @@ from crowdbot.core.crowd.state import (
     BESIDE,
     DIR_X,
     DIR_Y,
+    FELT_SIZE,
     HEADER_SIZE,
     NOT_YET,
     ON_TRIP,
     PRESENT,
     PUSH_X,
     PUSH_Y,
+    ROBOTS,
     TICK,
+    TOUCH_COLUMNS,
     TRIP_START,
     TRIPS,
     VX,
@@ -54,14 +53,14 @@ _TURNS_ABOVE = 0.1
 
 @kernel
 def tick(
-    flat: Array, robots: Array, outlines: Array, books: Array, stiffnesses: Array, discs: Array,
+    flat: Array, robots: Array, outlines: Array, numbers: Indices, stiffnesses: Array, discs: Array,
     dt: float,
     ids: Indices, radius: Array, mass: Array, preferred_speed: Array, max_speed: Array,
     start_time: Array, at_goal: Indices, flow: Indices, route: Array, first: Indices,
     entry_order: Indices, heeds_robot: Mask, push: Array, goal_area: Array, pause: Array,
     ahead: Indices, origin: Array, guide: Indices, abreast: Array, stays_at: Mask,
     walls: Array, entrance: Array, out: Array, keep_offset: bool, goal_ahead: bool,
-    boundary: Array, goals_wrap: bool, response: Array, stiffness: float, dissipation: float,
+    boundary: Array, goals_wrap: bool, response: Array, dissipation: float,
     goal_key: np.uint64, solids: Array,
     reaction: Array, placed: Array, order: Indices,
 ) -> None:  # fmt: skip
@@ -73,7 +72,7 @@ def tick(
     Args:
         flat: the crowd's state, changed in place.
         robots, outlines: (R, 8), (R, K, 2) as in `crowdbot.core.crowd.contact.robot_contact`.
-        books, stiffnesses: of several robots, as in `contacts_of_several`; of one none.
+        numbers, stiffnesses: of the robots, as in `robot_contacts`.
         discs: (D, 3) x, y, radius of fixed discs that push, m.
         dt: length of the tick, s.
         ids to stays_at: fields of `AgentParameters`.
@@ -85,24 +84,19 @@ def tick(
         entry_order, heeds_robot, push, goal_area, pause, ahead, origin, guide, abreast, stays_at,
     )  # fmt: skip
     world = WorldParameters(
-        walls, entrance, out, keep_offset, goal_ahead, boundary, goals_wrap, response, stiffness,
-        dissipation, goal_key, solids,
+        walls, entrance, out, keep_offset, goal_ahead, boundary, goals_wrap, response, dissipation,
+        goal_key, solids,
     )  # fmt: skip
-    header, agents = flat[:HEADER_SIZE], flat[HEADER_SIZE:].reshape(-1, AGENT_COLUMNS)
+    count = radius.shape[0]
+    end = HEADER_SIZE + count * AGENT_COLUMNS
+    header, agents = flat[:HEADER_SIZE], flat[HEADER_SIZE:end].reshape(count, AGENT_COLUMNS)
+    contacts = flat[end:].reshape(int(header[ROBOTS]), FELT_SIZE + count * TOUCH_COLUMNS)
     now = header[TICK] * dt
     push_apart(agents, radius, order, walls, discs, push, placed)
-    if books.shape[0] > 0:
-        contacts_of_several(
-            header, agents, radius, robots, outlines, books, stiffnesses, dissipation, now, dt,
-            reaction, placed,
-        )  # fmt: skip
-    for r in range(robots.shape[0] if books.shape[0] == 0 else 0):
-        outline = outlines[r][: corners_of(outlines, r)]
-        robot_contact(
-            header, agents, radius, robots[r], outline, stiffness, dissipation, now, dt, reaction
-        )
-    if robots.shape[0] == 0:
-        reaction[:] = 0.0
+    robot_contacts(
+        contacts, agents, radius, robots, outlines, numbers, stiffnesses, dissipation, now, dt,
+        reaction,
+    )  # fmt: skip
     for i in range(agents.shape[0]):
         if agents[i, WAITING] == PRESENT:
             _advance(header, agents, i, people, world, robots, outlines, reaction, now, dt)

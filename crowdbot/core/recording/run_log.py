@@ -31,6 +31,7 @@ class RunLog:
         *,
         sideways: bool = False,
         people: bool = True,
+        robot: int | None = 0,
         aim: int = s.GOAL_X,
         watchers: Sequence[Watcher] = (),
     ) -> None:
@@ -42,12 +43,13 @@ class RunLog:
             sideways: whether the robot's velocity may point elsewhere than it looks.
             people: whether people and their trips are recorded, or only contacts with them: those
                 of a fleet are recorded once for all robots.
+            robot: its number among those of the crowd's state; None records no contacts.
             aim: column of the crowd's state where the point begins to which people walk.
             watchers: see each sample, too.
         """
         self._watchers = watchers
         self.writer = writer
-        self._sideways, self._keeps_people = sideways, people
+        self._sideways, self._keeps_people, self._robot = sideways, people, robot
         self._id = agent_id
         self._aim = aim
         self._jumps = np.zeros(len(agent_id))  # at the latest sample
@@ -73,22 +75,28 @@ class RunLog:
         for watcher in self._watchers:
             watcher.sample(t, row, agents)
 
-    @property
-    def events(self) -> int:
-        """Number of trips and contacts that are recorded."""
-        return self.trips + self.contacts
+    def has_recorded(self, events: Array) -> bool:
+        """Return True if all trips and contacts that have ended are recorded.
+
+        Args:
+            events: (1 + R,) number of trips, and of contacts with each robot, that have ended.
+        """
+        trips = not self._keeps_people or events.item(0) == self.trips
+        return trips and (self._robot is None or events.item(1 + self._robot) == self.contacts)
 
     def record_events(self, crowd: Array) -> None:
         """Record trips and contacts that ended since the last call; to be called every tick."""
-        header, people = s.view(crowd)
-        if self._keeps_people and int(header[s.TRIPS]) != self.trips:
-            self._record_trips(people)
-            self.trips = int(header[s.TRIPS])
-        if int(header[s.CONTACTS]) != self.contacts:
-            for i in np.flatnonzero(people[:, s.TOUCHES] != self._agent_contacts):
-                self._contact(people, i)
-            self._agent_contacts = people[:, s.TOUCHES].copy()
-            self.contacts = int(header[s.CONTACTS])
+        if self._keeps_people and int(crowd[s.TRIPS]) != self.trips:
+            self._record_trips(s.view(crowd)[1])
+            self.trips = int(crowd[s.TRIPS])
+        if self._robot is None:
+            return
+        felt, touches = s.contact_with(crowd, self._robot)
+        if int(felt[s.CONTACTS]) != self.contacts:
+            for i in np.flatnonzero(touches[:, s.TOUCHES] != self._agent_contacts):
+                self._contact(touches, i)
+            self._agent_contacts = touches[:, s.TOUCHES].copy()
+            self.contacts = int(felt[s.CONTACTS])
 
     def command(self, t: float, command: Command, seconds: float, clamped: bool) -> None:
         """One step of the planner."""
@@ -115,8 +123,11 @@ class RunLog:
         )
         for i in np.flatnonzero(active):
             self.writer.trip(int(self._id[i]), float(people[i, s.TRIP_START]), t, False)
-        for i in np.flatnonzero(people[:, s.TOUCHING] != 0.0):
-            self._contact(people, i)
+        if self._robot is None:
+            return
+        _, touches = s.contact_with(crowd, self._robot)
+        for i in np.flatnonzero(touches[:, s.TOUCHING] != 0.0):
+            self._contact(touches, i)
             self.contacts += 1
 
     def _row(self, robot: RobotState) -> tuple[float, ...]:
@@ -132,8 +143,8 @@ class RunLog:
             self.writer.trip(int(self._id[i]), float(start), float(end), True)
         self._arrivals = people[:, s.ARRIVALS].copy()
 
-    def _contact(self, people: Array, i: np.signedinteger[Any]) -> None:
-        row = people[i]
+    def _contact(self, touches: Array, i: np.signedinteger[Any]) -> None:
+        row = touches[i]
         self.writer.contact(
             t0=float(row[s.TOUCH_START]),
             t1=float(row[s.TOUCH_END]),

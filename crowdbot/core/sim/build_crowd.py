@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,23 +37,15 @@ def build_crowd(
     realisation: Realisation,
     parts: EnvironmentParts,
     registry: Registry,
-    skin_stiffness: float = math.inf,
 ) -> CrowdEngine | None:
-    """The engine for a scenario's crowd, or None when it has none.
-
-    Args:
-        skin_stiffness: of the robot that they touch, N/m.
-    """
+    """The engine for a scenario's crowd, or None when it has none."""
     crowd = scenario.crowd
     if crowd is None:
         return None
     flows, policies = _flows(realisation), _policies(crowd, realisation)
     return CrowdEngine(
         _agents(crowd, realisation, flows, list(policies)),
-        replace(
-            _world(scenario, crowd, realisation, parts, _boxes(flows, parts)),
-            stiffness=in_series(scenario.contact.stiffness, skin_stiffness),
-        ),
+        _world(scenario, crowd, realisation, parts, _boxes(flows, parts)),
         [_factory(group, registry) for group in policies.values()],
     )
 

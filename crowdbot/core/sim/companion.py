@@ -16,11 +16,13 @@ class Company:
     """What the blocks of one robot of a fleet know of the fleet.
 
     Attributes:
+        number: of the robot among all.
         fates: of the robot itself, then of the others.
         others: the others.
         push: what they exert on the robot.
     """
 
+    number: int
     fates: Sequence[Fate]
     others: Sequence[Companion]
     push: OutputPort

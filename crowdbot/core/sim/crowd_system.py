@@ -1,14 +1,15 @@
-"""CrowdSystem: the crowd and its contact with the robot, advanced in one event.
+"""CrowdSystem: people and their contacts with all robots, advanced in one event.
 
-The event is unrestricted, so it runs before the plant's discrete update: the force on the robot
+The event is unrestricted, so it runs before the plant's discrete update: the force on a robot
 and the reaction on people come from one computation on one state, and balance exactly
 (docs/decisions/0004).
 """
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Sequence
 
+import numpy as np
 from pydrake.systems.framework import (
     Context,
     DiagramBuilder,
@@ -20,38 +21,24 @@ from pydrake.systems.framework import (
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
-from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.bodies import SEEN, rows_of
+from crowdbot.core.sim.bodies import SEEN, outlines_of, rows_of
+from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.control.controlled import Push
+from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK
+from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotModel
 
-#: What of the crowd's header others are told: force, events, torque.
-_NEWS = slice(s.ROBOT_FX, s.ROBOT_TORQUE + 1)
-
-
-class CrowdOutputs(Protocol):
-    """The people as one robot takes them."""
-
-    @property
-    def engine(self) -> CrowdEngine:
-        """Who they are."""
-
-    @property
-    def state(self) -> OutputPort:
-        """Their flat state."""
-
-    @property
-    def events(self) -> OutputPort:
-        """How many of their trips, and of their contacts with the robot, have ended."""
+#: What of a robot's contacts other blocks are told: force x and y, torque, number of contacts.
+_NEWS = (s.ROBOT_FX, s.ROBOT_FY, s.ROBOT_TORQUE, s.CONTACTS)
 
 
 class CrowdSystem(LeafSystem):
-    """Input: robot state. Outputs: crowd state, events, force on the robot.
+    """Inputs: states of all robots. Outputs: crowd state, events, force on each robot.
 
     Attributes:
         engine: the people.
@@ -62,45 +49,86 @@ class CrowdSystem(LeafSystem):
     def __init__(
         self,
         engine: CrowdEngine,
-        push: Push,
-        robot: RobotModel,
+        models: Sequence[RobotModel],
+        pushes: Sequence[Push],
+        fates: Sequence[Fate],
         margin: float,
         tick: float = TICK,
     ) -> None:
-        """``margin``: how much larger than its body people take the robot for, m."""
+        """Take people and robots.
+
+        Args:
+            pushes: how the force on each robot is written.
+            fates: which robots have left.
+            margin: how much larger than its body people take a robot for, m.
+            tick: s.
+        """
         super().__init__()
-        self._tick = tick
-        self.engine, self._push = engine, push
-        self._outline = footprint_of_model(robot).corners
-        self._robot = rows_of([robot], margin)
-        self._row = self._robot[0]
-        self._port = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
-        crowd = self.DeclareDiscreteState(engine.initial_state())
-        force = self.DeclareDiscreteState(push.size)
-        events = self.DeclareDiscreteState(1)
+        self.engine, self._pushes, self._fates = engine, tuple(pushes), tuple(fates)
+        self._tick, count = tick, len(models)
+        self._rows, self._outlines = rows_of(models, margin), outlines_of(models)
+        body = engine.world.stiffness
+        self._stiffnesses = np.array([in_series(body, model.skin_stiffness) for model in models])
+        self._here = np.arange(count)
+        self._ports = [
+            self.DeclareVectorInputPort(
+                ports.of_robot(ports.ROBOT_STATE, k), ports.ROBOT_STATE_SIZE
+            )
+            for k in range(count)
+        ]
+        initial = engine.initial_state(count)
+        self._news = [s.TRIPS, *(s.felt_at(initial, k, e) for k in range(count) for e in _NEWS)]
+        crowd, events = self.DeclareDiscreteState(initial), self.DeclareDiscreteState(1 + count)
         self.DeclareStateOutputPort(ports.CROWD_STATE, crowd)
         self.DeclareStateOutputPort(ports.EVENTS, events)
-        self.DeclareStateOutputPort(ports.ROBOT_FORCE, force)
-        self._crowd, self._force = DiscreteStateIndex(crowd), DiscreteStateIndex(force)
-        self._events = DiscreteStateIndex(events)
+        self._crowd, self._events = DiscreteStateIndex(crowd), DiscreteStateIndex(events)
+        self._forces = [self._declare_force(k, push.size) for k, push in enumerate(pushes)]
         self.DeclarePeriodicUnrestrictedUpdateEvent(tick, 0.0, self._update)
 
+    def _declare_force(self, k: int, size: int) -> DiscreteStateIndex:
+        force = self.DeclareDiscreteState(size)
+        self.DeclareStateOutputPort(ports.of_robot(ports.ROBOT_FORCE, k), force)
+        return DiscreteStateIndex(force)
+
     def _update(self, context: Context, state: State) -> None:
-        self._row[SEEN] = self._port.Eval(context)[:6]
+        for row, port in zip(self._rows, self._ports, strict=True):
+            row[SEEN] = port.Eval(context)[:6]
         values = state.get_mutable_discrete_state()
         crowd = values.get_mutable_value(self._crowd)
-        before = crowd[_NEWS].tolist()
-        self.engine.advance(crowd, self._robot, self._outline, self._tick)
-        news = crowd[_NEWS].tolist()
-        if news == before:  # at most ticks: nobody touches the robot and nothing ends
+        before = crowd[self._news].tolist()
+        self._take_out(crowd)
+        self._advance(crowd)
+        news = crowd[self._news].tolist()
+        if news == before:  # at most ticks: nobody touches a robot and nothing ends
             return
-        fx, fy, contacts, trips, torque = news
-        self._push.write(values.get_mutable_value(self._force), fx, fy, torque)
-        values.get_mutable_value(self._events)[0] = contacts + trips
+        events = values.get_mutable_value(self._events)
+        events[0] = news[0]
+        for k, push in enumerate(self._pushes):
+            fx, fy, torque, events[1 + k] = news[1 + 4 * k : 5 + 4 * k]
+            push.write(values.get_mutable_value(self._forces[k]), fx, fy, torque)
+
+    def _take_out(self, crowd: Array) -> None:
+        """Let robots that have left since the last tick feel nothing any more."""
+        for k in self._here.tolist():
+            if self._fates[k].gone:
+                felt, _ = s.contact_with(crowd, k)
+                felt[[s.ROBOT_FX, s.ROBOT_FY, s.ROBOT_TORQUE]] = 0.0
+                self._here = self._here[self._here != k]
+
+    def _advance(self, crowd: Array) -> None:
+        here, all_here = self._here, len(self._here) == len(self._rows)
+        self.engine.advance(
+            crowd,
+            self._rows if all_here else self._rows[here],
+            self._outlines if all_here else self._outlines[here],
+            self._tick,
+            numbers=here,
+            stiffnesses=self._stiffnesses if all_here else self._stiffnesses[here],
+        )
 
     @property
     def events(self) -> OutputPort:
-        """How many trips and contacts have ended."""
+        """How many trips, and how many contacts with each robot, have ended."""
         return self.GetOutputPort(ports.EVENTS)
 
     @property
@@ -108,22 +136,26 @@ class CrowdSystem(LeafSystem):
         """The crowd's flat state."""
         return self.GetOutputPort(ports.CROWD_STATE)
 
+    def force_on(self, k: int) -> OutputPort:
+        """What people exert on robot k, as its control mode takes it."""
+        return self.GetOutputPort(ports.of_robot(ports.ROBOT_FORCE, k))
+
 
 def add_crowd(
     builder: DiagramBuilder,
-    built: BuiltRun,
-    robot: ControlledRobot,
+    builts: Sequence[BuiltRun],
+    robots: Sequence[ControlledRobot],
     engine: CrowdEngine | None,
-    tick: float,
+    fates: Sequence[Fate],
+    tick: float = TICK,
 ) -> CrowdSystem | None:
-    """Add the people, if there are any, to a diagram; they and the robot push each other."""
+    """Add the people, if there are any, to a diagram; their forces are connected elsewhere."""
     if engine is None:
         return None
-    spec = built.scenario.crowd
+    spec, models = builts[0].scenario.crowd, [built.model for built in builts]
     margin = spec.robot_response.margin if spec else 0.0
-    crowd = CrowdSystem(engine, robot.push, built.model, margin, tick)
+    crowd = CrowdSystem(engine, models, [r.push for r in robots], fates, margin, tick)
     builder.AddNamedSystem("crowd", crowd)
-    builder.Connect(robot.port, crowd.GetInputPort(ports.ROBOT_STATE))
-    if robot.push_port is not None:
-        builder.Connect(crowd.GetOutputPort(ports.ROBOT_FORCE), robot.push_port)
+    for k, robot in enumerate(robots):
+        builder.Connect(robot.port, crowd.GetInputPort(ports.of_robot(ports.ROBOT_STATE, k)))
     return crowd

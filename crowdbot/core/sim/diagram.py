@@ -12,6 +12,7 @@ from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot, add_robot
 from crowdbot.core.sim.crowd_system import CrowdSystem, add_crowd
+from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.metric_logger import MetricLogger, add_metric_logger
 from crowdbot.core.sim.planner_system import PlannerSystem, add_planner
 from crowdbot.core.sim.recorder import add_recorder
@@ -59,7 +60,9 @@ def build_diagram(
     robot = add_robot(builder, built.parts, built.model, built.robot.control, tick)
 
     # Crowd and contact, one event: force on the robot, reaction on people.
-    crowd = add_crowd(builder, built, robot, engine, tick)
+    crowd = add_crowd(builder, [built], [robot], engine, [Fate()], tick)
+    if crowd is not None and robot.push_port is not None:
+        builder.Connect(crowd.force_on(0), robot.push_port)
 
     # Sensors, odometry among them.
     bank = add_sensors(builder, built, robot, crowd, log.writer, seed=seed)

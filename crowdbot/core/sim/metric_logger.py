@@ -26,7 +26,7 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.clearance_cache import ClearanceCache
 from crowdbot.core.sim.control import ControlledRobot
-from crowdbot.core.sim.crowd_system import CrowdOutputs
+from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.wall_contact import WallContacts, wall_force
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
@@ -57,7 +57,7 @@ class MetricLogger(LeafSystem):
         log: RunLog,
         task: Task,
         walls: WallContacts,
-        crowd_size: int,
+        crowd: CrowdSystem | None,
         rate: float,
         *,
         felt: bool,
@@ -82,9 +82,9 @@ class MetricLogger(LeafSystem):
         self._fate, self._on_end = fate, on_end
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         self._crowd = self._events = None
-        if crowd_size:
-            self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size)
-            self._events = self.DeclareVectorInputPort(ports.EVENTS, 1)
+        if crowd is not None:
+            self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd.state.size())
+            self._events = self.DeclareVectorInputPort(ports.EVENTS, crowd.events.size())
         # Asking an input port whether it has a value would compute the forces at every tick.
         self._forces = (
             self.DeclareAbstractInputPort(ports.FORCES, Value(ContactResults())) if felt else None
@@ -156,7 +156,7 @@ class MetricLogger(LeafSystem):
         """The crowd, where there is something to log: it is copied each time it is looked at."""
         if self._crowd is None or self._events is None:
             return None
-        if not always and int(self._events.Eval(context)[0]) == self._log.events:
+        if not always and self._log.has_recorded(self._events.Eval(context)):
             return None
         crowd: Array = self._crowd.Eval(context)
         return crowd
@@ -182,7 +182,7 @@ def add_metric_logger(
     builder: DiagramBuilder,
     built: BuiltRun,
     robot: ControlledRobot,
-    crowd: CrowdOutputs | None,
+    crowd: CrowdSystem | None,
     log: RunLog,
     fate: Fate | None = None,
     on_end: Callable[[], None] = lambda: None,
@@ -192,7 +192,7 @@ def add_metric_logger(
         log,
         built.task,
         WallContacts(built.parts, built.model, log),
-        0 if crowd is None else crowd.state.size(),
+        crowd,
         built.scenario.rates.log,
         felt=robot.rig is not None,
         fate=fate,

@@ -30,7 +30,7 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.companion import Companion, Company
 from crowdbot.core.sim.control import ControlledRobot
-from crowdbot.core.sim.crowd_system import CrowdOutputs
+from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.sensor_bank import SensorBank
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
@@ -108,6 +108,7 @@ class PlannerSystem(LeafSystem):
         on_step: Callable[[float, HostedCommand], None],
         on_signal: Callable[[float, str, float], None],
         people: People | None = None,
+        crowd_size: int = 0,
         fates: Sequence[Fate] = (),
     ) -> None:
         """``people``: who they are, for a planner that may know; None hides the truth.
@@ -131,9 +132,8 @@ class PlannerSystem(LeafSystem):
         self._robot = self._crowd = None
         if people is not None:
             self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
-            if len(people.id):
-                size = crowd_state.size(len(people.id))
-                self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, size)
+            if crowd_size:
+                self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size)
         self._fates = tuple(fates)
         others = range(0 if people is None else len(people.robots))
         self._others = [self.DeclareVectorInputPort(*ports.other_robot(k)) for k in others]
@@ -232,7 +232,7 @@ def add_planner(
     builder: DiagramBuilder,
     built: BuiltRun,
     robot: ControlledRobot,
-    crowd: CrowdOutputs | None,
+    crowd: CrowdSystem | None,
     bank: SensorBank,
     host: PlannerHost,
     log: RunLog,
@@ -252,6 +252,7 @@ def add_planner(
         on_step=lambda t, step: log.command(t, step.command, step.seconds, step.clamped),
         on_signal=log.writer.signal,
         people=_people(None if crowd is None else crowd.engine, others) if privileged else None,
+        crowd_size=0 if crowd is None else crowd.state.size(),
         fates=() if company is None else company.fates,
     )  # fmt: skip
     builder.AddNamedSystem("planner", planner)
@@ -259,7 +260,7 @@ def add_planner(
     builder.Connect(planner.GetOutputPort(ports.DESIRED_STATE), robot.desired)
     if privileged:
         builder.Connect(robot.port, planner.GetInputPort(ports.ROBOT_STATE))
-        if crowd is not None and len(crowd.engine.agents):
+        if crowd is not None:
             builder.Connect(crowd.state, planner.GetInputPort(ports.CROWD_STATE))
         for k, other in enumerate(others):
             builder.Connect(other.port, planner.GetInputPort(ports.other_robot(k)[0]))

@@ -6,7 +6,7 @@ from __future__ import annotations
 ROBOT_STATE, ROBOT_STATE_SIZE = "robot_state", 11
 #: The flat vector of `crowdbot.core.crowd.state`.
 CROWD_STATE = "crowd_state"
-#: Number of trips, and of contacts with the robot, that have ended.
+#: Number of trips, and of contacts with each robot, that have ended.
 EVENTS = "events"
 #: Force of people on the robot, as the control mode wants it (`crowdbot.core.sim.control`).
 ROBOT_FORCE = "robot_force"

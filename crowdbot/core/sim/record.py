@@ -42,9 +42,7 @@ def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = No
         InputError: the robot would start in a wall, an obstacle or a person.
         PlannerHungError: a planner step never returned; the recording is closed all the same.
     """
-    engine = build_crowd(
-        built.scenario, setup.agents, built.parts, setup.registry, built.model.skin_stiffness
-    )
+    engine = build_crowd(built.scenario, setup.agents, built.parts, setup.registry)
     check_start(built.parts, built.model, built.task.start, engine, built.name)
     header = replace(header_of(built, engine), hashes=setup.hashes)
     for watcher in setup.watchers:

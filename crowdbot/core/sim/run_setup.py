@@ -75,7 +75,7 @@ def record_crowd(setup: RunSetup, duration: float) -> Outcome:
             setup.progress(Progress(setup.stage, t, duration, factor, None))
 
     with recording(setup, header, engine) as (writer, ending):
-        log = RunLog(writer, ids(engine), aim=engine.aim)
+        log = RunLog(writer, ids(engine), robot=None, aim=engine.aim)
         whole = run_crowd(
             engine, log, duration, scenario.rates.log, on_sample=report, stop=setup.stop
         )

@@ -27,7 +27,7 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.companion import Companion, Company
 from crowdbot.core.sim.control import ControlledRobot
-from crowdbot.core.sim.crowd_system import CrowdOutputs
+from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.images import ColourRenderer, Images, capture, view_size
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
@@ -121,8 +121,9 @@ class SensorBank(LeafSystem):
         self,
         sensors: Mapping[str, Sensor | SensorWithMemory],
         scene: Scene,
-        crowd_size: int,
+        crowd: CrowdSystem | None,
         *,
+        number: int = 0,
         seed: int,
         robot: str,
         writer: RecordingWriter,
@@ -131,7 +132,8 @@ class SensorBank(LeafSystem):
         """Take the sensors.
 
         Args:
-            crowd_size: length of the crowd's state, 0 without people.
+            crowd: the people, if there are any.
+            number: of the robot in the crowd's state.
             writer: gets each reading, and those images that it asks for.
             renderers: what draws the colour images of cameras, by the camera's name.
         """
@@ -140,7 +142,7 @@ class SensorBank(LeafSystem):
         self._poses: list[Pose | None] = []
         self._writer, self._on_reading = writer, writer.reading
         self._idle = SensorStream(seed, robot, "").at(0)
-        people = len(s.view(np.zeros(crowd_size))[1]) if crowd_size else 0
+        people, self._number = 0 if crowd is None else len(crowd.engine.agents), number
         self.slots, size = lay_out(
             {n: x.info() for n, x in sensors.items()}, people, len(scene.others)
         )
@@ -158,7 +160,9 @@ class SensorBank(LeafSystem):
             initial[slot.stamp] = -1.0
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         self._crowd = (
-            self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size) if crowd_size else None
+            None
+            if crowd is None
+            else self.DeclareVectorInputPort(ports.CROWD_STATE, crowd.state.size())
         )
         self._fates: tuple[Fate, ...] = ()
         others = range(len(scene.others))
@@ -231,8 +235,9 @@ class SensorBank(LeafSystem):
         if self._crowd is None:
             self._scene.update(robot, np.zeros((0, 4)), np.zeros(0, np.bool_), push=push)
             return None
-        header, rows = s.view(self._crowd.Eval(context))
-        felt = header[s.ROBOT_FX], header[s.ROBOT_FY], header[s.ROBOT_TORQUE]
+        crowd = self._crowd.Eval(context)
+        (_, rows), (feels, _) = s.view(crowd), s.contact_with(crowd, self._number)
+        felt = feels[s.ROBOT_FX], feels[s.ROBOT_FY], feels[s.ROBOT_TORQUE]
         self._scene.update(
             robot,
             rows[:, s.X : s.VY + 1],
@@ -266,7 +271,7 @@ def add_sensors(
     builder: DiagramBuilder,
     built: BuiltRun,
     robot: ControlledRobot,
-    crowd: CrowdOutputs | None,
+    crowd: CrowdSystem | None,
     writer: RecordingWriter,
     *,
     seed: int,
@@ -282,7 +287,8 @@ def add_sensors(
     bank = SensorBank(
         built.sensors,
         scene,
-        0 if crowd is None else crowd.state.size(),
+        crowd,
+        number=0 if company is None else company.number,
         seed=seed,
         robot=built.name,
         writer=writer,

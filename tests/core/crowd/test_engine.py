@@ -37,7 +37,7 @@ def _run(engine: CrowdEngine, seconds: float, robots: Array | None = None) -> Ar
 
 def test_no_agents() -> None:
     flat = _run(walkers(_agents(0)), 1.0, np.array([[5.0, 0.0, 0.0, 0.0, 0.178, 0.428]]))
-    assert len(flat) == s.HEADER_SIZE
+    assert len(flat) == s.HEADER_SIZE + s.FELT_SIZE
     assert flat[s.TICK] == TICKS
     assert not np.any(flat[s.TICK + 1 :])
 

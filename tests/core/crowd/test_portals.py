@@ -92,7 +92,7 @@ def test_a_blocked_entrance_makes_people_wait() -> None:
     """Robots all over the in-portal: whoever leaves stays outside and enters when they go."""
     engine = straight(np.array([[49.9, 0.0], [49.9, 2.0], [20.0, 0.0]]))
     blocked = np.array([[-0.5, y, 0.0, 0.0, 0.178, 0.428] for y in np.arange(-5.0, 5.1, 0.5)])
-    flat = engine.initial_state()
+    flat = engine.initial_state(robots=21)
     for _ in range(TICKS):
         engine.advance(flat, blocked)
     people = rows(flat)
@@ -110,7 +110,7 @@ def test_a_blocked_entrance_makes_people_wait() -> None:
 
 def test_people_outside_touch_nobody_and_are_not_seen() -> None:
     engine = straight(np.array([[49.9, 0.0], [40.0, 0.0]]), 1.2)
-    flat = engine.initial_state()
+    flat = engine.initial_state(robots=22)
     blocked = np.array([[-0.5, y, 0.0, 0.0, 0.178, 0.428] for y in np.arange(-5.0, 5.1, 0.5)])
     for _ in range(TICKS):
         engine.advance(flat, blocked)
@@ -118,6 +118,7 @@ def test_people_outside_touch_nobody_and_are_not_seen() -> None:
     on_top = np.concatenate([blocked, [[*gone, 0.0, 0.0, 0.178, 0.428]]])
     for _ in range(16):
         engine.advance(flat, on_top)
-    header, people = s.view(flat)
-    assert people[0, s.TOUCHING] == people[0, s.TOUCHES] == 0.0
-    assert not np.any(header[s.ROBOT_JX : s.PEOPLE_JY + 1])
+    for robot in range(22):
+        felt, touches = s.contact_with(flat, robot)
+        assert touches[0, s.TOUCHING] == touches[0, s.TOUCHES] == 0.0
+        assert not np.any(felt[s.ROBOT_JX : s.PEOPLE_JY + 1])

@@ -44,7 +44,7 @@ class Rows:
 
 def _log(count: int) -> tuple[RunLog, Rows, Any, Any]:
     rows = Rows()
-    flat = np.zeros(s.size(count))
+    flat = s.blank(count)
     _, people = s.view(flat)
     people[:, s.X], people[:, s.ON_TRIP] = np.arange(count), 1.0
     return RunLog(cast(RecordingWriter, rows), np.arange(count) + 10), rows, flat, people
@@ -132,32 +132,34 @@ def test_who_rests_at_the_goal_is_on_no_trip() -> None:
 
 
 def test_contacts_are_recorded_when_they_end() -> None:
-    log, rows, flat, people = _log(2)
-    people[1, s.TOUCHING] = 1.0
+    log, rows, flat, _people = _log(2)
+    felt, touches = s.contact_with(flat)
+    touches[1, s.TOUCHING] = 1.0
     log.record_events(flat)
     assert rows.contacts == []
     columns = [
         s.TOUCH_START, s.TOUCH_END, s.TOUCH_IMPULSE, s.TOUCH_PEAK, s.TOUCH_SPEED, s.TOUCH_SIDE
     ]  # fmt: skip
-    people[1, columns] = 0.1, 0.2, 3.0, 400.0, 0.7, -1.25
-    people[1, [s.TOUCHING, s.TOUCHES]] = 0.0, 1.0
-    flat[s.CONTACTS] = 1.0
+    touches[1, columns] = 0.1, 0.2, 3.0, 400.0, 0.7, -1.25
+    touches[1, [s.TOUCHING, s.TOUCHES]] = 0.0, 1.0
+    felt[s.CONTACTS] = 1.0
     log.record_events(flat)
     log.record_events(flat)
     assert rows.contacts == [
         {"t0": 0.1, "t1": 0.2, "agent": 11, "impulse": 3.0, "peak_force": 400.0,
          "relative_speed": 0.7, "bearing": -1.25}
     ]  # fmt: skip
-    people[0, s.TOUCHING] = 1.0
+    touches[0, s.TOUCHING] = 1.0
     log.finish(1.0, flat)
     assert [c["agent"] for c in rows.contacts] == [11, 10]
     assert log.contacts == 2
 
 
 def test_two_contacts_in_one_tick() -> None:
-    log, rows, flat, people = _log(3)
-    people[[0, 2], s.TOUCHES] = 1.0
-    flat[s.CONTACTS] = 2.0
+    log, rows, flat, _people = _log(3)
+    felt, touches = s.contact_with(flat)
+    touches[[0, 2], s.TOUCHES] = 1.0
+    felt[s.CONTACTS] = 2.0
     log.record_events(flat)
     assert [c["agent"] for c in rows.contacts] == [10, 12]
 

@@ -67,8 +67,8 @@ def test_one_contact_is_that_of_the_reference(ticks: int, speeds: tuple[float, f
         while True:
             n += 1
             world.advance(n / ticks)
-            header, _ = s.view(world.crowd())
-            pushed = math.hypot(header[s.ROBOT_FX], header[s.ROBOT_FY])
+            felt, _ = s.contact_with(world.crowd())
+            pushed = math.hypot(felt[s.ROBOT_FX], felt[s.ROBOT_FY])
             if impulse > 0.0 and pushed == 0.0:
                 break
             impulse, peak = impulse + pushed / ticks, max(peak, pushed)

@@ -50,7 +50,8 @@ class Collision:
         world = CrowdWorld(stiffness=m.stiffness, dissipation=m.dissipation)
         self.engine = CrowdEngine(agents, world, _Coasting())
         self.flat = self.engine.initial_state()
-        self.header, (self.person,) = s.view(self.flat)
+        _, (self.person,) = s.view(self.flat)
+        self.felt, (self.touch,) = s.contact_with(self.flat)
         self.person[s.VX : s.VY + 1] = m.person_v
         self.robot = np.array([[*m.robot, *m.robot_v, ROBOT_RADIUS, 0.428, 0.0, 0.0]])
         self.forces: list[float] = []
@@ -60,7 +61,7 @@ class Collision:
         """One tick; the robot takes its force as a Drake plant would: velocity, then position."""
         before = self._relative()
         self.engine.advance(self.flat, self.robot, dt=self.dt)
-        force = self.header[s.ROBOT_FX : s.ROBOT_FY + 1]
+        force = self.felt[s.ROBOT_FX : s.ROBOT_FY + 1]
         self.robot[0, 2:4] += force / self.m.robot_mass * self.dt
         self.robot[0, :2] += self.robot[0, 2:4] * self.dt
         self.forces.append(math.hypot(*force))
@@ -110,8 +111,8 @@ def test_impulse_and_peak_are_those_of_the_reference(
         found = Collision(later, dt).run()
         assert sum(found.forces) * dt == pytest.approx(expected.impulse, rel=impulse)
         assert max(found.forces) == pytest.approx(expected.peak, rel=peak)
-        assert found.person[s.TOUCH_IMPULSE] == pytest.approx(sum(found.forces) * dt)
-        assert found.person[s.TOUCH_PEAK] == pytest.approx(max(found.forces))
+        assert found.touch[s.TOUCH_IMPULSE] == pytest.approx(sum(found.forces) * dt)
+        assert found.touch[s.TOUCH_PEAK] == pytest.approx(max(found.forces))
         assert found.robot[0, 2:4] == pytest.approx(expected.robot_v, abs=0.03 * 256 / ticks)
         assert found.person[s.VX : s.VY + 1] == pytest.approx(expected.person_v, abs=0.01)
 
@@ -140,12 +141,12 @@ def test_what_one_gains_the_other_loses(
     before, energy = hit.momentum, hit.energy
     hit.run()
     assert hit.momentum == pytest.approx(before, abs=1e-9)
-    header = hit.header
-    assert header[s.ROBOT_JX : s.ROBOT_JY + 1] + header[s.PEOPLE_JX : s.PEOPLE_JY + 1] == (
+    felt = hit.felt
+    assert felt[s.ROBOT_JX : s.ROBOT_JY + 1] + felt[s.PEOPLE_JX : s.PEOPLE_JY + 1] == (
         pytest.approx(np.zeros(2), abs=1e-9)
     )
     assert hit.energy - energy == pytest.approx(hit.work, abs=1e-9)
-    assert header[s.ROBOT_TORQUE] == 0.0
+    assert felt[s.ROBOT_TORQUE] == 0.0
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from crowdbot.core.crowd import state as s
 from crowdbot.core.sim.control.kinematic import arc, free_share
 from crowdbot.core.support.ticks import TICK
-from tests.core.sim.sim_worlds import Drive, alone, constant, person, rig, rows, scenario
+from tests.core.sim.sim_worlds import Drive, alone, constant, person, rig, scenario
 
 pytestmark = pytest.mark.slow
 
@@ -93,10 +93,9 @@ def test_people_push_what_has_mass_only(mode: str) -> None:
     world = rig(scenario(MIDDLE, _mode(mode)), constant(0.0), person(26.5))
     world.advance(2.5)
     robot = world.robot()
-    (walker,) = rows(world.crowd())
-    assert walker[s.TOUCHES] + walker[s.TOUCHING] >= 1.0
-    header = world.crowd()[: s.HEADER_SIZE]
-    assert header[s.ROBOT_JX] == -header[s.PEOPLE_JX] != 0.0
+    felt, (touch,) = s.contact_with(world.crowd())
+    assert touch[s.TOUCHES] + touch[s.TOUCHING] >= 1.0
+    assert felt[s.ROBOT_JX] == -felt[s.PEOPLE_JX] != 0.0
     moved = math.hypot(robot.x - 25.0, robot.y)
     assert (moved == 0.0) == (mode == "kinematic")
 

@@ -160,17 +160,17 @@ def test_a_push_moves_a_cuybot_as_its_equation_says() -> None:
     assert isinstance(model.drive, HolonomicDrive)
     stiffness = in_series(30000.0, model.skin_stiffness)
     assert stiffness == pytest.approx(7500.0)
-    engine = person(12.0, speed=1.0, stiffness=stiffness)
+    engine = person(12.0, speed=1.0)
     world = rig(world_of("cuybot", "robots.robot.task.start=[11, 0, 0]"), constant(0.0), engine,
                 sensors=("skin", "odometry"))  # fmt: skip
     world.advance(0.25)
     start = world.robot().x
     world.advance(0.25 + 1.5)
     impulse, way = _pushed(model.mass, model.drive.max_force, stiffness)
-    header, _ = s.view(world.crowd())
-    assert -header[s.ROBOT_JX] == pytest.approx(impulse, rel=0.01)
+    sums, (touch,) = s.contact_with(world.crowd())
+    assert -sums[s.ROBOT_JX] == pytest.approx(impulse, rel=0.01)
     assert start - world.robot().x == pytest.approx(way, rel=0.02)
-    assert rows(world.crowd())[0, s.TOUCHES] == 1.0
+    assert touch[s.TOUCHES] == 1.0
     felt = np.array([r.values for r in world.memory.readings["skin"]])
     assert -felt[:, 0].sum() * TICK == pytest.approx(impulse, rel=0.03)
     assert np.all(np.abs(felt[:, 1:]) < 1e-6)
@@ -187,17 +187,17 @@ def test_pushed_from_ahead_or_behind_a_cuybot_takes_what_the_person_loses(
     model = model_of("cuybot")
     assert isinstance(model.drive, HolonomicDrive)
     stiffness = in_series(30000.0, model.skin_stiffness)
-    engine = person(12.0, speed=1.0, stiffness=stiffness)
+    engine = person(12.0, speed=1.0)
     world = rig(world_of("cuybot", f"robots.robot.task.start=[11 m, 0 m, {yaw} deg]"),
                 constant(0.0), engine, tick=1.0 / 256.0)  # fmt: skip
     world.advance(0.25)
     start, before = world.robot().x, rows(world.crowd())[0, s.VX]
     world.advance(1.75)
     impulse, way = _pushed(model.mass, model.drive.max_force, stiffness)
-    header, (walker,) = s.view(world.crowd())
-    assert -header[s.ROBOT_JX] == pytest.approx(impulse, rel=0.01)
-    assert header[s.ROBOT_JX] + header[s.PEOPLE_JX] == pytest.approx(0.0, abs=1e-9)
-    assert 75.0 * (walker[s.VX] - before) == pytest.approx(header[s.PEOPLE_JX], abs=1e-9)
+    (walker,), (sums, (touch,)) = rows(world.crowd()), s.contact_with(world.crowd())
+    assert -sums[s.ROBOT_JX] == pytest.approx(impulse, rel=0.01)
+    assert sums[s.ROBOT_JX] + sums[s.PEOPLE_JX] == pytest.approx(0.0, abs=1e-9)
+    assert 75.0 * (walker[s.VX] - before) == pytest.approx(sums[s.PEOPLE_JX], abs=1e-9)
     assert start - world.robot().x == pytest.approx(way, rel=0.01)
-    assert abs(walker[s.TOUCH_SIDE]) == pytest.approx(side, abs=1e-3)
-    assert walker[s.TOUCHES] == 1.0
+    assert abs(touch[s.TOUCH_SIDE]) == pytest.approx(side, abs=1e-3)
+    assert touch[s.TOUCHES] == 1.0

@@ -14,7 +14,7 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.robot_contact import from_outline, robot_contact
 from crowdbot.core.geometry.footprint import Footprint, body_side
 from crowdbot.core.sim.outline_gap import outline_gap, touched_at
-from tests.core.sim.sim_worlds import Array, Drive, alone, constant, person, rig, rows, scenario
+from tests.core.sim.sim_worlds import Array, Drive, alone, constant, person, rig, scenario
 
 pytestmark = pytest.mark.slow
 
@@ -48,17 +48,19 @@ class Bump:
         self.robot = np.array([0.4, -0.2, *v[:2], radius, 0.0, yaw, w])
         self.agents = np.zeros((1, s.AGENT_COLUMNS))
         self.agents[0, : s.VY + 1] = 0.4 + at[0], -0.2 + at[1], *v[2:]
-        self.header, self.reaction = np.zeros(s.HEADER_SIZE), np.zeros((1, 2))
+        self.felt, self.touches = np.zeros(s.FELT_SIZE), np.zeros((1, s.TOUCH_COLUMNS))
+        self.reaction = np.zeros((1, 2))
         self.tick, self.dt = 0, 1.0 / 128.0
 
     def step(self) -> float:
+        self.reaction[:] = 0.0
         robot_contact(
-            self.header, self.agents, np.array([0.33]), self.robot, self.outline, 30000.0, 0.3,
-            self.tick * self.dt, self.dt, self.reaction,
+            self.felt, self.touches, self.agents, np.array([0.33]), self.robot, self.outline,
+            30000.0, 0.3, self.tick * self.dt, self.dt, self.reaction,
         )  # fmt: skip
-        force = self.header[s.ROBOT_FX : s.ROBOT_FY + 1]
+        force = self.felt[s.ROBOT_FX : s.ROBOT_FY + 1]
         self.robot[2:4] += force / self.mass * self.dt
-        self.robot[7] += self.header[s.ROBOT_TORQUE] / self.inertia * self.dt
+        self.robot[7] += self.felt[s.ROBOT_TORQUE] / self.inertia * self.dt
         self.agents[0, s.VX : s.VY + 1] += self.reaction[0] / self.person * self.dt
         self.robot[:2] += self.robot[2:4] * self.dt
         self.robot[6] += self.robot[7] * self.dt
@@ -93,7 +95,7 @@ def test_linear_and_angular_momentum_balance(
     forces = [hit.step() for _ in range(200)]
     assert hit.momentum == pytest.approx(before, abs=1e-9)
     if max(forces) > 0.0:
-        row = hit.agents[0]
+        row = hit.touches[0]
         assert row[s.TOUCH_PEAK] == pytest.approx(max(forces)) or row[s.TOUCHES] > 0.0
         assert math.isfinite(row[s.TOUCH_SIDE])
 
@@ -102,11 +104,11 @@ def test_force_torque_and_side_of_a_capsule() -> None:
     """A person at rest, 1 mm deep in the left flank, 0.1 m behind the middle of the base."""
     hit = Bump("capsule", 0.5 * math.pi, 0.0, (-(0.18 + 0.33 - 1e-3), -0.1), np.zeros(4))
     assert hit.step() == pytest.approx(30.0)
-    force = hit.header[s.ROBOT_FX : s.ROBOT_FY + 1]
+    force = hit.felt[s.ROBOT_FX : s.ROBOT_FY + 1]
     assert force == pytest.approx([30.0, 0.0], abs=1e-9)  # the robot looks along y: left is -x
-    assert hit.header[s.ROBOT_TORQUE] == pytest.approx(0.1 * 30.0)
-    assert hit.agents[0, s.TOUCH_SIDE] == pytest.approx(math.atan2(0.18, -0.1), abs=0.01)
-    assert body_side(hit.agents[0, s.TOUCH_SIDE]) == "left"
+    assert hit.felt[s.ROBOT_TORQUE] == pytest.approx(0.1 * 30.0)
+    assert hit.touches[0, s.TOUCH_SIDE] == pytest.approx(math.atan2(0.18, -0.1), abs=0.01)
+    assert body_side(hit.touches[0, s.TOUCH_SIDE]) == "left"
 
 
 def test_a_spinning_robot_strikes_with_the_speed_of_its_corner() -> None:
@@ -114,8 +116,8 @@ def test_a_spinning_robot_strikes_with_the_speed_of_its_corner() -> None:
     away = 0.33 - 1e-4
     hit = Bump("wedge", 0.0, 2.0, (0.4 + 0.5 * away, math.sqrt(0.75) * away), np.zeros(4))
     hit.step()
-    assert hit.agents[0, s.TOUCHING] == 1.0
-    assert hit.agents[0, s.TOUCH_SPEED] == pytest.approx(0.8, rel=1e-6)
+    assert hit.touches[0, s.TOUCHING] == 1.0
+    assert hit.touches[0, s.TOUCH_SPEED] == pytest.approx(0.8, rel=1e-6)
 
 
 WALL = np.array([[1.0, -5.0, 1.0, 5.0]])
@@ -198,12 +200,12 @@ def test_a_push_beside_the_middle_turns_the_robot(mode: str) -> None:
         body=_body("box"),
     )  # fmt: skip
     world.advance(0.75)
-    assert rows(world.crowd())[0, s.TOUCHES] + rows(world.crowd())[0, s.TOUCHING] > 0.0
+    felt, touches = s.contact_with(world.crowd())
+    assert touches[0, s.TOUCHES] + touches[0, s.TOUCHING] > 0.0
     robot = world.robot()
     assert robot.x < 25.0 - 1e-3
     assert robot.yaw < -1e-3
-    header = world.crowd()[: s.HEADER_SIZE]
-    assert header[s.ROBOT_JX] == -header[s.PEOPLE_JX] != 0.0
+    assert felt[s.ROBOT_JX] == -felt[s.PEOPLE_JX] != 0.0
 
 
 def test_people_see_a_disc_around_the_whole_outline() -> None:
@@ -212,5 +214,5 @@ def test_people_see_a_disc_around_the_whole_outline() -> None:
     assert world.blocks.crowd is not None
     margin = scenario().crowd.robot_response.margin  # type: ignore[union-attr]
     farthest = math.hypot(0.35, 0.3)
-    assert world.blocks.crowd._robot[0, 4] == 0.0
-    assert world.blocks.crowd._robot[0, 5] == pytest.approx(farthest + margin)
+    assert world.blocks.crowd._rows[0, 4] == 0.0
+    assert world.blocks.crowd._rows[0, 5] == pytest.approx(farthest + margin)

@@ -63,19 +63,21 @@ class Case:
         robot = np.array([x, y, vx, vy, self.body.radius, 0.0, yaw, w])
         agents, reaction = np.zeros((1, s.AGENT_COLUMNS)), np.zeros((1, 2))
         agents[0, : s.VY + 1] = self.person
-        header, impulse, touched = np.zeros(s.HEADER_SIZE), 0.0, False
+        felt, touches = np.zeros(s.FELT_SIZE), np.zeros((1, s.TOUCH_COLUMNS))
+        impulse, touched = 0.0, False
         for tick in range(2000):
+            reaction[:] = 0.0
             robot_contact(
-                header, agents, np.array([PERSON]), robot, self.body.corners, self.stiffness,
-                DISSIPATION, tick * DT, DT, reaction,
+                felt, touches, agents, np.array([PERSON]), robot, self.body.corners,
+                self.stiffness, DISSIPATION, tick * DT, DT, reaction,
             )  # fmt: skip
-            force = header[s.ROBOT_FX : s.ROBOT_FY + 1]
+            force = felt[s.ROBOT_FX : s.ROBOT_FY + 1]
             size = float(np.hypot(*force))
             if touched and size == 0.0:
                 break
             touched, impulse = touched or size > 0.0, impulse + size * DT
             robot[2:4] += force / self.model.mass * DT
-            robot[7] += header[s.ROBOT_TORQUE] / self.inertia * DT
+            robot[7] += felt[s.ROBOT_TORQUE] / self.inertia * DT
             agents[0, s.VX : s.VY + 1] += reaction[0] / MASS * DT
             robot[:2] += robot[2:4] * DT
             robot[6] += robot[7] * DT

@@ -106,8 +106,8 @@ def test_people_push_a_holonomic_robot_and_it_comes_to_rest_again() -> None:
         sim_worlds.person(26.5), sensors=(),
     )  # fmt: skip
     world.advance(4.0)
-    robot, header = world.robot(), world.crowd()[: s.HEADER_SIZE]
-    assert header[s.ROBOT_JX] == -header[s.PEOPLE_JX] != 0.0
+    robot, (felt, _) = world.robot(), s.contact_with(world.crowd())
+    assert felt[s.ROBOT_JX] == -felt[s.PEOPLE_JX] != 0.0
     assert robot.x < 25.0
     assert math.hypot(robot.vx, robot.vy) < 0.05
     assert robot.tilt < math.radians(1.0)

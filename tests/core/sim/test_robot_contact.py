@@ -9,7 +9,6 @@ import pytest
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.population.realise import realise
-from crowdbot.core.sim import ports
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import build as build_goal_seek
 from tests.core.sim.sim_worlds import constant, person, rig, rows, scenario
@@ -44,28 +43,26 @@ def test_head_on_impulses_balance() -> None:
     before = rows(world.crowd())[0, s.VX : s.VY + 1].copy()
     for tick in range(1, 3 * 128):
         world.advance(tick * TICK)
-        force = crowd.GetOutputPort(ports.ROBOT_FORCE).Eval(
-            crowd.GetMyContextFromRoot(world.context)
-        )
+        force = crowd.force_on(0).Eval(crowd.GetMyContextFromRoot(world.context))
         on_robot += force[start + 3 : start + 5] * TICK
-    header, (walker,) = s.view(world.crowd())
+    (walker,), (felt, _) = rows(world.crowd()), s.contact_with(world.crowd())
     on_person = PERSON * (walker[s.VX : s.VY + 1] - before)
     assert on_robot[0] < -10.0
     assert on_robot == pytest.approx(-on_person, abs=1e-9)
-    assert header[s.ROBOT_JX] + header[s.PEOPLE_JX] == pytest.approx(0.0, abs=1e-9)
-    assert header[s.ROBOT_JX : s.ROBOT_JY + 1] == pytest.approx(on_robot, abs=1e-9)
+    assert felt[s.ROBOT_JX] + felt[s.PEOPLE_JX] == pytest.approx(0.0, abs=1e-9)
+    assert felt[s.ROBOT_JX : s.ROBOT_JY + 1] == pytest.approx(on_robot, abs=1e-9)
 
 
 def test_the_first_impulse_is_that_of_point_masses() -> None:
     """The wheels push with at most 1 N m each, which the point masses feel as well."""
     world = rig(scenario(START), constant(0.65), person(12.5))
     speed, largest, impulse = 0.0, 0.0, 0.0
-    while rows(world.crowd())[0, s.TOUCHING] == 0.0:
+    while s.contact_with(world.crowd())[1][0, s.TOUCHING] == 0.0:
         speed = world.robot().vx
         world.advance(world.context.get_time() + TICK)
     while True:
-        header, _ = s.view(world.crowd())
-        force = math.hypot(header[s.ROBOT_FX], header[s.ROBOT_FY])
+        felt, _ = s.contact_with(world.crowd())
+        force = math.hypot(felt[s.ROBOT_FX], felt[s.ROBOT_FY])
         if impulse > 0.0 and force == 0.0:
             break
         largest, impulse = max(largest, force), impulse + force * TICK
@@ -115,10 +112,10 @@ def test_a_parked_robot_is_not_touched() -> None:
         people = rows(world.crowd())
         near = np.hypot(people[:, s.X] - x, people[:, s.Y] - y) < 1.5
         passed = passed | near
-    header, people = s.view(world.crowd())
+    felt, touches = s.contact_with(world.crowd())
     assert np.sum(passed) >= 3  # people do come by
-    assert header[s.CONTACTS] == 0.0
-    assert not np.any(people[:, s.TOUCHING])
+    assert felt[s.CONTACTS] == 0.0
+    assert not np.any(touches[:, s.TOUCHING])
     robot = world.robot()
     assert math.hypot(robot.x - x, robot.y - y) < 1e-3
 
@@ -133,6 +130,7 @@ def test_what_ends_is_recorded_at_its_tick(
     world = rig(scenario(f"robots.robot.task.start=[10, {y}, 0]"), constant(0.0), person(walker))
     for tick in range(1, 3 * 128):
         world.advance(tick * TICK)
-        header, _ = s.view(world.crowd())
-        assert (world.log.trips, world.log.contacts) == (header[s.TRIPS], header[s.CONTACTS])
+        flat = world.crowd()
+        felt, _ = s.contact_with(flat)
+        assert (world.log.trips, world.log.contacts) == (flat[s.TRIPS], felt[s.CONTACTS])
     assert (len(world.memory.trips), len(world.memory.contacts)) == (trips, contacts)

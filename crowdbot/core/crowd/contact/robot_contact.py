@@ -9,6 +9,7 @@ import numpy as np
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.state import (
     CONTACTS,
+    FELT_SIZE,
     PEOPLE_JX,
     PEOPLE_JY,
     ROBOT_FX,
@@ -16,6 +17,7 @@ from crowdbot.core.crowd.state import (
     ROBOT_JX,
     ROBOT_JY,
     ROBOT_TORQUE,
+    TOUCH_COLUMNS,
     TOUCH_END,
     TOUCH_IMPULSE,
     TOUCH_PEAK,
@@ -31,7 +33,7 @@ from crowdbot.core.crowd.state import (
     Y,
 )
 from crowdbot.core.support.compile import kernel
-from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.arrays import Array, Indices
 
 #: A contact has ended when the surface gap exceeds this, m (metric specification, 3.10).
 RELEASE_GAP = 0.05
@@ -40,26 +42,48 @@ RELEASE_GAP = 0.05
 RX, RY, RVX, RVY, R_BODY, R_SEEN, R_YAW, R_W = range(8)
 #: Outline of a robot that is a disc.
 DISC = np.zeros((0, 2))
-#: Columns of an agent that tell of its contact with one robot.
-TOUCH = np.array(
-    [
-        TOUCHING, TOUCH_START, TOUCH_END, TOUCH_IMPULSE, TOUCH_PEAK, TOUCH_SPEED, TOUCHES,
-        TOUCH_SIDE,
-    ]
-)  # fmt: skip
-#: Entries of the header that tell of one robot.
-FELT = np.array(
-    [
-        ROBOT_JX, ROBOT_JY, PEOPLE_JX, PEOPLE_JY, ROBOT_FX, ROBOT_FY, CONTACTS, ROBOT_TORQUE,
-    ]
-)  # fmt: skip
 #: Nearer to an edge a point's direction from it is rounding: the edge's normal counts, m.
 _ON_EDGE = 1e-12
 
 
 @kernel
+def robot_contacts(
+    contacts: Array,
+    agents: Array,
+    radius: Array,
+    robots: Array,
+    outlines: Array,
+    numbers: Indices,
+    stiffnesses: Array,
+    dissipation: float,
+    now: float,
+    dt: float,
+    reaction: Array,
+) -> None:
+    """`robot_contact` with each robot that is there.
+
+    Args:
+        contacts: (A, F + T N) what each of all robots feels, changed in place: the last part of
+            the crowd's state.
+        numbers: (R,) which of them are there.
+        stiffnesses: (R,) of the contact with each, N/m.
+        reaction: (N, 2) the sum of their forces on each agent, N; written.
+    """
+    reaction[:] = 0.0
+    for r in range(robots.shape[0]):
+        own = contacts[numbers[r]]
+        felt, touches = own[:FELT_SIZE], own[FELT_SIZE:].reshape(-1, TOUCH_COLUMNS)
+        outline = outlines[r][: corners_of(outlines, r)]
+        robot_contact(
+            felt, touches, agents, radius, robots[r], outline, stiffnesses[r], dissipation, now,
+            dt, reaction,
+        )  # fmt: skip
+
+
+@kernel
 def robot_contact(
-    header: Array,
+    felt: Array,
+    touches: Array,
     agents: Array,
     radius: Array,
     robot: Array,
@@ -73,103 +97,53 @@ def robot_contact(
     """Hunt-Crossley force F = k d (1 + c d'), never pulling; equal and opposite by one number.
 
     Nothing rubs: the force is along the normal through the person's centre. Writes the force on
-    the robot (N) and its torque about the base (N m) to the header, the force on each agent (N)
-    to ``reaction`` (N, 2), and records the contacts.
+    the robot (N) and its torque about the base (N m) to ``felt``, adds the force on each agent (N)
+    to ``reaction`` (N, 2), and records the contacts in ``touches``.
 
     Args:
+        felt, touches: (F,), (N, T) as in `crowdbot.core.crowd.state`, of this robot.
         robot: (8,) columns as above.
         outline: (K, 2) in the robot's frame, m: none (a disc), the ends of a capsule's axis, or
             the corners of a convex polygon, counter-clockwise.
     """
-    header[ROBOT_FX] = header[ROBOT_FY] = header[ROBOT_TORQUE] = 0.0
+    felt[ROBOT_FX] = felt[ROBOT_FY] = felt[ROBOT_TORQUE] = 0.0
     extent = extent_of(outline)
     for i in range(agents.shape[0]):
-        reaction[i, 0] = reaction[i, 1] = 0.0
         if agents[i, WAITING] != 0.0:
-            if agents[i, TOUCHING] != 0.0:
-                _end_touch(header, agents, i)
+            if touches[i, TOUCHING] != 0.0:
+                _end_touch(felt, touches, i)
             continue
         dx, dy = robot[RX] - agents[i, X], robot[RY] - agents[i, Y]
         reach = robot[R_BODY] + radius[i]
         if dx * dx + dy * dy > (extent + reach + RELEASE_GAP) ** 2:
-            if agents[i, TOUCHING] != 0.0:
-                _end_touch(header, agents, i)
+            if touches[i, TOUCHING] != 0.0:
+                _end_touch(felt, touches, i)
             continue
         depth, nx, ny, px, py = overlap(robot, outline, dx, dy, reach)
         if depth < 0.0:
-            if depth < -RELEASE_GAP and agents[i, TOUCHING] != 0.0:
-                _end_touch(header, agents, i)
+            if depth < -RELEASE_GAP and touches[i, TOUCHING] != 0.0:
+                _end_touch(felt, touches, i)
             continue
         vx = robot[RVX] - robot[R_W] * py - agents[i, VX]
         vy = robot[RVY] + robot[R_W] * px - agents[i, VY]
         closing = -(vx * nx + vy * ny)
         force = max(0.0, stiffness * depth * (1.0 + dissipation * closing))
         fx, fy = force * nx, force * ny
-        header[ROBOT_FX] += fx
-        header[ROBOT_FY] += fy
-        header[ROBOT_TORQUE] += px * fy - py * fx
-        reaction[i, 0], reaction[i, 1] = -fx, -fy
-        header[ROBOT_JX] += fx * dt
-        header[ROBOT_JY] += fy * dt
-        header[PEOPLE_JX] -= fx * dt
-        header[PEOPLE_JY] -= fy * dt
-        if agents[i, TOUCHING] == 0.0:
+        felt[ROBOT_FX] += fx
+        felt[ROBOT_FY] += fy
+        felt[ROBOT_TORQUE] += px * fy - py * fx
+        reaction[i, 0] -= fx
+        reaction[i, 1] -= fy
+        felt[ROBOT_JX] += fx * dt
+        felt[ROBOT_JY] += fy * dt
+        felt[PEOPLE_JX] -= fx * dt
+        felt[PEOPLE_JY] -= fy * dt
+        if touches[i, TOUCHING] == 0.0:
             side = bearing(robot, px - robot[R_BODY] * nx, py - robot[R_BODY] * ny)
-            _begin_touch(agents, i, now, dt, depth, closing, math.hypot(vx, vy), side)
-        agents[i, TOUCH_END] = now
-        agents[i, TOUCH_IMPULSE] += force * dt
-        agents[i, TOUCH_PEAK] = max(agents[i, TOUCH_PEAK], force)
-
-
-@kernel
-def contacts_of_several(
-    header: Array,
-    agents: Array,
-    radius: Array,
-    robots: Array,
-    outlines: Array,
-    books: Array,
-    stiffness: Array,
-    dissipation: float,
-    now: float,
-    dt: float,
-    reaction: Array,
-    total: Array,
-) -> None:
-    """`robot_contact` with each of several robots, each with a book of its own.
-
-    Args:
-        books: (R, 8 + 8 N) what `FELT` and `TOUCH` hold of each robot, changed in place; header
-            and agents hold none of it before and afterwards.
-        stiffness: (R,) of the contact with each, N/m.
-        reaction: (N, 2) the sum of the forces of all on each agent, N.
-        total: (N, 2 or more) room to add them up.
-    """
-    total[:, :2] = 0.0
-    for r in range(robots.shape[0]):
-        _exchange(header, agents, books[r])
-        outline = outlines[r][: corners_of(outlines, r)]
-        robot_contact(
-            header, agents, radius, robots[r], outline, stiffness[r], dissipation, now, dt, reaction
-        )
-        for i in range(agents.shape[0]):
-            total[i, 0] += reaction[i, 0]
-            total[i, 1] += reaction[i, 1]
-        _exchange(header, agents, books[r])
-    for i in range(agents.shape[0]):
-        reaction[i, 0], reaction[i, 1] = total[i, 0], total[i, 1]
-
-
-@kernel
-def _exchange(header: Array, agents: Array, book: Array) -> None:
-    """Swap what header and agents say of one robot with a book."""
-    for k in range(len(FELT)):
-        header[FELT[k]], book[k] = book[k], header[FELT[k]]
-    at = len(FELT)
-    for i in range(agents.shape[0]):
-        for k in range(len(TOUCH)):
-            agents[i, TOUCH[k]], book[at] = book[at], agents[i, TOUCH[k]]
-            at += 1
+            _begin_touch(touches, i, now, dt, depth, closing, math.hypot(vx, vy), side)
+        touches[i, TOUCH_END] = now
+        touches[i, TOUCH_IMPULSE] += force * dt
+        touches[i, TOUCH_PEAK] = max(touches[i, TOUCH_PEAK], force)
 
 
 @kernel
@@ -249,7 +223,7 @@ def bearing(robot: Array, x: float, y: float) -> float:
 
 @kernel
 def _begin_touch(
-    agents: Array,
+    touches: Array,
     i: int,
     now: float,
     dt: float,
@@ -259,13 +233,13 @@ def _begin_touch(
     side: float,
 ) -> None:
     since = min(dt, depth / closing) if closing > 0.0 else 0.0
-    agents[i, TOUCHING], agents[i, TOUCH_START] = 1.0, max(0.0, now - since)
-    agents[i, TOUCH_SPEED], agents[i, TOUCH_IMPULSE], agents[i, TOUCH_PEAK] = speed, 0.0, 0.0
-    agents[i, TOUCH_SIDE] = side
+    touches[i, TOUCHING], touches[i, TOUCH_START] = 1.0, max(0.0, now - since)
+    touches[i, TOUCH_SPEED], touches[i, TOUCH_IMPULSE], touches[i, TOUCH_PEAK] = speed, 0.0, 0.0
+    touches[i, TOUCH_SIDE] = side
 
 
 @kernel
-def _end_touch(header: Array, agents: Array, i: int) -> None:
-    agents[i, TOUCHING] = 0.0
-    agents[i, TOUCHES] += 1.0
-    header[CONTACTS] += 1.0
+def _end_touch(felt: Array, touches: Array, i: int) -> None:
+    touches[i, TOUCHING] = 0.0
+    touches[i, TOUCHES] += 1.0
+    felt[CONTACTS] += 1.0

@@ -15,8 +15,8 @@ from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.companion import Companion, Company
 from crowdbot.core.sim.control import ControlledRobot, add_robot
+from crowdbot.core.sim.crowd_system import CrowdSystem, add_crowd
 from crowdbot.core.sim.fate import Fate
-from crowdbot.core.sim.fleet.crowd_system import FleetCrowdSystem, add_fleet_crowd
 from crowdbot.core.sim.fleet.people_logger import PeopleLogger, add_people_logger
 from crowdbot.core.sim.fleet.pushes import connect_pushes
 from crowdbot.core.sim.fleet.recorder import add_fleet_recorder
@@ -53,7 +53,7 @@ class FleetBlocks:
     robots: tuple[ControlledRobot, ...]
     loggers: tuple[MetricLogger, ...]
     people: PeopleLogger
-    crowd: FleetCrowdSystem | None
+    crowd: CrowdSystem | None
     contacts: FleetContacts
 
 
@@ -76,7 +76,7 @@ def build_fleet(
         with _named(builder, built.name):
             robots.append(add_robot(builder, built.parts, built.model, built.robot.control))
 
-    crowd = add_fleet_crowd(builder, engine, builts, robots, fates)
+    crowd = add_crowd(builder, builts, robots, engine, fates)
     models = [built.model for built in builts]
     contacts = add_fleet_contacts(builder, models, robots, fates, [r.log for r in fleet])
 
@@ -104,26 +104,26 @@ def _add_mind(
     fleet: Sequence[FleetRobot],
     k: int,
     robots: Sequence[ControlledRobot],
-    crowd: FleetCrowdSystem | None,
+    crowd: CrowdSystem | None,
     contacts: FleetContacts,
     seed: int,
 ) -> MetricLogger:
     """Sensors, planner and watch of robot k, who sees and meets all others."""
-    one, robot, view = fleet[k], robots[k], None if crowd is None else crowd.view(k)
+    one, robot = fleet[k], robots[k]
     rest = [i for i in range(len(fleet)) if i != k]
     others = [Companion(fleet[i].built.model, robots[i].port) for i in rest]
     fates = [one.fate, *(fleet[i].fate for i in rest)]
-    company = Company(fates, others, contacts.on(k))
+    company = Company(k, fates, others, contacts.on(k))
     bank = add_sensors(
-        builder, one.built, robot, view, one.log.writer,
+        builder, one.built, robot, crowd, one.log.writer,
         seed=seed, company=company,
     )  # fmt: skip
     add_planner(
-        builder, one.built, robot, view, bank, one.host, one.log,
+        builder, one.built, robot, crowd, bank, one.host, one.log,
         privileged=one.privileged, company=company,
     )  # fmt: skip
     end = partial(contacts.finish, k)
-    return add_metric_logger(builder, one.built, robot, view, one.log, one.fate, end)
+    return add_metric_logger(builder, one.built, robot, crowd, one.log, one.fate, end)
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from pydrake.systems.framework import Context, DiagramBuilder, EventStatus, Leaf
 
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.crowd_system import CrowdOutputs
+from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
@@ -22,14 +22,16 @@ class PeopleLogger(LeafSystem):
 
     __slots__ = NO_ATTRIBUTES
 
-    def __init__(self, log: RunLog, crowd_size: int, rate: float, fates: Sequence[Fate]) -> None:
+    def __init__(
+        self, log: RunLog, crowd: CrowdSystem | None, rate: float, fates: Sequence[Fate]
+    ) -> None:
         super().__init__()
         self._log, self._fates = log, tuple(fates)
         self._ticks_per_sample, self._last_tick = ticks(rate), -1
         self._crowd = self._events = None
-        if crowd_size:
-            self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size)
-            self._events = self.DeclareVectorInputPort(ports.EVENTS, 1)
+        if crowd is not None:
+            self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd.state.size())
+            self._events = self.DeclareVectorInputPort(ports.EVENTS, crowd.events.size())
         self.DeclarePeriodicPublishEvent(TICK, 0.0, self._publish)
 
     def _publish(self, context: Context) -> EventStatus | None:
@@ -48,7 +50,7 @@ class PeopleLogger(LeafSystem):
     def _record_events(self, context: Context) -> None:
         if self._crowd is None or self._events is None:
             return
-        if int(self._events.Eval(context)[0]) != self._log.events:
+        if not self._log.has_recorded(self._events.Eval(context)):
             self._log.record_events(self._crowd.Eval(context))
 
     def finish(self, context: Context, t: float) -> None:
@@ -58,13 +60,13 @@ class PeopleLogger(LeafSystem):
 
 def add_people_logger(
     builder: DiagramBuilder,
-    crowd: CrowdOutputs | None,
+    crowd: CrowdSystem | None,
     log: RunLog,
     rate: float,
     fates: Sequence[Fate],
 ) -> PeopleLogger:
     """Add it to a diagram, after everything that watches robots."""
-    logger = PeopleLogger(log, 0 if crowd is None else crowd.state.size(), rate, fates)
+    logger = PeopleLogger(log, crowd, rate, fates)
     builder.AddNamedSystem("people_logger", logger)
     if crowd is not None:
         builder.Connect(crowd.state, logger.GetInputPort(ports.CROWD_STATE))

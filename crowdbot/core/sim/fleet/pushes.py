@@ -6,7 +6,7 @@ from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, Leaf
 
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control import ControlledRobot
-from crowdbot.core.sim.fleet.crowd_system import FleetCrowdSystem
+from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.fleet.robot_contacts import FleetContacts
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 
@@ -35,7 +35,7 @@ def connect_pushes(
     builder: DiagramBuilder,
     k: int,
     robot: ControlledRobot,
-    crowd: FleetCrowdSystem | None,
+    crowd: CrowdSystem | None,
     contacts: FleetContacts,
 ) -> None:
     """Let people and robots push robot k, if anything can."""
@@ -43,7 +43,6 @@ def connect_pushes(
         return
     total = builder.AddSystem(PushSum(robot, people=crowd is not None))
     if crowd is not None:
-        force = crowd.GetOutputPort(ports.of_robot(ports.ROBOT_FORCE, k))
-        builder.Connect(force, total.GetInputPort(ports.CROWD_STATE))
+        builder.Connect(crowd.force_on(k), total.GetInputPort(ports.CROWD_STATE))
     builder.Connect(contacts.on(k), total.GetInputPort(ports.ROBOT_PUSH))
     builder.Connect(total.GetOutputPort(ports.ROBOT_FORCE), robot.push_port)

@@ -67,10 +67,10 @@ def record_fleet(setup: RunSetup, builts: Mapping[str, BuiltRun]) -> Outcome:
         )
         stack.callback(_close, root, fates)
         fleet = [
-            _member(setup, built, engine, root, fates[name], stack)
-            for name, built in builts.items()
+            _member(setup, built, engine, root, fates[name], k, stack)
+            for k, (name, built) in enumerate(builts.items())
         ]
-        log = RunLog(root, ids(engine), aim=aim_of(engine))
+        log = RunLog(root, ids(engine), robot=None, aim=aim_of(engine))
         if engine is not None:
             _compile(engine, builts)
         return _run(setup, fleet, build_fleet(fleet, engine, log, seed=setup.seed))
@@ -80,8 +80,7 @@ def _compile(engine: CrowdEngine, builts: Mapping[str, BuiltRun]) -> None:
     """Compile kernels before the clock starts."""
     models = [built.model for built in builts.values()]
     engine.advance(
-        engine.initial_state(), rows_of(models), outlines_of(models),
-        books=engine.initial_books(len(models)), stiffnesses=np.ones(len(models)),
+        engine.initial_state(len(models)), rows_of(models), outlines_of(models),
     )  # fmt: skip
 
 
@@ -91,6 +90,7 @@ def _member(
     engine: CrowdEngine | None,
     root: RecordingWriter,
     fate: Fate,
+    number: int,
     stack: contextlib.ExitStack,
 ) -> FleetRobot:
     """One robot with its part of the recording and its planner."""
@@ -111,7 +111,7 @@ def _member(
     return FleetRobot(
         built=built,
         host=stack.enter_context(hosted(own, built, watchdog)),
-        log=RunLog(writer, ids(engine), sideways=sideways, people=False),
+        log=RunLog(writer, ids(engine), sideways=sideways, people=False, robot=number),
         fate=fate,
         privileged=choice.privileged,
     )

@@ -66,9 +66,9 @@ class Meeting:
         )  # fmt: skip
         world = CrowdWorld(response=response or Human())
         self.engine, self.outline = CrowdEngine(agents, world, _Walk()), outline
-        self.flat = self.engine.initial_state()
-        self.people = s.view(self.flat)[1]
         self.robots = np.array(robots, np.float64).reshape(-1, 8)
+        self.flat = self.engine.initial_state(max(1, len(self.robots)))
+        self.people = s.view(self.flat)[1]
         self.accelerations: list[Array] = []
 
     @property
@@ -94,7 +94,8 @@ class Meeting:
     @property
     def touched(self) -> bool:
         """Whether anybody has touched a robot."""
-        return bool(np.any(self.people[:, s.TOUCHES] + self.people[:, s.TOUCHING]))
+        each = (s.contact_with(self.flat, k)[1] for k in range(len(self.robots)))
+        return any(np.any(t[:, s.TOUCHES] + t[:, s.TOUCHING]) for t in each)
 
     @property
     def peak(self) -> float:

@@ -84,7 +84,8 @@ def _hits(id_: str, at: tuple[float, float], speed: float, seconds: float, caref
             row[0, 2] += max(-1.0 / 16.0, min(1.0 / 16.0, change))
         engine.advance(flat, row)
         row[0, 0] += row[0, 2] / TICKS
-    return int(flat[s.CONTACTS] + np.sum(people[:, s.TOUCHING]))
+    felt, touches = s.contact_with(flat)
+    return int(felt[s.CONTACTS] + np.sum(touches[:, s.TOUCHING]))
 
 
 @pytest.mark.slow

@@ -35,7 +35,7 @@ def _touched(ignores: object, response: Human | None = None) -> NDArray[np.bool_
     flat = engine.initial_state()
     for _ in range(25 * TICKS):
         engine.advance(flat, PARKED)
-    return np.asarray(rows(flat)[:, s.TOUCHES] > 0.0, np.bool_)
+    return np.asarray(s.contact_with(flat)[1][:, s.TOUCHES] > 0.0, np.bool_)
 
 
 def test_who_yields_never_touches_a_parked_robot_who_ignores_it_does() -> None:
@@ -65,7 +65,8 @@ def test_who_is_distracted_takes_no_notice_of_one_that_moves() -> None:
         for _ in range(8 * TICKS):
             engine.advance(flat, row)
             row[0, 0] += row[0, 2] / TICKS
-        states.append(rows(flat)[:, [s.X, s.Y, s.VX, s.VY, s.TOUCHES]].copy())
+        touches = s.contact_with(flat)[1][:, [s.TOUCHES]]
+        states.append(np.hstack([rows(flat)[:, [s.X, s.Y, s.VX, s.VY]], touches]))
     np.testing.assert_array_equal(states[0], states[1])
     assert np.any(states[0][:, 4] > 0.0)
 
