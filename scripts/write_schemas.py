@@ -1,4 +1,6 @@
-"""Writes scenario_specs/schema from the built-in components; a test compares the files with them.
+"""Write the JSON Schemas of the built-in components into scenario_specs/schema, for editors.
+
+The folder is not committed: ``make setup`` and the build of a wheel run this.
 
 Example: .venv/bin/python scripts/write_schemas.py
 """
@@ -9,17 +11,18 @@ from pathlib import Path
 
 from crowdbot.cli.commands.schema import DocumentKind, build, to_text
 from crowdbot.core.registry.registry import discover
+from crowdbot.core.support.atomic_write import atomic_write
 
 FOLDER = Path(__file__).parent.parent / "scenario_specs" / "schema"
 
 
 def schema_texts() -> dict[str, str]:
-    """File name -> text of every committed schema."""
-    registry = discover(allow=())
+    """Return file name -> text of every schema."""
+    registry = discover(entry_points=False)
     return {f"{d}.v1.schema.json": to_text(build(d, registry)) for d in DocumentKind}
 
 
 if __name__ == "__main__":
     FOLDER.mkdir(exist_ok=True)
     for name, text in schema_texts().items():
-        (FOLDER / name).write_text(text, encoding="utf-8")
+        atomic_write(FOLDER / name, text.encode())

@@ -2,12 +2,7 @@
 
 A module ``crowdbot/cli/commands/x.py`` offers the command ``x``: a function ``x``, or a
 `typer.Typer` named ``x`` for a command with commands of its own. Its docstring ends with an
-example. Heavy
-imports stay inside functions: ``--help`` imports every command. Modules that begin with an
-underscore are not commands.
-
-What people type most often, names and no options, is called without typer, which takes longer than
-some of these commands (`_plain`).
+example. Heavy imports stay inside functions: ``--help`` imports every command.
 """
 
 from __future__ import annotations
@@ -17,14 +12,12 @@ import logging
 import os
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext, redirect_stdout
-from functools import partial
 from pathlib import Path
 
 from crowdbot.cli.app.command_names import command_names
 from crowdbot.cli.app.mishaps import left_by, tell_of_threads
-from crowdbot.cli.app.plain import plain_call
 from crowdbot.core.registry.plugin_errors import telling_interrupts
 from crowdbot.core.support.gc_throttle import collect_seldom
 from crowdbot.core.support.skip_final_gc import end_without_collecting
@@ -78,7 +71,7 @@ def _run(argv: Sequence[str] | None) -> int:
         os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
         with _silence() if _wants_silence(words) else nullcontext():
-            code = (plain_call(words) or _with_options(words))()
+            _dispatch(words)
         sys.stdout.flush()
     except SystemExit as done:
         if isinstance(done.__context__, BrokenPipeError):  # rich makes an exit of it
@@ -87,14 +80,14 @@ def _run(argv: Sequence[str] | None) -> int:
             raise
         sys.stdout.flush()
         return done.code if isinstance(done.code, int) else int(done.code is not None)
-    return code or 0
+    return 0
 
 
-def _with_options(words: list[str]) -> Callable[[], int | None]:
-    """A call of any command, as typer reads it."""
+def _dispatch(words: list[str]) -> None:
+    """Run a command; typer is loaded here, where nothing is printed with ``-q``."""
     from crowdbot.cli.app.typer_app import run
 
-    return partial(run, words)
+    run(words)
 
 
 #: Commands that read documents, tell about them, and are over: a process of theirs is short.

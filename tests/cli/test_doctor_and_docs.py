@@ -6,7 +6,6 @@ import json
 import os
 import subprocess
 import sys
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -17,13 +16,11 @@ from rich.console import Console
 
 from crowdbot import cli
 from crowdbot.cli.app import complete as _complete
-from crowdbot.cli.app.builtin_names import BUILTIN_NAMES
 from crowdbot.cli.commands.docs import _excerpt
 from crowdbot.cli.output import doctor as _doctor
+from crowdbot.core.registry.registry import discover
 from crowdbot.core.scoring.scores_csv import scores_table
 from crowdbot.core.types.score import Score
-from scripts.write_completion_names import FILE as FILE_OF_NAMES
-from scripts.write_completion_names import text as names_text
 from tests.paths import ROOT
 
 FILE = str(ROOT / "docs" / "tutorial" / "files" / "my_scenario.yaml")
@@ -92,20 +89,13 @@ def test_a_shell_completes(tmp_path: Path) -> None:
     assert "challenge-2026" in _completed(["expand", "challenge"], tmp_path)
 
 
-def test_names_of_our_components_are_current() -> None:
-    assert FILE_OF_NAMES.read_text(encoding="utf-8") == names_text(), (
-        "run scripts/write_completion_names.py"
-    )
-
-
-@pytest.mark.parametrize("others", [False, True])
-def test_only_plugins_of_others_are_looked_for(
-    others: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    ours = metadata.EntryPoint("builtin", "crowdbot.plugins", "crowdbot")
-    theirs = metadata.EntryPoint("acme", "crowdbot_acme", "crowdbot")
+def test_names_of_kinds_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(metadata, "entry_points", lambda **_: [ours, theirs][: 1 + others])
+    registry = discover()
+    for what, category in (("planner", "planner"), ("metrics", "metric")):
+        complete = _complete.offer(what)
+        assert complete is not None
+        assert complete(None, None, "") == sorted(registry.components(category))
     asked: list[int] = []
 
     def discovered() -> dict[str, list[str]]:
@@ -115,9 +105,11 @@ def test_only_plugins_of_others_are_looked_for(
     monkeypatch.setattr(_complete, "_discovered", discovered)
     complete = _complete.offer("planner")
     assert complete is not None
+    assert "dwa" in complete(None, None, "d"), "from the cache"
+    monkeypatch.setattr(_complete, "_state", lambda: "something was installed")
     for _ in range(2):
-        assert complete(None, None, "") == (["x"] if others else BUILTIN_NAMES["planners"])
-    assert len(asked) == others, "the second time from the cache"
+        assert complete(None, None, "") == ["x"]
+    assert len(asked) == 1, "the second time from the cache"
 
 
 def test_ids_of_a_file_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

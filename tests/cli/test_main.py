@@ -7,7 +7,6 @@ import sys
 import pytest
 
 from crowdbot import cli
-from crowdbot.cli.app.plain import plain_call
 from crowdbot.cli.app.typer_app import load
 from crowdbot.core.registry.plugin_errors import UserInterrupt
 from crowdbot.errors import CrowdbotError, PluginError, SimulationError, UsageError
@@ -123,47 +122,15 @@ def test_words_load_neither_drake_nor_numba(argv: list[str]) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("argv", [["validate", "challenge-2020"], ["expand", "challenge-2020"]])
-def test_names_alone_load_no_parser_metric_or_planner(argv: list[str]) -> None:
+def test_names_alone_load_no_metric_or_planner(argv: list[str]) -> None:
     """Each would take a tenth of the command's time."""
     code = (
         "import sys; from crowdbot.cli import main; code = main(sys.argv[1:]); "
-        "more = {'typer', 'rich', 'crowdbot.plugins.metrics', 'crowdbot.plugins.planners'}; "
+        "more = {'crowdbot.plugins.metrics', 'crowdbot.plugins.planners'}; "
         "assert not more & set(sys.modules), more & set(sys.modules); sys.exit(code)"
     )
     done = run("-c", code, *argv)
     assert done.returncode == 0, done.stderr
-
-
-@pytest.mark.parametrize(
-    "argv",
-    [
-        ["validate", "tests/data/nowhere.yaml"],
-        ["validate", "challenge-2020", "challenge-2021"],
-        ["validate", "social-guidelines", "nowhere"],
-        ["expand", "social-guidelines"],
-        ["expand", "social-guidelines", "--count"],
-        ["expand", "nowhere"],
-    ],
-)
-def test_names_alone_answer_as_with_the_parser(
-    argv: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    plain = cli.main(argv), capsys.readouterr()
-    monkeypatch.setattr("crowdbot.cli.plain_call", lambda _: None)
-    assert (cli.main(argv), capsys.readouterr()) == plain
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        [], ["validate"], ["expand"], ["validate", "-h"], ["validate", "a.yaml", "--json"],
-        ["expand", "a", "b"], ["expand", "a", "--count", "--count"], ["expand", "--count"],
-        ["lock", "a"], ["validate", "--", "a"],
-    ],
-)  # fmt: skip
-def test_everything_else_goes_through_the_parser(words: list[str]) -> None:
-    assert plain_call(words) is None
-    assert plain_call(["validate", "a.yaml", "b"]) is not None
 
 
 def test_module_can_be_run() -> None:

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.dsl.identity.canonical import canonical_bytes, content_hash, dump_scenario_yaml
-from crowdbot.dsl.scenario.lock import flatten
+from crowdbot.dsl.scenario.field_hashes import flatten
 from crowdbot.dsl.scenario.scenario import OUTSIDE_HASH, Scenario
 from crowdbot.dsl.suite.expand import expand_document, load_document
 from crowdbot.errors import SpecError

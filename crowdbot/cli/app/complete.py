@@ -1,8 +1,8 @@
-"""What a shell offers for suites, scenarios, planners and metrics.
+"""Shell completion of suites, scenarios, planners and metrics.
 
-Names of crowdbot's own kinds are a table. Where plugins of others are installed, names of kinds are
-kept in the user's cache, and so are ids of a suite, so that pressing the tab key costs no
-validation: whatever is installed, or the file, having changed makes them anew.
+Names of kinds and ids of suites are kept in the user's cache, so that pressing the tab key loads
+no component and validates nothing. A change of the installed packages or of a suite's file renews
+them.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ OFFERS = {
 
 
 def offer(name: str) -> Callable[[Any, Any, str], list[str]] | None:
-    """What completes a parameter of this name; None: whatever the shell does of itself."""
+    """Return what completes a parameter of this name; None: the shell's own completion."""
     what = OFFERS.get(name)
     if what is None:
         return None
@@ -85,13 +85,7 @@ def _expanded(spec: str) -> list[str]:
 
 
 def _kinds() -> dict[str, list[str]]:
-    """Names of planners, metrics and packaged suites; only plugins of others have to be loaded."""
-    from importlib.metadata import entry_points
-
-    from crowdbot.cli.app.builtin_names import BUILTIN_NAMES
-
-    if all(entry.value == "crowdbot.plugins" for entry in entry_points(group="crowdbot")):
-        return BUILTIN_NAMES
+    """Return the names of planners, metrics and packaged suites."""
     kept: dict[str, list[str]] = _kept("kinds", _state(), _discovered)
     return kept
 
@@ -109,16 +103,17 @@ def _discovered() -> dict[str, list[str]]:
 
 
 def _state() -> str:
-    """Changes whenever something is installed, or our own components change."""
+    """Return a text that changes when something is installed, or our own components change."""
     places = [Path(p) for p in sys.path if p.endswith(("site-packages", "dist-packages"))]
     own = Path(__file__).parent.parent.parent / "plugins"
-    places += [own, *(p for p in own.rglob("*") if p.is_dir()), _packaged_folder()]
+    newest = max(own.rglob("*.py"), key=lambda p: p.stat().st_mtime_ns)
+    places += [newest, *(p for p in own.rglob("*") if p.is_dir()), _packaged_folder()]
     allowed = os.environ.get("CROWDBOT_PLUGINS", "")
-    return " ".join([allowed, *(f"{p} {p.stat().st_mtime_ns}" for p in places if p.is_dir())])
+    return " ".join([allowed, *(f"{p} {p.stat().st_mtime_ns}" for p in places if p.exists())])
 
 
 def _kept(what: str, key: str, make: Callable[[], Any]) -> Any:
-    """What was made for a key, from the user's cache where it is there."""
+    """Return what was made for a key, from the user's cache if it is there."""
     base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "crowdbot" / _CACHE
     file = base / f"{what}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.json"
     try:

@@ -31,7 +31,8 @@ def lock(
     """Draw the agents of a suite once and freeze them, with the hashes of its scenarios.
 
     NAME.lock.json and NAME.agents.csv are written beside NAME.yaml; crowdbot simulate then reads
-    the agents and never draws them. Agents whose scenarios did not change are kept.
+    the agents and never draws them. Agents whose scenarios did not change are kept. A suite that
+    draws the same agents as one that it extends shares the other's file.
 
     Example: crowdbot lock my_suite.yaml; crowdbot lock challenge-2020 --check
     """
@@ -75,15 +76,14 @@ def _write(
     from crowdbot.core.scenarios.lock import make_lock, write_lock
 
     check_writable(files)
-    keep = files.lock_path.exists() and not redraw
-    made = make_lock(expansion, registry, files if keep else None)
+    made = make_lock(expansion, registry, files, redraw=redraw)
     write_lock(files, made)
     scenarios, draws = len(made.lock.scenarios), len(made.lock.draws)
     if as_json:
         document = {
             "suite": expansion.suite_id,
             "lock": str(files.lock_path),
-            "agents": str(files.agents_path),
+            "agents": str(made.agents_path(files)),
             "scenarios": scenarios,
             "draws": draws,
             "drawn": made.drawn,
@@ -94,4 +94,6 @@ def _write(
         f"{expansion.suite_id}: {plural(scenarios, 'scenario')}, "
         f"{plural(draws, 'table')} of agents ({made.drawn} drawn, {draws - made.drawn} kept)"
     )
-    typer.echo(f"wrote {files.lock_path} and {files.agents_path.name}")
+    shared = made.lock.agents
+    agents = f"which shares {shared}" if shared else f"and {files.own_agents_path.name}"
+    typer.echo(f"wrote {files.lock_path} {agents}")

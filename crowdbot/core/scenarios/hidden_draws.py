@@ -21,7 +21,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.library import OpenDocument, check_writable, open_document
 from crowdbot.core.support.atomic_write import atomic_write
-from crowdbot.dsl.scenario.lock import LockFiles, changes, flatten
+from crowdbot.dsl.scenario.field_hashes import changes, flatten
+from crowdbot.dsl.scenario.lock import LockFiles
 from crowdbot.dsl.suite.commitment import (
     COMMITMENT,
     SALT,

@@ -1,4 +1,4 @@
-"""Locks with their tables: the agents of a suite are drawn once, and read ever after."""
+"""Locks with their tables: the agents of a suite are drawn once, then read."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import metadata
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Literal
 
 from crowdbot.core.environments.build import build_environment
@@ -19,18 +19,13 @@ from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.lock_check import check_fits, check_revealed, spec_of, values_of
 from crowdbot.dsl.identity.population_inputs import population_inputs
-from crowdbot.dsl.scenario.lock import (
-    LOCK,
-    Lock,
-    LockedScenario,
-    LockedTable,
-    LockFiles,
-    join_tables,
-    split_values,
-    table_hash,
-)
+from crowdbot.dsl.scenario.agent_tables import join_tables, table_hash
+from crowdbot.dsl.scenario.field_hashes import FieldHashes, hash_fields
+from crowdbot.dsl.scenario.lock import LOCK, Lock, LockedScenario, LockedTable, LockFiles
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.text.diagnostics import Mark
+from crowdbot.dsl.text.nodes import Node
 from crowdbot.errors import InputError
 
 _NAME = re.compile(r"[A-Za-z0-9_.+-]+")
@@ -50,10 +45,10 @@ class Population:
 
 
 def _check_draw(files: LockFiles, scenario: Scenario, origin: Scenario, name: str | None) -> None:
-    """Whether the people of a scenario are those that the lock names for it.
+    """Check that the people of a scenario are those that the lock names for it.
 
     Raises:
-        InputError: somebody edited the lock.
+        InputError: the lock was edited.
     """
     locked = files.lock.scenarios[origin.id]
     if population_inputs(scenario) != population_inputs(origin) or locked.draw is None:
@@ -74,6 +69,11 @@ class Made:
     lock: Lock
     tables: Mapping[str, str]
     drawn: int
+
+    def agents_path(self, files: LockFiles) -> Path:
+        """Return the file of the tables: the suite's own, or the one that it shares."""
+        shared = self.lock.agents
+        return files.lock_path.with_name(shared) if shared else files.own_agents_path
 
 
 def population(scenario: Scenario, registry: Registry) -> Population:
@@ -105,14 +105,23 @@ def population(scenario: Scenario, registry: Registry) -> Population:
         ) from None
 
 
-def make_lock(expansion: Expansion, registry: Registry, old: LockFiles | None) -> Made:
-    """Freeze a suite; tables whose inputs did not change since ``old`` are kept as they are.
+def make_lock(
+    expansion: Expansion, registry: Registry, files: LockFiles, *, redraw: bool = False
+) -> Made:
+    """Freeze a suite; tables whose inputs did not change are kept as they are.
+
+    Args:
+        expansion: of the suite.
+        registry: the installed components.
+        files: of its lock, which need not exist.
+        redraw: keep no table.
 
     Raises:
         InputError: a crowd cannot be drawn or is hidden, or the old lock is not a lock.
     """
     for scenario in expansion.scenarios:
         check_revealed(scenario)
+    old = files if files.lock_path.exists() and not redraw else None
     locked, drawn = dict[str, LockedTable](), 0
     tables, by_inputs = dict[str, str](), dict[str, str]()
     for scenario in _with_crowd(expansion):
@@ -125,14 +134,17 @@ def make_lock(expansion: Expansion, registry: Registry, old: LockFiles | None) -
         name = _free_name(scenario, expansion.suite_id, locked)
         by_inputs[inputs], tables[name] = name, table
         locked[name] = LockedTable(inputs=inputs, realisation=table_hash(table))
-    scenarios, common = _scenarios(expansion, registry, by_inputs, locked)
+    fields = hash_fields({s.id: values_of(s) for s in expansion.scenarios})
+    scenarios = _scenarios(expansion, registry, by_inputs, locked, fields)
     kinds = {k: v for s in expansion.scenarios for k, v in registry.spec_versions(s).items()}
     lock = Lock(
         lock=LOCK,
         crowdbot=metadata.version("crowdbot"),
         suite=expansion.suite_id,
+        agents=_shared_file(expansion, files, join_tables(tables)),
         kinds=dict(sorted(kinds.items())),
-        common=common,
+        common=fields.common,
+        places=list(fields.places),
         draws=locked,
         scenarios=scenarios,
     )
@@ -142,13 +154,14 @@ def make_lock(expansion: Expansion, registry: Registry, old: LockFiles | None) -
 def write_lock(files: LockFiles, made: Made) -> None:
     """Write both files under temporary names, then rename them; both or neither.
 
+    A file of tables that is shared with another suite is left alone.
+
     Raises:
         InputError: the folder cannot be written to.
     """
-    texts = {
-        files.agents_path: join_tables(made.tables),
-        files.lock_path: made.lock.text(),
-    }
+    texts = {files.lock_path: made.lock.text()}
+    if made.lock.agents is None:
+        texts = {files.own_agents_path: join_tables(made.tables), **texts}
     parts = {path: path.with_name(f".{path.name}.{os.getpid()}.part") for path in texts}
     before = {path: path.read_bytes() if path.exists() else None for path in texts}
     try:
@@ -169,6 +182,28 @@ def write_lock(files: LockFiles, made: Made) -> None:
     finally:
         for part in parts.values():
             part.unlink(missing_ok=True)
+    if made.lock.agents is not None:
+        files.own_agents_path.unlink(missing_ok=True)
+
+
+def _shared_file(expansion: Expansion, files: LockFiles, text: str) -> str | None:
+    """Return the name of a file with the same tables, of a suite that this one extends."""
+    tree = next(iter(expansion.trees.values()), None)
+    for source in sorted({mark.source.name for mark in _marks(tree)}) if tree else ():
+        path = files.lock_path.with_name(PurePath(source.rpartition(":")[2]).name)
+        other = path.with_suffix(".agents.csv")
+        if other == files.own_agents_path or not other.is_file():
+            continue
+        if other.read_bytes() == text.encode():
+            return other.name
+    return None
+
+
+def _marks(node: Node) -> Iterator[Mark]:
+    """Yield where each value of a tree is written."""
+    yield node.mark
+    for entry in node.entries.values():
+        yield from _marks(entry.node)
 
 
 def _drawn(scenario: Scenario, registry: Registry) -> Realisation:
@@ -176,9 +211,11 @@ def _drawn(scenario: Scenario, registry: Registry) -> Realisation:
 
 
 def _kept(old: LockFiles | None, inputs: str) -> str | None:
-    """The table that was drawn from these inputs before, if it is there, whole and up to date."""
-    name = old.lock.table_of(inputs) if old else None
-    if old is None or name is None:
+    """Return the table that was drawn from these inputs before, if it is whole and up to date."""
+    if old is None:
+        return None
+    name = next((n for n, table in old.draws.items() if table.inputs == inputs), None)
+    if name is None:
         return None
     try:
         table = old.table(name)
@@ -209,8 +246,8 @@ def _scenarios(
     registry: Registry,
     by_inputs: Mapping[str, str],
     locked: Mapping[str, LockedTable],
-) -> tuple[dict[str, LockedScenario], dict[str, object]]:
-    common, rest = split_values({s.id: values_of(s) for s in expansion.scenarios})
+    fields: FieldHashes,
+) -> dict[str, LockedScenario]:
     found = {}
     for scenario in expansion.scenarios:
         name = by_inputs[population_inputs(scenario)] if scenario.crowd is not None else None
@@ -218,9 +255,9 @@ def _scenarios(
             spec=spec_of(scenario, registry),
             realisation=locked[name].realisation if name else Realisation.nobody().hash,
             draw=name,
-            values=rest[scenario.id],
+            varied=list(fields.varied[scenario.id]),
         )
-    return found, common
+    return found
 
 
 def _write(path: Path, content: bytes) -> None:

@@ -1,4 +1,4 @@
-"""Whether a lock still fits its suite: hashes, fields and tables as text; nothing is drawn."""
+"""Comparison of a lock with its suite: hashes and tables as text; nothing is drawn."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from typing import Any
 from crowdbot.core.registry.registry import Registry
 from crowdbot.dsl.identity.canonical import content_hash, plain
 from crowdbot.dsl.identity.population_inputs import population_inputs
-from crowdbot.dsl.scenario.lock import Lock, LockFiles, Values, changes, flatten
+from crowdbot.dsl.scenario.field_hashes import Values, flatten
+from crowdbot.dsl.scenario.lock import Lock, LockFiles
 from crowdbot.dsl.scenario.scenario import OUTSIDE_HASH, Scenario
 from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import InputError
@@ -50,7 +51,7 @@ def spec_of(scenario: Scenario, registry: Registry) -> str:
 
 
 def check_revealed(scenario: Scenario) -> None:
-    """Whether the people of a scenario are known.
+    """Check that the people of a scenario are known.
 
     Raises:
         InputError: their seed is hidden; the message says how to practise.
@@ -63,12 +64,12 @@ def check_revealed(scenario: Scenario) -> None:
 
 
 def values_of(scenario: Scenario) -> Values:
-    """What is hashed of a scenario, by dotted path."""
+    """Return what is hashed of a scenario, by dotted path."""
     return flatten({k: v for k, v in plain(scenario).items() if k not in OUTSIDE_HASH})
 
 
 def check_fits(files: LockFiles, scenario: Scenario, registry: Registry) -> None:
-    """Whether one scenario is still the one that was locked.
+    """Check that one scenario is still the one that was locked.
 
     Raises:
         InputError: it is not; the message says what changed, and names ``crowdbot lock``.
@@ -111,11 +112,11 @@ def _of_scenarios(expansion: Expansion, lock: Lock, registry: Registry) -> Itera
 
 
 def _changed(lock: Lock, scenario: Scenario, registry: Registry) -> list[str]:
-    """What changed in a scenario, in words; nothing if its hash is the locked one."""
+    """Return what changed in a scenario, in words; nothing if its hash is the locked one."""
     locked, spec = lock.scenarios[scenario.id], spec_of(scenario, registry)
     if spec == locked.spec:
         return []
-    found = list(changes(lock.values_of(scenario.id), values_of(scenario)))
+    found = lock.changes(scenario.id, values_of(scenario))
     found += [
         f"version of '{kind}': {lock.kinds.get(kind)} -> {version}"
         for kind, version in registry.spec_versions(scenario).items()

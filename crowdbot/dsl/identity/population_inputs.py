@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from crowdbot.dsl.scenario.lock import table_hash
+from crowdbot.dsl.scenario.agent_tables import table_hash
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.scenario.spawning import CLEAR_OF_ROBOT
 from crowdbot.dsl.spec.areas import Area

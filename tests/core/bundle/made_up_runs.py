@@ -52,7 +52,7 @@ def write_suite(folder: Path) -> Path:
     path = folder / "tiny.yaml"
     path.write_text(TINY, encoding="utf-8")
     expansion, lock = open_suite(str(path), registry())
-    write_lock(lock, make_lock(expansion, registry(), None))
+    write_lock(lock, make_lock(expansion, registry(), lock))
     return path
 
 

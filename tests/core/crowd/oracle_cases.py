@@ -11,7 +11,7 @@ import numpy as np
 from crowdbot.core.crowd.build import build_cost
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.plugin import CostFunctionSpec
-from crowdbot.testing.crowd_oracle_case import Case, case_of
+from scripts.crowd_oracle.case import Case, case_of
 from tests.core.crowd.crowd_reference import agents_of
 from tests.paths import DATA
 

@@ -15,8 +15,8 @@ from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
 from crowdbot.core.registry.registry import discover
 from crowdbot.plugins.crowd.cost_functions.social_forces_avoidance import SocialForcesAvoidanceSpec
-from crowdbot.testing.crowd_oracle_judge import CLOSE, PERTURBATION, by_perturbed_input
 from crowdbot.testing.crowd_views import random_view
+from scripts.crowd_oracle.judge import CLOSE, PERTURBATION, by_perturbed_input
 
 pytestmark = pytest.mark.slow
 

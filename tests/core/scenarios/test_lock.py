@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from crowdbot.core.scenarios.library import open_spec, open_suite
 from crowdbot.core.scenarios.lock import make_lock, population, write_lock
 from crowdbot.core.scenarios.lock_check import differences
 from crowdbot.dsl.identity.canonical import dump_scenario_yaml
-from crowdbot.dsl.scenario.lock import join_tables, split_tables
+from crowdbot.dsl.scenario.agent_tables import join_tables, split_tables, table_hash
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.suite.expand import Expanding
 from crowdbot.errors import InputError
@@ -45,7 +46,7 @@ def suite(tmp_path: Path) -> Path:
 
 def relock(file: Path) -> int:
     expansion, files = open_suite(str(file), REGISTRY)
-    made = make_lock(expansion, REGISTRY, files if files.lock_path.exists() else None)
+    made = make_lock(expansion, REGISTRY, files)
     write_lock(files, made)
     return made.drawn
 
@@ -61,7 +62,7 @@ def found(file: Path) -> list[tuple[str, str]]:
 
 @pytest.fixture
 def no_drawing(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(_: Scenario) -> None:
+    def refuse(*_: object) -> None:
         raise AssertionError("agents were drawn")
 
     monkeypatch.setattr(locks, "realise", refuse)
@@ -134,7 +135,7 @@ def test_a_lock_that_does_not_fit_is_an_error(suite: Path) -> None:
     suite.write_text(SUITE.replace("r2: {", "r3: {").replace("range: 1", "range: 1.5"))
     one, other, *_ = opened(suite)
     with pytest.raises(
-        InputError, match=r"crowd.costs.reflex.range.value: 1.0 -> 1.5.*'crowdbot lo"
+        InputError, match=r"crowd.costs.reflex.range.value: changed, now 1.5.*'crowdbot lo"
     ):
         population(one, REGISTRY)
     with pytest.raises(InputError, match=r"no scenario slow-r3.*'crowdbot lock"):
@@ -187,7 +188,8 @@ def test_a_written_scenario_without_lock_is_drawn(suite: Path) -> None:
         ("[]", "is not a lock"),
         ("[" * 100_000, "is not a lock"),
         ("{}", "is not a lock: lock"),
-        ('{"lock": 2, "crowdbot": "3.0"}', r"written by crowdbot 3\.0.*upgrade"),
+        ('{"lock": 3, "crowdbot": "3.0"}', r"written by crowdbot 3\.0.*upgrade"),
+        ('{"lock": 1, "crowdbot": "0.1.0"}', r"lock format 1, .* renew it with 'crowdbot lock "),
     ],
 )
 def test_broken_locks(suite: Path, text: str, message: str) -> None:
@@ -223,8 +225,66 @@ def test_the_lock_says_what_it_holds(suite: Path) -> None:
     one = content["scenarios"]["fast-r2"]
     assert one["draw"] == "fast"
     assert one["realisation"] == content["draws"]["fast"]["realisation"]
-    assert one["values"] == {"crowd.costs.reflex.range.value": 2.0, "crowd.speed.mean": 2.0,
-                             "crowd.seed.key": "fast"}  # fmt: skip
+    assert content["places"] == [
+        "crowd.costs.reflex.range.value", "crowd.seed.key", "crowd.speed.mean"
+    ]  # fmt: skip
+    assert all(
+        re.fullmatch("[0-9a-f]{8}", x) for x in [*one["varied"], *content["common"].values()]
+    )
+    assert one["varied"][1:] == content["scenarios"]["fast-r1"]["varied"][1:]
+    assert one["varied"][0] == content["scenarios"]["slow-r2"]["varied"][0]
+
+
+@pytest.mark.parametrize(
+    ("written", "instead", "named"),
+    [
+        ("base: {", "base: {crowd.body.mass: 70, ", "crowd.body.mass: changed, now 70.0"),
+        ("slow: {crowd.speed.mean: 1}", "slow: {crowd.speed.mean: 1.1}",
+         "crowd.speed.mean: changed, now 1.1"),
+        ("base: {", "base: {crowd.costs.other: {kind: power_law}, ",
+         "crowd.costs.other.kind: new, \"power_law\""),
+        ("base: {", "base: {crowd.costs.reflex: {kind: power_law}, ", "crowd.costs.reflex.w: gone"),
+    ],
+)  # fmt: skip
+def test_what_changed_is_named(suite: Path, written: str, instead: str, named: str) -> None:
+    suite.write_text(SUITE.replace(written, instead))
+    expansion, files = open_suite(str(suite), REGISTRY)
+    by_id = {d.id: d for d in differences(expansion, files, REGISTRY) if d.what == "changed"}
+    assert named in by_id["slow-r1"].details
+
+
+def test_a_lock_of_format_1_is_renewed_with_its_tables(suite: Path) -> None:
+    lock, table = suite.with_name("s.lock.json"), suite.with_name("s.agents.csv")
+    before = table.read_text().replace("\nslow,0,", "\nslow,00,", 1)  # as never drawn
+    table.write_text(before)
+    content = json.loads(lock.read_text())
+    content["lock"] = 1
+    content["draws"]["slow"]["realisation"] = table_hash(split_tables(before, "")["slow"])
+    lock.write_text(json.dumps(content))
+    with pytest.raises(InputError, match=r"lock format 1.*which keeps the agents"):
+        population(opened(suite)[0], REGISTRY)
+    assert relock(suite) == 0
+    assert table.read_text() == before
+    assert found(suite) == []
+
+
+def test_a_suite_with_the_agents_of_the_one_it_extends_shares_their_file(suite: Path) -> None:
+    other = suite.with_name("t.yaml")
+    text = "crowdbot: 1\nextends: s.yaml\nsuite.id: t\nbase.crowd.costs.reflex.weight: 3\n"
+    other.write_text(text)
+    assert relock(other) == 4
+    assert json.loads(other.with_name("t.lock.json").read_text())["agents"] == "s.agents.csv"
+    assert not other.with_name("t.agents.csv").exists()
+    assert found(other) == []
+    assert population(opened(other)[0], REGISTRY).source == "locked"
+    other.write_text(text + "base.crowd.body.mass: 70\n")
+    assert relock(other) == 4
+    assert json.loads(other.with_name("t.lock.json").read_text())["agents"] is None
+    assert other.with_name("t.agents.csv").exists()
+    assert found(other) == found(suite) == []
+    other.write_text(text)
+    assert relock(other) == 4
+    assert not other.with_name("t.agents.csv").exists()
 
 
 @pytest.mark.usefixtures("no_drawing")

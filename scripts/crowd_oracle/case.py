@@ -16,7 +16,7 @@ from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.types.arrays import Array
 from crowdbot.dsl.spec.component_specs import CostFunctionSpec
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
-from crowdbot.testing.crowd_oracle_policy import cost_spec, policy_spec
+from scripts.crowd_oracle.policy import cost_spec, policy_spec
 
 #: Arrays of a case's trajectories.
 COLUMNS = ("t", "id", "x", "y", "vx", "vy")

@@ -1,6 +1,6 @@
 """Compare our crowd engine with recorded steps of the original one.
 
-``python -m crowdbot.testing.crowd_oracle FOLDER [--json] [--case NAME ...]`` replays every case of
+``python -m scripts.crowd_oracle FOLDER [--json] [--case NAME ...]`` replays every case of
 a folder of ``NAME.json`` and ``NAME.npz`` files one step at a time, with the original's defects
 switched on, and prints residuals, ties and misses. Exit code 1 if there is a miss or a case that
 cannot be read, 2 for wrong usage.
@@ -14,8 +14,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from crowdbot.testing.crowd_oracle_case import load
-from crowdbot.testing.crowd_oracle_judge import Verdict, judge
+from scripts.crowd_oracle.case import load
+from scripts.crowd_oracle.judge import Verdict, judge
 
 _HEADER = (
     f"{'case':42} {'samples':>8} {'outright':>9} {'perturbed':>9} {'by cost':>8} "
@@ -31,7 +31,7 @@ def cases(folder: Path) -> list[str]:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Entry point; returns the exit code."""
     parser = argparse.ArgumentParser(
-        prog="python -m crowdbot.testing.crowd_oracle",
+        prog="python -m scripts.crowd_oracle",
         description="Replay recorded steps of the original crowd engine.",
     )
     parser.add_argument("folder", type=Path, help="folder of NAME.json and NAME.npz files")

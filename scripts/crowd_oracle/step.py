@@ -20,8 +20,8 @@ from crowdbot.core.registry.registry import discover
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array, Mask
 from crowdbot.plugins.crowd.policies.velocity_space_build import VelocitySpace
-from crowdbot.testing.crowd_oracle_case import Case
-from crowdbot.testing.crowd_oracle_quirks import push_out_of_reach
+from scripts.crowd_oracle.case import Case
+from scripts.crowd_oracle.quirks import push_out_of_reach
 
 
 class Stepper:

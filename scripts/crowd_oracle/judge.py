@@ -1,4 +1,4 @@
-"""Whether our crowd does what the original did, one step at a time.
+"""Comparison of steps of our crowd with those of the original, one at a time.
 
 Single precision decides ties and thresholds, and symmetric layouts are full of them. A sample (one
 agent in one step) that differs is *reachable* if a perturbed input makes our engine produce it,
@@ -20,8 +20,8 @@ from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
 from crowdbot.core.crowd.velocity_search.gradient import Descent
 from crowdbot.core.crowd.velocity_search.sampling import Sampler
 from crowdbot.core.types.arrays import Array, Mask
-from crowdbot.testing.crowd_oracle_case import Case
-from crowdbot.testing.crowd_oracle_step import Stepper
+from scripts.crowd_oracle.case import Case
+from scripts.crowd_oracle.step import Stepper
 
 #: Velocities closer than this agree, m/s.
 CLOSE = 5e-4

@@ -1,4 +1,4 @@
-"""Contact as the original limits it: nobody is pushed by what lies beyond the policy's range."""
+"""Contact as the original limits it: nothing beyond the range of the policy pushes anybody."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from crowdbot.core.crowd.periodic_boundary import images
 from crowdbot.core.types.arrays import Array
-from crowdbot.testing.crowd_oracle_case import Case
+from scripts.crowd_oracle.case import Case
 
 
 def push_out_of_reach(case: Case, state: Array, reach: Array) -> Array:
