@@ -57,7 +57,7 @@ def test_check_lists_every_difference(suite: Path, capsys: Captured) -> None:
     found = json.loads(capsys.readouterr().out)
     assert found["ok"] is False
     assert found["differences"][0] == {
-        "what": "changed", "id": "slow", "details": ["crowd.speed.mean: 1.0 -> 1.1"],
+        "what": "changed", "id": "slow", "details": ["crowd.speed.mean: changed, now 1.1"],
     }  # fmt: skip
 
 
