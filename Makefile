@@ -115,5 +115,5 @@ lock:
 		--quiet --group dev pyproject.toml -o requirements.lock
 
 clean:
-	rm -rf crowdbot/__pycache__/kernels .venv runs .mypy_cache .pytest_cache .ruff_cache .hypothesis \
+	rm -rf crowdbot/__pycache__/kernels* .venv runs .mypy_cache .pytest_cache .ruff_cache .hypothesis \
 		.coverage $(JS)/node_modules

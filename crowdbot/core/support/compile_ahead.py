@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
 
-from crowdbot.core.support.compile_cache import nothing_compiled
+from crowdbot.core.support.compile_cache import is_plain_numba, nothing_compiled
 from crowdbot.core.support.cores import available_cores
 
 _START = (
@@ -44,7 +44,7 @@ def compiled_ahead(module: str) -> Iterator[None]:
 
 def _worth_it() -> bool:
     compiles = os.environ.get("NUMBA_DISABLE_JIT", "0") == "0"
-    return compiles and available_cores() > 1 and nothing_compiled()
+    return compiles and not is_plain_numba() and available_cores() > 1 and nothing_compiled()
 
 
 def _started(module: str) -> subprocess.Popen[bytes] | None:

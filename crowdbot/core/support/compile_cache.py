@@ -1,4 +1,4 @@
-"""Where numba keeps compiled functions, and what tells it that they are out of date."""
+"""The folder in which numba keeps compiled functions, and the test of whether they are stale."""
 
 from __future__ import annotations
 
@@ -7,12 +7,18 @@ from pathlib import Path
 
 _PACKAGE = Path(__file__).parents[2]
 _VARIABLE = "NUMBA_CACHE_DIR"
+_PLAIN = "CROWDBOT_PLAIN_NUMBA"
 _LOCATORS = "NUMBA_CACHE_LOCATOR_CLASSES"
 #: What numba asks, in turn: where the first has no file or no folder, numba's own.
 _CLASSES = ",".join(
     ("crowdbot.core.support.compile_cache_locator.CompiledStateLocator",
      "UserWideCacheLocator", "IPythonCacheLocator", "ZipCacheLocator")
 )  # fmt: skip
+
+
+def is_plain_numba() -> bool:
+    """Return True if numba's own ``njit`` is to compile, without `compile_parts`."""
+    return os.environ.get(_PLAIN, "0") not in ("", "0")
 
 
 def use_kernel_cache() -> None:
@@ -26,12 +32,12 @@ USUAL = 218
 
 
 def nothing_compiled() -> bool:
-    """Whether compiled functions are going to be written for the first time."""
+    """Return True if compiled functions are going to be written for the first time."""
     return next(_folder().rglob("*.nbi"), None) is None
 
 
 def compiled() -> int:
-    """How many functions have been compiled so far."""
+    """Return how many functions have been compiled so far."""
     return sum(name.endswith(".nbi") for _, _, names in os.walk(_folder()) for name in names)
 
 
@@ -40,8 +46,9 @@ def _folder() -> Path:
 
 
 def kernel_folder(package: Path = _PACKAGE) -> Path:
-    """Inside the package where that can be written, else in the user's cache."""
+    """Return a folder inside the package where that can be written, else in the user's cache."""
+    name = "kernels-plain" if is_plain_numba() else "kernels"
     if os.access(package, os.W_OK):
-        return package / "__pycache__" / "kernels"
+        return package / "__pycache__" / name
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return cache / "crowdbot" / "kernels"
+    return cache / "crowdbot" / name

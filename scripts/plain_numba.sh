@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# Simulates one second with numba's own compiler and with compile_parts: the trajectories must be
+# equal. The first takes about a minute of processor time where nothing is compiled.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+
+trajectory() {
+	.venv/bin/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa \
+		--set robots.robot.task.time_limit=1 --no-references --quiet --out "$out/$1"
+	grep -h '"trajectory"' "$out/$1"/*/*/*/*/run.json
+}
+
+plain=$(CROWDBOT_PLAIN_NUMBA=1 trajectory plain)
+parts=$(CROWDBOT_PLAIN_NUMBA=0 trajectory parts)
+[ "$plain" = "$parts" ] || { echo "plain numba and compile_parts differ: $plain, $parts"; exit 1; }
+echo "plain numba: the trajectory of compile_parts"
