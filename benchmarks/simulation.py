@@ -38,9 +38,10 @@ from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.container.mcap_file import McapFile
 from crowdbot.core.robots import build_model
+from crowdbot.core.robots.task import robot_task
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.scenarios.lock import population
-from crowdbot.core.sim.built_run import build_run, robot_task
+from crowdbot.core.sim.built_run import build_run
 from crowdbot.core.sim.control.differential_drive import wheel_gains
 from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.metric_logger import MetricLogger

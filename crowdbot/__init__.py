@@ -11,7 +11,7 @@ from crowdbot.lazy import lazy_names
 
 if TYPE_CHECKING:
     from crowdbot.api import evaluate, expand, load, results, score, simulate
-    from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Task, Truth
+    from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Truth
     from crowdbot.core.results.results import Results
     from crowdbot.core.runs.run import Run
     from crowdbot.core.scoring.evaluate import Scores
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from crowdbot.core.types.robot import RobotLimits
     from crowdbot.core.types.score import Score
     from crowdbot.core.types.sensor import Reading, SensorInfo
+    from crowdbot.core.types.task import Task
     from crowdbot.dsl.scenario.scenario import Scenario
     from crowdbot.dsl.suite.expand import Expansion as Suite
     from crowdbot.errors import CrowdbotError, RecordingWarning

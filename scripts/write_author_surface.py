@@ -64,7 +64,7 @@ _TOGETHER: Mapping[str, str] = {
 #: Heading -> beginnings of the modules, below crowdbot.core, from which its names come.
 _GROUPS: Mapping[str, tuple[str, ...]] = {
     "Build functions": ("crowdbot.plugin.build_functions",),
-    "Planners": ("planning", "types.motion", "sensing.points"),
+    "Planners": ("planning", "types.motion", "types.task", "sensing.points"),
     "Sensors and noise": ("sensing", "types.sensor"),
     "Robots": ("robots", "types.robot", "geometry"),
     "Environments": ("types.environment", "environments"),

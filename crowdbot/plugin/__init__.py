@@ -66,7 +66,7 @@ if TYPE_CHECKING:
     from crowdbot.core.crowd.world import CrowdWorld
     from crowdbot.core.environments.place_parts import place_parts
     from crowdbot.core.geometry.footprint import Footprint
-    from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Task, Truth
+    from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Truth
     from crowdbot.core.recording.reading.recording import (
         RecordingInfo,
         read_scans,
@@ -77,6 +77,7 @@ if TYPE_CHECKING:
     from crowdbot.core.robots.published import PublishedWheel, read_published
     from crowdbot.core.scoring.metric import Metric, References
     from crowdbot.core.scoring.score_factory import ScoreFactory
+    from crowdbot.core.sensing.context import SensorContext
     from crowdbot.core.sensing.mount import (
         mount_pose,
         mount_tilt,
@@ -127,6 +128,7 @@ if TYPE_CHECKING:
     )
     from crowdbot.core.types.score import Score
     from crowdbot.core.types.sensor import CameraFrame, Pinhole, Reading, SensorInfo
+    from crowdbot.core.types.task import Task
     from crowdbot.dsl.spec import outlines
     from crowdbot.dsl.spec.assets import Asset
     from crowdbot.dsl.spec.component import Component
@@ -314,6 +316,7 @@ __all__ = [
     "Score",
     "ScoreFactory",
     "Sensor",
+    "SensorContext",
     "SensorInfo",
     "SensorSpec",
     "SensorWithMemory",

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from crowdbot.core.crowd.velocity_search.cost import CompiledCost, NumpyCost
     from crowdbot.core.planning.planner import Planner
     from crowdbot.core.scoring.metric import Metric
+    from crowdbot.core.sensing.context import SensorContext
     from crowdbot.core.sensing.sensor import NoiseGenerator, Sensor, SensorWithMemory
     from crowdbot.core.types.environment import EnvironmentParts
     from crowdbot.core.types.robot import RobotModel
@@ -62,8 +63,12 @@ class BuildRobot(Protocol[RobotSpecT]):
 class BuildSensor(Protocol[SensorSpecT]):
     """Called when a run is prepared, for ``info``, and once where the sensor is simulated."""
 
-    def __call__(self, spec: SensorSpecT, /) -> Sensor | SensorWithMemory:
-        """A sensor that has not read anything yet."""
+    def __call__(self, spec: SensorSpecT, context: SensorContext, /) -> Sensor | SensorWithMemory:
+        """Return a sensor that has not read anything yet.
+
+        ``context`` is the robot that carries it, and the robot's task. Functions that take the
+        spec only still work until 1.0, with a DeprecationWarning.
+        """
         ...
 
 
@@ -75,9 +80,12 @@ class BuildRangeSensor(Protocol[RangeSensorSpecT]):
     """
 
     def __call__(
-        self, spec: RangeSensorSpecT, noise: Sequence[NoiseGenerator] = ..., /
+        self, spec: RangeSensorSpecT, noise: Sequence[NoiseGenerator], context: SensorContext, /
     ) -> Sensor | SensorWithMemory:
-        """``noise`` are the generators of ``spec.noise``, built, in the order of their names."""
+        """Return a sensor as `BuildSensor` does.
+
+        ``noise`` are the generators of ``spec.noise``, built, in the order of their names.
+        """
         ...
 
 

@@ -25,7 +25,7 @@ HOMES = {
     "crowdbot.core.crowd.world": "CrowdWorld",
     "crowdbot.core.environments.place_parts": "place_parts",
     "crowdbot.core.geometry.footprint": "Footprint",
-    "crowdbot.core.planning.planner": "NoValidCommand Observation Planner Task Truth",
+    "crowdbot.core.planning.planner": "NoValidCommand Observation Planner Truth",
     "crowdbot.core.recording.reading.recording": (
         "RecordingInfo read_scans read_trajectories recording_info"
     ),
@@ -33,6 +33,7 @@ HOMES = {
     "crowdbot.core.robots.published": "PublishedWheel read_published",
     "crowdbot.core.scoring.metric": "Metric References",
     "crowdbot.core.scoring.score_factory": "ScoreFactory",
+    "crowdbot.core.sensing.context": "SensorContext",
     "crowdbot.core.sensing.mount": (
         "mount_pose mount_tilt sensor_pose_in_world sensor_rotation_in_world"
     ),
@@ -58,6 +59,7 @@ HOMES = {
     ),
     "crowdbot.core.types.score": "Score",
     "crowdbot.core.types.sensor": "CameraFrame Pinhole Reading SensorInfo",
+    "crowdbot.core.types.task": "Task",
     "crowdbot.dsl.spec": "outlines",
     "crowdbot.dsl.spec.assets": "Asset",
     "crowdbot.dsl.spec.component": "Component",

@@ -15,7 +15,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 from ruamel.yaml import YAML
 
-from crowdbot.core.registry.build_reference import load_build
+from crowdbot.core.registry.build_reference import accepted, load_build
 from crowdbot.core.registry.registry import Registry
 from crowdbot.dsl.checks.pydantic_errors import nested_model
 from crowdbot.dsl.spec.component import Component
@@ -34,6 +34,8 @@ _WITHOUT_UNIT = (
 _UNITS = frozenset(unit.lower() for units in UNITS.values() for unit in units) | {"si"}
 #: Symbols of which other units are made: m^2/s^2, W s^2/(kg m^2).
 _SYMBOLS = frozenset({"m", "s", "kg", "n", "j", "w", "hz", "rad", "1"})
+#: Category -> what its build functions take after the spec and its parts.
+_FURTHER = {"crowd policy": ("costs", "agents"), "sensor": ("context",)}
 
 
 def check_kind_is_a_name(component: Component[Any]) -> None:
@@ -115,15 +117,15 @@ def check_build_resolves(component: Component[Any]) -> None:
     """``build`` names a function that can be called as that of its category is.
 
     If this fails, correct ``Component(build="module:function")``, or what the function takes:
-    ``build(spec)``; ``build(spec, noise)`` of a sensor of distances; ``build(spec, costs, agents)``
-    of a crowd policy.
+    ``build(spec)``; ``build(spec, context)`` of a sensor, ``build(spec, noise, context)`` of one
+    that measures distances; ``build(spec, costs, agents)`` of a crowd policy.
     """
     build = load_build(component)
     try:
         signature = inspect.signature(build)
     except ValueError:  # written in C: nothing to look at
         return
-    given = _given(component)
+    given = ("spec", *accepted(component, build, _given(component)))
     try:
         signature.bind(*given)
     except TypeError as error:
@@ -133,10 +135,9 @@ def check_build_resolves(component: Component[Any]) -> None:
 
 
 def _given(component: Component[Any]) -> tuple[str, ...]:
-    """What the build function of a component is called with."""
+    """Return what the build function of a component is called with after the spec."""
     parts = (component.spec.parts_field,) if component.spec.parts_field else ()
-    more = ("costs", "agents") if component.category == "crowd policy" else ()
-    return ("spec", *parts, *more)
+    return (*parts, *_FURTHER.get(component.category, ()))
 
 
 def check_spec_is_light(component: Component[Any]) -> None:

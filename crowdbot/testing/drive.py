@@ -14,7 +14,7 @@ from unittest import SkipTest
 import numpy as np
 
 from crowdbot.core.planning.host import PlannerHost
-from crowdbot.core.planning.planner import Observation, Planner, Task, Truth, named_signal
+from crowdbot.core.planning.planner import Observation, Planner, Truth, named_signal
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sensing.noise import sensor_rng
@@ -23,7 +23,9 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command, Pose
 from crowdbot.core.types.robot import RobotLimits, RobotState
 from crowdbot.core.types.sensor import Reading, SensorInfo
+from crowdbot.core.types.task import Task
 from crowdbot.dsl.spec.component_specs import SensorSpec
+from crowdbot.testing.sensor_scenes import context
 
 RATE = 16.0  # steps per second
 LIMITS = RobotLimits(v_min=-0.65, v_max=0.65, w_max=3.14, a_max=1.0, alpha_max=2.0)
@@ -98,7 +100,7 @@ def _answering(need: str, registry: Registry) -> Any:
     for component in sorted(kinds.values(), key=lambda c: c.kind != need):
         model = registry.spec_model("sensor", component.kind)
         spec = model.model_validate({"kind": component.kind, **component.examples[0]})
-        sensor = build_sensor(registry, cast(SensorSpec, spec))
+        sensor = build_sensor(registry, cast(SensorSpec, spec), context())
         if need in (component.kind, sensor.info().category):
             return sensor
     return None

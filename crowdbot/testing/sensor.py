@@ -21,7 +21,15 @@ from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.range_sensor import RangeSensorSpec
 from crowdbot.testing.around import around, built, specs_of
-from crowdbot.testing.sensor_scenes import POSES, crowded, empty, in_front, pose_of, robot_at
+from crowdbot.testing.sensor_scenes import (
+    POSES,
+    context,
+    crowded,
+    empty,
+    in_front,
+    pose_of,
+    robot_at,
+)
 
 _ROS_TYPE = re.compile(r"[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*")
 #: Categories whose values are distances of what stands there, inf for nothing.
@@ -135,7 +143,7 @@ def check_exact_without_noise(component: Component[Any], registry: Registry | No
     known = around(component, registry)
     for spec in specs_of(component, known):
         if isinstance(spec, RangeSensorSpec) and not spec.noise and not spec.dropout:
-            assert not _draws(built(known, spec)), "draws random numbers without noise"
+            assert not _draws(built(known, spec, context())), "draws random numbers without noise"
 
 
 def check_memory_is_all_it_keeps(
@@ -237,7 +245,7 @@ CHECKS: tuple[Callable[..., None], ...] = (
 def _sensors(component: Component[Any], registry: Registry | None) -> Iterator[Any]:
     known = around(component, registry)
     for spec in specs_of(component, known):
-        yield built(known, spec)
+        yield built(known, spec, context())
 
 
 def _draws(sensor: Any) -> bool:

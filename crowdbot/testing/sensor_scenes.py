@@ -1,4 +1,4 @@
-"""Scenes that sensors look at, and a drive through them."""
+"""Scenes that sensors look at, a drive through them, and the robot that carries the sensors."""
 
 from __future__ import annotations
 
@@ -6,16 +6,52 @@ import math
 
 import numpy as np
 
+from crowdbot.core.sensing.context import SensorContext
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.types.motion import Pose
-from crowdbot.core.types.robot import RobotState
+from crowdbot.core.types.robot import (
+    DifferentialDrive,
+    RobotLimits,
+    RobotModel,
+    RobotState,
+    robot_body,
+)
 from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.core.types.task import Task
 
 #: A robot that drives on an arc; x, y (m), yaw (rad), one for each reading.
 POSES = tuple(Pose(0.05 * k, 0.01 * k * k, 0.2 * k) for k in range(6))
 _RADIUS, _HEIGHT = 0.25, 1.75
 #: Largest distance of the centre of the person in front, m.
 _FAR = 12.0
+
+_ROBOT = RobotModel(
+    description="",
+    base="base",
+    base_height=0.0102,
+    drive=DifferentialDrive(
+        left_joint="left", right_joint="right", command_radius=0.035, track=0.23
+    ),
+    limits=RobotLimits(v_min=0.0, v_max=1.0, w_max=1.0, a_max=1.0, alpha_max=1.0),
+    footprint_radius=0.178,
+    height=0.42,
+    force_height=0.16,
+    mass=6.3,
+)
+_GOAL = (8.0, 1.0)
+
+
+def context() -> SensorContext:
+    """Return a disc on two wheels, and a task whose goal is ahead of it."""
+    corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]
+    task = Task(
+        start=POSES[0],
+        goal=_GOAL,
+        goal_zone=np.add(corners, _GOAL),
+        time_limit=60.0,
+        robot=robot_body(_ROBOT),
+    )
+    return SensorContext(robot=_ROBOT, task=task)
 
 
 def robot_at(k: int) -> RobotState:

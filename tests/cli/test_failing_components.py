@@ -38,7 +38,7 @@ METRIC = declare_metric(MetricWords, build="faulty:Metric", symbol="F", unit="m"
                         category="task", card="# faulty.metric\\n")
 
 class Sensor:
-    def __init__(self, spec):
+    def __init__(self, spec, context):
         {init}
     def info(self):
         return SensorInfo(category="s", frame="s", mount=(0, 0, 0, 0), rate=16.0, shape=(1,),

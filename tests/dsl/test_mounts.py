@@ -17,6 +17,7 @@ from crowdbot.core.view.map_content import _sector
 from crowdbot.dsl.identity.canonical import canonical_bytes, content_hash, dump_scenario_yaml
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import SpecError
+from crowdbot.testing.sensor_scenes import context
 
 REGISTRY = discover(allow=())
 LIDAR = "robots.robot.sensors.front_lidar.mount"
@@ -60,7 +61,7 @@ def test_urdf_and_map_know_it() -> None:
     """20 degrees down from 0.25 m and the base's 0.01 m: the floor is at 0.72 m."""
     robot = scenario(f"{LIDAR}.pitch=20 deg").robots["robot"]
     model = build_model(REGISTRY, robot.model)
-    infos = {n: build_sensor(REGISTRY, s).info() for n, s in robot.sensors.items()}
+    infos = {n: build_sensor(REGISTRY, s, context()).info() for n, s in robot.sensors.items()}
     assert 'rpy="0 0.349065850399 0"' in to_urdf(model, infos, "r")
     sectors = {s.name: s for s in _sectors(robot, 0.0, 0.0, 0.0, model.base_height)}
     front = sectors["front_lidar"]

@@ -129,7 +129,7 @@ class Sees:
         found = scene.cast(np.array([[pose.x, pose.y, 0.3]]), ahead, 30.0)
         return found[0]
 
-def look(spec):
+def look(spec, context):
     return Sees(spec.way)
 
 def _all(category, spec, name):

@@ -1,4 +1,4 @@
-"""What a robot tells sensors and planners: its wheels, its outline, its drive; and groups."""
+"""Robots: the wheels that odometry takes, outline and drive that planners get; and groups."""
 
 from __future__ import annotations
 
@@ -20,11 +20,9 @@ from crowdbot.core.types.robot import (
     RobotLimits,
     RobotModel,
     robot_body,
-    wheels_of,
 )
 from crowdbot.core.view.build import field_of_view
-from crowdbot.dsl.spec.component_specs import with_wheels
-from crowdbot.plugin import Mount, SensorSpec
+from crowdbot.plugin import Mount, RobotSpec, SensorSpec
 from crowdbot.plugins.planners.robot_outline_build import disc_radius, half_width_and_front
 from crowdbot.plugins.sensors.infrared import InfraredSpec
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
@@ -48,16 +46,33 @@ def model(drive: Any = None, footprint: Any = None, radius: float = 0.2) -> Robo
     )  # fmt: skip
 
 
-def test_odometry_takes_the_wheels_of_the_robot() -> None:
-    assert wheels_of(model().drive) == (0.06, 0.3)
+def test_a_model_has_the_wheels_that_odometry_counts() -> None:
+    assert model().wheels == (0.06, 0.3)
     holonomic = HolonomicDrive(max_force=1.0, max_torque=1.0, wheel_radius=0.05, track=0.4)
-    assert wheels_of(holonomic) == (0.05, 0.4)
-    fitted = with_wheels(WheelOdometrySpec(), 0.06, 0.3)
+    assert model(holonomic).wheels == (0.05, 0.4)
+
+
+class FirmwareSpec(RobotSpec):
+    """A robot whose firmware has an opinion about its wheels."""
+
+    kind: Literal["firmware"] = "firmware"
+    wheels = (0.06, 0.3)
+
+
+class PlainSpec(RobotSpec):
+    """A robot without one."""
+
+    kind: Literal["plain"] = "plain"
+
+
+def test_odometry_takes_the_wheels_that_the_robots_spec_says() -> None:
+    fitted = WheelOdometrySpec().on_robot(FirmwareSpec())
     assert (fitted.wheel_radius, fitted.track) == (0.06, 0.3)
-    told = with_wheels(WheelOdometrySpec(track=0.5), 0.06, 0.3)
-    assert (told.wheel_radius, told.track) == (0.06, 0.5)
+    own = WheelOdometrySpec(track=0.5).on_robot(FirmwareSpec())
+    assert (own.wheel_radius, own.track) == (0.06, 0.5)
+    assert WheelOdometrySpec().on_robot(PlainSpec()) == WheelOdometrySpec()
     tracker = PeopleTrackerSpec()
-    assert with_wheels(tracker, 0.06, 0.3) is tracker
+    assert tracker.on_robot(FirmwareSpec()) is tracker
 
 
 def test_a_turtlebot_writes_the_wheels_its_firmware_believes_in() -> None:

@@ -19,6 +19,7 @@ from crowdbot.plugins.sensors.lidar2d_build import build as lidar2d
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import RgbdCamera
 from crowdbot.testing import noise, sensor
+from crowdbot.testing.sensor_scenes import context
 from tests.testing.wrong import BUILT_IN, WrongNoise, WrongSensor, assert_fails, made
 
 Array = NDArray[np.float64]
@@ -153,7 +154,7 @@ class Near(Nose):
 
 
 def made_sensor(kind: type[Nose], **changes: Any) -> Any:
-    return made(WrongSensor, lambda spec: kind(replace(INFO, **changes)))
+    return made(WrongSensor, lambda spec, context: kind(replace(INFO, **changes)))
 
 
 @pytest.mark.parametrize(
@@ -195,7 +196,7 @@ class Noisy:
     """A lidar that draws although no noise is wanted."""
 
     def __init__(self, spec: RangeSensorSpec) -> None:
-        self._lidar = lidar2d(spec, [])  # type: ignore[arg-type]
+        self._lidar = lidar2d(spec, [], context())  # type: ignore[arg-type]
 
     def info(self) -> SensorInfo:
         return replace(self._lidar.info(), random=True)
@@ -205,7 +206,7 @@ class Noisy:
 
 
 def test_a_lidar_that_is_never_exact() -> None:
-    component = made(WrongLidarSpec, lambda spec, generators: Noisy(spec))
+    component = made(WrongLidarSpec, lambda spec, generators, context: Noisy(spec))
     assert_fails(sensor.check_exact_without_noise, component, "without noise")
 
 
@@ -238,7 +239,8 @@ def test_a_camera_with_other_millimetres(change: Any, because: str | None) -> No
         def depth_mm(self, *given: Any) -> Any:
             return change(super().depth_mm(*given))
 
-    component, check = made(WrongCameraSpec, Turned), sensor.check_millimetres_are_the_reading
+    component = made(WrongCameraSpec, lambda spec, context: Turned(spec))
+    check = sensor.check_millimetres_are_the_reading
     if because:
         assert_fails(check, component, because)
     else:
@@ -251,5 +253,5 @@ def test_a_lidar_that_looks_to_the_other_side() -> None:
             scene, pose, *rest = given
             return self._lidar.read(scene, Pose(pose.x + 2.0, pose.y, pose.yaw), *rest)
 
-    component = made(WrongLidarSpec, lambda spec, generators: Turned(spec))
+    component = made(WrongLidarSpec, lambda spec, generators, context: Turned(spec))
     assert_fails(sensor.check_distances_are_true, component, "a person whose centre is")

@@ -169,10 +169,10 @@ def _description(run: Path) -> str | None:
     """The robot's URDF; None where its scenario names a plugin that is not installed."""
     from crowdbot.cli.shared.options import installed
     from crowdbot.core.robots import build_model
+    from crowdbot.core.robots.task import sensor_infos
     from crowdbot.core.robots.urdf_export import to_urdf
     from crowdbot.core.runs.run_directory import SCENARIO
     from crowdbot.core.scenarios.library import open_spec
-    from crowdbot.core.sensing.build import build_sensor
     from crowdbot.errors import CrowdbotError
 
     if not (run / SCENARIO).is_file():
@@ -181,7 +181,7 @@ def _description(run: Path) -> str | None:
         registry = installed(None)
         scenario = open_spec(str(run / SCENARIO), registry).scenarios[0]
         ((name, robot),) = scenario.robots.items()
-        sensors = {n: build_sensor(registry, s).info() for n, s in robot.sensors.items()}
+        sensors = sensor_infos(registry, scenario, name)
         return to_urdf(build_model(registry, robot.model), sensors, name)
     except CrowdbotError as error:
         typer.echo(f"warning: /robot_description is left out: {error}", err=True)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from crowdbot.core.registry.registry import Registry
     from crowdbot.core.types.sensor import SensorInfo
-    from crowdbot.dsl.scenario.scenario import Robot
+    from crowdbot.dsl.scenario.scenario import Scenario
 
 
 def export_urdf(
@@ -38,6 +38,7 @@ def export_urdf(
     Example: crowdbot export-urdf robot --spec challenge-2020 --out turtlebot2.urdf
     """
     from crowdbot.core.robots import build_model
+    from crowdbot.core.robots.task import sensor_infos
     from crowdbot.core.robots.urdf_export import to_urdf
     from crowdbot.core.support.atomic_write import atomic_write
 
@@ -46,8 +47,9 @@ def export_urdf(
     if spec is None:
         model = build_model(registry, registry.find("robot", robot).spec(kind=robot))
     else:
-        found = _robot(registry, robot, spec, id_)
-        model, sensors = build_model(registry, found.model), _sensors(registry, found)
+        found = _scenario(registry, robot, spec, id_)
+        model = build_model(registry, found.robots[robot].model)
+        sensors = sensor_infos(registry, found, robot)
     text = to_urdf(model, sensors, robot)
     if out is None:
         typer.echo(text, nl=False)
@@ -56,18 +58,12 @@ def export_urdf(
         typer.echo(str(out), err=True)
 
 
-def _robot(registry: Registry, name: str, spec: str, id_: str | None) -> Robot:
+def _scenario(registry: Registry, robot: str, spec: str, id_: str | None) -> Scenario:
     from crowdbot.core.scenarios.library import open_spec, pick
     from crowdbot.errors import UnknownNameError
 
     expansion = open_spec(spec, registry)
     scenario = expansion.scenarios[0] if id_ is None else pick(expansion, id_)
-    if name not in scenario.robots:
-        raise UnknownNameError("robot", name, scenario.robots)
-    return scenario.robots[name]
-
-
-def _sensors(registry: Registry, robot: Robot) -> Mapping[str, SensorInfo]:
-    from crowdbot.core.sensing.build import build_sensor
-
-    return {name: build_sensor(registry, spec).info() for name, spec in robot.sensors.items()}
+    if robot not in scenario.robots:
+        raise UnknownNameError("robot", robot, scenario.robots)
+    return scenario

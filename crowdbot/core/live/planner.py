@@ -13,11 +13,12 @@ from crowdbot.core.live.message import LiveMessage, Offer, told
 from crowdbot.core.live.observed import Observed
 from crowdbot.core.live.scene import LiveScene, latched
 from crowdbot.core.live.session import LiveSession
-from crowdbot.core.planning.planner import NoValidCommand, Observation, Task
+from crowdbot.core.planning.planner import NoValidCommand, Observation
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.core.types.task import Task
 from crowdbot.errors import PlannerError
 
 Missed = Literal["stop", "hold", "fail"]

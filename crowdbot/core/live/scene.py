@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from crowdbot.core.live.message import LiveMessage, told
-from crowdbot.core.planning.planner import Task
 from crowdbot.core.recording import RecordingHeader, RobotHeader, markers, scenery
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.header import limit_numbers, sensor_message
@@ -17,6 +16,7 @@ from crowdbot.core.robots.urdf_export import to_urdf
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.robot import RobotLimits, RobotModel
 from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.core.types.task import Task
 
 
 @dataclass(frozen=True, kw_only=True)

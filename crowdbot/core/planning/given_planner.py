@@ -13,7 +13,7 @@ from typing import Any, cast
 
 from crowdbot.core.planning.choice import ANYWHERE, PlannerChoice, PlannerPlace, label_of
 from crowdbot.core.planning.description import described
-from crowdbot.core.planning.planner import Observation, Planner, Task
+from crowdbot.core.planning.planner import Observation, Planner
 from crowdbot.core.planning.python_file import (
     build_of_class,
     call_of_class,
@@ -27,6 +27,7 @@ from crowdbot.core.support.source_digest import source_digest
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.core.types.task import Task
 from crowdbot.dsl.spec.component_specs import PlannerSpec
 from crowdbot.dsl.suite.settings import setting_texts
 from crowdbot.errors import InputError, kind_of

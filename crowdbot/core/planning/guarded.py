@@ -14,12 +14,13 @@ from contextlib import AbstractContextManager
 from numbers import Real
 from typing import Any
 
-from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Task
+from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.plugin_errors import is_user_interrupt
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.core.types.task import Task
 from crowdbot.errors import PlannerError
 
 _SHOWN = 80

@@ -14,12 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.planning.guarded import GuardedPlanner, planner_title
-from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Task
+from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner
 from crowdbot.core.planning.watchdog import Watchdog
 from crowdbot.core.support.compile_cache import compiled
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import Reading, SensorInfo
+from crowdbot.core.types.task import Task
 from crowdbot.errors import PlannerHungError
 
 T = TypeVar("T", bound=np.generic)

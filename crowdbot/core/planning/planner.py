@@ -12,26 +12,13 @@ from numpy.typing import NDArray
 
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command, Pose
-from crowdbot.core.types.robot import RobotBody, RobotLimits
+from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import Reading, SensorInfo
+from crowdbot.core.types.task import Task
 from crowdbot.errors import hidden_character
 
 #: Most characters of the name of a signal.
 _LONGEST_NAME = 200
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Task:
-    """Start pose and goal, in the world frame, which the odometry frame equals at t = 0.
-
-    ``robot`` is the body and the drive of the robot; None where nobody told them.
-    """
-
-    start: Pose
-    goal: tuple[float, float]
-    goal_zone: Array
-    time_limit: float
-    robot: RobotBody | None = None
 
 
 def _ignore(name: str, value: float) -> None:

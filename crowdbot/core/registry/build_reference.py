@@ -1,14 +1,18 @@
-"""Imports the function that a component names as text."""
+"""The build function that a component names as text: its import, and what it is called with."""
 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable
-from typing import Any
+import inspect
+import warnings
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.dsl.spec.component import Component
 from crowdbot.errors import PluginError
+
+Given = TypeVar("Given")
 
 
 def load_build(component: Component[Any], call: PluginCall | None = None) -> Callable[..., object]:
@@ -30,3 +34,39 @@ def load_build(component: Component[Any], call: PluginCall | None = None) -> Cal
         if not callable(function):
             call.fail(f"build '{component.build}' is not a function")
         return function  # type: ignore[no-any-return]
+
+
+def accepted(
+    component: Component[Any], build: Callable[..., object], given: Sequence[Given]
+) -> Sequence[Given]:
+    """Return the arguments that a build function takes after the spec.
+
+    Until 1.0 a sensor's may lack the last one, its context, which came later.
+    """
+    if component.category != "sensor" or not given or _takes(build, 1 + len(given)):
+        return given
+    warnings.warn(
+        f"sensor '{component.kind}': '{component.build}' takes no context; add a last parameter, "
+        "context: SensorContext, which crowdbot 1.0 will always hand over",
+        DeprecationWarning,
+        stacklevel=2,
+    )
+    return given[:-1]
+
+
+def _takes(build: Callable[..., object], count: int) -> bool:
+    """Return True if a function takes so many arguments by position.
+
+    A last parameter with a default is an option of the plugin's own unless it is named context.
+    """
+    try:
+        parameters = list(inspect.signature(build).parameters.values())
+    except (TypeError, ValueError):  # compiled functions say nothing
+        return True
+    if any(p.kind is p.VAR_POSITIONAL for p in parameters):
+        return True
+    places = [p for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
+    if len(places) < count:
+        return False
+    last = places[count - 1]
+    return last.default is last.empty or last.name == "context"

@@ -17,7 +17,7 @@ from typing import Annotated, Any, TypeVar, Union
 
 from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
-from crowdbot.core.registry.build_reference import load_build
+from crowdbot.core.registry.build_reference import accepted, load_build
 from crowdbot.core.registry.component_list import ComponentsByKind, known_components, of_category
 from crowdbot.core.registry.entry_points import ALLOW, find_plugins
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
@@ -169,9 +169,11 @@ class Registry:
             parts = spec.parts()
             args = ([self.build(parts[name], _unchecked) for name in sorted(parts)], *args)
         call = call or self.plugin_call(spec)
-        build = load_build(self.find(spec.category, spec.kind), call)
+        component = self.find(spec.category, spec.kind)
+        build = load_build(component, call)
+        given = accepted(component, build, args)
         with call("cannot be built"):
-            built = build(spec, *args)
+            built = build(spec, *given)
         with call("what was built"):
             return check(built)
 

@@ -1,4 +1,4 @@
-"""Sensors as plugins return them: described soundly, and checked at each reading."""
+"""Build sensors: their descriptions are checked once, their readings each time."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.sensing.context import SensorContext
 from crowdbot.core.sensing.sensor import DepthCamera, NoiseGenerator, Sensor, SensorWithMemory
 from crowdbot.core.support.plain_numbers import plain_numbers
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
@@ -25,18 +26,23 @@ _MOST_VALUES = 100_000_000
 _TEXTS = ("category", "frame", "ros_type")
 
 
-def build_sensor(registry: Registry, spec: SensorSpec) -> Sensor | SensorWithMemory:
-    """The sensor that a spec describes; each of its readings is checked.
+def build_sensor(
+    registry: Registry, spec: SensorSpec, context: SensorContext
+) -> Sensor | SensorWithMemory:
+    """Return the sensor that a spec describes; each of its readings is checked.
+
+    Args:
+        context: the robot that carries it, and the robot's task.
 
     Raises:
         PluginError: it cannot be built, or its description is unsound.
     """
     call = registry.plugin_call(spec)
-    return registry.build(spec, lambda sensor: checked_sensor(sensor, call), call=call)
+    return registry.build(spec, lambda sensor: checked_sensor(sensor, call), context, call=call)
 
 
 def build_noise(registry: Registry, spec: NoiseSpec) -> NoiseGenerator:
-    """The noise generator that a spec describes.
+    """Return the noise generator that a spec describes.
 
     Raises:
         PluginError: it cannot be built.
@@ -45,7 +51,7 @@ def build_noise(registry: Registry, spec: NoiseSpec) -> NoiseGenerator:
 
 
 def checked_noise(noise: object) -> NoiseGenerator:
-    """A noise generator, as far as that can be seen before it is called.
+    """Return what was built as a noise generator, as far as it can be checked before a call.
 
     Raises:
         PluginError: it is not one.
@@ -56,7 +62,7 @@ def checked_noise(noise: object) -> NoiseGenerator:
 
 
 def checked_sensor(sensor: object, call: PluginCall) -> Sensor | SensorWithMemory:
-    """A sensor around another one, whose readings are checked.
+    """Wrap a sensor so that its readings are checked.
 
     Args:
         sensor: what a build function returned.

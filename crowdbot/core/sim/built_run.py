@@ -7,19 +7,18 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from crowdbot.core.environments.build import build_environment
-from crowdbot.core.planning.planner import Task
 from crowdbot.core.planning.resolve import PlannerChoice, select_sensors
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots import build_robot
+from crowdbot.core.robots.task import sensor_context
 from crowdbot.core.robots.urdf_export import check_frames
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sensing.sensor import Sensor, SensorWithMemory
 from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.core.types.motion import Pose
-from crowdbot.core.types.robot import RobotModel, robot_body, wheels_of
+from crowdbot.core.types.robot import RobotModel
 from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.core.types.task import Task
 from crowdbot.dsl.scenario.scenario import Robot, Scenario
-from crowdbot.dsl.spec.component_specs import with_driver, with_wheels
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,12 +101,8 @@ def build_run(
     robot = scenario.robots[name]
     parts = parts or build_environment(registry, scenario.environment)
     model = build_robot(registry, robot)
-    task = replace(robot_task(robot, parts), robot=robot_body(model))
-    wheels, driver = wheels_of(model.drive), (task.goal, model.limits.v_max, model.limits.w_max)
-    sensors = {
-        n: build_sensor(registry, with_driver(with_wheels(x, *wheels), *driver))
-        for n, x in robot.sensors.items()
-    }
+    context = sensor_context(robot, model, parts)
+    sensors = {n: build_sensor(registry, x, context) for n, x in robot.sensors.items()}
     infos = {n: _with_frame(n, sensor.info()) for n, sensor in sensors.items()}
     check_frames(model, infos)
     visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
@@ -122,22 +117,10 @@ def build_run(
         robot=robot,
         parts=parts,
         model=model,
-        task=task,
+        task=context.task,
         sensors={n: sensors[n] for n in chosen},
         infos={n: infos[n] for n in chosen},
         visible=visible,
-    )
-
-
-def robot_task(robot: Robot, parts: EnvironmentParts) -> Task:
-    """The robot's task with its goal zone as a polygon."""
-    zone = parts.zones[robot.task.goal.zone]
-    centre = zone.mean(axis=0)
-    return Task(
-        start=Pose(*robot.task.start),
-        goal=(float(centre[0]), float(centre[1])),
-        goal_zone=zone,
-        time_limit=robot.task.time_limit,
     )
 
 

@@ -19,7 +19,6 @@ from pydrake.systems.framework import (
 )
 
 from crowdbot.core.geometry.polygon import distance_to, entry_fraction, inside
-from crowdbot.core.planning.planner import Task
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.runs.outcome import ARRIVED, PLANNER_FAILED, TIMEOUT, TOPPLED
 from crowdbot.core.sim import ports
@@ -34,6 +33,7 @@ from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.robot import RobotState
+from crowdbot.core.types.task import Task
 
 _ROUNDING = 1e-9  # m; of the distance to the goal zone
 _TILT = RobotState._fields.index("tilt")

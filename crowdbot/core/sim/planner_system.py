@@ -23,7 +23,7 @@ from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as crowd_state
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.planning.host import STOP, HostedCommand, PlannerHost
-from crowdbot.core.planning.planner import Observation, Task, Truth, named_signal
+from crowdbot.core.planning.planner import Observation, Truth, named_signal
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.topics import is_odometry
 from crowdbot.core.sim import ports
@@ -38,6 +38,7 @@ from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command, Pose
 from crowdbot.core.types.robot import RobotLimits, RobotState
+from crowdbot.core.types.task import Task
 from crowdbot.errors import PlannerError
 
 

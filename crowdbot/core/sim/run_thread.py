@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
 from crowdbot.core.planning.host import STOP, PlannerHost
-from crowdbot.core.planning.planner import Observation, Task
+from crowdbot.core.planning.planner import Observation
 from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.record import record_robot
@@ -18,6 +18,7 @@ from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.core.types.task import Task
 
 
 class Exchange:

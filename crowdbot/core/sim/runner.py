@@ -8,7 +8,6 @@ from collections.abc import Callable
 from pydrake.systems.analysis import Simulator, SimulatorStatus
 
 from crowdbot.core.geometry.polygon import distance_to
-from crowdbot.core.planning.planner import Task
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.runs.outcome import (
     ARRIVED,
@@ -22,6 +21,7 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.diagram import Blocks
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotState
+from crowdbot.core.types.task import Task
 from crowdbot.errors import PlannerError
 
 #: Simulated time between looks at progress and interruption, s.

@@ -74,7 +74,7 @@ class RobotModel:
         force_height: height above the floor at which people push, m.
         skin_stiffness: of what people touch, in series with their own bodies, N/m; infinite of a
             rigid shell.
-        notes: what was simplified to make it, which whoever runs it is told.
+        notes: what was simplified to make it; a run prints them once.
     """
 
     description: str
@@ -89,6 +89,13 @@ class RobotModel:
     footprint: Array | None = None
     skin_stiffness: float = math.inf
     notes: tuple[str, ...] = ()
+
+    @property
+    def wheels(self) -> tuple[float, float]:
+        """Radius and track of the wheels that odometry counts, m."""
+        drive = self.drive
+        radius = drive.wheel_radius if isinstance(drive, HolonomicDrive) else drive.command_radius
+        return radius, drive.track
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -135,12 +142,6 @@ def robot_body(model: RobotModel) -> RobotBody:
         back=rim - min(x for x, _ in points),
         half_width=max(abs(y) for _, y in points) + rim,
     )
-
-
-def wheels_of(drive: DifferentialDrive | HolonomicDrive) -> tuple[float, float]:
-    """Radius and track of the wheels that odometry counts, m."""
-    radius = drive.wheel_radius if isinstance(drive, HolonomicDrive) else drive.command_radius
-    return radius, drive.track
 
 
 class RobotState(NamedTuple):

@@ -36,7 +36,6 @@ from crowdbot.dsl.spec.component_specs import (
     EnvironmentSpec,
     RobotSpec,
     SensorSpec,
-    with_wheels,
 )
 from crowdbot.dsl.spec.parameters import SpeedDistribution
 from crowdbot.dsl.spec.quantities import (
@@ -227,11 +226,10 @@ class Robot(Spec):
         return self
 
     @model_validator(mode="after")
-    def _wheels_of_the_robot(self) -> Robot:
-        """Wheel odometry that is not told the wheels takes those of the robot's spec."""
-        if self.model.wheels is not None:
-            fitted = {n: with_wheels(s, *self.model.wheels) for n, s in self.sensors.items()}
-            object.__setattr__(self, "sensors", fitted)
+    def _sensors_on_the_robot(self) -> Robot:
+        """Fill what the sensors take from the robot's spec, such as the wheels of odometry."""
+        fitted = {n: s.on_robot(self.model) for n, s in self.sensors.items()}
+        object.__setattr__(self, "sensors", fitted)
         return self
 
 

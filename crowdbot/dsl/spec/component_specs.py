@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -75,8 +75,8 @@ class RobotSpec(ComponentSpec):
     #: Control modes that fit the drive; the first is the default. A holonomic robot says
     #: ``("force", "kinematic")``.
     controls: ClassVar[tuple[str, ...]] = ("differential_drive", "force", "kinematic")
-    #: What wheel odometry takes for radius and track of the wheels, m, where it is not told; None:
-    #: those of the drive, once the robot is built.
+    #: Radius and track of the wheels, m, that wheel odometry computes with where its spec leaves
+    #: them open; None: those of the drive, once the robot is built.
     wheels: ClassVar[tuple[float, float] | None] = None
 
 
@@ -98,37 +98,14 @@ class SensorSpec(ComponentSpec):
         own = field.default
         return {**data, "mount": {**{n: getattr(own, n) for n in own.model_fields_set}, **given}}
 
+    def on_robot(self, robot: RobotSpec) -> Self:
+        """Return the sensor with what it takes from its robot's spec.
 
-Sensor = TypeVar("Sensor", bound=SensorSpec)
-
-
-def with_wheels(sensor: Sensor, radius: float, track: float) -> Sensor:
-    """A sensor with the wheels of its robot, where it has a place for them and was told none.
-
-    Args:
-        sensor: any; odometry has fields ``wheel_radius`` and ``track``.
-        radius, track: of the robot, m.
-    """
-    return _told(sensor, {"wheel_radius": radius, "track": track})
-
-
-def with_driver(
-    sensor: Sensor, goal: tuple[float, float], max_speed: float, max_yaw_rate: float
-) -> Sensor:
-    """A sensor with what a robot's driver knows, where it has a place for it and was told none.
-
-    Args:
-        sensor: any; a joystick has fields ``goal``, ``max_speed`` and ``max_yaw_rate``.
-        goal: of the robot's task, m.
-        max_speed, max_yaw_rate: of the robot, m/s and rad/s.
-    """
-    return _told(sensor, {"goal": goal, "max_speed": max_speed, "max_yaw_rate": max_yaw_rate})
-
-
-def _told(sensor: Sensor, numbers: Mapping[str, Any]) -> Sensor:
-    fields = vars(sensor)  # getattr of a field that a model lacks is slow
-    missing = {n: v for n, v in numbers.items() if n in fields and fields[n] is None}
-    return sensor.model_copy(update=missing) if missing else sensor
+        The scenario, and so its hash, holds the result. What depends on the built robot or on its
+        task is left to the build function.
+        """
+        del robot
+        return self
 
 
 class NoiseSpec(ComponentSpec):

@@ -16,6 +16,7 @@ from crowdbot.plugin import (
     Array,
     Pose,
     Scene,
+    SensorContext,
     SensorInfo,
     mount_pose,
     nearest_on_segment,
@@ -96,6 +97,7 @@ def _mark(px: float, py: float, begin: float, span: float, pressed: Array) -> No
         pressed[0] = 1.0
 
 
-def build(spec: BumperSpec) -> Bumper:
-    """A bumper from its spec."""
+def build(spec: BumperSpec, context: SensorContext) -> Bumper:
+    """Return a bumper from its spec."""
+    del context
     return Bumper(spec)

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from crowdbot.plugin import Array, Pose, Scene, SensorInfo, mount_pose
+from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo, mount_pose
 from crowdbot.plugins.sensors.contact_force import ContactForceSpec
 
 
@@ -55,6 +55,7 @@ def _turned(x: float, y: float, angle: float) -> tuple[float, float]:
     return c * x - s * y, s * x + c * y
 
 
-def build(spec: ContactForceSpec) -> ContactForce:
-    """A contact force sensor from its spec."""
+def build(spec: ContactForceSpec, context: SensorContext) -> ContactForce:
+    """Return a contact force sensor from its spec."""
+    del context
     return ContactForce(spec)

@@ -21,6 +21,7 @@ from crowdbot.plugin import (
     Array,
     Pose,
     Scene,
+    SensorContext,
     SensorInfo,
     SimulationError,
     kernel,
@@ -144,6 +145,7 @@ def _turn(angle: float) -> float:
     return angle + 2.0 * math.pi if angle < -math.pi else angle
 
 
-def build(spec: ImuSpec) -> Imu:
-    """An IMU from its spec."""
+def build(spec: ImuSpec, context: SensorContext) -> Imu:
+    """Return an IMU from its spec."""
+    del context
     return Imu(spec)

@@ -11,7 +11,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crowdbot.plugin import Array, NoiseGenerator, Pose, RangeModel, Scene, SensorInfo
+from crowdbot.plugin import (
+    Array,
+    NoiseGenerator,
+    Pose,
+    RangeModel,
+    Scene,
+    SensorContext,
+    SensorInfo,
+)
 from crowdbot.plugins.sensors.infrared import InfraredSpec
 
 
@@ -63,6 +71,7 @@ class Infrared:
         return np.column_stack([c - s * left, s + c * left, up])
 
 
-def build(spec: InfraredSpec, noise: Sequence[NoiseGenerator] = ()) -> Infrared:
-    """An infrared sensor from its spec and its noise generators."""
+def build(spec: InfraredSpec, noise: Sequence[NoiseGenerator], context: SensorContext) -> Infrared:
+    """Return an infrared sensor from its spec and its noise generators."""
+    del context
     return Infrared(spec, noise)

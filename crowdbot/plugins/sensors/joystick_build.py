@@ -1,4 +1,4 @@
-"""Joystick: a driver who points the stick at the goal with a shaky hand, or a recorded one.
+"""Joystick: a driver with a shaky hand points the stick at the goal; or commands are replayed.
 
 The stick goes aside in proportion to the angle between heading and goal, ahead as far as the goal
 is ahead (the cosine of that angle), and back to the middle near the goal. The hand's error is an
@@ -12,22 +12,21 @@ import math
 
 import numpy as np
 
-from crowdbot.plugin import Array, Pose, Scene, SensorInfo
+from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo
 from crowdbot.plugins.sensors.joystick import JoystickSpec
 
 #: Layout of the memory: whether there was a reading, its time, the error of the hand ahead and
 #: aside, in standard deviations.
 STARTED, TIME, AHEAD, ASIDE = range(4)
-#: Of a stick without a robot, as in a test of the sensor alone: m/s, rad/s.
-_MAX_SPEED, _MAX_YAW_RATE = 1.0, 1.0
 
 
 class Joystick:
     """Reading: (2,) v (m/s), w (rad/s)."""
 
-    def __init__(self, spec: JoystickSpec) -> None:
-        self._spec = spec
-        self._most = spec.max_speed or _MAX_SPEED, spec.max_yaw_rate or _MAX_YAW_RATE
+    def __init__(self, spec: JoystickSpec, context: SensorContext) -> None:
+        self._spec, limits = spec, context.robot.limits
+        self._goal = spec.goal or context.task.goal
+        self._most = spec.max_speed or limits.v_max, spec.max_yaw_rate or limits.w_max
         self._recorded = spec.recorded or ()
         self._from = [t for t, _, _ in self._recorded]
         self._info = SensorInfo(
@@ -50,7 +49,7 @@ class Joystick:
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator, memory: Array
     ) -> Array:
         """What the driver asks for; reading twice at one instant gives the same."""
-        del scene  # the driver knows where the robot is, and looks at nobody
+        del scene  # the driver knows the robot's pose and ignores the people
         if self._recorded:
             return self._played(t)
         if self._info.random and (memory[STARTED] == 0.0 or t > memory[TIME]):
@@ -67,10 +66,8 @@ class Joystick:
         return np.array(self._recorded[k][1:]) if k >= 0 else np.zeros(2)
 
     def _deflection(self, pose: Pose) -> tuple[float, float]:
-        """Of the stick by a steady hand, ahead and to the left, from -1 to 1."""
-        if self._spec.goal is None:
-            return 1.0, 0.0
-        x, y = self._spec.goal[0] - pose.x, self._spec.goal[1] - pose.y
+        """Deflection of the stick by a steady hand, ahead and to the left, from -1 to 1."""
+        x, y = self._goal[0] - pose.x, self._goal[1] - pose.y
         off = math.remainder(math.atan2(y, x) - pose.yaw, 2.0 * math.pi)
         near = min(1.0, math.hypot(x, y) / self._spec.slow_distance)
         aside = self._spec.steering * off / self._most[1]
@@ -87,10 +84,10 @@ class Joystick:
 
 
 def _full(deflection: float) -> float:
-    """A stick goes no farther than fully ahead, back or aside."""
+    """Limit a deflection to the stick's full one."""
     return min(1.0, max(-1.0, deflection))
 
 
-def build(spec: JoystickSpec) -> Joystick:
-    """A joystick from its spec."""
-    return Joystick(spec)
+def build(spec: JoystickSpec, context: SensorContext) -> Joystick:
+    """Return a joystick; goal and limits that the spec leaves open are the robot's."""
+    return Joystick(spec, context)

@@ -8,7 +8,15 @@ import numpy as np
 
 from crowdbot.core.sensing.raycast_columns import RayGrid
 from crowdbot.core.sensing.raycast_tilted import NO_RAYS, grid_rays
-from crowdbot.plugin import Array, NoiseGenerator, Pose, RangeModel, Scene, SensorInfo
+from crowdbot.plugin import (
+    Array,
+    NoiseGenerator,
+    Pose,
+    RangeModel,
+    Scene,
+    SensorContext,
+    SensorInfo,
+)
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 
 
@@ -55,6 +63,7 @@ class Lidar2d:
         return own.measure(distance[0], rng)
 
 
-def build(spec: Lidar2dSpec, noise: Sequence[NoiseGenerator] = ()) -> Lidar2d:
-    """A lidar from its spec and its noise generators."""
+def build(spec: Lidar2dSpec, noise: Sequence[NoiseGenerator], context: SensorContext) -> Lidar2d:
+    """Return a lidar from its spec and its noise generators."""
+    del context
     return Lidar2d(spec, noise)

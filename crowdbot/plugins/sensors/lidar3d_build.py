@@ -8,7 +8,15 @@ import numpy as np
 
 from crowdbot.core.sensing.raycast_columns import RayGrid
 from crowdbot.core.sensing.raycast_tilted import NO_RAYS, grid_rays
-from crowdbot.plugin import Array, NoiseGenerator, Pose, RangeModel, Scene, SensorInfo
+from crowdbot.plugin import (
+    Array,
+    NoiseGenerator,
+    Pose,
+    RangeModel,
+    Scene,
+    SensorContext,
+    SensorInfo,
+)
 from crowdbot.plugins.sensors.lidar3d import Lidar3dSpec
 
 
@@ -59,6 +67,7 @@ class Lidar3d:
         return own.measure(distance.ravel(), rng).reshape(self._info.shape)
 
 
-def build(spec: Lidar3dSpec, noise: Sequence[NoiseGenerator] = ()) -> Lidar3d:
-    """A lidar from its spec and its noise generators."""
+def build(spec: Lidar3dSpec, noise: Sequence[NoiseGenerator], context: SensorContext) -> Lidar3d:
+    """Return a lidar from its spec and its noise generators."""
+    del context
     return Lidar3d(spec, noise)

@@ -18,6 +18,7 @@ from crowdbot.plugin import (
     Indices,
     Pose,
     Scene,
+    SensorContext,
     SensorInfo,
     mount_pose,
     sensor_pose_in_world,
@@ -115,6 +116,7 @@ def _in_base(people: Array, pose: Pose) -> Array:
     return np.hstack([(people[:, :2] - (pose.x, pose.y)) @ turn, people[:, 2:] @ turn])
 
 
-def build(spec: PeopleTrackerSpec) -> PeopleTracker:
-    """A tracker from its spec."""
+def build(spec: PeopleTrackerSpec, context: SensorContext) -> PeopleTracker:
+    """Return a tracker from its spec."""
+    del context
     return PeopleTracker(spec)

@@ -22,6 +22,7 @@ from crowdbot.plugin import (
     Pinhole,
     Pose,
     Scene,
+    SensorContext,
     SensorInfo,
     kernel,
     mount_pose,
@@ -174,6 +175,7 @@ def _round_down(depth: Image, step: float, nearest: float) -> None:
                 depth[r, c] = max(math.floor(depth[r, c] / step) * step, nearest)
 
 
-def build(spec: RgbdCameraSpec) -> RgbdCamera:
-    """A camera from its spec."""
+def build(spec: RgbdCameraSpec, context: SensorContext) -> RgbdCamera:
+    """Return a camera from its spec."""
+    del context
     return RgbdCamera(spec)

@@ -34,6 +34,7 @@ from crowdbot.plugin import (
     Pose,
     RangeModel,
     Scene,
+    SensorContext,
     SensorInfo,
     kernel,
 )
@@ -246,6 +247,9 @@ def _nearest_at_all(
     return nearest
 
 
-def build(spec: UltrasoundSpec, noise: Sequence[NoiseGenerator] = ()) -> Ultrasound:
-    """A sonar from its spec and its noise generators."""
+def build(
+    spec: UltrasoundSpec, noise: Sequence[NoiseGenerator], context: SensorContext
+) -> Ultrasound:
+    """Return a sonar from its spec and its noise generators."""
+    del context
     return Ultrasound(spec, noise)

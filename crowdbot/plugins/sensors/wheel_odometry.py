@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from annotated_types import Ge, Gt
 from pydantic import Field
 
-from crowdbot.plugin import Component, PositiveFrequency, PositiveLength, SensorSpec
+from crowdbot.plugin import Component, PositiveFrequency, PositiveLength, RobotSpec, SensorSpec
 
 
 class OdometrySpec(SensorSpec):
-    """What odometry by wheels of either sort is told."""
+    """Fields of wheel odometry, with two wheels or three."""
 
     rate: PositiveFrequency = Field(default=64.0, le=128, description="Readings per second, Hz.")
     wheel_radius: PositiveLength | None = Field(
@@ -33,6 +33,18 @@ class OdometrySpec(SensorSpec):
     gyro_noise: Annotated[float, Ge(0)] = Field(
         default=5.2e-4, description="Density of the gyro's noise, rad/s/sqrt(Hz)."
     )
+
+    def on_robot(self, robot: RobotSpec) -> Self:
+        """Return odometry with the wheels that the robot's firmware believes in, if it says so."""
+        if robot.wheels is None:
+            return self
+        radius, track = robot.wheels
+        return self.model_copy(
+            update={
+                "wheel_radius": radius if self.wheel_radius is None else self.wheel_radius,
+                "track": track if self.track is None else self.track,
+            }
+        )
 
 
 class WheelOdometrySpec(OdometrySpec):

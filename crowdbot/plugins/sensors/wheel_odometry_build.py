@@ -16,14 +16,12 @@ import math
 
 import numpy as np
 
-from crowdbot.plugin import Array, Pose, Scene, SensorInfo, SimulationError, kernel
+from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo, SimulationError, kernel
 from crowdbot.plugins.sensors.wheel_odometry import HolonomicOdometrySpec, WheelOdometrySpec
 
 #: Layout of the memory: three errors (rad) and a reading of six numbers begin where it says.
 STARTED, TIME, LEFT, RIGHT, SIDE, YAW, ERRORS, READING = 0, 1, 2, 3, 4, 5, 6, 9
 _SIZE = 15
-#: Of a Kobuki, m.
-WHEEL_RADIUS, TRACK = 0.035, 0.23
 _NO_DRAWS = np.zeros(0)
 
 
@@ -33,10 +31,12 @@ class WheelOdometry:
     The frame is the one of the pose at the first reading; velocities are means since the last one.
     """
 
-    def __init__(self, spec: WheelOdometrySpec | HolonomicOdometrySpec) -> None:
+    def __init__(
+        self, spec: WheelOdometrySpec | HolonomicOdometrySpec, context: SensorContext
+    ) -> None:
         self._gyro = spec.heading == "gyro"
-        # A robot says its own; without one, as in a test of the sensor alone, a Kobuki's.
-        radius, track = spec.wheel_radius or WHEEL_RADIUS, spec.track or TRACK
+        radius, track = context.robot.wheels
+        radius, track = spec.wheel_radius or radius, spec.track or track
         metre = 2.0 * math.pi * radius / spec.ticks_per_turn
         self._numbers = (
             self._gyro, float(spec.ticks_per_turn), metre, track, spec.noise, spec.gyro_noise,
@@ -143,6 +143,6 @@ def _wrapped(angle: float) -> float:
     return angle
 
 
-def build(spec: WheelOdometrySpec | HolonomicOdometrySpec) -> WheelOdometry:
-    """Wheel odometry from its spec."""
-    return WheelOdometry(spec)
+def build(spec: WheelOdometrySpec | HolonomicOdometrySpec, context: SensorContext) -> WheelOdometry:
+    """Return wheel odometry; wheels that the spec leaves open are the robot's."""
+    return WheelOdometry(spec, context)

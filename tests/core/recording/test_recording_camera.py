@@ -22,6 +22,7 @@ from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sensing.depth_mm import depth_mm
 from crowdbot.plugin import CameraFrame, Reading, SensorInfo
+from crowdbot.testing.sensor_scenes import context
 
 pytestmark = pytest.mark.slow
 
@@ -44,7 +45,7 @@ def _infos() -> tuple[Any, dict[str, SensorInfo]]:
     registry = discover()
     world = pick(open_spec("challenge-2020", registry, EXTRA), "in-d0125-slow-c01-r02")
     robot = world.robots["robot"]
-    found = {n: build_sensor(registry, x).info() for n, x in robot.sensors.items()}
+    found = {n: build_sensor(registry, x, context()).info() for n, x in robot.sensors.items()}
     framed = {n: i if i.category == "odometry" else replace(i, frame=n) for n, i in found.items()}
     return build_model(registry, robot.model), framed
 

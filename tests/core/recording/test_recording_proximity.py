@@ -24,6 +24,7 @@ from crowdbot.core.registry.registry import discover
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.dsl.spec.component_specs import SensorSpec
 from crowdbot.plugin import Reading, SensorInfo
+from crowdbot.testing.sensor_scenes import context
 
 REGISTRY = discover(allow=())
 FIELDS: dict[str, dict[str, Any]] = {
@@ -35,7 +36,7 @@ FIELDS: dict[str, dict[str, Any]] = {
 
 def info_of(fields: dict[str, Any]) -> SensorInfo:
     spec = REGISTRY.spec_model("sensor", fields["kind"]).model_validate(fields)
-    info: SensorInfo = build_sensor(REGISTRY, cast(SensorSpec, spec)).info()
+    info: SensorInfo = build_sensor(REGISTRY, cast(SensorSpec, spec), context()).info()
     return info
 
 

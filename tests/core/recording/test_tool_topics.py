@@ -13,6 +13,7 @@ from rosbags.highlevel import AnyReader
 
 from crowdbot.core.recording.covariance import LEAST, OdometryCovariance
 from crowdbot.core.recording.viewers import PeopleArrows, RobotWay
+from crowdbot.testing.sensor_scenes import context
 from tests.core.recording.recording_cases import URDF, random_run, write_run
 
 RUN = random_run()
@@ -180,4 +181,4 @@ def test_odometry_and_imu_know_their_noise() -> None:
 
     imu = Imu(ImuSpec(rate=64.0)).info()
     assert imu.deviations == pytest.approx((5.2e-4 * 8.0, 3.9e-3 * 8.0))
-    assert len(WheelOdometry(WheelOdometrySpec()).info().deviations) == 3
+    assert len(WheelOdometry(WheelOdometrySpec(), context()).info().deviations) == 3

@@ -14,6 +14,7 @@ from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.dsl.spec.component_specs import SensorSpec
 from crowdbot.plugin import Pose, RobotState, Sensor
+from crowdbot.testing.sensor_scenes import context
 
 Array = NDArray[np.float64]
 REGISTRY = discover(allow=())
@@ -26,7 +27,7 @@ EVERYBODY = 1.7
 def sensor(kind: str, **fields: Any) -> Sensor:
     """A sensor from what a document would say."""
     spec = REGISTRY.spec_model("sensor", kind).model_validate({"kind": kind, **fields})
-    return cast(Sensor, build_sensor(REGISTRY, cast(SensorSpec, spec)))
+    return cast(Sensor, build_sensor(REGISTRY, cast(SensorSpec, spec), context()))
 
 
 def scene_of(

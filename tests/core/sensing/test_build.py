@@ -14,6 +14,7 @@ from crowdbot.errors import PluginError
 from crowdbot.plugin import DepthCamera, SensorInfo, SensorSpec
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import RgbdCamera
+from crowdbot.testing.sensor_scenes import context
 
 REGISTRY = discover(allow=())
 GIVEN: Any = ("scene", "pose", 0.125, "rng")
@@ -71,7 +72,7 @@ def test_others_are_an_error(answer: Any, said: str) -> None:
 @pytest.mark.parametrize("kind", sorted(REGISTRY.components("sensor")))
 def test_built_in_sensors_are_checked_as_well(kind: str) -> None:
     spec = cast(SensorSpec, REGISTRY.spec_model("sensor", kind)(kind=kind))
-    sensor = build_sensor(REGISTRY, spec)
+    sensor = build_sensor(REGISTRY, spec, context())
     assert isinstance(sensor, CheckedSensor)
     camera = sensor.info().camera is not None
     assert isinstance(sensor, CheckedCamera) == camera

@@ -14,6 +14,7 @@ from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.plugin import DepthCamera, Pose, TiltableMount
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import build
+from crowdbot.testing.sensor_scenes import context
 from tests.core.sensing.sensing_worlds import world
 
 ERRORS = {"noise": 0.01, "resolution": 0.003, "bits": 7, "dropout": 0.1, "max_incidence": 1.0}
@@ -38,7 +39,7 @@ def test_a_camera_rounds_its_own_reading(
     pose = Pose(*rng.uniform(-7, 7, 3))
     mount = TiltableMount(z=float(rng.uniform(0.05, 2.2)))
     fields = {"width": width, "height": 30, "depth_min": 0.3, "depth_max": farthest, **errors}
-    camera = build(RgbdCameraSpec(mount=mount, **fields))  # type: ignore[arg-type]
+    camera = build(RgbdCameraSpec(mount=mount, **fields), context())  # type: ignore[arg-type]
     assert isinstance(camera, DepthCamera)
     reading = camera.read(scene, pose, 0.0, sensor_rng(0, "robot", "camera", 3))
     image = camera.depth_mm(scene, pose, 0.0, sensor_rng(0, "robot", "camera", 3))
@@ -48,6 +49,6 @@ def test_a_camera_rounds_its_own_reading(
 
 @pytest.mark.parametrize("tall", [1, 2])
 def test_a_picture_of_nothing(tall: int) -> None:
-    camera = build(RgbdCameraSpec(width=2, height=2 * tall, mount=TiltableMount(z=90.0)))
+    camera = build(RgbdCameraSpec(width=2, height=2 * tall, mount=TiltableMount(z=90.0)), context())
     image = camera.depth_mm(world(0), Pose(0.0, 0.0, 0.0), 0.0, sensor_rng(0, "r", "c", 0))
     assert image.tolist() == [[0, 0]] * 2 * tall

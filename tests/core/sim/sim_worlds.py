@@ -21,11 +21,12 @@ from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.robots import build_model
+from crowdbot.core.robots.task import sensor_context
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.build_crowd import build_crowd
-from crowdbot.core.sim.built_run import BuiltRun, robot_task
+from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.diagram import Blocks, build_diagram
 from crowdbot.core.sim.plant import RobotPlant
 from crowdbot.core.support.ticks import TICK
@@ -196,8 +197,9 @@ def rig(
     ids = np.zeros(0, np.int64) if engine is None else engine.agents.id
     log = RunLog(cast(RecordingWriter, memory), ids)
     host = PlannerHost(planner, "test", model.limits)
-    task = robot_task(robot, parts)
-    made = {n: build_sensor(reg, x) for n, x in robot.sensors.items() if n in sensors}
+    carrier = sensor_context(robot, model, parts)
+    task = carrier.task
+    made = {n: build_sensor(reg, x, carrier) for n, x in robot.sensors.items() if n in sensors}
     built = BuiltRun(
         scenario=world, name=name, robot=robot, parts=parts, model=model, task=task,
         sensors=made, infos={n: sensor.info() for n, sensor in made.items()},

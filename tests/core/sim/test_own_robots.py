@@ -17,15 +17,16 @@ from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.host import PlannerHost
 from crowdbot.core.robots import read_description
 from crowdbot.core.robots.check import check_model
+from crowdbot.core.robots.task import robot_task
 from crowdbot.core.robots.urdf_export import to_urdf
 from crowdbot.core.sensing.build import build_sensor
-from crowdbot.core.sim.built_run import robot_task
 from crowdbot.core.sim.control.kinematic import arc
 from crowdbot.core.sim.planner_system import _slew_planar
 from crowdbot.core.support.ticks import TICK
 from crowdbot.errors import InputError, PluginError, SpecError
 from crowdbot.plugin import Command, DifferentialDrive, Observation, RobotState
 from crowdbot.testing.commanded_motion import assert_moves, check_commanded_motion, drive
+from crowdbot.testing.sensor_scenes import context
 from tests.core.robots.test_published import pepper_model, qolo_model
 from tests.core.sim import sim_worlds
 from tests.core.sim.own_robots import HOWTO, known, model
@@ -278,7 +279,7 @@ def test_the_exported_urdf_has_one_root_and_the_sensors() -> None:
 
     registry = known()
     lidar = registry.find("sensor", "lidar2d").spec(mount=Mount(x=0.1, z=0.3))
-    infos = {"lidar": build_sensor(registry, lidar).info()}
+    infos = {"lidar": build_sensor(registry, lidar, context()).info()}
     text = to_urdf(model(PUCK), infos, "puck")
     described = read_description(text)
     assert described.root == "base_footprint"
@@ -290,7 +291,7 @@ def test_the_exported_urdf_has_one_root_and_the_sensors() -> None:
     for taken in ("map", "odom", "base_footprint", "base_link"):
         with pytest.raises(InputError, match=f"'{taken}' has the name of another frame"):
             to_urdf(model(PUCK), {taken: infos["lidar"]}, "puck")
-    camera = build_sensor(registry, registry.find("sensor", "rgbd_camera").spec()).info()
+    camera = build_sensor(registry, registry.find("sensor", "rgbd_camera").spec(), context()).info()
     with pytest.raises(InputError, match="'eye_optical' has the name of another frame"):
         to_urdf(model(PUCK), {"eye": camera, "eye_optical": infos["lidar"]}, "puck")
 

@@ -23,6 +23,7 @@ from crowdbot.errors import MissingLibraryError
 from crowdbot.plugin import Pose, RobotModel, RobotState, TiltableMount
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import build
+from crowdbot.testing.sensor_scenes import context
 from tests.core.sim.sim_worlds import constant, rig, scenario
 
 pytestmark = pytest.mark.slow
@@ -54,7 +55,7 @@ def _both(
     scene: Scene, tilt: tuple[float, float] = (0.0, 0.0), robots: Sequence[RobotModel] = ()
 ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
     mount = SPEC.mount.model_copy(update={"roll": tilt[0], "pitch": tilt[1]})
-    camera = build(SPEC.model_copy(update={"mount": mount}))
+    camera = build(SPEC.model_copy(update={"mount": mount}), context())
     info = camera.info()
     assert info.camera is not None
     depth = camera.read(scene, POSE, 0.0, sensor_rng(0, "robot", "camera", 0))
@@ -82,7 +83,7 @@ TILTS = [(0.0, 0.2), (0.0, -0.15), (0.35, 0.0), (-0.3, 0.25)]
 def test_the_horizon_tilts_with_the_camera(roll: float, pitch: float) -> None:
     """Sky is where the ray of a pixel, turned by Ry(pitch) Rx(roll), points above the horizon."""
     _, picture = _both(_scene(), (roll, pitch))
-    pinhole = build(SPEC).info().camera
+    pinhole = build(SPEC, context()).info().camera
     assert pinhole is not None
     v, u = np.mgrid[0:120, 0:160]
     (cx, cy), f = pinhole.centre, pinhole.focal
@@ -144,7 +145,9 @@ def test_people_are_drawn_where_they_are_and_the_absent_are_not() -> None:
 
 
 def _floor(depth: NDArray[np.float64]) -> NDArray[np.bool_]:
-    return np.isclose(depth, build(SPEC).read(_scene(), POSE, 0.0, np.random.default_rng(0)))
+    return np.isclose(
+        depth, build(SPEC, context()).read(_scene(), POSE, 0.0, np.random.default_rng(0))
+    )
 
 
 def test_readings_carry_colour() -> None:
@@ -189,7 +192,7 @@ def test_no_wall_is_black() -> None:
             RobotState(*POSE, 0, 0, 0, 0, 0.0102, 0, 0), np.zeros((0, 4)), np.zeros(0, np.bool_)
         )
         for way in (0.0, math.pi):
-            pinhole = build(SPEC).info().camera
+            pinhole = build(SPEC, context()).info().camera
             assert pinhole is not None
             picture = Renderer(scene, pinhole, (0.0, 0.0, 1.0, 0.0))(scene, Pose(0, 0, turn + way))
             assert np.all(picture.max(axis=2) > 30)

@@ -9,8 +9,8 @@ import pytest
 
 from crowdbot.core.crowd import state as s
 from crowdbot.core.environments.build import build_environment
+from crowdbot.core.robots.task import robot_task
 from crowdbot.core.runs.outcome import Progress
-from crowdbot.core.sim.built_run import robot_task
 from crowdbot.core.sim.runner import run
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.plugin import Task

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core.environments.build import build_environment
+from crowdbot.core.robots.task import robot_task
 from crowdbot.core.runs.outcome import (
     ARRIVED,
     PLANNER_FAILED,
@@ -17,7 +18,6 @@ from crowdbot.core.runs.outcome import (
 )
 from crowdbot.core.runs.record_model import RecordModel, RobotPart
 from crowdbot.core.runs.run_record import ending
-from crowdbot.core.sim.built_run import robot_task
 from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.fleet.record import _status
 from crowdbot.core.sim.metric_logger import LEANS

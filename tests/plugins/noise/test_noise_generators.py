@@ -16,6 +16,7 @@ from crowdbot.core.sensing.range_model import RangeModel
 from crowdbot.plugins.noise.gaussian import GaussianSpec
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 from crowdbot.plugins.sensors.ultrasound import UltrasoundSpec
+from crowdbot.testing.sensor_scenes import context
 from tests.core.sensing.sensing_worlds import REGISTRY, Array, read, scene_of, sensor
 
 BEAMS = 200_000
@@ -86,7 +87,7 @@ def test_a_length_is_one_gaussian() -> None:
 
 def test_specs_may_hold_generators_that_are_made_already() -> None:
     spec = Lidar2dSpec(noise={"mine": GaussianSpec(std=0.25)})
-    assert build_sensor(REGISTRY, spec).info().random is True
+    assert build_sensor(REGISTRY, spec, context()).info().random is True
     assert spec.model_dump()["noise"] == {"mine": {"kind": "gaussian", "std": 0.25, "mean": 0.0}}
 
 

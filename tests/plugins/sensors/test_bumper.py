@@ -15,6 +15,7 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugin import Mount, Pose
 from crowdbot.plugins.sensors.bumper import BUMPER, BumperSpec
 from crowdbot.plugins.sensors.bumper_build import build
+from crowdbot.testing.sensor_scenes import context
 
 FULL = BumperSpec(sectors=12, angle_min=-math.pi, angle_max=math.pi)
 
@@ -32,13 +33,13 @@ def pressed(
     xyv = np.hstack([xy, np.zeros_like(xy)])
     scene = Scene(walls, heights, np.full(len(xy), 0.33), 1.7, pillars)  # type: ignore[arg-type]
     scene.update(None, xyv, np.full(len(xy), present))
-    values = build(spec).read(scene, pose, 0.0, np.random.default_rng(0))
+    values = build(spec, context()).read(scene, pose, 0.0, np.random.default_rng(0))
     assert set(values) <= {0.0, 1.0}
     return [int(k) for k in np.flatnonzero(values)]
 
 
 def test_info_is_the_kobukis() -> None:
-    info = build(BumperSpec()).info()
+    info = build(BumperSpec(), context()).info()
     assert (info.category, info.shape, info.random, info.memory) == ("bumper", (3,), False, 0)
     assert info.angles == pytest.approx(np.radians([-90, -30, 30, 90]))
     assert load_build(BUMPER) is build

@@ -14,6 +14,7 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugin import Mount, Pose
 from crowdbot.plugins.sensors.contact_force import ContactForceSpec
 from crowdbot.plugins.sensors.contact_force_build import build
+from crowdbot.testing.sensor_scenes import context
 
 Push = tuple[float, float, float]
 NEWTONS = st.floats(-300.0, 300.0)
@@ -27,7 +28,7 @@ def felt(
     scene = Scene((), (0.0, 2.5), (), ())
     scene.update(None, np.zeros((0, 4)), np.zeros(0, np.bool_), push=push)
     rng = np.random.default_rng(seed)
-    return np.asarray(build(spec).read(scene, Pose(3.0, -2.0, yaw), 0.0, rng))
+    return np.asarray(build(spec, context()).read(scene, Pose(3.0, -2.0, yaw), 0.0, rng))
 
 
 def test_nobody_pushes() -> None:

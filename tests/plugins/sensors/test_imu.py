@@ -19,6 +19,7 @@ from crowdbot.errors import SimulationError
 from crowdbot.plugin import Pose, RobotState, TiltableMount
 from crowdbot.plugins.sensors.imu import IMU, ImuSpec
 from crowdbot.plugins.sensors.imu_build import build
+from crowdbot.testing.sensor_scenes import context
 
 Array = NDArray[np.float64]
 G = 9.81
@@ -32,7 +33,7 @@ def quiet(**fields: Any) -> ImuSpec:
 
 
 def readings(spec: ImuSpec, motion: Motion, count: int = 20) -> Array:
-    imu, scene = build(spec), Scene([], [0, 1], [], [])
+    imu, scene = build(spec, context()), Scene([], [0, 1], [], [])
     memory, rows = np.zeros(imu.info().memory), []
     for k in range(count):
         yaw, vx, vy, w = motion(k / spec.rate)
@@ -47,10 +48,10 @@ def turning(v: float, w: float) -> Motion:
 
 
 def test_info() -> None:
-    info = build(ImuSpec(mount=TiltableMount(x=0.056, y=0.062, z=0.0202))).info()
+    info = build(ImuSpec(mount=TiltableMount(x=0.056, y=0.062, z=0.0202)), context()).info()
     assert (info.category, info.ros_type, info.shape) == ("imu", "sensor_msgs/msg/Imu", (6,))
     assert (info.random, info.sees) == (True, False)
-    assert build(quiet()).info().random is False
+    assert build(quiet(), context()).info().random is False
     assert load_build(IMU) is build
 
 
@@ -128,7 +129,7 @@ def test_bias_stays_and_walks() -> None:
 
 
 def test_reading_twice_at_one_instant() -> None:
-    imu, scene = build(ImuSpec(gyro_walk=0.1)), Scene([], [0, 1], [], [])
+    imu, scene = build(ImuSpec(gyro_walk=0.1), context()), Scene([], [0, 1], [], [])
     scene.move_robot(RobotState(0, 0, 0, 0.3, 0, 0, 0, 0, 0, 0))
     memory = np.zeros(imu.info().memory)
     one, two = (
@@ -138,7 +139,7 @@ def test_reading_twice_at_one_instant() -> None:
 
 
 def test_needs_a_robot() -> None:
-    imu = build(ImuSpec())
+    imu = build(ImuSpec(), context())
     with pytest.raises(SimulationError, match="robot"):
         imu.read(
             Scene([], [0, 1], [], []), Pose(0, 0, 0), 0.0, np.random.default_rng(0), np.zeros(17)

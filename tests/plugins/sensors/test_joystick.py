@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,13 +14,13 @@ from pydantic import ValidationError
 
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.topics import sensor_topics
+from crowdbot.core.sensing.context import SensorContext
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.dsl.spec.component_specs import with_driver
 from crowdbot.plugin import Pose
 from crowdbot.plugins.sensors.joystick import JoystickSpec
 from crowdbot.plugins.sensors.joystick_build import build
-from crowdbot.plugins.sensors.wheel_odometry import WheelOdometrySpec
+from crowdbot.testing.sensor_scenes import context
 
 EMPTY = Scene((), (0.0, 2.5), (), ())
 ANGLES = st.floats(-math.pi, math.pi)
@@ -27,7 +28,7 @@ ANGLES = st.floats(-math.pi, math.pi)
 
 def drive(spec: JoystickSpec, poses: list[Pose], seed: int = 0) -> NDArray[np.float64]:
     """Readings at these poses, one after the other, at the joystick's rate."""
-    stick, memory = build(spec), np.zeros(4)
+    stick, memory = build(spec, context()), np.zeros(4)
     return np.array(
         [
             stick.read(EMPTY, pose, k / spec.rate, sensor_rng(seed, "robot", "joystick", k), memory)
@@ -98,14 +99,21 @@ def test_a_recorded_command_holds_until_the_next_one() -> None:
     found = drive(spec, [Pose(5.0, 5.0, 1.0)] * 6)
     wanted = [(0, 0), (0, 0), (0.5, 0.1), (0.5, 0.1), (0.3, -0.2), (0.3, -0.2)]
     assert found.tolist() == [list(map(float, w)) for w in wanted]
-    assert not build(spec).info().random
+    assert not build(spec, context()).info().random
 
 
-def test_the_robot_tells_goal_and_limits_where_nobody_else_does() -> None:
-    told = with_driver(JoystickSpec(max_speed=0.8), (9.0, 1.0), 1.5, 1.2)
-    assert (told.goal, told.max_speed, told.max_yaw_rate) == ((9.0, 1.0), 0.8, 1.2)
-    other = WheelOdometrySpec()
-    assert with_driver(other, (9.0, 1.0), 1.5, 1.2) is other
+def test_goal_and_limits_come_from_the_robot_unless_the_spec_says_them() -> None:
+    robot = replace(context().robot, limits=replace(context().robot.limits, v_max=1.5, w_max=1.2))
+    task = replace(context().task, goal=(9.0, 1.0))
+    at, memory, rng = Pose(0.0, 1.0, -1.0), np.zeros(4), sensor_rng(0, "robot", "joystick", 0)
+    for spec, wanted in (
+        (JoystickSpec(noise=0.0), 1.2),
+        (JoystickSpec(noise=0.0, goal=(-9.0, 1.0)), -1.2),
+    ):
+        stick = build(spec, SensorContext(robot=robot, task=task))
+        assert stick.read(EMPTY, at, 0.0, rng, memory)[1] == pytest.approx(wanted)
+    fast = build(JoystickSpec(noise=0.0, max_speed=0.8), SensorContext(robot=robot, task=task))
+    assert fast.read(EMPTY, Pose(0.0, 1.0, 0.0), 0.0, rng, memory) == pytest.approx([0.8, 0.0])
 
 
 @pytest.mark.parametrize(
@@ -124,7 +132,7 @@ def test_what_no_driver_can_do_is_refused(fields: dict[str, object], words: str)
 
 def test_it_is_recorded_as_a_stamped_twist() -> None:
     """By the message class, not by the template that made the bytes."""
-    topic = sensor_topics({"joystick": build(JoystickSpec()).info()})["joystick"]
+    topic = sensor_topics({"joystick": build(JoystickSpec(), context()).info()})["joystick"]
     assert topic.name == "/joystick/cmd_vel"
     message = ros.from_cdr(topic.message(1_500_000_000, np.array([0.75, -0.25])), topic.msgtype)
     assert topic.msgtype == "geometry_msgs/msg/TwistStamped"

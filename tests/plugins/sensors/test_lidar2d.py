@@ -13,6 +13,7 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugin import Pose, TiltableMount
 from crowdbot.plugins.sensors.lidar2d import LIDAR2D, Lidar2dSpec
 from crowdbot.plugins.sensors.lidar2d_build import build
+from crowdbot.testing.sensor_scenes import context
 from tests.core.sensing.sensing_worlds import (
     ORIGIN,
     Array,
@@ -33,7 +34,7 @@ def wall(*people: tuple[float, float], z: float | None = 0.0102) -> Scene:
 
 
 def test_info_of_the_challenge() -> None:
-    info = build(Lidar2dSpec(mount=TiltableMount(x=0.17, z=0.24))).info()
+    info = build(Lidar2dSpec(mount=TiltableMount(x=0.17, z=0.24)), (), context()).info()
     assert (info.category, info.ros_type) == ("lidar", "sensor_msgs/msg/LaserScan")
     assert info.angles is not None
     assert info.shape == (480,) == info.angles.shape
@@ -45,7 +46,9 @@ def test_info_of_the_challenge() -> None:
 
 @pytest.mark.parametrize("yaw", [0.0, 0.4, -2.0])
 def test_wall_seen_at_the_right_angles(yaw: float) -> None:
-    lidar = build(Lidar2dSpec(mount=TiltableMount(x=0.1, y=0.05, yaw=0.3), range_max=5.0))
+    lidar = build(
+        Lidar2dSpec(mount=TiltableMount(x=0.1, y=0.05, yaw=0.3), range_max=5.0), (), context()
+    )
     scan, angles = read(lidar, wall(), Pose(0.5, -0.2, yaw)), lidar.info().angles
     assert angles is not None
     x = 0.5 + 0.1 * math.cos(yaw) - 0.05 * math.sin(yaw)
@@ -57,7 +60,7 @@ def test_wall_seen_at_the_right_angles(yaw: float) -> None:
 
 
 def test_rear_lidar_sees_what_is_behind() -> None:
-    rear = build(Lidar2dSpec(mount=TiltableMount(x=-0.17, yaw=math.pi)))
+    rear = build(Lidar2dSpec(mount=TiltableMount(x=-0.17, yaw=math.pi)), (), context())
     assert read(rear, wall((-2.0, APART)))[240] == pytest.approx(2.0 - 0.17 - 0.07)
 
 

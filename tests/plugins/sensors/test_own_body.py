@@ -12,12 +12,13 @@ from hypothesis import strategies as st
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.plugin import Pose, Sensor
+from crowdbot.testing.sensor_scenes import context
 from tests.core.sensing.sensing_worlds import BASE, REGISTRY, Array, read, scene_of
 from tests.examples import costly
 
 SENSORS = open_spec("challenge-2020", REGISTRY).scenarios[0].robots["robot"].sensors
 BUILT: dict[str, Sensor] = {
-    name: cast(Sensor, build_sensor(REGISTRY, spec))
+    name: cast(Sensor, build_sensor(REGISTRY, spec, context()))
     for name, spec in SENSORS.items()
     if spec.kind not in ("wheel_odometry", "imu")
 }

@@ -17,6 +17,7 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugin import Mount, Pose, RobotState
 from crowdbot.plugins.sensors.people_tracker import PEOPLE_TRACKER, PeopleTrackerSpec
 from crowdbot.plugins.sensors.people_tracker_build import build
+from crowdbot.testing.sensor_scenes import context
 
 Array = NDArray[np.float64]
 ORIGIN = Pose(0.0, 0.0, 0.0)
@@ -38,7 +39,7 @@ def scene_of(
 
 def read(spec: PeopleTrackerSpec, scene: Scene, pose: Pose = ORIGIN, tick: int = 0) -> Array:
     rng = sensor_rng(0, "robot", "tracker", tick)
-    return build(spec).read(scene, pose, tick / 128, rng)
+    return build(spec, context()).read(scene, pose, tick / 128, rng)
 
 
 def ids(rows: Array) -> list[int]:
@@ -46,7 +47,7 @@ def ids(rows: Array) -> list[int]:
 
 
 def test_info_says_that_it_is_privileged() -> None:
-    info = build(PeopleTrackerSpec(max_people=7)).info()
+    info = build(PeopleTrackerSpec(max_people=7), context()).info()
     assert info.privileged
     assert (info.category, info.shape, info.random) == ("people", (7, 5), False)
     assert load_build(PEOPLE_TRACKER) is build

@@ -17,6 +17,7 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugin import Pose, RobotState, TiltableMount
 from crowdbot.plugins.sensors.rgbd_camera import RGBD_CAMERA, RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import RgbdCamera, build
+from crowdbot.testing.sensor_scenes import context
 
 Array = NDArray[np.float64]
 BASE = 0.0102
@@ -41,7 +42,7 @@ def read(camera: RgbdCamera, scene: Scene, pose: Pose = ORIGIN, tick: int = 0) -
 
 
 def camera_at(z: float = 0.5, yaw: float = 0.0, **fields: object) -> RgbdCamera:
-    return build(RgbdCameraSpec(mount=TiltableMount(z=z - BASE, yaw=yaw), **fields))  # type: ignore[arg-type]
+    return build(RgbdCameraSpec(mount=TiltableMount(z=z - BASE, yaw=yaw), **fields), context())  # type: ignore[arg-type]
 
 
 def rays(camera: RgbdCamera) -> tuple[Array, Array]:
@@ -56,7 +57,7 @@ def rays(camera: RgbdCamera) -> tuple[Array, Array]:
 
 
 def test_info_of_the_challenge() -> None:
-    info = build(RgbdCameraSpec(mount=TiltableMount(x=-0.087, z=0.287))).info()
+    info = build(RgbdCameraSpec(mount=TiltableMount(x=-0.087, z=0.287)), context()).info()
     assert (info.category, info.ros_type) == ("camera", "sensor_msgs/msg/Image")
     assert info.shape == (240, 320)
     assert info.mount == (-0.087, 0.0, 0.287, 0.0)
@@ -138,7 +139,7 @@ def test_inside_a_person_everything_is_too_near() -> None:
 
 def test_moves_with_the_robot() -> None:
     mount = TiltableMount(x=0.2, y=0.1, z=50.0, yaw=0.3)
-    camera = build(RgbdCameraSpec(mount=mount, depth_max=20.0))
+    camera = build(RgbdCameraSpec(mount=mount, depth_max=20.0), context())
     pose = Pose(1.0, 2.0, math.pi / 2 - 0.3)
     depth = read(camera, scene_of([[-99.0, 9.0, 99.0, 9.0]]), pose)
     y = 2.0 + 0.2 * math.sin(pose.yaw) + 0.1 * math.cos(pose.yaw)

@@ -12,6 +12,7 @@ from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.plugin import Pose, Sensor
 from crowdbot.plugins.sensors.ultrasound_build import zone_length
+from crowdbot.testing.sensor_scenes import context
 from tests.core.sensing.sensing_worlds import REGISTRY, Array, read, scalar, scene_of, sensor
 
 LENGTH, RADIUS = 4.5, 1.0
@@ -177,7 +178,9 @@ def test_inside_a_body_and_too_near() -> None:
 def test_the_ring_of_the_challenge_sees_all_round() -> None:
     """A person of 0.3 m at 2 m is seen from every side, by the sensors that face it."""
     spec = open_spec("challenge-2020", REGISTRY).scenarios[0].robots["robot"].sensors
-    ring = {f"us{k}": cast(Sensor, build_sensor(REGISTRY, spec[f"us{k}"])) for k in range(12)}
+    ring = {
+        f"us{k}": cast(Sensor, build_sensor(REGISTRY, spec[f"us{k}"], context())) for k in range(12)
+    }
     for k, one in enumerate(ring.values()):
         x, y, z, yaw = one.info().mount
         assert math.hypot(x, y) == pytest.approx(0.17, abs=5e-4)

@@ -14,9 +14,11 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.errors import SimulationError
 from crowdbot.plugin import Pose, RobotState
 from crowdbot.plugins.sensors.wheel_odometry import WHEEL_ODOMETRY, WheelOdometrySpec
-from crowdbot.plugins.sensors.wheel_odometry_build import TRACK, WHEEL_RADIUS, build
+from crowdbot.plugins.sensors.wheel_odometry_build import build
+from crowdbot.testing.sensor_scenes import context
 
 SPEC = WheelOdometrySpec()
+WHEEL_RADIUS, TRACK = context().robot.wheels
 TICK = 2 * math.pi * WHEEL_RADIUS / SPEC.ticks_per_turn
 DT = 1 / 64
 Array = NDArray[np.float64]
@@ -25,7 +27,7 @@ START = Pose(2.5, -1.0, 0.7)
 
 def drive(left: Array, right: Array, spec: WheelOdometrySpec = SPEC, start: Pose = START) -> Array:
     """Readings (N, 5) for wheel angles (N,), rad."""
-    sensor, scene = build(spec), Scene(np.empty((0, 4)), [0.0, 1.0], [], [])
+    sensor, scene = build(spec, context()), Scene(np.empty((0, 4)), [0.0, 1.0], [], [])
     memory, readings = np.zeros(sensor.info().memory), []
     for k, (a, b) in enumerate(zip(left, right, strict=True)):
         state = RobotState(9, 9, 9, 0, 0, 0, 0, 0, float(a), float(b))
@@ -42,7 +44,7 @@ def wheels(v: float, w: float, seconds: float, offset: float = 0.0) -> tuple[Arr
 
 
 def test_info() -> None:
-    info = build(SPEC).info()
+    info = build(SPEC, context()).info()
     assert (info.category, info.ros_type) == ("odometry", "nav_msgs/msg/Odometry")
     assert info.shape == (5,)
     assert info.memory > 0
@@ -115,7 +117,7 @@ def test_a_wrong_radius_scales_the_way() -> None:
 
 
 def test_reading_twice_at_one_instant() -> None:
-    sensor, scene = build(SPEC), Scene(np.empty((0, 4)), [0.0, 1.0], [], [])
+    sensor, scene = build(SPEC, context()), Scene(np.empty((0, 4)), [0.0, 1.0], [], [])
     memory, rng = np.zeros(sensor.info().memory), np.random.default_rng(0)
     nobody = np.zeros((0, 4)), np.zeros(0, dtype=np.bool_)
     readings = []
@@ -129,7 +131,7 @@ def test_reading_twice_at_one_instant() -> None:
 
 
 def test_needs_a_robot() -> None:
-    sensor, scene = build(SPEC), Scene(np.empty((0, 4)), [0.0, 1.0], [], [])
+    sensor, scene = build(SPEC, context()), Scene(np.empty((0, 4)), [0.0, 1.0], [], [])
     with pytest.raises(SimulationError, match="robot"):
         sensor.read(scene, Pose(0, 0, 0), 0.0, np.random.default_rng(0), np.zeros(9))
 
@@ -139,7 +141,7 @@ def test_noisy_wheels_drift_as_a_random_walk() -> None:
     spec = WheelOdometrySpec(noise=0.5, ticks_per_turn=1e6)
     still, steps = np.zeros(4001), 4000
     rows = drive(still, still, spec, Pose(0, 0, 0))
-    assert build(spec).info().random
+    assert build(spec, context()).info().random
     turn = np.diff(np.unwrap(rows[:, 2]))
     expected = 0.5 * DT * WHEEL_RADIUS / TRACK * math.sqrt(2.0)
     assert turn.std() == pytest.approx(expected, rel=0.05)
@@ -148,7 +150,7 @@ def test_noisy_wheels_drift_as_a_random_walk() -> None:
 
 
 def turned(spec: WheelOdometrySpec, yaws: Array, wheel: float = 0.0) -> Array:
-    sensor, scene = build(spec), Scene(np.empty((0, 4)), [0.0, 1.0], [], [])
+    sensor, scene = build(spec, context()), Scene(np.empty((0, 4)), [0.0, 1.0], [], [])
     memory, rows = np.zeros(sensor.info().memory), []
     for k, yaw in enumerate(yaws.tolist()):
         scene.move_robot(RobotState(0, 0, yaw, 0, 0, 0, 0, 0, k * wheel, k * wheel))
@@ -159,7 +161,7 @@ def turned(spec: WheelOdometrySpec, yaws: Array, wheel: float = 0.0) -> Array:
 
 def test_a_gyro_knows_the_heading_when_wheels_slip() -> None:
     spec = WheelOdometrySpec(heading="gyro", gyro_noise=0.0)
-    assert not build(spec).info().random
+    assert not build(spec, context()).info().random
     way = np.linspace(3.0, 4.0, 50)
     rows = turned(spec, np.array([math.remainder(y, 2 * math.pi) for y in way]))
     assert np.unwrap(rows[:, 2]) == pytest.approx(way)

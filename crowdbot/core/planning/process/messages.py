@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.planning.planner import Observation, Task, Truth
+from crowdbot.core.planning.planner import Observation, Truth
 from crowdbot.core.planning.process.shared_memory import SharedMemory, in_message
 from crowdbot.core.types.robot import RobotBody, RobotLimits
 from crowdbot.core.types.sensor import Reading, SensorInfo
+from crowdbot.core.types.task import Task
 
 _INFO = ("category", "frame", "rate", "ros_type", "range_min", "range_max", "privileged")
 

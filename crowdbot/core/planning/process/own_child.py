@@ -19,14 +19,7 @@ from typing import Any
 import msgpack
 
 from crowdbot.core.planning.guarded import GuardedPlanner, planner_title
-from crowdbot.core.planning.planner import (
-    NoValidCommand,
-    Observation,
-    Planner,
-    Task,
-    Truth,
-    named_signal,
-)
+from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Truth, named_signal
 from crowdbot.core.planning.process import serving
 from crowdbot.core.planning.python_file import (
     build_of_class,
@@ -38,6 +31,7 @@ from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotBody, RobotLimits
 from crowdbot.core.types.sensor import Pinhole, Reading, SensorInfo
+from crowdbot.core.types.task import Task
 from crowdbot.errors import CrowdbotError, InputError, printable
 
 _TYPES = SimpleNamespace(

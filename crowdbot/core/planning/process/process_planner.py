@@ -17,7 +17,7 @@ import msgpack
 
 from crowdbot.core.planning.description import PlannerDescription, read_description
 from crowdbot.core.planning.host import RESET_LIMIT
-from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Task
+from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner
 from crowdbot.core.planning.process.messages import ObservationWriter, reserve, reset_message
 from crowdbot.core.planning.process.planner_line import (
     LineClosed,
@@ -32,6 +32,7 @@ from crowdbot.core.planning.watchdog import Watchdog
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.core.types.task import Task
 from crowdbot.errors import InputError, PlannerError, printable
 
 #: Seconds that a process has to go by itself, and to be gone after it closed its line.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from crowdbot.plugin import Pose, Scene, SensorInfo, mount_pose, sensor_pose_in_world
+from crowdbot.plugin import Pose, Scene, SensorContext, SensorInfo, mount_pose, sensor_pose_in_world
 from numpy.typing import NDArray
 
 from crowdbot_acme.radar import RadarSpec
@@ -60,6 +60,7 @@ def _wrapped(angle: Array) -> Array:
     return np.asarray((angle + math.pi) % (2.0 * math.pi) - math.pi)
 
 
-def build(spec: RadarSpec) -> Radar:
-    """A radar from its spec."""
+def build(spec: RadarSpec, context: SensorContext) -> Radar:
+    """Return a radar; it is the same on every robot."""
+    del context
     return Radar(spec)

@@ -1,0 +1,47 @@
+"""A robot's task and the context of its sensors, from its scenario."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.robots.build import build_model
+from crowdbot.core.sensing.build import build_sensor
+from crowdbot.core.sensing.context import SensorContext
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.robot import RobotModel, robot_body
+from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.core.types.task import Task
+from crowdbot.dsl.scenario.scenario import Robot, Scenario
+
+
+def robot_task(robot: Robot, parts: EnvironmentParts) -> Task:
+    """Return the robot's task with its goal zone as a polygon."""
+    zone = parts.zones[robot.task.goal.zone]
+    centre = zone.mean(axis=0)
+    return Task(
+        start=Pose(*robot.task.start),
+        goal=(float(centre[0]), float(centre[1])),
+        goal_zone=zone,
+        time_limit=robot.task.time_limit,
+    )
+
+
+def sensor_context(robot: Robot, model: RobotModel, parts: EnvironmentParts) -> SensorContext:
+    """Return what a robot's sensors are built with; the task has the robot's body."""
+    return SensorContext(
+        robot=model, task=replace(robot_task(robot, parts), robot=robot_body(model))
+    )
+
+
+def sensor_infos(registry: Registry, scenario: Scenario, name: str) -> dict[str, SensorInfo]:
+    """Return the descriptions of a robot's sensors, by the sensors' names.
+
+    Raises:
+        PluginError: environment, robot or a sensor cannot be built.
+    """
+    robot, parts = scenario.robots[name], build_environment(registry, scenario.environment)
+    context = sensor_context(robot, build_model(registry, robot.model), parts)
+    return {n: build_sensor(registry, s, context).info() for n, s in robot.sensors.items()}
