@@ -127,7 +127,13 @@ if TYPE_CHECKING:
         RobotState,
     )
     from crowdbot.core.types.score import Score
-    from crowdbot.core.types.sensor import CameraFrame, Pinhole, Reading, SensorInfo
+    from crowdbot.core.types.sensor import (
+        CameraFrame,
+        Pinhole,
+        Reading,
+        SensorInfo,
+        SensorMessage,
+    )
     from crowdbot.core.types.task import Task
     from crowdbot.dsl.spec import outlines
     from crowdbot.dsl.spec.assets import Asset
@@ -318,6 +324,7 @@ __all__ = [
     "Sensor",
     "SensorContext",
     "SensorInfo",
+    "SensorMessage",
     "SensorSpec",
     "SensorWithMemory",
     "SimulationError",

@@ -58,7 +58,7 @@ HOMES = {
         "DifferentialDrive HolonomicDrive RobotBody RobotLimits RobotModel RobotState"
     ),
     "crowdbot.core.types.score": "Score",
-    "crowdbot.core.types.sensor": "CameraFrame Pinhole Reading SensorInfo",
+    "crowdbot.core.types.sensor": "CameraFrame Pinhole Reading SensorInfo SensorMessage",
     "crowdbot.core.types.task": "Task",
     "crowdbot.dsl.spec": "outlines",
     "crowdbot.dsl.spec.assets": "Asset",

@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+import crowdbot.core.recording.messages as ros
+from crowdbot.core.recording.sensor_messages import message_kind
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.sensing.depth_mm import depth_mm
 from crowdbot.core.sensing.noise import sensor_rng
@@ -20,6 +22,7 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.range_sensor import RangeSensorSpec
+from crowdbot.errors import PluginError
 from crowdbot.testing.around import around, built, specs_of
 from crowdbot.testing.sensor_scenes import (
     POSES,
@@ -228,6 +231,26 @@ def check_millimetres_are_the_reading(
                 earlier = image
 
 
+def check_message_has_its_type(component: Component[Any], registry: Registry | None = None) -> None:
+    """Of a sensor that declares its ``message``: readings become messages of ``info().ros_type``.
+
+    If this fails, return every field of the type from ``SensorMessage.fields``, and put the texts
+    of types that ROS 2 Humble lacks into ``definitions``.
+    """
+    for sensor in _sensors(component, registry):
+        info = sensor.info()
+        if info.message is None:
+            continue
+        try:
+            msgtype, kind = message_kind(info)
+            data = kind.encoder(info, "")(10**9, Probe(sensor)(crowded(), 0))
+        except PluginError as error:
+            raise AssertionError(str(error)) from error
+        header = getattr(ros.from_cdr(data, msgtype), "header", None)
+        if header is not None:
+            assert header.frame_id, "the header of its message has no frame"
+
+
 CHECKS: tuple[Callable[..., None], ...] = (
     check_info,
     check_reading_is_numbers,
@@ -239,6 +262,7 @@ CHECKS: tuple[Callable[..., None], ...] = (
     check_sees_people,
     check_distances_are_true,
     check_millimetres_are_the_reading,
+    check_message_has_its_type,
 )
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.dsl.spec.range_sensor import RangeSensorSpec
-from crowdbot.plugin import Pose, SensorInfo
+from crowdbot.plugin import Pose, SensorInfo, SensorMessage
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 from crowdbot.plugins.sensors.lidar2d_build import build as lidar2d
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
@@ -179,6 +179,18 @@ def made_sensor(kind: type[Nose], **changes: Any) -> Any:
 )
 def test_sensors(check: Any, kind: type[Nose], changes: dict[str, Any], because: str) -> None:
     assert_fails(check, made_sensor(kind, **changes), because)
+
+
+def test_messages_that_are_not_of_the_sensors_type() -> None:
+    kind = {"ros_type": "sensor_msgs/msg/Temperature"}
+    for fields, because in (
+        (lambda values: {"temperature": values[0]}, "missing or unknown: \\['variance'\\]"),
+        (lambda values: {"temperature": "warm", "variance": 0.0}, "could not convert"),
+    ):
+        wrong = made_sensor(Nose, message=SensorMessage(fields=fields), **kind)
+        assert_fails(sensor.check_message_has_its_type, wrong, because)
+    sound = SensorMessage(fields=lambda values: {"temperature": values[0], "variance": 0.0})
+    sensor.check_message_has_its_type(made_sensor(Nose, message=sound, **kind), BUILT_IN)
 
 
 def test_a_sound_sensor_passes() -> None:

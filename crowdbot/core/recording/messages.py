@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core.geometry.rotation import quaternion
+from crowdbot.core.recording.typestore import declare as declare
 from crowdbot.core.recording.typestore import definition as definition
 from crowdbot.core.recording.typestore import definition_text as definition_text
 from crowdbot.core.recording.typestore import field_types as field_types
@@ -186,11 +187,6 @@ def wrench(ns: int, frame: str, values: Array) -> Any:
     x, y, torque = values.tolist()
     pushed = new("geometry_msgs/Wrench", force=vector(x, y, 0.0), torque=vector(0.0, 0.0, torque))
     return new("geometry_msgs/WrenchStamped", header=header(ns, frame), wrench=pushed)
-
-
-def twist_stamped(ns: int, frame: str, v: float, w: float) -> Any:
-    """Velocity ahead (m/s) and yaw rate (rad/s)."""
-    return new("geometry_msgs/TwistStamped", header=header(ns, frame), twist=twist(v, 0.0, w))
 
 
 def numbers(values: Array) -> Any:

@@ -161,11 +161,6 @@ def wrench(frame: str) -> Template:
     return Template(ros.wrench(ANY_TIME, frame, values), ANY_STAMP, *marks)
 
 
-def twist_stamped(frame: str) -> Template:
-    """Places: stamp; v; w; float64 each."""
-    return Template(ros.twist_stamped(ANY_TIME, frame, _A, _B), ANY_STAMP, one(_A), one(_B))
-
-
 def numbers(shape: tuple[int, ...]) -> Template:
     """Place: values."""
     values = np.full(shape, _A)

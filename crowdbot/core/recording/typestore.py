@@ -5,10 +5,11 @@ Serialisation is rosbags'. Messages are plain objects of its type store; `new` m
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
 
 from crowdbot.core.recording.definitions import (
     DEFINITIONS,
@@ -43,6 +44,30 @@ def ros1_store() -> Any:
         types.update(get_types_from_msg(text, f"crowdbot_msgs/msg/{name}"))
     store.register(types)
     return store
+
+
+def declare(definitions: Mapping[str, str]) -> None:
+    """Add types that no ROS distribution has, such as those of a plugin's sensor.
+
+    Args:
+        definitions: ``package/msg/Name`` -> text as in a .msg file, perhaps with the types that it
+            is made of below it, as MCAP's ``ros2msg`` encoding has them.
+
+    Raises:
+        ValueError: a text is not a definition, names a type that nothing defines, or contradicts
+            what is known of its type.
+    """
+    name = ""
+    try:
+        for name, text in definitions.items():
+            types = get_types_from_msg(text, name)
+            _store().register(types)
+            known = ros1_store().fielddefs  # a header of ROS 1 has one field more
+            ros1_store().register({n: t for n, t in types.items() if n not in known})
+        for name in definitions:
+            _store().generate_msgdef(name, ros_version=2)
+    except TypesysError as error:
+        raise ValueError(f"the definition of {name}: {error}") from error
 
 
 def new(kind: str, **fields: Any) -> Any:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from numbers import Integral
 from typing import Any, cast
 
@@ -17,7 +18,7 @@ from crowdbot.core.sensing.sensor import DepthCamera, NoiseGenerator, Sensor, Se
 from crowdbot.core.support.plain_numbers import plain_numbers
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array
-from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.core.types.sensor import SensorInfo, SensorMessage
 from crowdbot.dsl.spec.component_specs import NoiseSpec, SensorSpec
 from crowdbot.errors import PluginError, hidden_character
 
@@ -80,8 +81,23 @@ def checked_sensor(sensor: object, call: PluginCall) -> Sensor | SensorWithMemor
     with call("info"):
         info = built.info()
     _check(info)
+    if info.message is not None:
+        info = replace(info, message=_guarded(info.message, call))
     checked = CheckedCamera if isinstance(sensor, DepthCamera) else CheckedSensor
     return checked(built, info, call)
+
+
+def _guarded(message: SensorMessage, call: PluginCall) -> SensorMessage:
+    """Return the message of a plugin's sensor with its calls inside the boundary."""
+
+    def fields(values: Array) -> Mapping[str, Any]:
+        with call("message.fields"):
+            found = message.fields(values)
+        if not isinstance(found, Mapping):
+            call.fail(f"message.fields returned a {type(found).__name__}, not fields by name")
+        return found
+
+    return replace(message, fields=fields)
 
 
 class CheckedSensor:
@@ -156,6 +172,10 @@ def _check(info: object) -> None:
     if not all(isinstance(d, int | float) and 0.0 <= d < math.inf for d in info.deviations):
         refuse(f"deviations are {info.deviations!r}; numbers from 0 on are wanted")
     _check_camera(info, refuse)
+    if info.message is not None and not (
+        isinstance(info.message, SensorMessage) and callable(info.message.fields)
+    ):
+        refuse(f"message is a {type(info.message).__name__}; a SensorMessage is wanted")
 
 
 def _check_shape(info: SensorInfo, refuse: Callable[[str], None]) -> None:

@@ -1,9 +1,11 @@
-"""What a sensor says about itself, and what it reads."""
+"""Values of sensors: their description, their messages, their readings."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +35,23 @@ class Pinhole:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SensorMessage:
+    """The ROS message that a sensor's readings become; of type `SensorInfo.ros_type`.
+
+    Attributes:
+        fields: makes the message's fields, by name, of a reading's values: numbers, texts, arrays,
+            and mappings for messages within it. A field ``header`` is filled in where it is left
+            out: the time of the reading and the sensor's frame.
+        definitions: ROS type -> its text as in a .msg file, of each type that ROS 2 Humble lacks.
+        topic: readings are on ``/NAME/topic``; empty: on ``/NAME``.
+    """
+
+    fields: Callable[[Array], Mapping[str, Any]]
+    definitions: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    topic: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SensorInfo:
     """What a planner or a recorder may know about a sensor.
 
@@ -57,6 +76,8 @@ class SensorInfo:
             the turn on each metre (rad/m), of the turn in a second (rad/sqrt(s)).
         privileged: whether readings tell what no sensor of a real robot could; only planners
             that say that they are privileged may read them.
+        message: of a sensor whose ``ros_type`` crowdbot has no encoder for; without it its
+            readings are recorded as ``std_msgs/msg/Float64MultiArray``.
     """
 
     category: str
@@ -76,6 +97,7 @@ class SensorInfo:
     deviations: tuple[float, ...] = ()
     privileged: bool = False
     tilt: tuple[float, float] = (0.0, 0.0)
+    message: SensorMessage | None = None
 
 
 class Reading(NamedTuple):

@@ -9,10 +9,18 @@ from __future__ import annotations
 
 import bisect
 import math
+from typing import Any
 
 import numpy as np
 
-from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo
+from crowdbot.plugin import (
+    Array,
+    Pose,
+    Scene,
+    SensorContext,
+    SensorInfo,
+    SensorMessage,
+)
 from crowdbot.plugins.sensors.joystick import JoystickSpec
 
 #: Layout of the memory: whether there was a reading, its time, the error of the hand ahead and
@@ -36,6 +44,7 @@ class Joystick:
             rate=spec.rate,
             shape=(2,),
             ros_type="geometry_msgs/msg/TwistStamped",
+            message=SensorMessage(fields=_twist, topic="cmd_vel"),
             memory=4,
             random=spec.noise > 0.0 and not self._recorded,
             sees=False,
@@ -81,6 +90,17 @@ class Joystick:
         fresh = math.sqrt(1.0 - stays * stays) * rng.standard_normal(2)
         memory[AHEAD : ASIDE + 1] = stays * memory[AHEAD : ASIDE + 1] + fresh
         memory[STARTED], memory[TIME] = 1.0, t
+
+
+def _twist(values: Array) -> dict[str, Any]:
+    """Return the fields of a TwistStamped of a reading."""
+    v, w = values.tolist()
+    return {
+        "twist": {
+            "linear": {"x": v, "y": 0.0, "z": 0.0},
+            "angular": {"x": 0.0, "y": 0.0, "z": w},
+        }
+    }
 
 
 def _full(deflection: float) -> float:

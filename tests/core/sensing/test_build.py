@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
@@ -11,7 +12,7 @@ from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.sensing.build import CheckedCamera, CheckedSensor, build_sensor, checked_sensor
 from crowdbot.errors import PluginError
-from crowdbot.plugin import DepthCamera, SensorInfo, SensorSpec
+from crowdbot.plugin import DepthCamera, SensorInfo, SensorMessage, SensorSpec
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import RgbdCamera
 from crowdbot.testing.sensor_scenes import context
@@ -127,3 +128,24 @@ def test_other_readings_are_an_error(memory: float, values: Any, said: str) -> N
 def test_what_is_not_a_sensor() -> None:
     with pytest.raises(PluginError, match="build returned a int, which has no info and no read"):
         checked_sensor(3, CALL)
+
+
+class Telling(Beam):
+    """Declares what it is told to as its message."""
+
+    def info(self) -> SensorInfo:
+        return replace(super().info(), message=self.answer)
+
+
+def test_messages_of_plugins_are_called_inside_the_boundary() -> None:
+    def fields(values: Any) -> Any:
+        return 1 / float(values[0])
+
+    info = checked_sensor(Telling(SensorMessage(fields=fields)), CALL).info()
+    assert info.message is not None
+    with pytest.raises(PluginError, match=r"acme.camera.*: message.fields: ZeroDivisionError"):
+        info.message.fields(np.zeros(1))
+    with pytest.raises(PluginError, match="returned a float, not fields by name"):
+        info.message.fields(np.full(1, 2.0))
+    with pytest.raises(PluginError, match="message is a str; a SensorMessage is wanted"):
+        checked_sensor(Telling("Radar"), CALL)

@@ -19,7 +19,7 @@ from rosbags.interfaces import (
 )
 
 import crowdbot.core.recording.messages as ros
-from crowdbot.core.recording.container.records import Records
+from crowdbot.core.recording.container.records import Record, Records
 from crowdbot.core.recording.export.extras import OFTEN, Extra, extras
 from crowdbot.core.recording.export.stamps import moved
 from crowdbot.core.recording.header import RecordingHeader
@@ -159,13 +159,27 @@ def _recorded(
 ) -> Iterator[_Message]:
     """The recording's own messages; ``names``: other names of topics, None leaves one out."""
     derived = options.tree == "odometry" and Topic.TF_ODOMETRY not in topics
-    for k, record in enumerate(Records(path)):
+    records = Records(path)
+    for k, record in enumerate(records):
+        _declare(records, record)
         topic, latched = names.get(record.topic, record.topic), record.topic in _LATCHED
         if topic is not None:
             yield _Message(record.ns, k, topic, record.msgtype, record.data, latched)
         if derived and record.msgtype == _ODOMETRY and record.topic == "/odom":
             data = _believed(record.data)
             yield _Message(record.ns, k, str(Topic.TF), _TF, data, False)
+
+
+def _declare(records: Records, record: Record) -> None:
+    """Register the type of a message as the recording describes it: a plugin's is in no store."""
+    schema = None
+    if ros.field_types(record.msgtype) is None:
+        schema = records.channel(record.topic).schema
+    if schema is not None:
+        try:
+            ros.declare({schema.name: schema.data.decode()})
+        except ValueError as error:
+            raise InputError(f"{record.topic}: {error}") from error
 
 
 def _believed(data: bytes) -> bytes:

@@ -5,12 +5,32 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from crowdbot.plugin import Pose, Scene, SensorContext, SensorInfo, mount_pose, sensor_pose_in_world
+from crowdbot.plugin import (
+    Pose,
+    Scene,
+    SensorContext,
+    SensorInfo,
+    SensorMessage,
+    mount_pose,
+    sensor_pose_in_world,
+)
 from numpy.typing import NDArray
 
 from crowdbot_acme.radar import RadarSpec
 
 Array = NDArray[np.float64]
+
+#: What recordings and ROS clients get: `fields` of a reading; the header is filled in.
+_MESSAGE = SensorMessage(
+    definitions={
+        "acme_msgs/msg/Radar": "std_msgs/Header header\n"
+        "float64 distance\nfloat64 closing_speed\nfloat64 bearing\n"
+    },
+    fields=lambda values: dict(
+        zip(("distance", "closing_speed", "bearing"), values.tolist(), strict=True)
+    ),
+    topic="radar",
+)
 
 
 class Radar:
@@ -24,7 +44,8 @@ class Radar:
             mount=mount_pose(spec.mount),
             rate=spec.rate,
             shape=(3,),
-            ros_type="std_msgs/msg/Float64MultiArray",
+            ros_type="acme_msgs/msg/Radar",
+            message=_MESSAGE,
             range_max=spec.range_max,
             random=False,
         )
