@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crowdbot.dsl.scenario.streams import Arrivals
+from crowdbot.dsl.scenario.stream import Arrivals
 
 
 def arrival_times(arrivals: Arrivals, rng: np.random.Generator) -> list[float]:

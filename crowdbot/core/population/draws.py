@@ -83,6 +83,13 @@ def draw_one(
     return draw_normal(rng, spread.mean, spread.std)
 
 
+def draw_numbers(rng: np.random.Generator, count: int, spread: Sample | SpeedDistribution) -> Array:
+    """Draw (count,) numbers of a distribution, in its unit."""
+    if isinstance(spread, SpeedDistribution):
+        return draw_speeds(rng, count, spread)
+    return np.array([draw_one(rng, spread) for _ in range(count)])
+
+
 def draw_normal(rng: np.random.Generator, mean: float, std: float) -> float:
     """Normal, truncated at `WIDEST` standard deviations and at 5 % of the mean."""
     low, high = max(mean - WIDEST * std, 0.05 * mean), mean + WIDEST * std

@@ -17,7 +17,7 @@ from crowdbot.core.population.draws import (
     Streams,
     area_of,
     draw_groups,
-    draw_speeds,
+    draw_numbers,
     heading_to,
     stream_heading,
 )
@@ -131,9 +131,7 @@ class SpawnSampler:
     def _speeds(self) -> Array:
         speed = self._spawn.speed or self._crowd.speed
         assert speed is not None  # checked with the document
-        if isinstance(speed, Sample):
-            return self._parameter("speed", speed, 0.0)
-        return draw_speeds(self._rng("speed"), self._count, speed)
+        return draw_numbers(self._rng("speed"), self._count, speed)
 
     def _policies(self) -> list[str]:
         names = self._spawn.policy

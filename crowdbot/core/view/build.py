@@ -17,7 +17,6 @@ from crowdbot.core.types.arrays import Point
 from crowdbot.core.view.map_content import MapContent, RobotView, Sector
 from crowdbot.core.view.ways import ways_of
 from crowdbot.dsl.scenario.scenario import Crowd, Robot, Scenario
-from crowdbot.dsl.scenario.streams import places_of
 from crowdbot.dsl.spec.areas import Area
 from crowdbot.dsl.spec.component_specs import SensorSpec
 from crowdbot.dsl.spec.spec import Mount
@@ -47,9 +46,9 @@ def _areas(crowd: Crowd) -> dict[str, dict[str, tuple[Point, ...]]]:
     spawns = {n: s.area.corners for n, s in crowd.spawns.items() if isinstance(s.area, Area)}
     goals = {n: g.area.corners for n, g in crowd.goal_areas.items() if isinstance(g.area, Area)}
     for name, stream in crowd.streams.items():
-        for field, place in places_of(stream):
+        for field, place in stream.places():
             if isinstance(place, Area):
-                role = spawns if field[0] in ("origin", "start", "area") else goals
+                role = spawns if field[0] in stream.begin_fields else goals
                 role[" ".join([name, *map(str, field)])] = place.corners
     return {"spawn": spawns, "goal-area": goals}
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.dsl.scenario.scenario import Scenario
-from crowdbot.dsl.scenario.streams import Stream
+from crowdbot.dsl.scenario.stream import Stream
 
 
 def scenario_facts(scenario: Scenario, people: Realisation, spec_hash: str) -> dict[str, str]:
@@ -43,7 +43,7 @@ def scenario_facts(scenario: Scenario, people: Realisation, spec_hash: str) -> d
 
 def _stream(stream: Stream) -> str:
     """Pattern and number of a stream of people."""
-    density, arrivals = getattr(stream, "density", None), getattr(stream, "arrivals", None)
+    density, arrivals = stream.people_per_area, stream.entering
     if density is not None:
         return f"{stream.kind}, {density:g} 1/m²"
     if arrivals is None:

@@ -1,41 +1,33 @@
-"""Checks of streams: names, whole numbers of people, and whether all fit where they start."""
+"""Checks of streams: names, whole numbers of people, and room for all where they start."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
-from itertools import pairwise
 
 from crowdbot.dsl.checks.crowd import missing_speed
 from crowdbot.dsl.checks.facts import Facts, Path, people
 from crowdbot.dsl.checks.spawns import most_points
 from crowdbot.dsl.scenario.spawning import MAX_PEOPLE
-from crowdbot.dsl.scenario.streams import (
-    Arrivals,
-    DirectionsStream,
-    QueueStream,
-    Stream,
-    TalkingStream,
-    ThroughStream,
-    WanderingStream,
-    places_of,
-)
+from crowdbot.dsl.scenario.stream import Arrivals, Stream
 from crowdbot.dsl.spec.areas import Area, Place
 from crowdbot.dsl.text.diagnostics import Diagnostic
 
 
 def check_streams(facts: Facts) -> Iterator[Diagnostic]:
-    """Every stream by itself, and the names between it and the rest of the crowd."""
+    """Check every stream by itself, and the names between it and the rest of the crowd."""
     for name, stream in facts.crowd.streams.items():
         path: Path = ("crowd", "streams", name)
-        yield from _check_names(facts, stream, f"stream '{name}'", path)
-        for field, place in places_of(stream):
-            yield from _check_place(facts, place, f"stream '{name}'", (*path, *field))
+        who = f"stream '{name}'"
+        yield from _check_names(facts, stream, who, path)
+        for field, place in stream.places():
+            yield from _check_place(facts, place, who, (*path, *field))
         yield from _check_number(facts, stream, name, path)
-        if isinstance(stream, QueueStream):
-            yield from _check_line(facts, stream, name, path)
-        if isinstance(stream, ThroughStream):
-            yield from _check_lanes(facts, stream, name, path)
+        for field, points in stream.points():
+            yield from facts.outside(f"the point {{at}} of {who}", points, *path, *field)
+        radius = stream.body.radius or facts.crowd.body.radius
+        for misfit in stream.misfits(who, radius, lambda place: area_of(facts, place)):
+            mark = facts.mark(*path, *misfit.field)
+            yield Diagnostic("E136", misfit.text, mark, misfit.hint)
 
 
 def _check_names(facts: Facts, stream: Stream, who: str, path: Path) -> Iterator[Diagnostic]:
@@ -46,10 +38,9 @@ def _check_names(facts: Facts, stream: Stream, who: str, path: Path) -> Iterator
     for kind in stream.people:
         if kind not in crowd.people:
             yield facts.unknown("kind", kind, crowd.people, *path, "people")
-    if isinstance(stream, WanderingStream):
-        for i, area in enumerate(stream.areas):
-            if area not in crowd.goal_areas:
-                yield facts.unknown("goal area", area, crowd.goal_areas, *path, "areas", i)
+    for field, area in stream.goal_area_names():
+        if area not in crowd.goal_areas:
+            yield facts.unknown("goal area", area, crowd.goal_areas, *path, *field)
     if stream.groups and sum(g.frequency for g in stream.groups) == 0:
         text = f"the frequencies of the groups of {who} sum to 0"
         yield Diagnostic("E137", text, facts.mark(*path, "groups"))
@@ -68,9 +59,9 @@ def _check_place(facts: Facts, place: Place, who: str, path: Path) -> Iterator[D
         yield from facts.area(place, who, *path)
 
 
-def area_of(facts: Facts, place: Place | None) -> Area | None:
-    """A place as an area; None for a name that is not there."""
-    if isinstance(place, Area) or place is None:
+def area_of(facts: Facts, place: Place) -> Area | None:
+    """Return the area of a place; None for a name that is not there."""
+    if isinstance(place, Area):
         return place
     environment = facts.scenario.environment
     box = environment.zones.get(place) or environment.portals.get(place)
@@ -78,16 +69,11 @@ def area_of(facts: Facts, place: Place | None) -> Area | None:
 
 
 def _check_number(facts: Facts, stream: Stream, name: str, path: Path) -> Iterator[Diagnostic]:
-    """Whether so many people can be where they start."""
-    if isinstance(stream, ThroughStream):
-        place: Place | None = stream.starts_in
-    else:
-        place = getattr(stream, "area", None)
-    area = area_of(facts, place)
-    density, wanted = getattr(stream, "density", None), stream.count
-    arrivals = getattr(stream, "arrivals", None)
-    if arrivals is not None:
-        yield from _check_arrivals(facts, arrivals, name, (*path, "arrivals"))
+    """Check that so many people can be where they start."""
+    place, density, wanted = stream.starts_in, stream.people_per_area, stream.count
+    if stream.entering is not None:
+        yield from _check_arrivals(facts, stream.entering, name, (*path, "arrivals"))
+    area = None if place is None else area_of(facts, place)
     if area is None:
         return
     floor = area.size[0] * area.size[1]
@@ -97,8 +83,7 @@ def _check_number(facts: Facts, stream: Stream, name: str, path: Path) -> Iterat
         )
         wanted = round(density * floor)
     radius = stream.body.radius or facts.crowd.body.radius
-    if facts.crowd.people or isinstance(stream, DirectionsStream | TalkingStream):
-        radius = min(radius, 0.1) if facts.crowd.people else radius
+    radius = min(radius, 0.1) if facts.crowd.people else radius
     most = min(most_points(area.size, radius, 2.0 * radius), MAX_PEOPLE)
     if (wanted or 1) > most:
         size = f"{area.size[0]:g} m × {area.size[1]:g} m"
@@ -116,32 +101,3 @@ def _check_arrivals(
     if expected > MAX_PEOPLE:
         text = f"some {expected:.0f} people of stream '{name}' are more than {MAX_PEOPLE}"
         yield Diagnostic("E136", text, facts.mark(*path))
-
-
-def _check_line(facts: Facts, queue: QueueStream, name: str, path: Path) -> Iterator[Diagnostic]:
-    yield from facts.outside(f"the point {{at}} of stream '{name}'", queue.line, *path, "line")
-    length = sum(math.dist(a, b) for a, b in pairwise(queue.line))
-    room = math.floor(length / queue.gap + 1e-9) + 1
-    if queue.count is not None and queue.count > room:
-        text = f"{people(queue.count)} of stream '{name}' cannot stand on its {length:g} m"
-        hint = f"with a gap of {queue.gap:g} m there is room for {room}"
-        yield Diagnostic("E136", text, facts.mark(*path, "count"), hint)
-    radius = queue.body.radius or facts.crowd.body.radius
-    if queue.gap < 2.0 * radius:
-        text = f"{queue.gap:g} m between people of stream '{name}' who are {2 * radius:g} m wide"
-        yield Diagnostic("E136", text, facts.mark(*path, "gap"))
-
-
-def _check_lanes(
-    facts: Facts, stream: ThroughStream, name: str, path: Path
-) -> Iterator[Diagnostic]:
-    if stream.lanes is None:
-        return
-    radius = stream.body.radius or facts.crowd.body.radius
-    for place in {stream.origin, stream.starts_in, stream.destination}:
-        area = area_of(facts, place)
-        width = area.size[1] / stream.lanes.of if area else math.inf
-        if width < 2.0 * radius:
-            text = f"lanes of {width:.3g} m in stream '{name}' for people {2 * radius:g} m wide"
-            yield Diagnostic("E136", text, facts.mark(*path, "lanes"))
-            return

@@ -12,8 +12,7 @@ from crowdbot.dsl.checks.reach import Box, Reach, areas_connected, has_room, rea
 from crowdbot.dsl.checks.robots import check_zones
 from crowdbot.dsl.scenario.routing import MeshRouting
 from crowdbot.dsl.scenario.spawning import Agent, Spawn
-from crowdbot.dsl.scenario.stream_legs import begins_in, legs
-from crowdbot.dsl.scenario.streams import QueueStream, Stream, places_of
+from crowdbot.dsl.scenario.stream import Stream
 from crowdbot.dsl.spec.areas import Area
 from crowdbot.dsl.spec.areas import Place as PlaceName
 from crowdbot.dsl.spec.component_specs import EnvironmentSpec
@@ -80,13 +79,12 @@ class _Ways:
         """There is room where streams begin and come in, in queues, and in portals."""
         for name, stream in self.facts.crowd.streams.items():
             radius = self._stream_radius(stream)
-            for field in begins_in(stream):
+            for field in stream.entrances():
                 area = self._resolve(getattr(stream, field))
                 if area is not None and not has_room(self.place, area, radius):
                     text = f"nobody of stream '{name}' can come in around {_at(area)}"
                     yield self._no_room(text, radius, "crowd", "streams", name, field)
-            if isinstance(stream, QueueStream):
-                yield from self._check_line(name, stream, radius)
+            yield from self._check_spots(name, stream, radius)
         for path, pair, radius in self._users_of_portals():
             for i, portal in enumerate(pair):
                 area = self._resolve(portal)
@@ -98,12 +96,13 @@ class _Ways:
         hint = f"walls leave no room for a body of radius {radius:g} m"
         return Diagnostic("E143", text, self.facts.mark(*path), hint)
 
-    def _check_line(self, name: str, queue: QueueStream, radius: float) -> Iterator[Diagnostic]:
-        for x, y in queue.places():
-            if self.place.clearance(x, y) < radius - _SLACK:
-                text = f"nobody can stand in the queue '{name}' at ({x:g}, {y:g})"
-                yield self._no_room(text, radius, "crowd", "streams", name, "line")
-                return
+    def _check_spots(self, name: str, stream: Stream, radius: float) -> Iterator[Diagnostic]:
+        for field, points in stream.spots():
+            for x, y in points:
+                if self.place.clearance(x, y) < radius - _SLACK:
+                    text = f"nobody can stand in the {stream.kind} '{name}' at ({x:g}, {y:g})"
+                    yield self._no_room(text, radius, "crowd", "streams", name, *field)
+                    break
 
     def _users_of_portals(self) -> Iterator[tuple[Path, tuple[str, str], float]]:
         """Where each pair of portals is named, the pair, and how wide its people are, m."""
@@ -120,7 +119,7 @@ class _Ways:
         for name, stream in self.facts.crowd.streams.items():
             radius = self._stream_radius(stream)
             areas = {name: one.area for name, one in self.facts.crowd.goal_areas.items()}
-            for start, goal, path in legs(stream, areas, self._resolve):
+            for start, goal, path in stream.legs(self._resolve, areas):
                 if not self._connects(start, goal, radius):
                     text = f"no way leads stream '{name}' from {_at(start)} to {_at(goal)}"
                     mark = self.facts.mark("crowd", "streams", name, *path)
@@ -208,9 +207,9 @@ class _Ways:
         boxes = (*self.environment.zones.values(), *self.environment.portals.values())
         points += [p for box in boxes for p in box.polygon]
         named = [one.area for group in (crowd.spawns, crowd.goal_areas) for one in group.values()]
-        named += [place for one in crowd.streams.values() for _, place in places_of(one)]
+        named += [place for one in crowd.streams.values() for _, place in one.places()]
         points += [p for place in named if isinstance(place, Area) for p in place.corners]
-        points += [p for q in crowd.streams.values() for p in getattr(q, "line", ())]
+        points += [p for one in crowd.streams.values() for _, at in one.points() for p in at]
         xs, ys = [p[0] for p in points] or [0.0], [p[1] for p in points] or [0.0]
         return min(xs), max(xs), min(ys), max(ys)
 

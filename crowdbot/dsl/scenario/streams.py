@@ -1,108 +1,37 @@
-"""Streams: named flows of people, each with its own density or arrivals, ways, speeds and bodies.
+"""The kinds of streams: named flows of people, each with its own number, path, speeds and bodies.
 
-Everything is drawn once by `crowdbot.core.population.realise`; these are its specs.
+A kind says itself what others need to know of it (`Stream`); its people begin as
+`crowdbot.core.population.stream_starts` draws it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import islice
+import math
+from collections.abc import Iterator, Mapping
+from itertools import islice, pairwise
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Gt, Le, MinLen
 from pydantic import Field, model_validator
 
-from crowdbot.dsl.scenario.spawning import Count, GroupSize, Names, Point
-from crowdbot.dsl.spec.areas import Place
-from crowdbot.dsl.spec.outlines import along
-from crowdbot.dsl.spec.parameters import DurationSample, SpeedChoice
-from crowdbot.dsl.spec.quantities import (
-    Angle,
-    NonNegativeDuration,
-    PositiveAcceleration,
-    PositiveDensity,
-    PositiveDuration,
-    PositiveFrequency,
-    PositiveLength,
-    PositiveMass,
-    PositiveSpeed,
+from crowdbot.dsl.scenario.spawning import Count, GroupSize, Point
+from crowdbot.dsl.scenario.stream import (
+    AreaOf,
+    Arrivals,
+    FieldPath,
+    Misfit,
+    PopulatedStream,
+    Stream,
+    StreamEnd,
 )
+from crowdbot.dsl.spec.areas import Area, Place
+from crowdbot.dsl.spec.outlines import along
+from crowdbot.dsl.spec.parameters import DurationSample
+from crowdbot.dsl.spec.quantities import Angle, PositiveDensity, PositiveLength
 from crowdbot.dsl.spec.spec import Spec
 
-#: What people of a stream do at its end.
-StreamEnd = Literal["return", "leave", "stop"]
-
-
-class Arrivals(Spec):
-    """When people enter: at random (`rate`), in a steady beat (`every`), or at given `times`.
-
-    Groups arrive together: what arrives is a group, or one who is alone.
-    """
-
-    rate: PositiveFrequency | None = Field(
-        default=None, description="Poisson arrivals: mean number in a second, 1/s."
-    )
-    every: PositiveDuration | None = Field(
-        default=None, description="Steady arrivals: time between two, s."
-    )
-    times: tuple[NonNegativeDuration, ...] = Field(
-        default=(), strict=False, description="Scheduled arrivals, s; in any order."
-    )
-    begin: NonNegativeDuration = Field(
-        default=0.0, description="With `rate` and `every`: nobody arrives before this time, s."
-    )
-    until: PositiveDuration | None = Field(
-        default=None, description="With `rate` and `every`: nobody arrives from then on, s."
-    )
-
-    @model_validator(mode="after")
-    def _one_pattern(self) -> Arrivals:
-        given = [n for n in ("rate", "every", "times") if getattr(self, n)]
-        if len(given) != 1:
-            raise ValueError("write one of 'rate', 'every' and 'times'")
-        if self.times and (self.until is not None or self.begin):
-            raise ValueError("'begin' and 'until' belong to 'rate' and 'every'")
-        if not self.times and (self.until is None or self.until <= self.begin):
-            raise ValueError(f"'{given[0]}' needs an 'until' after 'begin'")
-        return self
-
-
-class StreamBody(Spec):
-    """What the people of a stream have in common; what is left out is as in `crowd.body`."""
-
-    radius: PositiveLength | None = Field(default=None, description="Radius of the disc, m.")
-    mass: PositiveMass | None = Field(default=None, description="Mass in the physics, kg.")
-    max_speed: PositiveSpeed | None = Field(default=None, description="Largest speed, m/s.")
-    max_acceleration: PositiveAcceleration | None = Field(
-        default=None,
-        description="Largest acceleration that people choose, m/s^2; pushes may exceed it.",
-    )
-
-
-class Stream(Spec):
-    """A stream of people, of the pattern that its `kind` names."""
-
-    #: No kind is usual: each stream names its own.
-    usual: ClassVar[str] = ""
-    kind: str = Field(description="Pattern of the stream.")
-    count: Count | None = Field(default=None, description="How many people there are.")
-    speed: SpeedChoice | None = Field(
-        default=None, description="Preferred speed, m/s; without it the crowd's."
-    )
-    body: StreamBody = Field(default=StreamBody(), description="What differs from `crowd.body`.")
-    people: Names = Field(
-        default=(),
-        strict=False,
-        description="Names in `crowd.people` that this stream is made of; without it all of them.",
-    )
-    policy: Names = Field(
-        default=(),
-        strict=False,
-        description="Names in `crowd.policies`, one of which each draws; without it the crowd's.",
-    )
-    groups: tuple[GroupSize, ...] = Field(
-        default=(), strict=False, description="Sizes of groups; without it everybody is alone."
-    )
+#: Size of the area that stands for a point, m.
+_POINT = (0.01, 0.01)
 
 
 class Lanes(Spec):
@@ -120,27 +49,14 @@ class Lanes(Spec):
         return self
 
 
-class _Populated(Stream):
-    """A stream of people who are there from the start, or who arrive."""
-
-    density: PositiveDensity | None = Field(
-        default=None, description="People per area of where they start, 1/m^2."
-    )
-    arrivals: Arrivals | None = Field(default=None, description="When people enter.")
-
-    @model_validator(mode="after")
-    def _one_number(self) -> _Populated:
-        if [self.count, self.density, self.arrivals].count(None) != 2:
-            raise ValueError("write one of 'count', 'density' and 'arrivals'")
-        return self
-
-
-class ThroughStream(_Populated):
+class ThroughStream(PopulatedStream):
     """People who walk from one area to another: a flow in any direction, or out of a room.
 
     Two of them are a counterflow or a crossing at any angle.
     """
 
+    begin_fields: ClassVar[tuple[str, ...]] = ("origin", "start")
+    goal_fields: ClassVar[tuple[str, ...]] = ("destination",)
     kind: Literal["through"] = Field(default="through", description="Pattern of the stream.")
     origin: Place = Field(
         description="Where they come from: name of a zone or portal, or an area written here."
@@ -172,6 +88,36 @@ class ThroughStream(_Populated):
         """Where they are at the start."""
         return self.start if self.start is not None and not self.arrivals else self.origin
 
+    def places(self) -> Iterator[tuple[FieldPath, Place]]:
+        """All places that it names, those on the way last."""
+        yield from super().places()
+        yield from self._between()
+
+    def entrances(self) -> tuple[str, ...]:
+        """The origin, unless all are at `start` and none comes in again; and `start`."""
+        comes_in = self.start is None or self.end == "return"
+        return ("origin",) * comes_in + ("start",) * (self.start is not None)
+
+    def onward(self) -> Iterator[tuple[FieldPath, Place]]:
+        """The places on the way, then the destination."""
+        yield from self._between()
+        yield from super().onward()
+
+    def _between(self) -> Iterator[tuple[FieldPath, Place]]:
+        return ((("via", i), place) for i, place in enumerate(self.via))
+
+    def misfits(self, who: str, radius: float, area_of: AreaOf) -> Iterator[Misfit]:
+        """Lanes that are narrower than people."""
+        if self.lanes is None:
+            return
+        for place in (self.origin, self.starts_in, self.destination):
+            area = area_of(place)
+            width = area.size[1] / self.lanes.of if area else math.inf
+            if width < 2.0 * radius:
+                text = f"lanes of {width:.3g} m in {who} for people {2 * radius:g} m wide"
+                yield Misfit(("lanes",), text)
+                return
+
     @model_validator(mode="after")
     def _start_of_those_present(self) -> ThroughStream:
         if self.arrivals and self.start is not None:
@@ -185,6 +131,7 @@ class DirectionsStream(Stream):
     On a torus for ever; elsewhere to the border of the area, where each turns to a new direction.
     """
 
+    begin_fields: ClassVar[tuple[str, ...]] = ("area",)
     kind: Literal["directions"] = Field(default="directions", description="Pattern of the stream.")
     area: Place = Field(description="Where they walk: name of a zone, or an area written here.")
     density: PositiveDensity | None = Field(
@@ -202,10 +149,21 @@ class DirectionsStream(Stream):
             raise ValueError("write one of 'count' and 'density'")
         return self
 
+    @property
+    def people_per_area(self) -> float | None:
+        """The density, 1/m^2, of a stream that is given by one."""
+        return self.density
+
+    @property
+    def starts_in(self) -> Place:
+        """Where they are at the start."""
+        return self.area
+
 
 class QueueStream(Stream):
     """People in a line, who move up, are served at its head one after the other, and go."""
 
+    goal_fields: ClassVar[tuple[str, ...]] = ("destination",)
     kind: Literal["queue"] = Field(default="queue", description="Pattern of the stream.")
     line: Annotated[tuple[Point, ...], MinLen(2)] = Field(
         strict=False, description="Where the line runs, from the counter backwards, m."
@@ -232,14 +190,46 @@ class QueueStream(Stream):
             raise ValueError("a queue has no groups")
         return self
 
-    def places(self) -> tuple[Point, ...]:
+    @property
+    def entering(self) -> Arrivals | None:
+        """When people join the end of the line, if they do not stand there from the start."""
+        return self.arrivals
+
+    def points(self) -> Iterator[tuple[FieldPath, tuple[Point, ...]]]:
+        """The line."""
+        yield ("line",), self.line
+
+    def spots(self) -> Iterator[tuple[FieldPath, tuple[Point, ...]]]:
         """Where people stand at first, from the counter backwards, m; all there is room for."""
-        return tuple(islice(along(self.line, self.gap), self.count))
+        yield ("line",), tuple(islice(along(self.line, self.gap), self.count))
+
+    def chains(
+        self, area_of: AreaOf, goal_areas: Mapping[str, Place]
+    ) -> Iterator[list[tuple[FieldPath, Area | None]]]:
+        """Along the line to the counter, then to the destination."""
+        del goal_areas
+        line = [(("line", i), Area(centre=at, size=_POINT)) for i, at in enumerate(self.line)]
+        yield [*reversed(line), *((field, area_of(place)) for field, place in self.onward())]
+
+    def misfits(self, who: str, radius: float, area_of: AreaOf) -> Iterator[Misfit]:
+        """More people than the line has room for, or wider ones than its gap."""
+        del area_of
+        length = sum(math.dist(a, b) for a, b in pairwise(self.line))
+        room = math.floor(length / self.gap + 1e-9) + 1
+        if self.count is not None and self.count > room:
+            text = f"{self.count} people of {who} cannot stand on its {length:g} m"
+            hint = f"with a gap of {self.gap:g} m there is room for {room}"
+            yield Misfit(("count",), text, hint)
+        if self.gap < 2.0 * radius:
+            text = f"{self.gap:g} m between people of {who} who are {2 * radius:g} m wide"
+            yield Misfit(("gap",), text)
 
 
 class TalkingStream(Stream):
     """Groups who stand in circles and talk; with a destination they go there afterwards."""
 
+    begin_fields: ClassVar[tuple[str, ...]] = ("area",)
+    goal_fields: ClassVar[tuple[str, ...]] = ("destination",)
     kind: Literal["talking"] = Field(default="talking", description="Pattern of the stream.")
     count: Count = Field(description="How many people there are.")
     area: Place = Field(description="Where they stand: name of a zone, or an area written here.")
@@ -260,10 +250,16 @@ class TalkingStream(Stream):
         default="leave", description="leave the world, or stop there."
     )
 
+    @property
+    def starts_in(self) -> Place:
+        """Where they stand."""
+        return self.area
 
-class WanderingStream(_Populated):
+
+class WanderingStream(PopulatedStream):
     """People who stroll from goal area to goal area, by chance, and linger there."""
 
+    begin_fields: ClassVar[tuple[str, ...]] = ("area",)
     kind: Literal["wandering"] = Field(default="wandering", description="Pattern of the stream.")
     area: Place = Field(description="Where they start: name of a zone, or an area written here.")
     areas: Annotated[tuple[str, ...], MinLen(1)] = Field(
@@ -279,6 +275,23 @@ class WanderingStream(_Populated):
         default="again", description="After the visits: begin again, leave the world, or stop."
     )
 
+    @property
+    def starts_in(self) -> Place:
+        """Where they are at the start."""
+        return self.area
+
+    def goal_area_names(self) -> Iterator[tuple[FieldPath, str]]:
+        """The areas that they stroll to."""
+        return ((("areas", i), name) for i, name in enumerate(self.areas))
+
+    def chains(
+        self, area_of: AreaOf, goal_areas: Mapping[str, Place]
+    ) -> Iterator[list[tuple[FieldPath, Area | None]]]:
+        """From where they start to each of the areas."""
+        for field, name in self.goal_area_names():
+            goal = area_of(goal_areas[name]) if name in goal_areas else None
+            yield [(("area",), area_of(self.area)), (field, goal)]
+
 
 #: A stream of one of the patterns.
 StreamChoice = Annotated[
@@ -286,29 +299,12 @@ StreamChoice = Annotated[
     Field(discriminator="kind"),
 ]
 
-
-def places_of(stream: Stream) -> Iterator[tuple[tuple[str | int, ...], Place]]:
-    """The places that a stream names, by field."""
-    for field in ("origin", "start", "area", "destination"):
-        place = getattr(stream, field, None)
-        if place is not None:
-            yield (field,), place
-    if isinstance(stream, ThroughStream):
-        for i, place in enumerate(stream.via):
-            yield ("via", i), place
-
-
 __all__ = [
-    "Arrivals",
     "DirectionsStream",
     "Lanes",
     "QueueStream",
-    "Stream",
-    "StreamBody",
     "StreamChoice",
-    "StreamEnd",
     "TalkingStream",
     "ThroughStream",
     "WanderingStream",
-    "places_of",
 ]

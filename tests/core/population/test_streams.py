@@ -16,7 +16,7 @@ from crowdbot.core.population.realisation import COLUMNS, Realisation
 from crowdbot.core.population.realise import realise
 from crowdbot.core.population.stream_routes import along, border_to_border
 from crowdbot.dsl.scenario.agent_tables import join_tables, split_tables
-from crowdbot.dsl.scenario.streams import Arrivals
+from crowdbot.dsl.scenario.stream import Arrivals
 from crowdbot.dsl.spec.areas import Area
 from crowdbot.errors import InputError
 from tests.core.population.spawning_cases import AREAS, REGISTRY, gaps, hall

@@ -1,0 +1,226 @@
+"""Stream: what every kind of stream has, and what each says of itself.
+
+`crowdbot.dsl.scenario.streams` has the kinds. Checks, pictures and the drawing of people ask a
+stream for its places, for the way that its people walk and for what does not fit, and know no
+kind. `crowdbot.core.population.stream_starts` draws where the people of each kind begin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from itertools import pairwise
+from typing import ClassVar, Literal, NamedTuple
+
+from pydantic import Field, model_validator
+
+from crowdbot.dsl.scenario.spawning import Count, GroupSize, Names, Point
+from crowdbot.dsl.spec.areas import Area, Place
+from crowdbot.dsl.spec.parameters import SpeedChoice
+from crowdbot.dsl.spec.quantities import (
+    NonNegativeDuration,
+    PositiveAcceleration,
+    PositiveDensity,
+    PositiveDuration,
+    PositiveFrequency,
+    PositiveLength,
+    PositiveMass,
+    PositiveSpeed,
+)
+from crowdbot.dsl.spec.spec import Spec
+
+#: A field of a stream, perhaps with the place in its list.
+FieldPath = tuple[str | int, ...]
+#: Finds the area of a place; None for a name that does not exist.
+AreaOf = Callable[[Place], Area | None]
+#: What people of a stream do at its end.
+StreamEnd = Literal["return", "leave", "stop"]
+
+
+class Arrivals(Spec):
+    """When people enter: at random (`rate`), in a steady beat (`every`), or at given `times`.
+
+    Groups arrive together: what arrives is a group, or one who is alone.
+    """
+
+    rate: PositiveFrequency | None = Field(
+        default=None, description="Poisson arrivals: mean number in a second, 1/s."
+    )
+    every: PositiveDuration | None = Field(
+        default=None, description="Steady arrivals: time between two, s."
+    )
+    times: tuple[NonNegativeDuration, ...] = Field(
+        default=(), strict=False, description="Scheduled arrivals, s; in any order."
+    )
+    begin: NonNegativeDuration = Field(
+        default=0.0, description="With `rate` and `every`: nobody arrives before this time, s."
+    )
+    until: PositiveDuration | None = Field(
+        default=None, description="With `rate` and `every`: nobody arrives from then on, s."
+    )
+
+    @model_validator(mode="after")
+    def _one_pattern(self) -> Arrivals:
+        given = [n for n in ("rate", "every", "times") if getattr(self, n)]
+        if len(given) != 1:
+            raise ValueError("write one of 'rate', 'every' and 'times'")
+        if self.times and (self.until is not None or self.begin):
+            raise ValueError("'begin' and 'until' belong to 'rate' and 'every'")
+        if not self.times and (self.until is None or self.until <= self.begin):
+            raise ValueError(f"'{given[0]}' needs an 'until' after 'begin'")
+        return self
+
+
+class StreamBody(Spec):
+    """What the people of a stream have in common; what is left out is as in `crowd.body`."""
+
+    radius: PositiveLength | None = Field(default=None, description="Radius of the disc, m.")
+    mass: PositiveMass | None = Field(default=None, description="Mass in the physics, kg.")
+    max_speed: PositiveSpeed | None = Field(default=None, description="Largest speed, m/s.")
+    max_acceleration: PositiveAcceleration | None = Field(
+        default=None,
+        description="Largest acceleration that people choose, m/s^2; pushes may exceed it.",
+    )
+
+
+class Stream(Spec):
+    """A stream of people, of the pattern that its `kind` names."""
+
+    #: No kind is usual: each stream names its own.
+    usual: ClassVar[str] = ""
+    kind: str = Field(description="Pattern of the stream.")
+    count: Count | None = Field(default=None, description="How many people there are.")
+    speed: SpeedChoice | None = Field(
+        default=None, description="Preferred speed, m/s; without it the crowd's."
+    )
+    body: StreamBody = Field(default=StreamBody(), description="What differs from `crowd.body`.")
+    people: Names = Field(
+        default=(),
+        strict=False,
+        description="Names in `crowd.people` that this stream is made of; without it all of them.",
+    )
+    policy: Names = Field(
+        default=(),
+        strict=False,
+        description="Names in `crowd.policies`, one of which each draws; without it the crowd's.",
+    )
+    groups: tuple[GroupSize, ...] = Field(
+        default=(), strict=False, description="Sizes of groups; without it everybody is alone."
+    )
+
+    #: Fields with places where people begin, and with places where they go.
+    begin_fields: ClassVar[tuple[str, ...]] = ()
+    goal_fields: ClassVar[tuple[str, ...]] = ()
+
+    # ------------------------------------------------------------------- how many
+    @property
+    def people_per_area(self) -> float | None:
+        """The density, 1/m^2, of a stream that is given by one."""
+        return None
+
+    @property
+    def entering(self) -> Arrivals | None:
+        """When people enter, if they are not there from the start."""
+        return None
+
+    @property
+    def starts_in(self) -> Place | None:
+        """Where the people of `count` or of a density are at the start; None: not in an area."""
+        return None
+
+    # --------------------------------------------------------------------- places
+    def places(self) -> Iterator[tuple[FieldPath, Place]]:
+        """All places that the stream names, by field."""
+        for field in (*self.begin_fields, *self.goal_fields):
+            place = getattr(self, field)
+            if place is not None:
+                yield (field,), place
+
+    def goal_area_names(self) -> Iterator[tuple[FieldPath, str]]:
+        """All names in `crowd.goal_areas` that it uses, by field."""
+        return iter(())
+
+    def points(self) -> Iterator[tuple[FieldPath, tuple[Point, ...]]]:
+        """All points that it names, m, by field."""
+        return iter(())
+
+    def spots(self) -> Iterator[tuple[FieldPath, tuple[Point, ...]]]:
+        """Points at which people stand at first, m, by the field that they follow from."""
+        return iter(())
+
+    # ------------------------------------------------------------------------ way
+    def entrances(self) -> tuple[str, ...]:
+        """The fields with the areas in which people begin or come in."""
+        return self.begin_fields
+
+    def onward(self) -> Iterator[tuple[FieldPath, Place]]:
+        """The places that people go to from any entrance, in turn."""
+        for field in self.goal_fields:
+            place = getattr(self, field)
+            if place is not None:
+                yield (field,), place
+
+    def chains(
+        self, area_of: AreaOf, goal_areas: Mapping[str, Place]
+    ) -> Iterator[list[tuple[FieldPath, Area | None]]]:
+        """Areas that are visited one after the other, by field; None for one that is not there.
+
+        Args:
+            goal_areas: all that the crowd has, by name.
+        """
+        del goal_areas
+        rest = [(field, area_of(place)) for field, place in self.onward()]
+        for field in self.entrances():
+            yield [((field,), area_of(getattr(self, field))), *rest]
+
+    def legs(
+        self, area_of: AreaOf, goal_areas: Mapping[str, Place]
+    ) -> Iterator[tuple[Area, Area, FieldPath]]:
+        """From where to where people walk, and the field that names where to."""
+        for chain in self.chains(area_of, goal_areas):
+            known = [(path, area) for path, area in chain if area is not None]
+            for (_, start), (path, goal) in pairwise(known):
+                yield start, goal, path
+
+    # --------------------------------------------------------------------- checks
+    def misfits(self, who: str, radius: float, area_of: AreaOf) -> Iterator[Misfit]:
+        """What cannot be although each field by itself can.
+
+        Args:
+            who: names the stream in texts.
+            radius: of its people, m.
+        """
+        del who, radius, area_of
+        return iter(())
+
+
+class Misfit(NamedTuple):
+    """People who do not fit where a stream wants them: field, text, and what would help."""
+
+    field: FieldPath
+    text: str
+    hint: str = ""
+
+
+class PopulatedStream(Stream):
+    """A stream of people who are there from the start, or who arrive."""
+
+    density: PositiveDensity | None = Field(
+        default=None, description="People per area of where they start, 1/m^2."
+    )
+    arrivals: Arrivals | None = Field(default=None, description="When people enter.")
+
+    @property
+    def people_per_area(self) -> float | None:
+        """The density, 1/m^2, of a stream that is given by one."""
+        return self.density
+
+    @property
+    def entering(self) -> Arrivals | None:
+        """When people enter, if they are not there from the start."""
+        return self.arrivals
+
+    @model_validator(mode="after")
+    def _one_number(self) -> PopulatedStream:
+        if [self.count, self.density, self.arrivals].count(None) != 2:
+            raise ValueError("write one of 'count', 'density' and 'arrivals'")
+        return self
