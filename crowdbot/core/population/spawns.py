@@ -110,8 +110,6 @@ class SpawnSampler:
     def _parameters(self) -> dict[str, Any]:
         """Columns of the table that do not depend on anybody's place."""
         spawn, body, count = self._spawn, self._crowd.body, self._count
-        goals = spawn.goals
-        at_goal = "portal" if spawn.portals else goals.at_goal if goals else "stop"
         return {
             "radius": self._radius,
             "speed": self._bodies.walk_at(self._speeds()),
@@ -124,7 +122,7 @@ class SpawnSampler:
             "start_time": self._parameter("start_time", spawn.start_time, 0.0),
             "attention": self._rng("attention").random(count),
             "policy": self._policies(),
-            "at_goal": [at_goal] * count,
+            "at_goal": [spawn.at_goal] * count,
             "portals": [spawn.portals or ("", "")] * count,
         }
 

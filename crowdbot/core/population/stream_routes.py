@@ -1,4 +1,4 @@
-"""Ways of people in streams: goals with the areas around them, pauses, what comes at the end."""
+"""Routes of people in streams: goals with the areas around them, pauses, and the end."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from crowdbot.dsl.scenario.streams import Lanes
 from crowdbot.dsl.spec.areas import Area, GoalArea
 from crowdbot.dsl.spec.outlines import along
 
-#: Goals of a walk from border to border, and the shortest way of it, of the smaller side.
+#: Goals of a walk from border to border; its shortest leg, as a part of the smaller side.
 _TURNS, _SHORTEST = 16, 0.4
 _POINT = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
-    """The way of one person.
+class Route:
+    """The route of one person.
 
     Attributes:
         goals: points, or the middles of areas, m.
@@ -51,19 +51,19 @@ class Way:
         }
 
 
-def way_through(
+def route_through(
     areas: Sequence[Area],
     at_goal: AtGoal,
     *,
     before: Sequence[tuple[Point, float]] = (),
     origin: Area | None = None,
-) -> Way:
-    """A way through areas, any point of each.
+) -> Route:
+    """Return a route through areas, any point of each.
 
     Args:
         before: points that come first, and how long the person stays at each, s.
     """
-    return Way(
+    return Route(
         goals=(*(point for point, _ in before), *(area.centre for area in areas)),
         sizes=(*(_POINT for _ in before), *((*a.size, a.rotation) for a in areas)),
         at_goal=at_goal,
@@ -81,15 +81,15 @@ def lane_of(area: Area, lanes: Lanes | None, lane: int) -> Area:
     return Area(centre=middle, size=(area.size[0], width), rotation=area.rotation)
 
 
-def straight_on(start: Point, angle: float, trip: float) -> Way:
+def straight_on(start: Point, angle: float, trip: float) -> Route:
     """For ever in one direction, one trip of so many metres after the other."""
     goal = (start[0] + trip * math.cos(angle), start[1] + trip * math.sin(angle))
-    return Way((start, goal), (_POINT, _POINT), "onward")
+    return Route((start, goal), (_POINT, _POINT), "onward")
 
 
 def border_to_border(
     area: Area, start: Point, radius: float, angles: Sequence[float], rng: np.random.Generator
-) -> Way:
+) -> Route:
     """Straight to the border of an area, there in a new direction to another place of it, and on.
 
     Args:
@@ -114,7 +114,7 @@ def border_to_border(
         u, v = u + reach * math.cos(own), v + reach * math.sin(own)
         goals.append(area.point(u, v))
     side = 4.0 * radius
-    return Way(tuple(goals), ((side, side, area.rotation),) * len(goals), "loop")
+    return Route(tuple(goals), ((side, side, area.rotation),) * len(goals), "loop")
 
 
 def _to_border(u: float, v: float, angle: float, half: Sequence[float]) -> float:
@@ -138,4 +138,12 @@ def stroll(
     return names
 
 
-__all__ = ["Way", "along", "border_to_border", "lane_of", "straight_on", "stroll", "way_through"]
+__all__ = [
+    "Route",
+    "along",
+    "border_to_border",
+    "lane_of",
+    "route_through",
+    "straight_on",
+    "stroll",
+]

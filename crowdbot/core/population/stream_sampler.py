@@ -47,7 +47,7 @@ class StreamSampler:
                     | {"heading": _heading(start), "speed": float(speeds[i])}
                     | {"attention": float(draw.rng("attention", i).random())}
                     | {"policy": policies[i], "group": -1 if alone else next_group + unit}
-                    | start.way.columns()
+                    | start.route.columns()
                     | ({"queue": next_group} if start.queues else {})
                 )
         return rows
@@ -76,7 +76,7 @@ class StreamSampler:
 def _heading(start: Start) -> float:
     if start.heading is not None:
         return start.heading
-    goals = [g for g in start.way.goals if g != start.at]
+    goals = [g for g in start.route.goals if g != start.at]
     return heading_to(*start.at, goals[0]) if goals else 0.0
 
 

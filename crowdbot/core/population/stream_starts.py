@@ -1,6 +1,6 @@
 """Draws where, when and on which route the people of each kind of stream begin.
 
-A way is drawn with the random streams of `StreamDraw`; a kind is registered by its spec.
+A route is drawn with the random streams of `StreamDraw`; a kind is registered by its spec.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from crowdbot.core.population.occupancy import Occupancy
 from crowdbot.core.population.placement import ATTEMPTS
 from crowdbot.core.population.stream_draw import StreamDraw
 from crowdbot.core.population.stream_routes import (
-    Way,
+    Route,
     along,
     border_to_border,
     lane_of,
+    route_through,
     straight_on,
     stroll,
-    way_through,
 )
 from crowdbot.core.types.arrays import Point
 from crowdbot.dsl.scenario.scenario import AtGoal
@@ -54,7 +54,7 @@ class Start:
     """
 
     at: Point
-    way: Way
+    route: Route
     time: float = 0.0
     heading: float | None = None
     queues: bool = False
@@ -83,27 +83,27 @@ def _through(
     used = lanes.use if lanes is not None else (0,)
     lane = [used[u % len(used)] for u in units]
     for number in dict.fromkeys(lane):
-        way = _way_through(draw, stream, number)
-        if way.origin is not None:
-            draw.check_entrance(way.origin, occupancy)
+        route = _route_through(draw, stream, number)
+        if route.origin is not None:
+            draw.check_entrance(route.origin, occupancy)
         mine = [u for u in units if lane[u] == number]
         if not draw.times:
             start = lane_of(draw.area(stream.starts_in), lanes, number)
             for i, at in draw.placed(start, mine, occupancy):
-                yield i, Start(at, way)
+                yield i, Start(at, route)
             continue
         origin = lane_of(draw.area(stream.origin), lanes, number)
         for unit in mine:
             for i, at in draw.entering(origin, unit, occupancy):
-                yield i, Start(at, way, draw.times[unit])
+                yield i, Start(at, route, draw.times[unit])
 
 
-def _way_through(draw: StreamDraw, stream: ThroughStream, lane: int) -> Way:
+def _route_through(draw: StreamDraw, stream: ThroughStream, lane: int) -> Route:
     ends = [draw.area(place) for place in (stream.origin, stream.destination)]
     origin, last = (lane_of(area, stream.lanes, lane) for area in ends)
     via = [draw.area(place) for place in stream.via]
     choice = origin if stream.end == "return" or stream.arrivals else None
-    return way_through([*via, last], _end(stream.end), origin=choice)
+    return route_through([*via, last], _end(stream.end), origin=choice)
 
 
 @starts.register
@@ -119,11 +119,11 @@ def _directions(
         for i in members:
             if floor is not None:
                 sides = floor.x[1] - floor.x[0], floor.y[1] - floor.y[0]
-                way = straight_on(places[i], float(common), min(sides))
+                route = straight_on(places[i], float(common), min(sides))
             else:  # members of a group turn alike, each from where it is
                 turns = draw.rng("turns", unit)
-                way = border_to_border(area, places[i], draw.radius[i], angles, turns)
-            yield i, Start(places[i], way)
+                route = border_to_border(area, places[i], draw.radius[i], angles, turns)
+            yield i, Start(places[i], route)
 
 
 @starts.register
@@ -135,13 +135,13 @@ def _queue(
         before = spots[i::-1] if not draw.times else spots[::-1]
         service = draw.duration(stream.service, "service", i)
         stops = [(at, service if at == spots[0] else 0.0) for at in before]
-        way = way_through([last], _end(stream.at_destination), before=stops)
+        route = route_through([last], _end(stream.at_destination), before=stops)
         time = draw.times[i] if draw.times else 0.0
         ahead = spots[max(spots.index(before[0]) - 1, 0)]
         facing = heading_to(*before[0], ahead) if before[0] != spots[0] else None
         if not time:
             occupancy.add(*before[0], float(draw.radius[i]))
-        yield i, Start(before[0], way, time, facing, queues=True)
+        yield i, Start(before[0], route, time, facing, queues=True)
 
 
 @starts.register
@@ -154,8 +154,8 @@ def _talking(
         pause = draw.duration(stream.duration, "duration", unit) if onward else 0.0
         centre, places = _circle(draw, area, members, unit, stream.gap, occupancy)
         for i, at in zip(members, places, strict=True):
-            way = way_through(onward, end if onward else "stop", before=[(at, pause)])
-            yield i, Start(at, way, heading=heading_to(*at, centre))
+            route = route_through(onward, end if onward else "stop", before=[(at, pause)])
+            yield i, Start(at, route, heading=heading_to(*at, centre))
 
 
 def _circle(
@@ -199,10 +199,10 @@ def _wandering(
         rng = draw.rng("visits", unit)
         names = stroll(draw.crowd.goal_areas, stream.areas, stream.visits, rng)
         goals = [draw.area(draw.crowd.goal_areas[name].area) for name in names]
-        way = way_through(goals, _end(stream.at_end), origin=area if draw.times else None)
-        way = replace(way, pauses=tuple(draw_one(rng, stream.pause) for _ in goals))
+        route = route_through(goals, _end(stream.at_end), origin=area if draw.times else None)
+        route = replace(route, pauses=tuple(draw_one(rng, stream.pause) for _ in goals))
         for i in members:
-            yield i, Start(places[i], way, draw.times[unit] if draw.times else 0.0)
+            yield i, Start(places[i], route, draw.times[unit] if draw.times else 0.0)
 
 
 def _end(word: str) -> AtGoal:

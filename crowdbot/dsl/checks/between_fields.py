@@ -8,11 +8,11 @@ from functools import partial
 from crowdbot.dsl.checks.agents import check_agents
 from crowdbot.dsl.checks.crowd import check_crowd
 from crowdbot.dsl.checks.facts import Facts
+from crowdbot.dsl.checks.paths import check_paths, check_place
 from crowdbot.dsl.checks.pydantic_errors import locate, missing_field
 from crowdbot.dsl.checks.robots import check_robots
 from crowdbot.dsl.checks.spawns import check_spawns
 from crowdbot.dsl.checks.streams import check_streams
-from crowdbot.dsl.checks.ways import check_place, check_ways
 from crowdbot.dsl.scenario.components import components
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.text.diagnostics import Diagnostic
@@ -89,6 +89,6 @@ _CHECKS: tuple[tuple[Check, tuple[str, ...]], ...] = (
     (_of_crowd(check_agents), (*_PEOPLE, "robots")),
     (check_place, _PLACE),
     (check_robots, _ROBOTS),
-    (_of_crowd(check_ways), _PEOPLE),
+    (_of_crowd(check_paths), _PEOPLE),
     (_check_tasks, _ROBOTS),
 )

@@ -13,7 +13,7 @@ from crowdbot.dsl.text.diagnostics import Diagnostic
 
 
 def check_spawns(facts: Facts) -> Iterator[Diagnostic]:
-    """Every spawn and every goal area by itself, and the names between them."""
+    """Check every spawn and every goal area by itself, and the names between them."""
     areas = facts.crowd.goal_areas
     for name, goal in areas.items():
         path = ("crowd", "goal_areas", name)
@@ -31,7 +31,7 @@ def _check_spawn(facts: Facts, name: str, spawn: Spawn) -> Iterator[Diagnostic]:
     area = facts.resolve(spawn.area)
     if area is not None:
         yield from _check_room(facts, spawn, area, name)
-    yield from _check_ways(facts, spawn, who, *path)
+    yield from _check_routes(facts, spawn, who, *path)
     if spawn.groups and sum(g.frequency for g in spawn.groups) == 0:
         text = f"the frequencies of the groups of {who} sum to 0"
         yield Diagnostic("E137", text, facts.mark(*path, "groups"))
@@ -42,14 +42,13 @@ def _check_spawn(facts: Facts, name: str, spawn: Spawn) -> Iterator[Diagnostic]:
         yield missing_speed(facts, who, *path)
 
 
-def _check_ways(facts: Facts, spawn: Spawn, who: str, *path: str) -> Iterator[Diagnostic]:
-    """Where people go: one way of three."""
+def _check_routes(facts: Facts, spawn: Spawn, who: str, *path: str) -> Iterator[Diagnostic]:
+    """Check where people go: in one of three ways."""
     if spawn.portals is not None:
         yield from facts.portals(spawn.portals, who, *path, "portals")
     if spawn.goals is not None:
-        yield from _check_goals(facts, spawn.goals, *path, "goals")
-    ways = {"goals": spawn.goals, "portals": spawn.portals, "standing": spawn.standing}
-    given = [way for way, value in ways.items() if value]
+        yield from _check_goals(facts, spawn, spawn.goals, *path)
+    given = spawn.routes
     if len(given) != 1:
         text = f"{who} has {' and '.join(given) or 'no goal'}"
         hint = "write one of goals, portals and 'standing: true'"
@@ -57,11 +56,11 @@ def _check_ways(facts: Facts, spawn: Spawn, who: str, *path: str) -> Iterator[Di
         yield Diagnostic("E141", text, facts.mark(*where), hint)
 
 
-def _check_goals(facts: Facts, goals: Goals, *path: str) -> Iterator[Diagnostic]:
+def _check_goals(facts: Facts, spawn: Spawn, goals: Goals, *path: str) -> Iterator[Diagnostic]:
     areas = facts.crowd.goal_areas
-    for i, name in enumerate(goals.areas):
+    for field, name in spawn.goal_area_names():
         if name not in areas:
-            yield facts.unknown("goal area", name, areas, *path, "areas", i)
+            yield facts.unknown("goal area", name, areas, *path, *field)
     if goals.order != "linked" or goals.length == 1:
         return
     waiting, seen = list(goals.areas), set(goals.areas)
@@ -71,21 +70,20 @@ def _check_goals(facts: Facts, goals: Goals, *path: str) -> Iterator[Diagnostic]
             continue
         if not areas[name].next:
             text = f"goal area '{name}' has no next one, and a linked walk may come to it"
-            hint = f"it begins at {facts.mark(*path)}"
+            hint = f"it begins at {facts.mark(*path, 'goals')}"
             yield Diagnostic("E140", text, facts.mark("crowd", "goal_areas", name), hint)
         waiting += [n for n in areas[name].next if n not in seen]
         seen |= set(areas[name].next)
 
 
 def _check_room(facts: Facts, spawn: Spawn, area: Area, name: str) -> Iterator[Diagnostic]:
-    """Whether so many people can be inside at all."""
+    """Check that so many people can be inside at all."""
     path, floor = ("crowd", "spawns", name), area.size[0] * area.size[1]
     if spawn.density is not None:
         where = f"spawn '{name}'"
         yield from facts.whole(spawn.density, floor, where, *path, "density")
     wanted = round(spawn.people(floor))
-    radius = spawn.radius
-    least = radius.value - radius.spread if radius else facts.crowd.body.radius
+    least = spawn.least_radius(facts.crowd.body.radius)
     most = min(most_points(area.size, least, max(spawn.spacing or 0.0, 2.0 * least)), MAX_PEOPLE)
     if wanted > most:
         size = f"{area.size[0]:g} m × {area.size[1]:g} m"

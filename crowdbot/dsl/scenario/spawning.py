@@ -1,10 +1,11 @@
-"""Who is in a crowd, beside its flow: spawns, goal areas, explicit agents.
+"""People of a crowd beside its flow and streams: spawns, goal areas, explicit agents.
 
 Everything is drawn once by `crowdbot.core.population.realise`; these are its specs.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
 from annotated_types import Ge, Le, Lt, MinLen
@@ -44,7 +45,7 @@ RouteEnd = Literal["stop", "remove", "loop"]
 #: More people than this are a mistake, and would take hours to place.
 MAX_PEOPLE = 100_000
 
-#: Nobody is drawn closer to a robot's start than this, centre to centre, m.
+#: Least distance of people from a robot's start, centre to centre, m.
 CLEAR_OF_ROBOT = 1.0
 
 Count = Annotated[int, Ge(1), Le(MAX_PEOPLE)]
@@ -160,8 +161,30 @@ class Spawn(Spec):
         return self
 
     def people(self, floor: float) -> float:
-        """How many people it has on an area of that size, m^2; not whole for a bad density."""
+        """Return how many people an area of some size, m^2, has; not whole for a bad density."""
         return float(self.count) if self.count else (self.density or 0.0) * floor
+
+    def least_radius(self, usual: float) -> float:
+        """Return the radius of the smallest body, m, where people usually have another one."""
+        return self.radius.value - self.radius.spread if self.radius else usual
+
+    @property
+    def routes(self) -> tuple[str, ...]:
+        """The fields that say where people go; a sound spawn has one."""
+        fields = {"goals": self.goals, "portals": self.portals, "standing": self.standing}
+        return tuple(name for name, value in fields.items() if value)
+
+    @property
+    def at_goal(self) -> Literal["stop", "remove", "loop", "portal"]:
+        """What people do at the end of their route."""
+        if self.portals:
+            return "portal"
+        return "stop" if self.goals is None else self.goals.at_goal
+
+    def goal_area_names(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        """All names in `crowd.goal_areas` that it uses, by field."""
+        areas = self.goals.areas if self.goals else ()
+        return ((("goals", "areas", i), name) for i, name in enumerate(areas))
 
 
 class Agent(Spec):

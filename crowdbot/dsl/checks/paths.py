@@ -1,4 +1,4 @@
-"""Checks of where people stand and whether a way leads to their goals; nothing is built."""
+"""Check where people stand, and that a path leads to their goals; nothing is built."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _SLACK = 1e-6
 
 
 def check_place(facts: Facts) -> Iterator[Diagnostic]:
-    """The place can be read, and its zones lie in it."""
+    """Check that the place can be read and that its zones lie in it."""
     try:
         place = place_of(facts.scenario.environment)
     except InputError as error:
@@ -38,36 +38,36 @@ def check_place(facts: Facts) -> Iterator[Diagnostic]:
         yield from check_zones(facts)
 
 
-def check_ways(facts: Facts) -> Iterator[Diagnostic]:
-    """Nobody of a crowd starts in a wall; who finds ways finds one."""
+def check_paths(facts: Facts) -> Iterator[Diagnostic]:
+    """Check that people start clear of walls, and that a path leads to their goals."""
     place = known_place(facts.scenario.environment)
     if place is None:
         return
-    finds_way = isinstance(facts.crowd.routing, MeshRouting)
-    if finds_way and place.torus is not None:
+    finds_path = isinstance(facts.crowd.routing, MeshRouting)
+    if finds_path and place.torus is not None:
         text = "routing 'mesh' does not lead across the borders of a torus"
         hint = "use routing 'straight', or another border"
         yield Diagnostic("E142", text, facts.mark("crowd", "routing"), hint)
         return
     bodies = bodies_of(place, facts.crowd.body.height)
-    ways = _Ways(facts, bodies, facts.scenario.environment)
-    yield from ways.check_starts()
-    yield from ways.check_room()
-    if finds_way:
-        yield from ways.check_streams()
-        yield from ways.check_flows()
-        yield from ways.check_agents()
-        yield from ways.check_spawns()
+    paths = _PathCheck(facts, bodies, facts.scenario.environment)
+    yield from paths.check_starts()
+    yield from paths.check_room()
+    if finds_path:
+        yield from paths.check_streams()
+        yield from paths.check_flows()
+        yield from paths.check_agents()
+        yield from paths.check_spawns()
 
 
 @dataclass(frozen=True)
-class _Ways:
+class _PathCheck:
     facts: Facts
     place: Place
     environment: EnvironmentSpec
 
     def check_starts(self) -> Iterator[Diagnostic]:
-        """Explicit agents do not stand in walls."""
+        """Check that explicit agents do not stand in walls."""
         for i, agent in enumerate(self.facts.crowd.agents):
             gap = self.place.clearance(agent.x, agent.y) - self._radius(agent)
             if gap < -_SLACK:
@@ -76,7 +76,7 @@ class _Ways:
                 yield Diagnostic("E143", text, self.facts.mark("crowd", "agents", i, "x"), hint)
 
     def check_room(self) -> Iterator[Diagnostic]:
-        """There is room where streams begin and come in, in queues, and in portals."""
+        """Check that there is room where streams begin and come in, in queues, and in portals."""
         for name, stream in self.facts.crowd.streams.items():
             radius = self._stream_radius(stream)
             for field in stream.entrances():
@@ -113,9 +113,9 @@ class _Ways:
             if agent.portals is not None:
                 yield ("crowd", "agents", i), agent.portals, self._radius(agent)
 
-    # ----------------------------------------------------------------------------- ways
+    # ---------------------------------------------------------------------------- paths
     def check_streams(self) -> Iterator[Diagnostic]:
-        """A way leads from where each stream begins to everywhere it goes, in turn."""
+        """Check that a path leads from where each stream begins to everywhere it goes, in turn."""
         for name, stream in self.facts.crowd.streams.items():
             radius = self._stream_radius(stream)
             areas = {name: one.area for name, one in self.facts.crowd.goal_areas.items()}
@@ -127,7 +127,7 @@ class _Ways:
                     break
 
     def check_flows(self) -> Iterator[Diagnostic]:
-        """A way leads between the portals of a flow, and from where its people start."""
+        """Check that a path leads between the portals of a flow, and from its people to them."""
         for path, pair, radius in self._users_of_portals():
             ends = [area for area in map(self._resolve, pair) if area is not None]
             flow = self.facts.crowd.flow
@@ -157,7 +157,7 @@ class _Ways:
         return self.facts.resolve(place) or (Area.of(portal) if portal else None)
 
     def check_agents(self) -> Iterator[Diagnostic]:
-        """A way leads along the whole route of each explicit agent."""
+        """Check that a path leads along the whole route of each explicit agent."""
         for i, agent in enumerate(self.facts.crowd.agents):
             reach, at = self._reach(self._radius(agent)), (agent.x, agent.y)
             for k, goal in enumerate(agent.goals):
@@ -173,10 +173,10 @@ class _Ways:
                 at = goal
 
     def check_spawns(self) -> Iterator[Diagnostic]:
-        """A way leads from somewhere in each spawn's area into each of its goal areas."""
+        """Check that a path leads from each spawn's area into each of its goal areas."""
         for name, spawn in self.facts.crowd.spawns.items():
             start = self.facts.resolve(spawn.area)
-            for k, goal in enumerate(spawn.goals.areas if spawn.goals else ()):
+            for field, goal in spawn.goal_area_names():
                 found = self.facts.crowd.goal_areas.get(goal)
                 end = None if found is None else self.facts.resolve(found.area)
                 if start is not None and end is not None and not self._leads(spawn, start, end):
@@ -184,12 +184,11 @@ class _Ways:
                         f"no way leads from spawn '{name}' around {_at(start)} "
                         f"to goal area '{goal}' around {_at(end)}"
                     )
-                    path = ("crowd", "spawns", name, "goals", "areas", k)
-                    yield Diagnostic("E143", text, self.facts.mark(*path))
+                    mark = self.facts.mark("crowd", "spawns", name, *field)
+                    yield Diagnostic("E143", text, mark)
 
     def _leads(self, spawn: Spawn, start: Area, end: Area) -> bool:
-        usual = self.facts.crowd.body.radius
-        radius = spawn.radius.value - spawn.radius.spread if spawn.radius else usual
+        radius = spawn.least_radius(self.facts.crowd.body.radius)
         return self._connects(start, end, radius)
 
     def _radius(self, agent: Agent) -> float:
