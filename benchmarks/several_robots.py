@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.planning.resolve import resolve_planner
-from crowdbot.core.recording import read_fleet, read_trajectories
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.scenarios.lock import population
@@ -77,9 +77,10 @@ def simulate(text: str, registry: Registry, seed: int = 0) -> tuple[Any, float, 
         outcome = record_all(setup, builts)
         cost = time.process_time() - begin
         path = Path(folder) / "run.mcap"
-        if len(robots) == 1:
-            return outcome, cost, {robots[0]: read_trajectories(path)}
-        return outcome, cost, {n: one.run for n, one in read_fleet(path).items()}
+        with Recording(path) as recording:
+            if len(robots) == 1:
+                return outcome, cost, {robots[0]: recording.trajectories()}
+            return outcome, cost, {n: recording.trajectories(n) for n in recording.robots}
 
 
 def cost(registry: Registry) -> None:

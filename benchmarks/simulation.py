@@ -35,8 +35,8 @@ from crowdbot.api import registry
 from crowdbot.core.campaign.worker_process import worker_environment
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.resolve import resolve_planner
-from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.container.mcap_file import McapFile
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.robots import build_model
 from crowdbot.core.robots.task import robot_task
 from crowdbot.core.scenarios.library import open_spec, pick

@@ -12,6 +12,7 @@ from crowdbot.lazy import lazy_names
 if TYPE_CHECKING:
     from crowdbot.api import evaluate, expand, load, results, score, simulate
     from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Truth
+    from crowdbot.core.recording.recording import Recording
     from crowdbot.core.results.results import Results
     from crowdbot.core.runs.run import Run
     from crowdbot.core.scoring.evaluate import Scores
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 _HOMES = {
     "crowdbot.api": "Scenario evaluate expand load results score simulate",
     "crowdbot.core.planning.planner": "NoValidCommand Observation Planner Task Truth",
+    "crowdbot.core.recording.from_mcap": "Trajectories",
+    "crowdbot.core.recording.recording": "Recording",
     "crowdbot.core.results.results": "Results",
     "crowdbot.core.runs.run": "Run",
     "crowdbot.core.scoring.evaluate": "Scores",
@@ -39,7 +42,6 @@ _HOMES = {
     "crowdbot.core.sim.session": "Session",
     "crowdbot.core.trajectories.commands": "Commands",
     "crowdbot.core.trajectories.questionnaires": "Questionnaires",
-    "crowdbot.core.trajectories.trajectories": "Trajectories",
     "crowdbot.core.types.motion": "Command Pose",
     "crowdbot.core.types.robot": "RobotLimits",
     "crowdbot.core.types.score": "Score",
@@ -59,6 +61,7 @@ __all__ = [
     "Pose",
     "Questionnaires",
     "Reading",
+    "Recording",
     "RecordingWarning",
     "Results",
     "RobotLimits",

@@ -67,12 +67,7 @@ if TYPE_CHECKING:
     from crowdbot.core.environments.place_parts import place_parts
     from crowdbot.core.geometry.footprint import Footprint
     from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Truth
-    from crowdbot.core.recording.reading.recording import (
-        RecordingInfo,
-        read_scans,
-        read_trajectories,
-        recording_info,
-    )
+    from crowdbot.core.recording.recording import Recording, RecordingInfo
     from crowdbot.core.robots.description import Description, read_description
     from crowdbot.core.robots.published import PublishedWheel, read_published
     from crowdbot.core.scoring.metric import Metric, References
@@ -308,6 +303,7 @@ __all__ = [
     "Reading",
     "RecordType",
     "RecordedCrowd",
+    "Recording",
     "RecordingInfo",
     "Rectangle",
     "References",
@@ -362,11 +358,8 @@ __all__ = [
     "read_description",
     "read_published",
     "read_record",
-    "read_scans",
-    "read_trajectories",
     "record_type",
     "record_values",
-    "recording_info",
     "sensor_pose_in_world",
     "sensor_rotation_in_world",
     "soonest_disc",

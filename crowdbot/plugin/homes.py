@@ -26,9 +26,8 @@ HOMES = {
     "crowdbot.core.environments.place_parts": "place_parts",
     "crowdbot.core.geometry.footprint": "Footprint",
     "crowdbot.core.planning.planner": "NoValidCommand Observation Planner Truth",
-    "crowdbot.core.recording.reading.recording": (
-        "RecordingInfo read_scans read_trajectories recording_info"
-    ),
+    "crowdbot.core.recording.from_mcap": "Trajectories",
+    "crowdbot.core.recording.recording": "Recording RecordingInfo",
     "crowdbot.core.robots.description": "Description read_description",
     "crowdbot.core.robots.published": "PublishedWheel read_published",
     "crowdbot.core.scoring.metric": "Metric References",
@@ -48,9 +47,7 @@ HOMES = {
         "duration forward_speed path_length time_weights travel_time truncate_at_arrival yaw_rate"
     ),
     "crowdbot.core.trajectories.questionnaires": "Questionnaires",
-    "crowdbot.core.trajectories.trajectories": (
-        "AgentTracks ContactEvents RobotTrack Trajectories Trips"
-    ),
+    "crowdbot.core.trajectories.trajectories": ("AgentTracks ContactEvents RobotTrack Trips"),
     "crowdbot.core.types.arrays": "Array Indices Mask",
     "crowdbot.core.types.environment": "EnvironmentParts",
     "crowdbot.core.types.motion": "Command Pose",

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from crowdbot.cli import main
-from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter, RobotHeader
+from crowdbot.core.recording.header import AgentsHeader, RecordingHeader, RobotHeader
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.scoring.evaluate import score
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.plugin import RobotLimits

@@ -18,8 +18,9 @@ from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 
 from crowdbot.cli import main
 from crowdbot.core.recording import messages as ros
-from crowdbot.core.recording import read_commands, read_trajectories
 from crowdbot.core.recording.container.records import MAX_CHUNK
+from crowdbot.core.recording.reading.commands import read_commands
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.scoring.scores_csv import COLUMNS, read_scores_csv, write_scores_csv
 from crowdbot.core.trajectories.trajectories import Trajectories
 from tests.cli.test_evaluate_command import CROWD_ALONE, CROWDED, DRIVER, ROBOT_ALONE, T, record
@@ -217,7 +218,7 @@ def test_the_table_of_a_run_equals_that_of_simulate(
     """Value by value, as text: what ``simulate`` writes is `write_scores_csv`."""
     import crowdbot
 
-    written = crowdbot.score(read_trajectories(recording))
+    written = crowdbot.score(Recording(recording).trajectories())
     write_scores_csv(tmp_path / "scores.csv", written, "s", "dwa", 0)
     assert main(["evaluate", str(recording), "--out", str(tmp_path / "again.csv")]) == 0
     capsys.readouterr()

@@ -13,7 +13,7 @@ from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.population.realise import realise
-from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sim.build_crowd import build_crowd
@@ -43,7 +43,7 @@ def test_an_example_runs(name: str, which: list[str], people: int, tmp_path: Pat
     (file,) = tmp_path.glob("**/run.json")
     record = json.loads(file.read_text())
     assert (record["status"], record["sim_time"]) == ("timeout", 3.0)
-    tracks = read_trajectories(file.parent / "run.mcap")
+    tracks = Recording(file.parent / "run.mcap").trajectories()
     assert tracks.agents is not None
     at = np.stack([tracks.agents.x, tracks.agents.y], axis=-1)
     here = np.isfinite(at[..., 0])

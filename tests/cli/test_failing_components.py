@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording.recording import Recording
 from tests.cli.simulate_cases import Shell
 
 pytestmark = pytest.mark.slow
@@ -133,7 +133,7 @@ def test_the_message_names_the_component(case: str, shell: Shell, tmp_path: Path
     if place == "score":
         (partial,) = shell.out.rglob("*.partial")
         assert f"what was recorded: {partial}" in answer.err
-        assert read_trajectories(partial / "run.mcap").t[-1] == 1.0
+        assert Recording(partial / "run.mcap").trajectories().t[-1] == 1.0
 
 
 def test_without_faults_it_runs_and_prints_of_metrics_keep_off_stdout(

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording.recording import Recording
 from tests.cli.campaign_cases import start
 from tests.cli.simulate_cases import FILES, Shell, finished, planner_file, process
 from tests.core.planning.process.process_cases import below, is_alive
@@ -112,7 +112,7 @@ def test_the_simulator_is_killed(tmp_path: Path) -> None:
     wait_until(lambda: not any(map(is_alive, everything)))
     assert not list(out.rglob("run.json"))
     (recording,) = out.rglob("run.mcap")
-    assert read_trajectories(recording).robot is not None
+    assert Recording(recording).trajectories().robot is not None
 
 
 def test_a_worker_is_killed(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from crowdbot.core.recording.recording import Recording
 from tests.cli.simulate_cases import FILES, Shell, finished, planner_file, process
 
 pytestmark = pytest.mark.slow
@@ -197,9 +198,8 @@ def test_privileged_planners_see_the_truth_and_are_marked(shell: Shell, tmp_path
     run = Path(answer.json["directory"])
     rows = list(csv.DictReader((run / "scores.csv").read_text().splitlines()))
     assert {r["planner"] for r in rows} == {"unsafe.go+privileged"}
-    from crowdbot.core.recording import read_trajectories
 
-    recorded = read_trajectories(run / "run.mcap")
+    recorded = Recording(run / "run.mcap").trajectories()
     assert recorded.robot is not None
     assert recorded.agents is not None
     seen = {n: v[:, 1] for n, v in recorded.signals.items()}

@@ -17,7 +17,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from crowdbot import cli
 from crowdbot.core.live.ros2_keys import Ros2Topic, hash_in
-from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording.recording import Recording
 from tests.cli.test_serve import SHORT, _connected, _free_port, _say
 from tests.core.live.standin import HEARS, PurePursuit
 
@@ -135,7 +135,7 @@ def _serve(
 
 
 def _way(run: dict[str, Any]) -> float:
-    robot = read_trajectories(Path(run["directory"]) / "run.mcap").robot
+    robot = Recording(Path(run["directory"]) / "run.mcap").trajectories().robot
     assert robot is not None
     return float(robot.x[-1] - robot.x[0])
 

@@ -11,7 +11,7 @@ import pytest
 from rosbags.highlevel import AnyReader
 
 from crowdbot import cli
-from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording.recording import Recording
 from tests.cli.simulate_cases import FILES, ID, Shell, finished, limit, process
 
 pytestmark = pytest.mark.slow
@@ -232,7 +232,7 @@ def test_runs_at_once_are_the_same_run(tmp_path: Path) -> None:
     for folder in folders[1:]:
         (record,) = folder.glob("challenge-2020/**/run.json")
         assert {p.name for p in record.parent.iterdir()} == FILES
-        read_trajectories(record.parent / "run.mcap")
+        Recording(record.parent / "run.mcap").trajectories()
         assert len(list((folder / "references").iterdir())) == 2
         assert not [p for p in folder.rglob("*") if ".partial" in p.name or ".old" in p.name]
 

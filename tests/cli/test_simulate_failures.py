@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from crowdbot.core.planning.watchdog import Watchdog
-from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording.recording import Recording
 from tests.cli.simulate_cases import FILES, ID, Shell, finished, planner_file, process
 from tests.waiting import wait_until
 
@@ -136,7 +136,7 @@ def test_a_failing_planner_leaves_a_complete_run(case: str, shell: Shell, tmp_pa
     assert by_symbol
     assert all(s["value"] is not None or s["status"] != "ok" for s in record["scores"])
     assert shell.leftovers() == []
-    run = read_trajectories(Path(record["directory"]) / "run.mcap")
+    run = Recording(Path(record["directory"]) / "run.mcap").trajectories()
     assert run.robot is not None
     assert run.robot.goal_time is None
 
@@ -204,7 +204,7 @@ def test_a_planner_that_never_returns_in_our_process(
     assert "did not return from step" in answer.err
     assert shell.runs() == []
     (partial,) = shell.out.rglob("*.partial")
-    run = read_trajectories(partial / "run.mcap")
+    run = Recording(partial / "run.mcap").trajectories()
     assert run.t[-1] == pytest.approx(0.5, abs=1.0 / 16.0)
 
 
@@ -251,7 +251,7 @@ def test_interrupted_runs_can_be_read(number: signal.Signals, tmp_path: Path) ->
     assert answer.code == (130 if number == signal.SIGINT else -signal.SIGKILL)
     assert not list(out.rglob("run.json"))
     assert recording.parent.name == "seed-0.partial"
-    run = read_trajectories(recording)
+    run = Recording(recording).trajectories()
     assert run.robot is not None
     assert 1.0 <= run.t[-1] < 170.0
     if number == signal.SIGINT:

@@ -119,12 +119,14 @@ def _whole(target: Path, write: Callable[[Path], None]) -> None:
 
 
 def _bag(to: ExportFormat, recording: Path, out: Path, options: BagOptions, run: Path) -> None:
-    from crowdbot.core.recording import fleet_names
     from crowdbot.core.recording.export.bag import write_ros1, write_ros2
+    from crowdbot.core.recording.recording import Recording
     from crowdbot.core.runs import run_directory as files
     from crowdbot.errors import InputError
 
-    if names := fleet_names(recording):
+    with Recording(recording) as opened:
+        names = opened.robots
+    if names:
         raise InputError(
             f"{recording}: bags are made of runs of one robot, not of {', '.join(names)}; the "
             "recording itself is a ROS 2 one, which 'ros2 bag play -s mcap' plays"
@@ -141,15 +143,15 @@ def _bag(to: ExportFormat, recording: Path, out: Path, options: BagOptions, run:
 
 
 def _tables(to: ExportFormat, recording: Path, out: Path, robot: str | None) -> None:
-    from crowdbot.core.recording import read_trajectories, recording_info
     from crowdbot.core.recording.export import tables
+    from crowdbot.core.recording.recording import Recording
 
-    run = read_trajectories(recording, robot)
+    with Recording(recording) as opened:
+        run = opened.trajectories(robot)
     if to is ExportFormat.geojson:
         out.write_text(tables.geojson(run), encoding="utf-8")
     elif to is ExportFormat.trajnet:
-        scenario = recording_info(recording).header.scenario
-        out.write_text(tables.trajnet(run, scenario), encoding="utf-8")
+        out.write_text(tables.trajnet(run, opened.header.scenario), encoding="utf-8")
     elif to is ExportFormat.csv:
         out.mkdir()
         tables.write_csv(run, out)

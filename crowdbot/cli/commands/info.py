@@ -10,6 +10,7 @@ import typer
 
 if TYPE_CHECKING:
     from crowdbot.core.recording.reading.contents import RecordingContents
+    from crowdbot.core.recording.recording import Recording
 
 
 def info(
@@ -42,7 +43,7 @@ def info(
 
 
 def _about(path: Path, found: RecordingContents) -> dict[str, Any]:
-    from crowdbot.core.recording.reading.recording import recording_info
+    from crowdbot.core.recording.recording import Recording
 
     about: dict[str, Any] = {
         "file": str(path),
@@ -55,18 +56,19 @@ def _about(path: Path, found: RecordingContents) -> dict[str, Any]:
         "attachments": dict(found.attachments),
     }
     if any(t.name == "/crowdbot/header" for t in found.topics):
-        header = recording_info(path).header
-        about |= {"scenario": header.scenario, "trajectory": _hash(path)}
+        with Recording(path) as recording:
+            scenario = recording.header.scenario
+            about |= {"scenario": scenario, "trajectory": _hash(recording)}
     return about
 
 
-def _hash(path: Path) -> str | None:
+def _hash(recording: Recording) -> str | None:
     """The trajectory hash; None where there is not a single sample."""
-    from crowdbot.core.runs.read_and_score import read_recorded
+    from crowdbot.core.runs.read_and_score import recorded_run
     from crowdbot.errors import InputError
 
     try:
-        return read_recorded(path).trajectory
+        return recorded_run(recording).trajectory
     except InputError:
         return None
 

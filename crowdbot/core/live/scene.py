@@ -8,9 +8,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from crowdbot.core.live.message import LiveMessage, told
-from crowdbot.core.recording import RecordingHeader, RobotHeader, markers, scenery
+from crowdbot.core.recording import markers, scenery
 from crowdbot.core.recording import messages as ros
-from crowdbot.core.recording.header import limit_numbers, sensor_message
+from crowdbot.core.recording.header import (
+    RecordingHeader,
+    RobotHeader,
+    limit_numbers,
+    sensor_message,
+)
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.robots.urdf_export import to_urdf
 from crowdbot.core.types.environment import EnvironmentParts

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from crowdbot.core.realism.tracks import NothingToCompareError, Tracks, tracks_of
-from crowdbot.core.recording.reading.people_of_fleet import fleet_names, read_fleet
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.trajectories.bag_tables import people_topics
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError
@@ -86,9 +86,9 @@ def _recording(path: Path) -> Trajectories:
 
 def _run(path: Path) -> Trajectories:
     """A recording of crowdbot's; of several robots' the run of the last to end: all meet people."""
-    if not fleet_names(path):
-        return Trajectories.from_mcap(path)
-    return max((member.run for member in read_fleet(path).values()), key=lambda run: run.t[-1])
+    with Recording(path) as recording:
+        runs = [recording.trajectories(name) for name in recording.robots or (None,)]
+    return max(runs, key=lambda run: float(run.t[-1]))
 
 
 def _origin(path: Path) -> tuple[str, str]:

@@ -61,13 +61,3 @@ LIVE_DEFINITIONS = {
         "uint32 steps\nuint32 missed"
     ),
 }
-#: Messages of formats 1 and 2, which are read and not written any more.
-OLD_DEFINITIONS = {
-    "RunState": "float64 t\nfloat64[] robot\nfloat64[] agents\nbool has_jump\nbool[] jump",
-    "Signal": "float64 t\nstring name\nfloat64 value",
-}
-#: Fields that messages of format 1 end before.
-SINCE_2 = {
-    "RunHeader": "\ncrowdbot_msgs/Camera[] cameras\nstring[] privileged",
-    "Contact": "\nfloat64 bearing",
-}

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,9 +17,10 @@ from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import Pinhole, SensorInfo
 from crowdbot.errors import InputError
 
-#: Raised when the meaning of a ``/crowdbot/...`` message changes.
-VERSION = 4
-_READABLE = (1, 2, 3, 4)
+#: Raised when the meaning of a ``/crowdbot/...`` message changes; and the oldest that is read.
+VERSION, OLDEST = 4, 3
+#: The format, after the four bytes that each serialised message begins with.
+_FORMAT = struct.Struct("<4xI")
 _LIMITS = ("v_min", "v_max", "w_max", "a_max", "alpha_max", "vy_max")
 
 
@@ -93,14 +96,10 @@ class RecordingHeader:
         """Inverse of `to_message`.
 
         Raises:
-            InputError: the message was written by another version of crowdbot, or contradicts
-                itself.
+            InputError: the message has a format that is not read, or contradicts itself.
         """
-        if message.version not in _READABLE:
-            known = f"{', '.join(map(str, _READABLE[:-1]))} and {_READABLE[-1]}"
-            raise InputError(
-                f"the recording has format {message.version}; this crowdbot reads formats {known}"
-            )
+        if problem := format_problem(message.version):
+            raise InputError(problem)
         try:
             return cls(
                 scenario=message.scenario,
@@ -113,6 +112,31 @@ class RecordingHeader:
             )
         except (ValueError, LookupError) as error:  # tables and lists of the wrong length
             raise InputError(f"the recording's header contradicts itself: {error}") from error
+
+
+def format_problem(version: int) -> str:
+    """Why a format is not read, and what to do; empty for one that is."""
+    read = f"the recording has format {version}; the {{}} that this crowdbot reads is {{}}: "
+    if version > VERSION:
+        return read.format("newest", VERSION) + "update crowdbot"
+    if version < OLDEST:
+        remedy = "make the run again, or read it with the crowdbot that recorded it"
+        return read.format("oldest", OLDEST) + remedy
+    return ""
+
+
+def check_format(path: Path, data: bytes) -> None:
+    """Refuse a header of a format that is not read, before it is decoded.
+
+    Args:
+        path: the recording, for the message.
+        data: a serialised ``crowdbot_msgs/msg/RunHeader``.
+
+    Raises:
+        InputError: the format is too old or too new.
+    """
+    if len(data) >= _FORMAT.size and (problem := format_problem(_FORMAT.unpack_from(data)[0])):
+        raise InputError(f"{path}: {problem}")
 
 
 def tilts_message(sensors: Mapping[str, SensorInfo]) -> Any | None:
@@ -238,14 +262,14 @@ def _camera_message(sensor: str, camera: Pinhole) -> Any:
 
 
 def _sensors(message: Any) -> dict[str, SensorInfo]:
-    """By name; format 1 says neither what is a camera nor what is privileged."""
+    """By name."""
     sensors = {s.name: _sensor(s) for s in message.sensors}
-    for found in getattr(message, "cameras", ()):
+    for found in message.cameras:
         camera = Pinhole(
             width=found.width, height=found.height, focal=found.focal, colour=bool(found.colour)
         )
         sensors[found.sensor] = replace(sensors[found.sensor], camera=camera)
-    for name in getattr(message, "privileged", ()):
+    for name in message.privileged:
         sensors[name] = replace(sensors[name], privileged=True)
     return sensors
 

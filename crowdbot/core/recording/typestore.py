@@ -11,21 +11,15 @@ from typing import Any
 
 from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
 
-from crowdbot.core.recording.definitions import (
-    DEFINITIONS,
-    LIVE_DEFINITIONS,
-    OLD_DEFINITIONS,
-    SINCE_2,
-)
+from crowdbot.core.recording.definitions import DEFINITIONS, LIVE_DEFINITIONS
 
 
 @cache
-def _store(*, oldest: bool = False) -> Any:
+def _store() -> Any:
     store = get_typestore(Stores.ROS2_HUMBLE)
     types: dict[str, Any] = {}
-    for name, text in {**DEFINITIONS, **LIVE_DEFINITIONS, **OLD_DEFINITIONS}.items():
-        since = SINCE_2.get(name, "") if oldest else ""
-        types.update(get_types_from_msg(text.removesuffix(since), f"crowdbot_msgs/msg/{name}"))
+    for name, text in {**DEFINITIONS, **LIVE_DEFINITIONS}.items():
+        types.update(get_types_from_msg(text, f"crowdbot_msgs/msg/{name}"))
     store.register(types)
     return store
 
@@ -40,7 +34,7 @@ def ros1_store() -> Any:
     """The types of ROS 1 noetic, and crowdbot's."""
     store = get_typestore(Stores.ROS1_NOETIC)
     types: dict[str, Any] = {}
-    for name, text in {**DEFINITIONS, **OLD_DEFINITIONS}.items():
+    for name, text in DEFINITIONS.items():
         types.update(get_types_from_msg(text, f"crowdbot_msgs/msg/{name}"))
     store.register(types)
     return store
@@ -138,13 +132,5 @@ def to_ros1(data: bytes, msgtype: str) -> bytes:
 
 
 def from_cdr(data: bytes, msgtype: str) -> Any:
-    """Deserialise; raises whatever the decoder stumbles over.
-
-    A message of format 1 lacks the attributes that came later.
-    """
-    try:
-        return _store().deserialize_cdr(data, msgtype)
-    except Exception:  # the decoder is generated code; anything may surface
-        if msgtype.removeprefix("crowdbot_msgs/msg/") not in SINCE_2:
-            raise
-    return _store(oldest=True).deserialize_cdr(data, msgtype)
+    """Deserialise; raises whatever the decoder stumbles over."""
+    return _store().deserialize_cdr(data, msgtype)

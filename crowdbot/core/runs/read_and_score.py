@@ -7,15 +7,10 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
-from crowdbot.core.recording import (
-    RecordingHeader,
-    fleet_names,
-    read_fleet,
-    read_run,
-    read_whole,
-)
+from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.reading.images import ImageCollector
 from crowdbot.core.recording.reading.scans import ReplayScan
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs.identity import CROWD_ALONE, ROBOT_ALONE
@@ -70,12 +65,15 @@ def read_robots(
         InputError: it cannot be read, or one is not in it.
     """
     also = None if images is None else images.add
-    if len(robots) == 1:
-        return {robots[0]: SeenRun(*read_run(path, max_rate, also))}
-    found = read_fleet(path, max_rate, also)
-    if missing := [name for name in robots if name not in found]:
-        raise InputError(f"{path}: robot '{missing[0]}' is not in it")
-    return {name: SeenRun(found[name].run, found[name].scans) for name in robots}
+    with Recording(path, max_rate=max_rate, observe=also) as recording:
+        if len(robots) == 1:
+            return {robots[0]: SeenRun(recording.trajectories(), recording.scans())}
+        if missing := [name for name in robots if name not in recording.robots]:
+            raise InputError(f"{path}: robot '{missing[0]}' is not in it")
+        return {
+            name: SeenRun(recording.trajectories(name), recording.scans(robot=name))
+            for name in robots
+        }
 
 
 def references_by_robot(paths: Mapping[str, Path], robots: Sequence[str]) -> dict[str, References]:
@@ -124,17 +122,14 @@ def read_recorded(path: Path) -> RecordedRun:
     Raises:
         InputError: it cannot be read.
     """
-    names = fleet_names(path)
-    if not names:
-        whole = read_whole(path)
-        return RecordedRun(
-            header=whole.header,
-            runs={"": whole.run},
-            trajectory=provenance.trajectory_hash(whole.run),
-            complete=whole.complete,
-            until=whole.until,
-        )
-    found = read_fleet(path)
+    with Recording(path) as recording:
+        return recorded_run(recording)
+
+
+def recorded_run(recording: Recording) -> RecordedRun:
+    """What an open recording says of itself; errors as `read_recorded`."""
+    names = recording.robots
+    found = {name: recording.robot(name or None) for name in names or ("",)}
     runs = {name: one.run for name, one in found.items()}
     return RecordedRun(
         header=next(iter(found.values())).header,
@@ -157,6 +152,7 @@ def reference_hashes(paths: Mapping[str, Path]) -> dict[str, str]:
 @lru_cache(maxsize=64)
 def _hash(path: Path, *state: int) -> str:
     del state  # another one is another recording
-    if fleet_names(path):
-        return read_recorded(path).trajectory
+    with Recording(path) as recording:
+        if recording.robots:
+            return recorded_run(recording).trajectory
     return provenance.trajectory_hash(read_kept(path))

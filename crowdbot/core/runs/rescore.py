@@ -9,9 +9,8 @@ from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
 
-from crowdbot.core.recording import fleet_names, read_fleet
 from crowdbot.core.recording.reading.commands import read_commands
-from crowdbot.core.recording.reading.recording import WholeRecording, holds_run, read_whole
+from crowdbot.core.recording.recording import Recording, RobotRecording
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.runs.identity import CROWD_ALONE, ROBOT_ALONE
 from crowdbot.core.runs.read_and_score import references_by_robot, score_robots
@@ -89,26 +88,31 @@ def rescore(request: RescoreRequest, registry: Registry) -> Rescored:
         CrowdbotError: it cannot be read, or a metric failed.
     """
     source, run = RecordingSource(path=Path(), recording=Path()), None
-    found: list[WholeRecording] = []
+    found: list[RobotRecording] = []
+
+    def check(recording: Recording, robot: str | None) -> Trajectories:
+        found.append(_checked(recording, robot, allowed=request.allow_incomplete))
+        return found[-1].run
 
     def read(file: Path | None, robot: str | None = None) -> Trajectories | None:
         if file is None:
             return None
-        found.append(_read(file, robot, allowed=request.allow_incomplete))
-        return found[-1].run
+        with Recording(file) as recording:
+            # a calibration run may hold several robots or one
+            return check(recording, robot if recording.robots else None)
 
     if request.path is not None:
         source = find_source(request.path, request.robot_alone, request.crowd_alone)
-        # a recording of nothing but commands is not a run, and need not be one
-        if request.topics is None or holds_run(source.recording):
-            if request.robot is None and fleet_names(source.recording):
-                return _whole_fleet(request, source, registry)
-            run = read(source.recording, request.robot)
-    robot = None if source.robot_alone is None else _robot_in(source.robot_alone, request.robot)
+        with Recording(source.recording) as recording:
+            # a recording of nothing but commands is not a run, and need not be one
+            if request.topics is None or recording.holds_run:
+                if request.robot is None and recording.robots:
+                    return _whole_fleet(request, source, recording, registry)
+                run = check(recording, request.robot)
     scores = score(
         registry,
         run,
-        read(source.robot_alone, robot),
+        read(source.robot_alone, request.robot),
         read(source.crowd_alone),
         commands=_commands(request, request.commands, source),
         commands_baseline=_commands(request, request.commands_baseline, None),
@@ -124,19 +128,16 @@ def rescore(request: RescoreRequest, registry: Registry) -> Rescored:
     )
 
 
-def _robot_in(file: Path, robot: str | None) -> str | None:
-    """Whose run to read in a calibration run, which may hold several robots or one."""
-    return robot if fleet_names(file) else None
-
-
-def _whole_fleet(request: RescoreRequest, source: RecordingSource, registry: Registry) -> Rescored:
+def _whole_fleet(
+    request: RescoreRequest, source: RecordingSource, recording: Recording, registry: Registry
+) -> Rescored:
     """All robots of a run, and the fleet.
 
     Raises:
         IncompleteError: the recording is cut, and that is not allowed.
         CrowdbotError: it cannot be read, or a metric failed.
     """
-    fleet = read_fleet(source.recording)
+    fleet = {name: recording.robot(name) for name in recording.robots}
     until = max(one.until for one in fleet.values())
     complete = all(one.complete for one in fleet.values())
     if not complete and not request.allow_incomplete:
@@ -158,14 +159,14 @@ def _cut(file: Path, until: float) -> IncompleteError:
     return IncompleteError(f"{text}; --allow-incomplete scores what is there", until)
 
 
-def _read(file: Path, robot: str | None, *, allowed: bool) -> WholeRecording:
-    found = read_whole(file, robot)
+def _checked(recording: Recording, robot: str | None, *, allowed: bool) -> RobotRecording:
+    found = recording.robot(robot)
     if not found.complete and not allowed:
-        raise _cut(file, found.until)
+        raise _cut(recording.path, found.until)
     try:
         check_sizes(found.run)
     except InputError as error:  # of a run, a calibration run: say of which
-        raise InputError(f"{file}: damaged: {error}") from None
+        raise InputError(f"{recording.path}: damaged: {error}") from None
     return found
 
 

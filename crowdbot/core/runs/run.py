@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from crowdbot.core.planning.resolve import PlannerChoice
-from crowdbot.core.recording import read_fleet, read_trajectories
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
@@ -106,13 +106,16 @@ class Run:
         Raises:
             InputError: it has several robots; `robots` has the run of each.
         """
-        return read_trajectories(self.directory / files.RECORDING)
+        with Recording(self.directory / files.RECORDING) as recording:
+            return recording.trajectories()
 
     @cached_property
     def robots(self) -> Mapping[str, Trajectories]:
         """The run of each of several robots, by name; empty of a run of one."""
-        found = read_fleet(self.directory / files.RECORDING) if "robots" in self.record else {}
-        return {name: one.run for name, one in found.items()}
+        if "robots" not in self.record:
+            return {}
+        with Recording(self.directory / files.RECORDING) as recording:
+            return {name: recording.trajectories(name) for name in recording.robots}
 
     @cached_property
     def references(self) -> References:
@@ -215,7 +218,7 @@ def read_kept(path: Path) -> Trajectories:
     try:
         state = _state_of(path)
     except OSError:
-        return read_trajectories(path)  # says what is wrong
+        return _read(path)  # says what is wrong
     return _kept(*state)
 
 
@@ -227,4 +230,9 @@ def _state_of(path: Path) -> tuple[Path, int, int, int]:
 @lru_cache(maxsize=4)  # with 200 people for 180 s one takes 18 MB
 def _kept(path: Path, *state: int) -> Trajectories:
     del state  # another one is another recording
-    return read_trajectories(path)
+    return _read(path)
+
+
+def _read(path: Path) -> Trajectories:
+    with Recording(path) as recording:
+        return recording.trajectories()

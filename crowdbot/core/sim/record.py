@@ -14,7 +14,7 @@ from crowdbot.core.planning.planner import Observation, Planner
 from crowdbot.core.planning.process.process_planner import ProcessPlanner
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.planning.watchdog import Watchdog
-from crowdbot.core.recording import RecordingHeader, RobotHeader
+from crowdbot.core.recording.header import RecordingHeader, RobotHeader
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.robots.urdf_export import to_urdf
 from crowdbot.core.runs.outcome import Outcome

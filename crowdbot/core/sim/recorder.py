@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pydrake.systems.framework import Context, DiagramBuilder, LeafSystem
 
-from crowdbot.core.recording import RecordingWriter
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 
 _PERIOD = 1.0  # s

@@ -18,10 +18,11 @@ from crowdbot.core.crowd.desired_acceleration import candidates_of
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.population.realisation import Realisation
-from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter
+from crowdbot.core.recording.header import AgentsHeader, RecordingHeader
 from crowdbot.core.recording.motion.candidates import Choosers
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.watcher import Watcher
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.outcome import INTERRUPTED, TIMEOUT, Outcome, Progress
 from crowdbot.core.sim.build_crowd import build_crowd

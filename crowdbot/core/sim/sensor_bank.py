@@ -18,7 +18,7 @@ from pydrake.systems.framework import Context, DiagramBuilder, LeafSystem, State
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.geometry.footprint import footprint_of_model
-from crowdbot.core.recording import RecordingWriter
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.sensing.noise import SensorStream
 from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene

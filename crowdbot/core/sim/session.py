@@ -19,7 +19,7 @@ from typing import Any, cast
 from crowdbot.core.planning.host import PlannerHost
 from crowdbot.core.planning.planner import Observation, Planner
 from crowdbot.core.planning.resolve import PlannerChoice
-from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.scenarios.lock import population
@@ -218,7 +218,8 @@ class Session:
             raise InputError("the session was not recorded; give it recording='run.mcap'")
         if not self.done:
             raise InputError("the run has not ended; close() ends it")
-        return read_trajectories(self._recording)
+        with Recording(self._recording) as recording:
+            return recording.trajectories()
 
     def __enter__(self) -> Session:
         return self

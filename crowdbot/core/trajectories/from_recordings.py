@@ -6,9 +6,9 @@ They all derive what is left out, and warn of what cannot be, such as positions 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, Literal, Self, TypeVar, cast
+from typing import Any, ClassVar, Literal, Self, TypeVar, cast
 
 from numpy.typing import ArrayLike
 
@@ -26,15 +26,12 @@ from crowdbot.core.trajectories.raw_table import (
     read_table,
 )
 from crowdbot.errors import InputError, RecordingWarning
-from crowdbot.lazy import lazy_names
 
 #: When the robot arrived, s; None: it did not; ``"derived"``: from its goal.
 GoalTime = float | Literal["derived"] | None
 #: Table -> our name of a column -> the name that it has there.
 TableColumns = Mapping[str, ColumnNames]
 _COLUMNS = {"robot": own.ROBOT, "agents": own.AGENT, "trips": own.TRIP, "contacts": own.CONTACT}
-#: Recordings lie a floor above; their reader is named as text, like whatever is built.
-_above = lazy_names(__name__, {"crowdbot.core.recording.reading.recording": "read_trajectories"})
 _Run = TypeVar("_Run", bound="FromRecordings")
 
 
@@ -42,6 +39,9 @@ class FromRecordings:
     """What `Trajectories` can be made from, beside arrays."""
 
     __slots__ = ()
+    #: Reads a recording of crowdbot, of one robot by name; `crowdbot.core.recording.from_mcap`
+    #: registers it.
+    read_recording: ClassVar[Callable[[Path | str, str | None], FromRecordings] | None] = None
 
     @classmethod
     def from_csv(
@@ -427,7 +427,7 @@ class FromRecordings:
 
     @classmethod
     def from_mcap(cls, path: Path | str, *, robot: str | None = None) -> Self:
-        """Read a recording; see `crowdbot.core.recording.reading.recording.read_trajectories`.
+        """Read a recording; `crowdbot.Recording` also has its header, scans and robots.
 
         Args:
             path: ``run.mcap`` of a run.
@@ -438,7 +438,9 @@ class FromRecordings:
                 and none is named.
             UnknownNameError: there is no such robot.
         """
-        read = _above("read_trajectories")
+        read = cls.read_recording
+        if read is None:
+            raise InputError("this Trajectories reads no recordings; crowdbot.Trajectories does")
         return cast(Self, read(path_of("path", path), robot))
 
     def implausible(self) -> list[str]:

@@ -12,12 +12,9 @@ from typing import Any, cast
 from crowdbot.core.bundle.manifest import MANIFEST
 from crowdbot.core.bundle.pack import Submission, pack
 from crowdbot.core.planning.resolve import resolve_planner
-from crowdbot.core.recording import (
-    RecordingHeader,
-    RecordingWriter,
-    RobotHeader,
-    read_trajectories,
-)
+from crowdbot.core.recording.header import RecordingHeader, RobotHeader
+from crowdbot.core.recording.recording import Recording
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
@@ -125,7 +122,7 @@ def write_recording(
     for i in range(17):
         writer.state(i / 16, (speed * i / 16, 0.0, 0.0, speed, 0.0), None)
     writer.close(0.5, whole, "arrived")
-    return provenance.trajectory_hash(read_trajectories(path))
+    return provenance.trajectory_hash(Recording(path).trajectories())
 
 
 def record_runs(root: Path) -> None:

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from crowdbot.core.crowd import LOOP, PORTAL, REMOVE, STOP, Agents, CrowdEngine, CrowdWorld
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.routes import reach_fraction
-from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.run_log import RunLog
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.sim.crowd_only import run_crowd
 from tests.core.crowd.crowd_reference import Array
 from tests.core.crowd.crowd_worlds import ENTRANCE, OUT, TICKS, ToGoal, rows

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import struct
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from mcap.writer import MCAP0_MAGIC
 from numpy.typing import NDArray
 
-from crowdbot.core.recording import AgentsHeader, RecordingHeader, RecordingWriter, RobotHeader
+from crowdbot.core.recording.header import AgentsHeader, RecordingHeader, RobotHeader
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.plugin import Array, Command, Reading, RobotLimits, SensorInfo
 
 ANGLES = np.linspace(-2.0, 2.0, 33)
@@ -150,3 +153,16 @@ def bits(value: Any) -> Any:
     if isinstance(value, dict):
         return {k: bits(v) for k, v in value.items()}
     return value
+
+
+def chunk_ends(data: bytes) -> list[int]:
+    """Offsets behind each chunk record, found by walking over the records."""
+    ends, at = [], len(MCAP0_MAGIC)
+    while at + 9 <= len(data):
+        opcode, length = struct.unpack_from("<BQ", data, at)
+        at += 9 + length
+        if opcode == 0x06:
+            ends.append(at)
+        if opcode == 0x02:
+            break
+    return ends

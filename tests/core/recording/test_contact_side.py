@@ -12,10 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.core.geometry.footprint import body_side
-from crowdbot.core.recording import RecordingWriter, read_trajectories, recording_info, typestore
-from crowdbot.core.recording import messages as ros
-from crowdbot.core.recording.container.mcap_file import McapFile
-from crowdbot.core.recording.topics import Topic
+from crowdbot.core.recording.recording import Recording
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError
 from crowdbot.plugin import Pinhole, SensorInfo
@@ -43,67 +41,13 @@ def test_no_word_for_what_is_not_known() -> None:
     assert body_side(math.nan) == "unknown"
 
 
-def _write(path: Path, version: int) -> None:
-    """A recording of either format: header, samples and one contact."""
-    header = header_of(RUN, sensors={"eye": CAMERA}).to_message()
-    header.version = version
-    contact = {
-        "header": ros.header(0, "map"), "t0": 0.25, "t1": 0.5, "agent": 100, "impulse": 1.5,
-        "peak_force": 20.0, "relative_speed": 0.7, "bearing": -2.5,
-    }  # fmt: skip
-    store = typestore._store(oldest=version == 1)
-    if version == 1:
-        del contact["bearing"]
-        fields = ("version", "scenario", "hash_names", "hashes", "robot", "agents", "sensors")
-        given = {n: getattr(header, n) for n in (*fields, "walls", "goal_zone")}
-        header = store.types["crowdbot_msgs/msg/RunHeader"](**given)
-    file = McapFile(path)
-    for topic, kind, message in (
-        (Topic.HEADER, "crowdbot_msgs/msg/RunHeader", header),
-        (Topic.CONTACTS, "crowdbot_msgs/msg/Contact",
-         store.types["crowdbot_msgs/msg/Contact"](**contact)),
-    ):  # fmt: skip
-        file.put_bytes(topic, 0, kind, bytes(store.serialize_cdr(message, kind)))
-    assert RUN.robot is not None
-    assert RUN.agents is not None
-    state = ros.new(
-        "crowdbot_msgs/RunState", t=0.0, robot=RUN.robot[0], agents=RUN.agents[0].ravel(),
-        has_jump=False, jump=np.zeros(0, np.bool_),
-    )  # fmt: skip
-    file.put(Topic.STATE, 0, state)
-    file.close()
-
-
-@pytest.mark.parametrize("version", [1, 2])
-def test_both_formats_are_read(tmp_path: Path, version: int) -> None:
-    path = tmp_path / "run.mcap"
-    _write(path, version)
-    contacts = read_trajectories(path).contacts
-    assert contacts is not None
-    assert contacts.impulse.tolist() == [1.5]
-    sensor = recording_info(path).header.sensors["eye"]
-    if version == 1:
-        assert np.isnan(contacts.bearing).all()
-        assert (sensor.camera, sensor.privileged) == (None, False)
-    else:
-        assert contacts.bearing.tolist() == [-2.5]
-        assert (sensor.camera, sensor.privileged) == (CAMERA.camera, True)
-
-
-def test_another_format_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "run.mcap"
-    _write(path, 5)
-    with pytest.raises(InputError, match="format 5; this crowdbot reads formats 1, 2, 3 and 4"):
-        read_trajectories(path)
-
-
 def test_a_writer_that_is_told_no_bearing(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     writer = RecordingWriter(path, header_of(RUN), record="none")
     writer.state(0.0, RUN.robot[0], RUN.agents[0])  # type: ignore[index]
     writer.contact(0.0, 0.1, -1, 1.0, 2.0, 3.0)
     writer.close(None, True, "timeout")
-    contacts = read_trajectories(path).contacts
+    contacts = Recording(path).trajectories().contacts
     assert contacts is not None
     assert np.isnan(contacts.bearing).all()
 

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from dataclasses import asdict
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -11,19 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from crowdbot.core.recording import (
-    RecordingHeader,
-    RecordingWriter,
-    RobotHeader,
-    read_cones,
-    read_run,
-    read_scans,
-    read_trajectories,
-    recording_info,
-)
+import crowdbot
 from crowdbot.core.recording.container.records import Records
+from crowdbot.core.recording.header import RecordingHeader, RobotHeader
 from crowdbot.core.recording.reading.scans import REPLAY_RATE, Thinning
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.recording.viewers import PEOPLE_RATE
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.replay import ShownRun, write_replay
 from crowdbot.core.runs.provenance import trajectory_hash
 from crowdbot.core.trajectories.trajectories import Trajectories
@@ -44,7 +37,6 @@ from tests.core.recording.recording_cases import (
 from tests.paths import ROOT
 
 FORMAT_3_HASH = "cb1-sha256:631329dff0e4aa992272ebf4401e8db39c110dcde3377500d4bf29a5c41e5705"
-FORMAT_2_HASH = "cb1-sha256:fdad7d9275d5b1435d125dce1f4c7f3931e50a39a99ef49e165e5bd1574c430a"
 
 
 def as_given(run: Run) -> Trajectories:
@@ -99,8 +91,8 @@ RUNS = {
 def test_trajectories_come_back_bit_by_bit(run: Run, record: Any, tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     write_run(path, run, record=record)
-    assert bits(read_trajectories(path)) == bits(as_given(run))
-    assert bits(Trajectories.from_mcap(str(path))) == bits(as_given(run))
+    assert bits(Recording(path).trajectories()) == bits(as_given(run))
+    assert bits(crowdbot.Trajectories.from_mcap(str(path))) == bits(as_given(run))
 
 
 FLOATS = st.floats(width=64, allow_nan=True, allow_infinity=True, allow_subnormal=True)
@@ -120,7 +112,7 @@ def test_any_numbers_come_back_bit_by_bit(
     writer = RecordingWriter(path, header_of(run), record="none")
     write_samples(writer, run)
     writer.close(None, True, "timeout")
-    read = read_trajectories(path)
+    read = Recording(path).trajectories()
     assert read.robot is not None
     assert read.agents is not None
     assert read.agents.jump is not None
@@ -137,7 +129,7 @@ def test_header_comes_back(tmp_path: Path) -> None:
     header = header_of(FULL, robot=robot, walls=None)
     path = tmp_path / "run.mcap"
     RecordingWriter(path, header).close(None, False, "interrupted")
-    assert bits(recording_info(path).header) == bits(header)
+    assert bits(Recording(path).info.header) == bits(header)
     assert bits(header_of(FULL)) == bits(RecordingHeader.from_message(header_of(FULL).to_message()))
 
 
@@ -151,13 +143,13 @@ def test_a_header_of_another_format_is_refused() -> None:
 def test_info_tells_how_the_run_ended(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     write_run(path, FULL)
-    info = recording_info(path)
+    info = Recording(path).info
     assert (info.complete, info.status, info.goal_time) == (True, "arrived", 2.25)
     assert info.duration == FULL.t[-1]
     assert info.topics["/front/scan"] == ("sensor_msgs/msg/LaserScan", 40)
     assert info.topics["/odom"] == ("nav_msgs/msg/Odometry", 160)
     write_run(path, FULL, goal_time=None)
-    info = recording_info(path)
+    info = Recording(path).info
     assert (info.status, info.goal_time) == ("timeout", None)
 
 
@@ -170,7 +162,7 @@ def test_equal_runs_give_equal_bytes(tmp_path: Path) -> None:
 def test_record_none_keeps_only_what_scores_need(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     write_run(path, FULL, record="none")
-    topics = set(recording_info(path).topics)
+    topics = set(Recording(path).info.topics)
     assert topics == {
         "/contacts",
         "/crowdbot/end",
@@ -186,7 +178,7 @@ def test_record_used_keeps_what_the_replay_shows_too(tmp_path: Path) -> None:
     write_run(tmp_path / "all", FULL, record="all")
     write_run(tmp_path / "used", FULL, record="used")
     write_run(tmp_path / "none", FULL, record="none")
-    topics = {n: set(recording_info(tmp_path / n).topics) for n in ("all", "used", "none")}
+    topics = {n: set(Recording(tmp_path / n).info.topics) for n in ("all", "used", "none")}
     assert topics["used"] - topics["none"] == {
         "/front/scan", "/cmd_vel", "/tf", "/tf_static", "/robot_description",
         "/pedestrians_marker", "/contact_markers", "/walls_marker", "/map", "/goal_zone",
@@ -195,7 +187,8 @@ def test_record_used_keeps_what_the_replay_shows_too(tmp_path: Path) -> None:
     assert topics["used"] < topics["all"]
     pages = []
     for name in ("all", "used"):
-        run, scans = read_run(tmp_path / name, REPLAY_RATE)
+        recording = Recording(tmp_path / name, max_rate=REPLAY_RATE)
+        run, scans = recording.trajectories(), recording.scans()
         write_replay(tmp_path / f"{name}.html", ShownRun(run=run, scans=scans, title="run"))
         pages.append((tmp_path / f"{name}.html").read_bytes())
     assert pages[0] == pages[1]
@@ -216,16 +209,6 @@ def test_record_used_says_what_all_says_less_often(tmp_path: Path) -> None:
         assert min(b - a for a, b in pairwise(stamps)) >= 1e9 / rate
 
 
-def test_one_pass_reads_what_three_do(tmp_path: Path) -> None:
-    path = tmp_path / "run.mcap"
-    write_run(path, FULL)
-    run, scans = read_run(path, 4.0)
-    assert bits(run) == bits(read_trajectories(path))
-    apart = [*read_scans(path, max_rate=4.0), *read_cones(path, 4.0)]
-    assert [bits(asdict(scan)) for scan in scans] == [bits(asdict(scan)) for scan in apart]
-    assert len(scans) == 1
-
-
 @given(stamps=st.lists(st.integers(0, 10**10)), rate=st.sampled_from([None, 0.3, 8.0, 15.0]))
 def test_thinning_twice_is_thinning_once(stamps: list[int], rate: float | None) -> None:
     once, again = Thinning(rate), Thinning(rate)
@@ -234,34 +217,26 @@ def test_thinning_twice_is_thinning_once(stamps: list[int], rate: float | None) 
     assert len(kept) == len(stamps) if rate is None else set(kept) <= set(stamps)
 
 
-def test_recordings_of_format_2_are_read() -> None:
-    """Written by the release before samples were packed; its hash was in its run.json."""
-    path = ROOT / "tests" / "data" / "recordings" / "format_2.mcap"
-    assert trajectory_hash(read_trajectories(path)) == FORMAT_2_HASH
-    assert {scan.sensor for scan in read_scans(path)} == {"front_lidar", "rear_lidar"}
-    assert recording_info(path).complete
-
-
 def test_recordings_of_format_3_are_read() -> None:
     """Written by the release before choices of people were recorded; people alone, packed."""
     path = ROOT / "tests" / "data" / "recordings" / "format_3.mcap"
-    assert trajectory_hash(read_trajectories(path)) == FORMAT_3_HASH
-    assert recording_info(path).complete
+    assert trajectory_hash(Recording(path).trajectories()) == FORMAT_3_HASH
+    assert Recording(path).info.complete
 
 
 def test_scans_come_back_and_can_be_thinned(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     write_run(path, FULL)
-    (scan,) = read_scans(path)
+    (scan,) = Recording(path).scans()
     assert (scan.sensor, scan.mount, scan.range_max) == ("front", LIDAR.mount, 10.0)
     assert np.array_equal(scan.angles, ANGLES)
     assert np.array_equal(scan.t, FULL.t)
     expected = np.where(ANGLES > 0.0, 1.0 + FULL.t[:, None], np.inf).astype(np.float32)
     assert np.array_equal(scan.ranges, expected)
-    (thin,) = read_scans(path, "front", max_rate=4.0)
+    (thin,) = Recording(path, max_rate=4.0).scans("front")
     assert np.array_equal(thin.t, FULL.t[::4])
     with pytest.raises(UnknownNameError, match="front"):
-        read_scans(path, "frnt")
+        Recording(path).scans("frnt")
 
 
 def test_a_folder_that_does_not_exist_is_an_input_error(tmp_path: Path) -> None:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
-from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.header import RecordingHeader, RobotHeader
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.robots import build_model
 from crowdbot.core.robots.urdf_export import to_urdf

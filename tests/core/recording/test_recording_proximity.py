@@ -11,15 +11,9 @@ import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
-from crowdbot.core.recording import (
-    RecordingHeader,
-    RecordingWriter,
-    RobotHeader,
-    read_cones,
-    read_scans,
-    read_trajectories,
-)
-from crowdbot.core.recording.reading.recording import recording_info
+from crowdbot.core.recording.header import RecordingHeader, RobotHeader
+from crowdbot.core.recording.recording import Recording
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.dsl.spec.component_specs import SensorSpec
@@ -103,23 +97,23 @@ def test_point_cloud(path: Path) -> None:
 
 
 def test_the_header_reads_back(path: Path) -> None:
-    sensors = recording_info(path).header.sensors
+    sensors = Recording(path).info.header.sensors
     for name, info in INFOS.items():
         assert info.angles is not None
         assert sensors[name].angles is not None
         np.testing.assert_array_equal(sensors[name].angles, info.angles)
         assert (sensors[name].shape, sensors[name].mount) == (info.shape, info.mount)
-    assert read_scans(path) == []
+    assert all(scan.cone for scan in Recording(path).scans())
 
 
 def test_cones_for_the_replay(path: Path) -> None:
-    found = {cone.sensor: cone for cone in read_cones(path)}
+    found = {cone.sensor: cone for cone in Recording(path).scans()}
     assert set(found) == {"us0", "eye"}
     assert found["us0"].ranges.tolist() == [[1.25], [1.375]]
     assert found["us0"].t.tolist() == [0.0, 0.125]
     assert found["us0"].cone
     np.testing.assert_array_equal(found["eye"].angles, INFOS["eye"].angles)
-    assert len(read_cones(path, max_rate=4.0)[0].t) == 1
+    assert len(Recording(path, max_rate=4.0).scans()[0].t) == 1
 
 
 def test_a_sensor_may_use_its_array_again(tmp_path: Path) -> None:
@@ -149,6 +143,6 @@ def test_rows_are_in_the_order_in_which_they_were_handed_over(tmp_path: Path) ->
         writer.state(k / 16, (float(k), 0.0, 0.0, 0.0, 0.0), None)
         writer.signal(k / 16, "k", float(k))
     writer.close(None, True, "timeout")
-    run = read_trajectories(path)
+    run = Recording(path).trajectories()
     assert run.robot is not None
     assert run.robot.x.tolist() == run.signals["k"][:, 1].tolist() == list(range(5000))

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.run_log import RunLog
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.plugin import Array, Command, RobotState
 
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from crowdbot.core.recording import read_scans, read_trajectories
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.replay import OtherTrack, ReplayScan, ShownRun, write_replay
 from crowdbot.core.replay.encode import encode, summary
 from crowdbot.core.trajectories.trajectories import Trajectories
@@ -135,7 +135,7 @@ RECORDED = random_run(n=120, m=9)
 def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Trajectories, list[ReplayScan]]:
     path = tmp_path_factory.mktemp("replay") / "run.mcap"
     write_run(path, RECORDED)
-    return read_trajectories(path), read_scans(path)
+    return Recording(path).trajectories(), Recording(path).scans()
 
 
 @pytest.fixture(scope="module")
@@ -169,7 +169,7 @@ def test_jumps_are_those_of_the_run(
     assert page.meta["people"]["jumps"] == np.flatnonzero(agents.jump).tolist() != []
     untold = random_run(n=120, m=9)
     write_run(tmp_path / "x.mcap", type(untold)(untold.t, untold.robot, untold.agents, None))
-    write(tmp_path / "x.html", read_trajectories(tmp_path / "x.mcap"), [], [], "", {})
+    write(tmp_path / "x.html", Recording(tmp_path / "x.mcap").trajectories(), [], [], "", {})
     assert Page(tmp_path / "x.html").meta["people"]["jumps"] == page.meta["people"]["jumps"]
 
 
@@ -242,7 +242,7 @@ def test_many_beams_are_thinned(tmp_path: Path) -> None:
         sensor="a", mount=(0.0, 0.0, 0.0, 0.0), angles=angles, range_max=10.0, t=t, ranges=ranges
     )
     write_run(tmp_path / "x.mcap", random_run(n=8))
-    run = read_trajectories(tmp_path / "x.mcap")
+    run = Recording(tmp_path / "x.mcap").trajectories()
     write(tmp_path / "x.html", run, [scan], [], "", {})
     page = Page(tmp_path / "x.html")
     assert np.allclose(page.meta["scans"][0]["angles"], angles[::2], atol=1e-5)
@@ -410,12 +410,12 @@ def test_reference_runs_have_a_page(missing: str, tmp_path: Path) -> None:
         None if missing == "agents" else given.jump,
     )
     write_run(tmp_path / "x.mcap", cut)
-    run = read_trajectories(tmp_path / "x.mcap")
+    run = Recording(tmp_path / "x.mcap").trajectories()
     if missing == "walls":
         run = Trajectories.from_arrays(
             t=run.t, agent_x=[[1e4]] * 40, agent_y=[[0.0]] * 40, agent_radius=0.3, agent_mass=70.0
         )
-    write(tmp_path / "x.html", run, read_scans(tmp_path / "x.mcap"), [], "x", {})
+    write(tmp_path / "x.html", run, Recording(tmp_path / "x.mcap").scans(), [], "x", {})
     meta = Page(tmp_path / "x.html").meta
     assert len(meta["robots"]) == (run.robot is not None)
     assert (meta["people"] is None) == (run.agents is None)

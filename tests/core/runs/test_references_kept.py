@@ -6,10 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.runs import run as request
 from crowdbot.core.runs.run import read_references
-from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError
 from tests.core.recording.recording_cases import bits, random_run, write_run
 
@@ -19,11 +18,11 @@ def test_references_are_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     write_run(path, random_run())
     write_run(other, random_run(n=20))
 
-    def counted(file: Path) -> Trajectories:
+    def counted(file: Path) -> Recording:
         read.append(file)
-        return read_trajectories(file)
+        return Recording(file)
 
-    monkeypatch.setattr(request, "read_trajectories", counted)
+    monkeypatch.setattr(request, "Recording", counted)
     first = read_references({"robot_alone": path, "crowd_alone": other})
     again = read_references({"robot_alone": path})
     assert again.robot_alone is first.robot_alone

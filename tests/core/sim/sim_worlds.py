@@ -17,8 +17,8 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.host import PlannerHost
 from crowdbot.core.population.realise import realise
-from crowdbot.core.recording import RecordingWriter
 from crowdbot.core.recording.run_log import RunLog
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.robots import build_model
 from crowdbot.core.robots.task import sensor_context

@@ -13,7 +13,7 @@ import pytest
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.planning.resolve import resolve_planner
-from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.robots import build_model
 from crowdbot.core.robots.check import check_model
 from crowdbot.core.scenarios.lock import population
@@ -151,7 +151,7 @@ def test_the_outline_is_recorded(tmp_path: Path) -> None:
         stop=lambda: False, on_hang=None,
     )  # fmt: skip
     record_robot(setup, _built(setup))
-    run = read_trajectories(tmp_path / "run.mcap")
+    run = Recording(tmp_path / "run.mcap").trajectories()
     assert run.robot_footprint is not None
     assert run.robot_footprint.tolist() == BOX.tolist()
     blocked = world.model_copy(deep=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import mmap
 import os
 import struct
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from functools import partial
 from io import BytesIO
 from itertools import islice
@@ -94,7 +94,7 @@ class Records:
         self._seen = self._attached = 0
         self._zstd = zstandard.ZstdDecompressor()
 
-    def __iter__(self) -> Iterator[Record]:
+    def __iter__(self) -> Generator[Record, None, None]:
         """Messages in the order they were written.
 
         Raises:

@@ -23,7 +23,7 @@ from crowdbot.core.recording.container.records import Record, Records
 from crowdbot.core.recording.export.extras import OFTEN, Extra, extras
 from crowdbot.core.recording.export.stamps import moved
 from crowdbot.core.recording.header import RecordingHeader
-from crowdbot.core.recording.reading.recording import read_trajectories, recording_info
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.recording.scenery import BASE
 from crowdbot.core.recording.topics import Topic, sensor_topics, usual_names
 from crowdbot.errors import InputError
@@ -119,8 +119,9 @@ def _write(bag: Any, path: Path, options: BagOptions) -> int:
 
 def _merged(path: Path, options: BagOptions) -> Iterator[_Message]:
     """What was recorded and what is added, in the order of time."""
-    info = recording_info(path)
-    header, run = info.header, read_trajectories(path)
+    with Recording(path) as recording:
+        info, run = recording.info, recording.trajectories()
+    header = info.header
     if options.tree == "odometry" and "/odom" not in info.topics:
         raise InputError(f"{path}: there is no /odom in it; only --record all keeps odometry")
     counts = {topic: count for topic, (_, count) in info.topics.items()}

@@ -33,12 +33,12 @@ class StateSample(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class States:
-    """K samples: t (K,), robot (K, R), agents (K, 4, M), told (K,) whether jump (K, M) is known."""
+    """K samples: t (K,), robot (K, R), agents (K, 4, M), jump (K, M), known where has_jump (K,)."""
 
     t: Array
     robot: Array
     agents: Array
-    told: NDArray[np.bool_]
+    has_jump: NDArray[np.bool_]
     jump: NDArray[np.bool_]
 
 
@@ -65,7 +65,7 @@ class StatesWriter:
         absent, unknown = np.full((4, self._people), np.nan), np.zeros(self._people, np.bool_)
         agents = [absent if s.agents is None else s.agents for s in samples]
         jump = [unknown if s.jump is None else s.jump for s in samples]
-        told = np.array([s.jump is not None for s in samples], np.bool_)
+        has_jump = np.array([s.jump is not None for s in samples], np.bool_)
         first, self._written = self._written, self._written + len(t)
         goals, changes = None, None
         if self._changes is not None:
@@ -78,15 +78,15 @@ class StatesWriter:
             first=first,
             t=t,
             robot=np.array([() if s.robot is None else s.robot for s in samples]).ravel(),
-            has_jump=told,
-            jump=np.packbits(np.array(jump)) if told.any() else np.zeros(0, np.uint8),
+            has_jump=has_jump,
+            jump=np.packbits(np.array(jump)) if has_jump.any() else np.zeros(0, np.uint8),
             gain=packed.gain,
             agents=np.frombuffer(packed.data, np.uint8),
         )
 
 
 class StatesReader:
-    """Puts the samples of one run together again, of whatever format they are."""
+    """Puts the samples of one run together again."""
 
     def __init__(
         self, people: int, candidates: Iterable[Any] = (), goals: Iterable[Any] = ()
@@ -111,16 +111,16 @@ class StatesReader:
         Raises:
             InputError: samples are missing or do not fit each other.
         """
-        parts = [self._of_message(m) if hasattr(m, "first") else self._old(m) for m in messages]
+        parts = [self._of_message(message) for message in messages]
         if len({part.robot.shape[1] for part in parts}) > 1:
             raise InputError("the samples of the robot do not have equally many numbers")
-        t, robot, told, jump = (
+        t, robot, has_jump, jump = (
             np.concatenate([getattr(part, name) for part in parts])
-            for name in ("t", "robot", "told", "jump")
+            for name in ("t", "robot", "has_jump", "jump")
         )
         agents = np.empty((4, len(t), self._people)).transpose(1, 0, 2)  # each number is a table
         np.concatenate([part.agents for part in parts], out=agents)
-        return States(t, robot, agents, told, jump)
+        return States(t, robot, agents, has_jump, jump)
 
     def _of_message(self, message: Any) -> States:
         from crowdbot.core.recording.motion.codec import Packed  # like `_codec`
@@ -130,30 +130,17 @@ class StatesReader:
         count = len(message.t)
         goals = None if self._goals is None else self._goals.goals(self._read, count)
         self._read += count
-        told = np.array(message.has_jump, np.bool_)
-        bits = np.unpackbits(message.jump, count=count * self._people) if told.any() else None
+        has_jump = np.array(message.has_jump, np.bool_)
+        bits = np.unpackbits(message.jump, count=count * self._people) if has_jump.any() else None
         zero = np.zeros((count, self._people), np.bool_)
-        if count == 0 or len(told) != count or len(message.robot) % count:
+        if count == 0 or len(has_jump) != count or len(message.robot) % count:
             raise InputError("samples are missing")
         return States(
             message.t,
             message.robot.reshape(count, -1),
             self._codec.unpack(message.t, Packed(message.gain, message.agents.tobytes()), goals),
-            told,
+            has_jump,
             zero if bits is None else bits.reshape(zero.shape).astype(np.bool_),
-        )
-
-    def _old(self, message: Any) -> States:
-        """One sample, as formats 1 and 2 have it."""
-        if message.agents.size != 4 * self._people:
-            raise InputError(f"a sample of the agents does not have {4 * self._people} numbers")
-        jump = message.jump if message.has_jump else np.zeros(self._people, np.bool_)
-        return States(
-            np.array([message.t]),
-            message.robot.reshape(1, -1),
-            message.agents.reshape(1, 4, self._people),
-            np.array([message.has_jump], np.bool_),
-            np.asarray(jump, np.bool_).reshape(1, -1),
         )
 
 
@@ -178,7 +165,7 @@ class SeriesRows:
 
 
 def series(messages: Iterable[Any]) -> dict[str, Array]:
-    """Name -> (P, 2) times and values, of messages of any format."""
+    """Name -> (P, 2) times and values, of messages of one topic."""
     columns: dict[str, tuple[list[float], list[float]]] = {}
     for message in messages:
         times, values = columns.setdefault(message.name, ([], []))
@@ -193,7 +180,7 @@ def series(messages: Iterable[Any]) -> dict[str, Array]:
 
 
 def _codec(people: int, choosers: Sequence[Choosers]) -> MotionCodec:
-    """The codec; its module imports numba, which who only looks for runs does without."""
+    """The codec; its module imports numba, which a search for runs does without."""
     from crowdbot.core.recording.motion.codec import MotionCodec
 
     return MotionCodec(people, choosers)

@@ -94,7 +94,7 @@ def _twist(path: Path, record: Record) -> tuple[int, float, float]:
 def _limits(record: Record) -> tuple[float, float] | None:
     try:
         header = RecordingHeader.from_message(ros.from_cdr(record.data, record.msgtype))
-    except Exception:  # read_trajectories says what is wrong with it
+    except Exception:  # a reader of the run says what is wrong with it
         return None
     if header.robot is None or header.robot.limits is None:
         return None

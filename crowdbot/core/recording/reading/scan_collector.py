@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,41 +17,55 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.errors import UnknownNameError
 
-#: Topic -> sensor, of those to read.
-Choice = Callable[[RecordingHeader], Mapping[str, SensorInfo]]
 #: Stands for any distance, m.
 _ANY = 1.0625
 
 
 class ScanCollector:
-    """Keeps the messages of chosen sensors as they come; decodes them at the end."""
+    """Keeps the readings of distances as they come; decodes them when they are asked for."""
 
-    def __init__(self, path: Path, choose: Choice, max_rate: float | None) -> None:
-        self._path, self._choose, self._max_rate = path, choose, max_rate
-        self._chosen: Mapping[str, SensorInfo] = {}
+    def __init__(self, path: Path, max_rate: float | None) -> None:
+        self._path, self._max_rate = path, max_rate
+        self._sensors: Mapping[str, SensorInfo] = {}
         self._thinning: dict[str, Thinning] = {}
         self._found: dict[str, list[Record]] = {}
 
     def open(self, header: RecordingHeader) -> None:
         """Take the header, which says what sensors there are."""
-        self._chosen = self._choose(header)
-        self._thinning = {topic: Thinning(self._max_rate) for topic in self._chosen}
+        self._sensors = {**_lidars(header), **_cones(header)}
+        self._thinning = {topic: Thinning(self._max_rate) for topic in self._sensors}
 
-    def add(self, record: Record) -> None:
-        """Take a message of whatever topic."""
-        if record.topic in self._chosen and self._thinning[record.topic].keeps(record.ns):
-            self._found.setdefault(record.topic, []).append(record)
+    def wants(self, topic: str) -> bool:
+        """Return True if a topic, without the robot's name, is one of a sensor of distances."""
+        return topic in self._sensors
 
-    def scans(self) -> list[ReplayScan]:
-        """What was kept, in the order in which sensors first came; lidars before cones."""
-        scans = [self._scan(topic, records) for topic, records in self._found.items()]
+    def add(self, topic: str, record: Record) -> None:
+        """Take a record of a topic that it `wants`."""
+        if self._thinning[topic].keeps(record.ns):
+            self._found.setdefault(topic, []).append(record)
+
+    def scans(self, header: RecordingHeader, sensor: str | None) -> list[ReplayScan]:
+        """What was kept, in the order in which sensors first came; lidars before cones.
+
+        Raises:
+            UnknownNameError: the header names no such sensor.
+        """
+        if sensor is not None:
+            known = [n for n, s in header.sensors.items() if is_scan(s) or is_cone(s)]
+            if sensor not in known:
+                raise UnknownNameError("sensor of distances", sensor, known)
+        scans = [
+            self._scan(topic, records)
+            for topic, records in self._found.items()
+            if sensor in (None, _sensor_of(topic))
+        ]
         return sorted(scans, key=lambda scan: scan.cone)
 
     def _scan(self, topic: str, records: Sequence[Record]) -> ReplayScan:
-        info = self._chosen[topic]
+        info = self._sensors[topic]
         assert info.angles is not None  # by is_scan and is_cone
         return ReplayScan(
-            sensor=topic.rpartition("/")[0].removeprefix("/"),
+            sensor=_sensor_of(topic),
             mount=info.mount,
             tilt=info.tilt,
             angles=info.angles,
@@ -62,19 +76,17 @@ class ScanCollector:
         )
 
 
-def lidars(header: RecordingHeader, sensor: str | None = None) -> dict[str, SensorInfo]:
-    """Topics of all lidars with plain scans, or of one.
-
-    Raises:
-        UnknownNameError: there is no such lidar.
-    """
-    found = {n: s for n, s in header.sensors.items() if is_scan(s)}
-    if sensor is not None and sensor not in found:
-        raise UnknownNameError("lidar", sensor, found)
-    return {scan_topic(n): s for n, s in found.items() if sensor in (None, n)}
+def _sensor_of(topic: str) -> str:
+    """The sensor of a topic, which is its root."""
+    return topic.rpartition("/")[0].removeprefix("/")
 
 
-def cones(header: RecordingHeader) -> dict[str, SensorInfo]:
+def _lidars(header: RecordingHeader) -> dict[str, SensorInfo]:
+    """Topics of all lidars with plain scans."""
+    return {scan_topic(n): s for n, s in header.sensors.items() if is_scan(s)}
+
+
+def _cones(header: RecordingHeader) -> dict[str, SensorInfo]:
     """Topics of all ultrasound and infrared sensors."""
     return {range_topic(n): s for n, s in header.sensors.items() if is_cone(s)}
 

@@ -14,8 +14,9 @@ from pydrake.systems.analysis import Simulator
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.geometry.polygon import distance_to
-from crowdbot.core.recording import RecordingHeader, RecordingWriter
+from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.run_log import RunLog
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.runs.outcome import (
     ARRIVED,
     INTERRUPTED,

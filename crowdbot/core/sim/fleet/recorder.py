@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from pydrake.systems.framework import Context, DiagramBuilder
 
-from crowdbot.core.recording import RecordingWriter
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.sim.recorder import Recorder
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 

@@ -9,10 +9,10 @@ import pytest
 from mcap.exceptions import EndOfFile
 from mcap.reader import SeekingReader, make_reader
 
-from crowdbot.core.recording import read_trajectories
 from crowdbot.core.recording.container.attachments import attach, attached
 from crowdbot.core.recording.container.records import Records
 from crowdbot.core.recording.reading.contents import contents
+from crowdbot.core.recording.recording import Recording
 from crowdbot.errors import InputError
 from tests.core.recording.recording_cases import bits, random_run, write_run
 
@@ -48,14 +48,14 @@ def test_others_find_them_and_all_messages(path: Path) -> None:
 
 
 def test_new_ones_replace_the_old(path: Path) -> None:
-    plain = bits(read_trajectories(path))
+    plain = bits(Recording(path).trajectories())
     attach(path, FILES)
     size = path.stat().st_size
     attach(path, FILES)
     assert path.stat().st_size == size
     attach(path, {"one": b"1"})
     assert contents(path).attachments == {"one": 1}
-    assert bits(read_trajectories(path)) == plain
+    assert bits(Recording(path).trajectories()) == plain
     assert contents(path).complete
 
 
@@ -67,12 +67,12 @@ def test_a_file_that_was_cut_off_is_refused(path: Path) -> None:
 
 @pytest.mark.parametrize("cut", [5, 40, 200])
 def test_cut_inside_it_is_as_good_as_one_cut_off(path: Path, cut: int) -> None:
-    plain = bits(read_trajectories(path))
+    plain = bits(Recording(path).trajectories())
     attach(path, {"a": bytes(1000)})
     whole = path.read_bytes()
     path.write_bytes(whole[: whole.index(bytes(1000)) + cut])
     assert not contents(path).finished
-    assert bits(read_trajectories(path)) == plain
+    assert bits(Recording(path).trajectories()) == plain
 
 
 def test_one_that_is_called_something_else_is_missed(path: Path) -> None:

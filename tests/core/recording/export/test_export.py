@@ -12,10 +12,10 @@ from rosbags.highlevel import AnyReader
 from ruamel.yaml import YAML
 
 from crowdbot import cli
-from crowdbot.core.recording import read_trajectories
 from crowdbot.core.recording.container.records import Records
 from crowdbot.core.recording.export.stamps import moved
 from crowdbot.core.recording.export.tables import geojson, tables, trajnet
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.trajectories.trajectories import Trajectories
 from tests.core.recording.recording_cases import WALLS, bits, random_run, write_run
 
@@ -178,7 +178,7 @@ def test_a_bag_of_ros_1_has_the_same_messages(recording: Path) -> None:
 
 def test_csv_reads_back_bit_by_bit(recording: Path) -> None:
     out = _export(recording, "csv")
-    run = read_trajectories(recording)
+    run = Recording(recording).trajectories()
     back = Trajectories.from_csv(
         robot=out / "robot.csv", agents=out / "people.csv", trips=out / "trips.csv",
         contacts=out / "contacts.csv", robot_radius=0.2, robot_mass=6.3,
@@ -199,14 +199,14 @@ def test_parquet_has_the_same_tables(recording: Path) -> None:
     import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
     out = _export(recording, "parquet")
-    for name, table in tables(read_trajectories(recording)).items():
+    for name, table in tables(Recording(recording).trajectories()).items():
         found = pq.read_table(out / f"{name}.parquet").to_pydict()
         for column, values in table.items():
             assert np.array_equal(found[column], np.asarray(values).tolist(), equal_nan=True)
 
 
 def test_geojson_cuts_ways_where_somebody_is_teleported(recording: Path) -> None:
-    features = json.loads(geojson(read_trajectories(recording)))["features"]
+    features = json.loads(geojson(Recording(recording).trajectories()))["features"]
     kinds = [f["properties"]["what"] for f in features]
     assert kinds.count("wall") == 2
     assert kinds.count("robot") == 1
@@ -218,7 +218,9 @@ def test_geojson_cuts_ways_where_somebody_is_teleported(recording: Path) -> None
 
 
 def test_trajnet_has_frames_and_a_scene(recording: Path) -> None:
-    lines = [json.loads(line) for line in trajnet(read_trajectories(recording), "x").splitlines()]
+    lines = [
+        json.loads(line) for line in trajnet(Recording(recording).trajectories(), "x").splitlines()
+    ]
     assert lines[0]["scene"] == {"id": 0, "p": 0, "s": 0, "e": 6, "fps": 2.5, "tag": "x"}
     robot = [line["track"] for line in lines[1:] if line["track"]["p"] == 0]
     assert [r["f"] for r in robot] == list(range(7))

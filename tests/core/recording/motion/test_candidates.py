@@ -13,12 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from crowdbot.core.crowd import CrowdEngine
-from crowdbot.core.recording import (
-    AgentsHeader,
-    RecordingHeader,
-    RecordingWriter,
-    read_trajectories,
-)
+from crowdbot.core.recording.header import AgentsHeader, RecordingHeader
 from crowdbot.core.recording.motion.candidates import (
     MOST_CANDIDATES,
     Choosers,
@@ -26,7 +21,9 @@ from crowdbot.core.recording.motion.candidates import (
     GoalsReader,
     candidate_table,
 )
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.recording.run_log import RunLog
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.runs.provenance import trajectory_hash
 from crowdbot.core.sim.crowd_only import run_crowd
 from crowdbot.core.sim.run_setup import agents, choosers, ids
@@ -67,7 +64,9 @@ def test_known_choices_make_a_crowd_small_and_change_nothing(tmp_path: Path) -> 
     assert [len(one.rows) for one in known] == [len(engine.agents)]
     small = recorded(tmp_path / "known.mcap", engine, known)
     large = recorded(tmp_path / "unknown.mcap", engine, [])
-    assert trajectory_hash(read_trajectories(small)) == trajectory_hash(read_trajectories(large))
+    assert trajectory_hash(Recording(small).trajectories()) == trajectory_hash(
+        Recording(large).trajectories()
+    )
     assert small.stat().st_size < 0.5 * large.stat().st_size
 
 
@@ -115,7 +114,7 @@ def test_too_many_candidates_are_not_used(tmp_path: Path) -> None:
     writer = RecordingWriter(path, header, record="none", choosers=[many])
     writer.state(0.0, None, position)
     writer.close(None, True, "timeout")
-    assert read_trajectories(path).agents is not None
+    assert Recording(path).trajectories().agents is not None
 
 
 @settings(max_examples=50)

@@ -9,6 +9,7 @@ import signal
 import struct
 import subprocess
 import sys
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
@@ -19,18 +20,14 @@ from mcap.data_stream import RecordBuilder
 from mcap.records import Chunk, Header
 from mcap.writer import MCAP0_MAGIC, Writer
 
-from crowdbot.core.recording import (
-    RecordingWriter,
-    read_scans,
-    read_trajectories,
-    read_whole,
-    recording_info,
-)
 from crowdbot.core.recording.container import records as records_module
 from crowdbot.core.recording.container.records import MAX_CHUNK
+from crowdbot.core.recording.recording import Recording
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.errors import InputError
 from tests.core.recording.recording_cases import (
     bits,
+    chunk_ends,
     header_of,
     random_run,
     write_run,
@@ -40,6 +37,12 @@ from tests.paths import ROOT
 
 pytestmark = pytest.mark.slow
 
+#: Whatever is asked of a recording.
+QUESTIONS: tuple[Callable[[Path], object], ...] = (
+    lambda path: Recording(path).trajectories(),
+    lambda path: Recording(path).scans(),
+    lambda path: Recording(path).info,
+)
 RUN = random_run(n=160, m=40)
 
 
@@ -52,19 +55,6 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     return path.read_bytes()
 
 
-def chunk_ends(data: bytes) -> list[int]:
-    """Offsets behind each chunk record, found by walking over the records."""
-    ends, at = [], len(MCAP0_MAGIC)
-    while at + 9 <= len(data):
-        opcode, length = struct.unpack_from("<BQ", data, at)
-        at += 9 + length
-        if opcode == 0x06:
-            ends.append(at)
-        if opcode == 0x02:
-            break
-    return ends
-
-
 def test_a_file_cut_anywhere_reads_up_to_its_last_whole_chunk(whole: bytes, tmp_path: Path) -> None:
     path, ends = tmp_path / "run.mcap", chunk_ends(whole)
     assert len(ends) >= 2
@@ -73,13 +63,13 @@ def test_a_file_cut_anywhere_reads_up_to_its_last_whole_chunk(whole: bytes, tmp_
     lengths = {}
     for cut in sorted(c for c in cuts if ends[0] <= c < len(whole)):
         path.write_bytes(whole[:cut])
-        run = read_trajectories(path)
+        run = Recording(path).trajectories()
         n = lengths[cut] = len(run.t)
         assert run.robot is not None
         assert np.array_equal(run.t, RUN.t[:n])
         assert RUN.robot is not None
         assert run.robot.x.tobytes() == RUN.robot[:n, 0].tobytes()
-        assert not recording_info(path).complete
+        assert not Recording(path).info.complete
     assert list(lengths.values()) == sorted(lengths.values())
     assert lengths[ends[0]] == 51  # samples are written before all else of their second
     assert {51, 160} <= set(lengths.values())
@@ -91,7 +81,7 @@ def test_a_cut_before_the_first_chunk_ends_leaves_no_recording(
     path = tmp_path / "run.mcap"
     for cut in (0, 1, 7, 8, 20, 40, 200, chunk_ends(whole)[0] - 1):
         path.write_bytes(whole[:cut])
-        for read in (read_trajectories, read_scans, recording_info):
+        for read in QUESTIONS:
             with pytest.raises(InputError, match=r"run\.mcap: (not an MCAP file|no recording)"):
                 read(path)
 
@@ -99,8 +89,8 @@ def test_a_cut_before_the_first_chunk_ends_leaves_no_recording(
 def test_a_tail_of_zeros_is_a_cut(whole: bytes, tmp_path: Path) -> None:
     path, ends = tmp_path / "run.mcap", chunk_ends(whole)
     path.write_bytes(whole[: ends[1] - 300] + bytes(300))
-    assert 51 <= len(read_trajectories(path).t) < 160
-    assert not recording_info(path).complete
+    assert 51 <= len(Recording(path).trajectories().t) < 160
+    assert not Recording(path).info.complete
 
 
 @pytest.mark.parametrize("more", [b"x", b"\n", MCAP0_MAGIC])
@@ -109,7 +99,7 @@ def test_bytes_behind_the_end_are_an_error(whole: bytes, tmp_path: Path, more: b
     path = tmp_path / "run.mcap"
     for rest in (more, whole):
         path.write_bytes(whole + rest)
-        for read in (read_trajectories, read_scans, recording_info):
+        for read in QUESTIONS:
             with pytest.raises(InputError, match=f"{len(rest)} bytes follow its end"):
                 read(path)
 
@@ -118,7 +108,7 @@ def test_damage_in_the_middle_is_an_error(whole: bytes, tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     at = chunk_ends(whole)[0] - 1000
     path.write_bytes(whole[:at] + bytes([whole[at] ^ 0x55]) + whole[at + 1 :])
-    for read in (read_trajectories, read_scans, recording_info):
+    for read in QUESTIONS:
         with pytest.raises(InputError, match="damaged"):
             read(path)
 
@@ -127,12 +117,12 @@ def test_any_flipped_byte_is_no_traceback(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     small = random_run(n=6, m=2)
     write_run(path, small)
-    data, good = path.read_bytes(), bits(read_trajectories(path))
+    data, good = path.read_bytes(), bits(Recording(path).trajectories())
     start, survived = chunk_ends(data)[-1], 0
     for at in range(0, start, 7):
         path.write_bytes(data[:at] + bytes([data[at] ^ 0xFF]) + data[at + 1 :])
         with suppress(InputError):  # anything else fails the test
-            found = read_whole(path)  # a broken last chunk counts as cut off, and is told
+            found = Recording(path).robot()  # a broken last chunk counts as cut off, and is told
             assert not found.complete or bits(found.run) == good
             survived += found.complete
     assert survived < start // 40  # only bytes that carry nothing: texts of schemas, maps
@@ -151,10 +141,10 @@ def test_a_killed_process_leaves_all_it_flushed(tmp_path: Path) -> None:
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", script, str(path)], env=environment, check=False)
     assert done.returncode == -signal.SIGKILL
-    run, info = read_trajectories(path), recording_info(path)
+    run, info = Recording(path).trajectories(), Recording(path).info
     assert 100 <= len(run.t) < 160
     assert (info.complete, info.status, info.goal_time) == (False, "", None)
-    assert len(read_scans(path)[0].t) >= 99
+    assert len(Recording(path).scans()[0].t) >= 99
 
 
 def test_an_interrupted_run_is_not_complete(tmp_path: Path) -> None:
@@ -162,7 +152,7 @@ def test_an_interrupted_run_is_not_complete(tmp_path: Path) -> None:
     writer = RecordingWriter(path, header_of(RUN))
     write_samples(writer, RUN)
     writer.close(None, False, "interrupted")
-    info = recording_info(path)
+    info = Recording(path).info
     assert (info.complete, info.status) == (False, "interrupted")
 
 
@@ -171,13 +161,13 @@ def test_other_files_are_refused(content: bytes, tmp_path: Path) -> None:
     path = tmp_path / "x.mcap"
     path.write_bytes(content)
     with pytest.raises(InputError, match="not an MCAP file"):
-        read_trajectories(path)
+        Recording(path).trajectories()
 
 
 def test_missing_files_and_folders_are_refused(tmp_path: Path) -> None:
     for path in (tmp_path / "nothing", tmp_path):
         with pytest.raises(InputError, match="cannot be read"):
-            read_trajectories(path)
+            Recording(path).trajectories()
 
 
 def foreign() -> bytes:
@@ -195,7 +185,7 @@ def foreign() -> bytes:
 def test_a_foreign_recording_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "x.mcap"
     path.write_bytes(foreign())
-    for read in (read_trajectories, read_scans, recording_info):
+    for read in QUESTIONS:
         with pytest.raises(InputError, match="no recording of crowdbot"):
             read(path)
 
@@ -215,10 +205,10 @@ def test_a_bomb_is_refused_without_unpacking_it(tmp_path: Path) -> None:
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     path.write_bytes(bomb(frame, size))
     with pytest.raises(InputError, match="refused"):
-        read_trajectories(path)
+        Recording(path).trajectories()
     path.write_bytes(bomb(frame, 1000))  # it lies about its size
     with pytest.raises(InputError, match="no recording"):
-        read_trajectories(path)
+        Recording(path).trajectories()
     grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
     assert grown * 1024 < 2 * MAX_CHUNK
 
@@ -230,11 +220,11 @@ def test_a_message_that_does_not_decode_is_named(tmp_path: Path) -> None:
     writer.start(profile="ros2")
     schema = writer.register_schema("crowdbot_msgs/msg/RunHeader", "ros2msg", b"")
     channel = writer.register_channel("/crowdbot/header", "cdr", schema)
-    writer.add_message(channel, 0, b"\0\1\0\0\2\0\0\0\xff", 0)
+    writer.add_message(channel, 0, b"\0\1\0\0\4\0\0\0\xff", 0)
     writer.finish()  # type: ignore[no-untyped-call]
     path.write_bytes(stream.getvalue())
     with pytest.raises(InputError, match=r"/crowdbot/header: .* cannot be decoded"):
-        recording_info(path)
+        Recording(path).info  # noqa: B018
 
 
 def test_numbers_of_messages_are_bounded_like_bytes(
@@ -256,5 +246,5 @@ def test_numbers_of_messages_are_bounded_like_bytes(
         path.write_bytes(MCAP0_MAGIC + builder.end())  # type: ignore[no-untyped-call]
         why = "holds more messages than a recording may" if refused else "belongs to no topic"
         with pytest.raises(InputError, match=why):
-            read_trajectories(path)
+            Recording(path).trajectories()
     assert path.stat().st_size < 2000

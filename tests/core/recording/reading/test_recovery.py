@@ -11,10 +11,11 @@ import pytest
 from mcap.reader import make_reader
 
 from crowdbot import cli
-from crowdbot.core.recording import RecordingWriter, read_trajectories, recording_info
 from crowdbot.core.recording.container.records import Records
 from crowdbot.core.recording.reading.contents import contents
 from crowdbot.core.recording.reading.recover import recover
+from crowdbot.core.recording.recording import Recording
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.errors import InputError
 from tests.core.recording.recording_cases import (
     bits,
@@ -53,8 +54,8 @@ def test_all_whole_chunks_are_kept_bit_by_bit(tmp_path: Path) -> None:
     assert after[:-1] == before
     assert after[-1].topic == "/crowdbot/end"
     assert found.messages == len(before)
-    assert bits(read_trajectories(whole)) == bits(read_trajectories(cut))
-    assert len(read_trajectories(whole).t) == 21
+    assert bits(Recording(whole).trajectories()) == bits(Recording(cut).trajectories())
+    assert len(Recording(whole).trajectories().t) == 21
 
 
 def test_the_recovered_file_has_its_end_and_says_what_it_is(tmp_path: Path) -> None:
@@ -62,7 +63,7 @@ def test_the_recovered_file_has_its_end_and_says_what_it_is(tmp_path: Path) -> N
     recover(_cut(tmp_path), whole)
     info = contents(whole)
     assert (info.finished, info.complete, info.status) == (True, False, "recovered")
-    assert recording_info(whole).status == "recovered"
+    assert Recording(whole).info.status == "recovered"
     with whole.open("rb") as file:  # others read it by its index, with all checksums
         messages = sum(1 for _ in make_reader(file, validate_crcs=True).iter_messages())
     assert messages == sum(t.count for t in info.topics)
@@ -87,7 +88,7 @@ def test_a_run_that_had_ended_keeps_its_end(tmp_path: Path) -> None:
     data = path.read_bytes()
     path.write_bytes(data[:-20])  # only the footer is missing
     recover(path, whole)
-    assert recording_info(whole).status == "arrived"
+    assert Recording(whole).info.status == "arrived"
     assert contents(whole).complete
 
 

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from rosbags.highlevel import AnyReader
 
-from crowdbot.core.recording import RecordingHeader, RecordingWriter
 from crowdbot.core.recording.container.records import Records
+from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.reading.images import ReplayImages
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.runs.replayed import images_of_replay
 from crowdbot.core.types.sensor import CameraFrame, Pinhole, SensorInfo
 

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from crowdbot.core.recording import RecordingHeader, RecordingWriter, RobotHeader
-from crowdbot.core.recording.reading.recording import read_run, read_scans, recording_info
+from crowdbot.core.recording.header import RecordingHeader, RobotHeader
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.recording.scenery import static_frames
+from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.replay.encode_scans import encode_scans
 from crowdbot.core.sensing.points import LidarPoints
 from crowdbot.plugin import Reading, SensorInfo
@@ -40,13 +41,13 @@ def _write(path: Path, header: RecordingHeader) -> Path:
 
 def test_tilts_come_back(tmp_path: Path) -> None:
     path = _write(tmp_path / "a.mcap", _header(front=TILTED))
-    info = recording_info(path)
+    info = Recording(path).info
     assert info.topics["/crowdbot/tilts"] == ("crowdbot_msgs/msg/SensorTilts", 1)
     assert info.header.sensors["front"].tilt == TILT
     assert info.header.sensors["odometry"].tilt == (0.0, 0.0)
-    (scan,) = read_scans(path)
+    (scan,) = Recording(path).scans()
     assert scan.tilt == TILT
-    _, (again,) = read_run(path, 8.0)
+    (again,) = Recording(path, max_rate=8.0).scans()
     assert again.tilt == TILT
     meta, _ = encode_scans([scan])
     assert meta["scans"][0]["tilt"] == list(TILT)
@@ -54,8 +55,8 @@ def test_tilts_come_back(tmp_path: Path) -> None:
 
 def test_a_run_of_level_sensors_has_no_such_topic(tmp_path: Path) -> None:
     path = _write(tmp_path / "a.mcap", _header(front=LIDAR))
-    assert "/crowdbot/tilts" not in recording_info(path).topics
-    (scan,) = read_scans(path)
+    assert "/crowdbot/tilts" not in Recording(path).info.topics
+    (scan,) = Recording(path).scans()
     assert scan.tilt == (0.0, 0.0)
     assert "tilt" not in encode_scans([scan])[0]["scans"][0]
 

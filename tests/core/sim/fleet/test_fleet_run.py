@@ -11,7 +11,7 @@ from mcap.reader import make_reader
 
 from crowdbot.cli import main
 from crowdbot.core.realism.recordings import read_runs
-from crowdbot.core.recording import read_fleet, read_trajectories
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.runs.provenance import trajectory_hash
@@ -62,7 +62,7 @@ def test_a_run_says_of_each_robot_and_of_the_fleet(tmp_path: Path) -> None:
     assert rows["success", "corrected@b"].value == 0.0
     assert rows["success", "corrected"].value == 0.5
     with pytest.raises(InputError, match="several robots: a, b"):
-        read_trajectories(one.directory / "run.mcap")
+        Recording(one.directory / "run.mcap").trajectories()
     named = Trajectories.from_mcap(one.directory / "run.mcap", robot="a")
     assert trajectory_hash(named) == trajectory_hash(one.robots["a"])
     (compared,), _ = read_runs([one.directory / "run.mcap"])
@@ -103,8 +103,8 @@ def test_the_lidar_of_one_sees_the_other(tmp_path: Path) -> None:
     two = {"a": robot(0.0, 0.0, 0.0, "east", 0.5), "b": robot(2.0, 0.0, 0.0, "west", 0.5)}
     made = scenario(tmp_path, REGISTRY, two)
     done = run(made, REGISTRY, tmp_path / "out", planner="stand_still", record="all")
-    seen = read_fleet(done.directory / "run.mcap")
-    (ahead,), (behind,) = seen["a"].scans, seen["b"].scans
+    recording = Recording(done.directory / "run.mcap")
+    (ahead,), (behind,) = recording.scans(robot="a"), recording.scans(robot="b")
     front = np.argmin(np.abs(ahead.angles))
     assert abs(ahead.ranges[0, front] - (2.0 - 0.178)) < 0.02
     assert behind.ranges[0].max() > 2.0  # b looks away from a, along the hall

@@ -1,0 +1,19 @@
+"""Registers how `Trajectories.from_mcap` reads: recordings lie above trajectories."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from crowdbot.core.trajectories.trajectories import Trajectories
+
+
+def _read(path: Path | str, robot: str | None) -> Trajectories:
+    from crowdbot.core.recording.recording import Recording  # for those who read one
+
+    with Recording(path) as recording:
+        return recording.trajectories(robot)
+
+
+Trajectories.read_recording = _read
+
+__all__ = ["Trajectories"]
