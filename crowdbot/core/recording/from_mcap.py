@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from crowdbot.core.trajectories.from_recordings import register_reader
 from crowdbot.core.trajectories.trajectories import Trajectories
 
 
@@ -14,6 +15,6 @@ def _read(path: Path | str, robot: str | None) -> Trajectories:
         return recording.trajectories(robot)
 
 
-Trajectories.read_recording = _read
+register_reader(_read)
 
 __all__ = ["Trajectories"]

@@ -39,9 +39,7 @@ class FromRecordings:
     """What `Trajectories` can be made from, beside arrays."""
 
     __slots__ = ()
-    #: Reads a recording of crowdbot, of one robot by name; `crowdbot.core.recording.from_mcap`
-    #: registers it.
-    read_recording: ClassVar[Callable[[Path | str, str | None], FromRecordings] | None] = None
+    _read_recording: ClassVar[Callable[[Path | str, str | None], FromRecordings] | None] = None
 
     @classmethod
     def from_csv(
@@ -438,7 +436,7 @@ class FromRecordings:
                 and none is named.
             UnknownNameError: there is no such robot.
         """
-        read = cls.read_recording
+        read = cls._read_recording
         if read is None:
             raise InputError("this Trajectories reads no recordings; crowdbot.Trajectories does")
         return cast(Self, read(path_of("path", path), robot))
@@ -446,6 +444,11 @@ class FromRecordings:
     def implausible(self) -> list[str]:
         """What in it cannot be, such as positions in millimetres, in sentences with evidence."""
         return implausible(cast(Any, self))
+
+
+def register_reader(read: Callable[[Path | str, str | None], FromRecordings]) -> None:
+    """Say how `from_mcap` reads a recording, of one robot by name: its reader lies above."""
+    FromRecordings._read_recording = read
 
 
 #: Numbers that recordings are told beside their tables, and their units.
