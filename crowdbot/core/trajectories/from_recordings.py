@@ -8,15 +8,14 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, ClassVar, Literal, Self, TypeVar, cast
+from typing import Any, ClassVar, Self, TypeVar, Unpack, cast
 
 from numpy.typing import ArrayLike
 
+import crowdbot.core.trajectories.own_recordings as own
 from crowdbot.core.support.arguments import mapping_of, number_of, path_of, point_of
-from crowdbot.core.trajectories import own_recordings as own
 from crowdbot.core.trajectories.bag_tables import bag_tables
 from crowdbot.core.trajectories.datasets import eth_ucy_table, split_robot, trajnet_table
-from crowdbot.core.trajectories.own_recordings import Samples
 from crowdbot.core.trajectories.plausibility import implausible
 from crowdbot.core.trajectories.raw_table import (
     ColumnNames,
@@ -25,10 +24,15 @@ from crowdbot.core.trajectories.raw_table import (
     in_seconds,
     read_table,
 )
+from crowdbot.core.trajectories.recording_options import (
+    DEFAULTS,
+    BagOptions,
+    DataSetOptions,
+    TableOptions,
+    takes,
+)
 from crowdbot.errors import InputError, RecordingWarning
 
-#: When the robot arrived, s; None: it did not; ``"derived"``: from its goal.
-GoalTime = float | Literal["derived"] | None
 #: Table -> our name of a column -> the name that it has there.
 TableColumns = Mapping[str, ColumnNames]
 _COLUMNS = {"robot": own.ROBOT, "agents": own.AGENT, "trips": own.TRIP, "contacts": own.CONTACT}
@@ -42,31 +46,17 @@ class FromRecordings:
     _read_recording: ClassVar[Callable[[Path | str, str | None], FromRecordings] | None] = None
 
     @classmethod
+    @takes(TableOptions)
     def from_csv(
         cls,
         robot: Path | str | None = None,
         agents: Path | str | None = None,
         trips: Path | str | None = None,
         *,
-        agent_radius: float = 0.25,
-        agent_mass: float = 70.0,
-        resample: Samples = None,
-        clock_offset: float = 0.0,
-        max_gap: float = 1.0,
         frame_rate: float | None = None,
         columns: TableColumns | None = None,
         contacts: Path | str | Mapping[str, ArrayLike] | None = None,
-        robot_radius: float | None = None,
-        robot_mass: float | None = None,
-        robot_goal_time: GoalTime = "derived",
-        robot_goal: tuple[float, float] | None = None,
-        robot_goal_radius: float = 0.0,
-        robot_speed_limit: float | None = None,
-        goal_zone: ArrayLike | None = None,
-        walls: ArrayLike | None = None,
-        planner_step_time: ArrayLike | None = None,
-        robot_footprint: ArrayLike | None = None,
-        signals: Mapping[str, ArrayLike] | None = None,
+        **options: Unpack[TableOptions],
     ) -> Self:
         """Read tables with a header row; SI units, radians, an empty cell is unknown.
 
@@ -80,17 +70,16 @@ class FromRecordings:
                 and sample; no row, no person. ``jump`` is 1 where the person was teleported since
                 the sample before. Ids may be names: people are numbered as they appear.
             trips: agent, t0, t1, reached (0 or 1): one row a trip.
-            agent_radius: m, where the table does not say it.
-            agent_mass: kg, where the table does not say it.
-            resample: None: rows of people lie on the robot's; ``"robot"``: people are interpolated
-                at the robot's times; a number: everything is, at so many Hz.
-            clock_offset: s, added to the times of people, whose clock differs by it.
-            max_gap: s; over a longer time without a row nobody is interpolated, but absent.
             frame_rate: frames per second, where times are numbers of frames; None: they are not.
             columns: names of columns where they differ:
                 ``{"robot": {"x": "pos_x"}, "agents": {"id": "track"}}``.
             contacts: t0, t1, agent (-1: a wall), impulse, peak_force, relative_speed, optionally
                 bearing: one row a contact of the robot; or such columns.
+            agent_radius, agent_mass: m, kg, where the table does not say them.
+            resample: None: rows of people lie on the robot's; ``"robot"``: people are interpolated
+                at the robot's times; a number: everything is, at so many Hz.
+            clock_offset: s, added to the times of people, whose clock differs by it.
+            max_gap: s; across a longer time without a row a person is absent, not interpolated.
             robot_radius, robot_mass: m, kg; needed with a robot.
             robot_goal_time: when it arrived, s. Left out, it is derived: the first time that its
                 centre is within ``robot_goal_radius`` (0: its own radius) of ``robot_goal``, or in
@@ -107,65 +96,31 @@ class FromRecordings:
             RecordingWarning: units or frames cannot be what they should be.
         """
         names = _names_of(columns)
-        given: dict[str, Path | str | None] = {"robot": robot, "agents": agents, "trips": trips}
+        files: dict[str, Path | str | None] = {"robot": robot, "agents": agents, "trips": trips}
         as_columns = None
         if contacts is None or isinstance(contacts, Path | str):
-            given["contacts"] = contacts
+            files["contacts"] = contacts
         else:
             as_columns = contacts
         tables = {
             n: read_table(path_of(n, p), names.get(n, {}), _COLUMNS[n])
-            for n, p in given.items()
+            for n, p in files.items()
             if p is not None
         }
-        return _made(
-            cls,
-            in_seconds(tables, frame_rate),
-            contacts=as_columns,
-            agent_radius=agent_radius,
-            agent_mass=agent_mass,
-            resample=resample,
-            clock_offset=clock_offset,
-            max_gap=max_gap,
-            robot_radius=robot_radius,
-            robot_mass=robot_mass,
-            robot_goal_time=robot_goal_time,
-            robot_goal=robot_goal,
-            robot_goal_radius=robot_goal_radius,
-            robot_speed_limit=robot_speed_limit,
-            goal_zone=goal_zone,
-            walls=walls,
-            planner_step_time=planner_step_time,
-            robot_footprint=robot_footprint,
-            signals=signals,
-        )
+        return _made(cls, in_seconds(tables, frame_rate), options, contacts=as_columns)
 
     @classmethod
+    @takes(TableOptions)
     def from_pandas(
         cls,
         robot: object | None = None,
         agents: object | None = None,
         trips: object | None = None,
         *,
-        agent_radius: float = 0.25,
-        agent_mass: float = 70.0,
-        resample: Samples = None,
-        clock_offset: float = 0.0,
-        max_gap: float = 1.0,
         frame_rate: float | None = None,
         columns: TableColumns | None = None,
         contacts: object | None = None,
-        robot_radius: float | None = None,
-        robot_mass: float | None = None,
-        robot_goal_time: GoalTime = "derived",
-        robot_goal: tuple[float, float] | None = None,
-        robot_goal_radius: float = 0.0,
-        robot_speed_limit: float | None = None,
-        goal_zone: ArrayLike | None = None,
-        walls: ArrayLike | None = None,
-        planner_step_time: ArrayLike | None = None,
-        robot_footprint: ArrayLike | None = None,
-        signals: Mapping[str, ArrayLike] | None = None,
+        **options: Unpack[TableOptions],
     ) -> Self:
         """Take data frames, or mappings of columns, that are as the tables of `from_csv`.
 
@@ -173,23 +128,10 @@ class FromRecordings:
             robot: t, x, y, optionally theta, v, w, vx, vy.
             agents: t, id, x, y, optionally vx, vy, radius, mass, jump.
             trips: agent, t0, t1, reached.
-            agent_radius: m, where the frame does not say it.
-            agent_mass: kg, where the frame does not say it.
-            resample: None: rows of people lie on the robot's; ``"robot"``: people are interpolated
-                at the robot's times; a number: everything is, at so many Hz.
-            clock_offset: s, added to the times of people, whose clock differs by it.
-            max_gap: s; over a longer time without a row nobody is interpolated, but absent.
             frame_rate: frames per second, where times are numbers of frames; None: they are not.
             columns: names of columns where they differ, as for `from_csv`.
             contacts: a frame as the table of `from_csv`.
-            robot_radius, robot_mass: m, kg; needed with a robot.
-            robot_goal_time: when it arrived, s. Left out, it is derived: the first time that its
-                centre is within ``robot_goal_radius`` (0: its own radius) of ``robot_goal``, or in
-                ``goal_zone``. None: it did not arrive. Without a goal, metrics of the task are
-                undefined.
-            robot_goal, robot_goal_radius: middle and radius of the goal, m.
-            robot_speed_limit: the fastest that the robot can go, m/s.
-            goal_zone, walls, planner_step_time, robot_footprint, signals: as in `Trajectories`.
+            options: all further keywords are those of `from_csv`.
 
         Raises:
             InputError: a frame is something else, does not fit the others, or there is none.
@@ -198,53 +140,23 @@ class FromRecordings:
             RecordingWarning: units or frames cannot be what they should be.
         """
         names = _names_of(columns)
-        given = {"robot": robot, "agents": agents, "trips": trips, "contacts": contacts}
+        frames = {"robot": robot, "agents": agents, "trips": trips, "contacts": contacts}
         tables = {
             n: frame_table(f"frame '{n}'", f, names.get(n, {}), _COLUMNS[n])
-            for n, f in given.items()
+            for n, f in frames.items()
             if f is not None
         }
-        return _made(
-            cls,
-            in_seconds(tables, frame_rate),
-            agent_radius=agent_radius,
-            agent_mass=agent_mass,
-            resample=resample,
-            clock_offset=clock_offset,
-            max_gap=max_gap,
-            robot_radius=robot_radius,
-            robot_mass=robot_mass,
-            robot_goal_time=robot_goal_time,
-            robot_goal=robot_goal,
-            robot_goal_radius=robot_goal_radius,
-            robot_speed_limit=robot_speed_limit,
-            goal_zone=goal_zone,
-            walls=walls,
-            planner_step_time=planner_step_time,
-            robot_footprint=robot_footprint,
-            signals=signals,
-        )
+        return _made(cls, in_seconds(tables, frame_rate), options)
 
     @classmethod
+    @takes(BagOptions, resample="robot")
     def from_rosbag(
         cls,
         path: Path | str,
         *,
         robot: str | None = None,
         people: str | None = None,
-        agent_radius: float = 0.25,
-        agent_mass: float = 70.0,
-        resample: Samples = "robot",
-        clock_offset: float = 0.0,
-        max_gap: float = 1.0,
-        robot_radius: float | None = None,
-        robot_mass: float | None = None,
-        robot_goal_time: GoalTime = "derived",
-        robot_goal: tuple[float, float] | None = None,
-        robot_goal_radius: float = 0.0,
-        robot_speed_limit: float | None = None,
-        goal_zone: ArrayLike | None = None,
-        walls: ArrayLike | None = None,
+        **options: Unpack[BagOptions],
     ) -> Self:
         """Read topics of a bag of ROS 1 or ROS 2; times are counted from the robot's first.
 
@@ -254,20 +166,8 @@ class FromRecordings:
                 ``PoseStamped``, ``PoseWithCovarianceStamped`` and their like.
             people: topic with a list of people with positions, and with ids, names or their place
                 in the list: ``People``, ``TrackedPersons``, ``MarkerArray``, ``PoseArray``.
-            agent_radius: m.
-            agent_mass: kg.
-            resample: ``"robot"``: people are interpolated at the robot's times; a number:
-                everything is, at so many Hz; None: the topics have the same times.
-            clock_offset: s, added to the times of people, whose clock differs by it.
-            max_gap: s; over a longer time without a message nobody is interpolated, but absent.
-            robot_radius, robot_mass: m, kg; needed with a robot.
-            robot_goal_time: when it arrived, s. Left out, it is derived: the first time that its
-                centre is within ``robot_goal_radius`` (0: its own radius) of ``robot_goal``, or in
-                ``goal_zone``. None: it did not arrive. Without a goal, metrics of the task are
-                undefined.
-            robot_goal, robot_goal_radius: middle and radius of the goal, m.
-            robot_speed_limit: the fastest that the robot can go, m/s.
-            goal_zone, walls: as in `Trajectories`.
+            options: all further keywords are those of `from_csv`. With ``resample=None`` the
+                topics must have the same times.
 
         Raises:
             InputError: it cannot be read, or messages have no pose or no list of people.
@@ -277,27 +177,12 @@ class FromRecordings:
             RecordingWarning: units or frames cannot be what they should be.
         """
         own_robot, others = bag_tables(path_of("path", path), robot, people)
-        if own_robot is None and resample == "robot":
-            resample = None
-        return _made(
-            cls,
-            {"robot": own_robot, "agents": others},
-            agent_radius=agent_radius,
-            agent_mass=agent_mass,
-            resample=resample,
-            clock_offset=clock_offset,
-            max_gap=max_gap,
-            robot_radius=robot_radius,
-            robot_mass=robot_mass,
-            robot_goal_time=robot_goal_time,
-            robot_goal=robot_goal,
-            robot_goal_radius=robot_goal_radius,
-            robot_speed_limit=robot_speed_limit,
-            goal_zone=goal_zone,
-            walls=walls,
-        )
+        if own_robot is None and options.get("resample") == "robot":
+            options["resample"] = None
+        return _made(cls, {"robot": own_robot, "agents": others}, options)
 
     @classmethod
+    @takes(DataSetOptions, robot_radius=0.25, robot_mass=70.0)
     def from_trajnet(
         cls,
         path: Path | str,
@@ -305,16 +190,7 @@ class FromRecordings:
         scene: int | None = None,
         robot: int | None = None,
         frame_rate: float | None = None,
-        agent_radius: float = 0.25,
-        agent_mass: float = 70.0,
-        robot_radius: float = 0.25,
-        robot_mass: float = 70.0,
-        robot_goal_time: GoalTime = "derived",
-        robot_goal: tuple[float, float] | None = None,
-        robot_goal_radius: float = 0.0,
-        robot_speed_limit: float | None = None,
-        goal_zone: ArrayLike | None = None,
-        walls: ArrayLike | None = None,
+        **options: Unpack[DataSetOptions],
     ) -> Self:
         """Read people of TrajNet++ (``.ndjson``).
 
@@ -324,15 +200,7 @@ class FromRecordings:
             robot: number of a person who is taken for the robot; the run is as long as that
                 person is there. None: people alone.
             frame_rate: frames per second; None: as the data set has it (2.5 annotations a second).
-            agent_radius, agent_mass: of people, m, kg.
-            robot_radius, robot_mass: m, kg.
-            robot_goal_time: when it arrived, s. Left out, it is derived: the first time that its
-                centre is within ``robot_goal_radius`` (0: its own radius) of ``robot_goal``, or in
-                ``goal_zone``. None: it did not arrive. Without a goal, metrics of the task are
-                undefined.
-            robot_goal, robot_goal_radius: middle and radius of the goal, m.
-            robot_speed_limit: the fastest that the robot can go, m/s.
-            goal_zone, walls: as in `Trajectories`.
+            options: all further keywords are those of `from_csv`.
 
         Raises:
             InputError: it cannot be read, or is of another format.
@@ -342,86 +210,24 @@ class FromRecordings:
             RecordingWarning: units or frames cannot be what they should be.
         """
         table = trajnet_table(path_of("path", path), scene, frame_rate)
-        own_robot, others = split_robot(table, robot)
-        return _made(
-            cls,
-            {"robot": own_robot, "agents": others if len(others) else None},
-            agent_radius=agent_radius,
-            agent_mass=agent_mass,
-            resample=None,
-            clock_offset=0.0,
-            max_gap=1.0,
-            robot_radius=robot_radius,
-            robot_mass=robot_mass,
-            robot_goal_time=robot_goal_time,
-            robot_goal=robot_goal,
-            robot_goal_radius=robot_goal_radius,
-            robot_speed_limit=robot_speed_limit,
-            goal_zone=goal_zone,
-            walls=walls,
-        )
+        return _made(cls, _people_and_robot(table, robot), options)
 
     @classmethod
+    @takes(DataSetOptions, robot_radius=0.25, robot_mass=70.0)
     def from_eth_ucy(
         cls,
         path: Path | str,
         *,
         robot: int | None = None,
         frame_rate: float | None = None,
-        agent_radius: float = 0.25,
-        agent_mass: float = 70.0,
-        robot_radius: float = 0.25,
-        robot_mass: float = 70.0,
-        robot_goal_time: GoalTime = "derived",
-        robot_goal: tuple[float, float] | None = None,
-        robot_goal_radius: float = 0.0,
-        robot_speed_limit: float | None = None,
-        goal_zone: ArrayLike | None = None,
-        walls: ArrayLike | None = None,
+        **options: Unpack[DataSetOptions],
     ) -> Self:
         """Read people of ETH or UCY: ``obsmat.txt``, or rows of frame, id, x, y.
 
-        Args:
-            path: the file.
-            robot: number of a person who is taken for the robot; the run is as long as that
-                person is there. None: people alone.
-            frame_rate: frames per second; None: as the data set has it (2.5 annotations a second).
-            agent_radius, agent_mass: of people, m, kg.
-            robot_radius, robot_mass: m, kg.
-            robot_goal_time: when it arrived, s. Left out, it is derived: the first time that its
-                centre is within ``robot_goal_radius`` (0: its own radius) of ``robot_goal``, or in
-                ``goal_zone``. None: it did not arrive. Without a goal, metrics of the task are
-                undefined.
-            robot_goal, robot_goal_radius: middle and radius of the goal, m.
-            robot_speed_limit: the fastest that the robot can go, m/s.
-            goal_zone, walls: as in `Trajectories`.
-
-        Raises:
-            InputError: it cannot be read, or is of another format.
-            UnknownNameError: there is no such scene or person.
-
-        Warns:
-            RecordingWarning: units or frames cannot be what they should be.
+        Arguments, errors and warnings are those of `from_trajnet`.
         """
         table = eth_ucy_table(path_of("path", path), frame_rate)
-        own_robot, others = split_robot(table, robot)
-        return _made(
-            cls,
-            {"robot": own_robot, "agents": others if len(others) else None},
-            agent_radius=agent_radius,
-            agent_mass=agent_mass,
-            resample=None,
-            clock_offset=0.0,
-            max_gap=1.0,
-            robot_radius=robot_radius,
-            robot_mass=robot_mass,
-            robot_goal_time=robot_goal_time,
-            robot_goal=robot_goal,
-            robot_goal_radius=robot_goal_radius,
-            robot_speed_limit=robot_speed_limit,
-            goal_zone=goal_zone,
-            walls=walls,
-        )
+        return _made(cls, _people_and_robot(table, robot), options)
 
     @classmethod
     def from_mcap(cls, path: Path | str, *, robot: str | None = None) -> Self:
@@ -451,24 +257,24 @@ def register_reader(read: Callable[[Path | str, str | None], FromRecordings]) ->
     FromRecordings._read_recording = read
 
 
-#: Numbers that recordings are told beside their tables, and their units.
+#: Numbers among the options and their units; and those that None leaves unknown.
 _NUMBERS = {
-    "robot_radius": "m",
-    "robot_mass": "kg",
-    "robot_goal_radius": "m",
-    "robot_speed_limit": "m/s",
-}
+    "agent_radius": "m", "agent_mass": "kg", "clock_offset": "s", "max_gap": "s",
+    "robot_goal_radius": "m", "robot_radius": "m", "robot_mass": "kg", "robot_speed_limit": "m/s",
+}  # fmt: skip
+_OPTIONAL = ("robot_radius", "robot_mass", "robot_speed_limit")
+_FOR_COLUMNS = ("agent_radius", "agent_mass", "resample", "clock_offset", "max_gap")
 
 
-def _told_number(name: str, value: Any) -> float | None:
-    """A number, or None where that means unknown.
+def _checked(name: str, value: Any) -> Any:
+    """The value of an option.
 
     Raises:
-        InputError: it is something else.
+        InputError: it should be a number or a point, and is something else.
     """
-    if value is None and name != "robot_goal_radius":
-        return None
-    return number_of(name, value, _NUMBERS[name])
+    if name in _NUMBERS and not (value is None and name in _OPTIONAL):
+        return number_of(name, value, _NUMBERS[name])
+    return point_of(name, value) if name == "robot_goal" and value is not None else value
 
 
 def _names_of(columns: TableColumns | None) -> TableColumns:
@@ -487,43 +293,32 @@ def _names_of(columns: TableColumns | None) -> TableColumns:
     return columns
 
 
+def _people_and_robot(table: RawTable, robot: int | None) -> dict[str, RawTable | None]:
+    """The tables of a data set, of which one person may be taken for the robot."""
+    own_robot, others = split_robot(table, robot)
+    return {"robot": own_robot, "agents": others if len(others) else None}
+
+
 def _made(
     cls: type[_Run],
     tables: Mapping[str, RawTable | None],
-    *,
-    agent_radius: float,
-    agent_mass: float,
-    resample: Samples,
-    clock_offset: float,
-    max_gap: float,
-    robot_goal_time: GoalTime,
-    **told: Any,
+    options: Mapping[str, Any],
+    contacts: Mapping[str, ArrayLike] | None = None,
 ) -> _Run:
-    """The run of some tables, and of what was told beside them; warns of what cannot be."""
-    told = {n: _told_number(n, v) if n in _NUMBERS else v for n, v in told.items()}
-    if told["robot_goal"] is not None:
-        told["robot_goal"] = point_of("robot_goal", told["robot_goal"])
-    columns = own.columns_of(
-        tables.get("robot"),
-        tables.get("agents"),
-        tables.get("trips"),
-        tables.get("contacts"),
-        agent_radius=number_of("agent_radius", agent_radius, "m"),
-        agent_mass=number_of("agent_mass", agent_mass, "kg"),
-        resample=resample,
-        clock_offset=number_of("clock_offset", clock_offset, "s"),
-        max_gap=number_of("max_gap", max_gap, "s"),
-    )
-    arrived = robot_goal_time
+    """The run of some tables and of the options beside them; warns of what cannot be."""
+    given = {name: _checked(name, value) for name, value in {**DEFAULTS, **options}.items()}
+    how = {name: given.pop(name) for name in _FOR_COLUMNS}
+    columns = own.columns_of(*(tables.get(name) for name in _COLUMNS), **how)
+    arrived = given.pop("robot_goal_time")
     if arrived == "derived":
-        radius = told["robot_goal_radius"] or told["robot_radius"] or 0.0
-        arrived = own.arrival(columns, told["robot_goal"], radius, told["goal_zone"])
+        radius = given["robot_goal_radius"] or given["robot_radius"] or 0.0
+        arrived = own.arrival(columns, given["robot_goal"], radius, given["goal_zone"])
     elif isinstance(arrived, str):
         raise InputError(f"robot_goal_time is a time in s, None or 'derived', not {arrived!r}")
-    told = {n: v for n, v in told.items() if n not in columns}
-    if "robot_x" in columns and None in (told.get("robot_radius"), told.get("robot_mass")):
+    if "robot_x" in columns and None in (given["robot_radius"], given["robot_mass"]):
         raise InputError("a robot needs robot_radius (m) and robot_mass (kg), which tables lack")
-    run: _Run = cast(Any, cls).from_arrays(**columns, robot_goal_time=arrived, **told)
+    arrays = {"contacts": contacts, **given, **columns, "robot_goal_time": arrived}
+    run: _Run = cast(Any, cls).from_arrays(**arrays)
     for text in run.implausible():
-        warnings.warn(text, RecordingWarning, stacklevel=3)
+        warnings.warn(text, RecordingWarning, stacklevel=4)
     return run
